@@ -10,7 +10,7 @@ DRAW := $(HEADLESS) PYTHONPATH=scripts $(RUN) -m pictures
 # Given on the command line: make test ARGS="-k robotmap" JOBS=0 (ARGS=-rs says why tests were skipped),
 # make install PROFILE=work LINK=1
 ARGS ?=
-JOBS ?= 4
+JOBS ?= 6
 # Which file comes when says tests/conftest.py. pytest-qgis takes --dist for a sign that workers have QGIS, so
 # without workers it must not be there.
 SIDE_BY_SIDE = $(if $(filter 0,$(JOBS)),,-n $(JOBS) --dist loadfile --no-loadscope-reorder)
@@ -23,7 +23,7 @@ TRACKER ?=
 MINUTES ?=
 export PYTHON DESTDIR PREFIX PROGRAM ARGS JOBS REPOSITORY TRACKER MINUTES
 
-.PHONY: help setup demo test test-newer lint desktop screenshots install install-service uninstall-service translations package clean bench
+.PHONY: help setup demo test test-core test-newer lint desktop screenshots install install-service uninstall-service translations package clean bench mutants
 
 help: ## list the targets
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-18s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -36,11 +36,14 @@ $(READY): pyproject.toml scripts/setup.sh
 build/run:
 	@mkdir -p -m 700 $@
 
-demo: $(READY) build/run ## run the main job once, headless, on the sample site; see build/demo/
-	@$(HEADLESS) $(RUN) scripts/demo.py
+demo: $(READY) build/run ## run the main job once, headless, on the sample site; see build/demo/ (PARTS=zalazone)
+	@$(HEADLESS) $(RUN) scripts/demo.py $(PARTS)
 
 test: $(READY) build/run ## run every test, style and import rules included, headless
 	@$(HEADLESS) $(RUN) -m pytest -q -rfEs $(SIDE_BY_SIDE) --durations=5 --durations-min=1 $(ARGS)
+
+test-core: $(READY) ## run within a minute what needs neither QGIS nor database servers nor a display
+	@$(RUN) -m pytest -q -rfE -p no:pytest_qgis --core -n 2 --dist loadfile --no-loadscope-reorder $(ARGS)
 
 test-newer: ## run every test on the newer QGIS of Debian forky, in a root folder of its own (as root)
 	@scripts/newer.sh
@@ -78,8 +81,12 @@ translations: $(READY) ## bring resources/translations up to date with the sourc
 package: $(READY) ## build the zip for plugins.qgis.org
 	@$(RUN) scripts/package.py
 
-bench: $(READY) ## measure on the real data beside the project (PARTS=maps ..., MINUTES=5); see docs/benchmarks.md
+bench: $(READY) ## measure on the real data beside the project (PARTS=maps ..., MINUTES=5, TRIAL=1); see docs/benchmarks.md
 	@$(RUN) scripts/bench.py $(PARTS)
+
+mutants: $(READY) ## change what stops robots in every way that a test must notice (ARGS=emergency); docs/benchmarks.md
+	@.venv/bin/pip install -q $$($(RUN) -c 'import tomllib; print(*tomllib.load(open("pyproject.toml", "rb"))["project"]["optional-dependencies"]["mutation"])')
+	@nice -n 10 $(RUN) scripts/mutants.py $(ARGS)
 
 clean: ## remove build/ (what was built, not the environment)
 	rm -rf build

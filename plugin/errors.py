@@ -2,9 +2,17 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 
 class FleetError(Exception):
-    """Something that the operator has to know, in words that can be shown as they are."""
+    """Something that the operator has to know, in words that can be shown as they are.
+
+    ``topics`` are the conditions that it is about (:mod:`.desk.messages`): when one has ended it is not true
+    any more.
+    """
+
+    topics: tuple[Any, ...] = ()
 
 
 class LibraryMissingError(FleetError):
@@ -30,6 +38,10 @@ class LinkError(FleetError):
 
 class NotSentError(FleetError):
     """What the operator asked for was not sent."""
+
+    def __init__(self, message: str, topics: tuple[Any, ...] = ()):
+        super().__init__(message)
+        self.topics = topics
 
 
 class PlacementError(FleetError):

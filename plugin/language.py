@@ -48,10 +48,14 @@ def tr_count(number: int, one: str, many: str, /, **values: object) -> str:
     return translated.format(**values) if values else translated
 
 
-def first_of(texts: Sequence[str], most: int = 3) -> list[str]:
-    """Return the first ``most`` of ``texts`` and how many more there are: hundreds fit into no sentence."""
-    more = len(texts) - most
-    return [*texts[:most], tr("and {more} more", more=more)] if more > 0 else list(texts)
+def first_of(texts: Sequence[str], most: int = 3, count: int | None = None) -> list[str]:
+    """Return the first ``most`` of ``texts`` and how many more there are: hundreds fit into no sentence.
+
+    ``count`` is how many there are in all where ``texts`` are only some of them.
+    """
+    shown = list(texts[:most])
+    more = max(len(texts), count or 0) - len(shown)
+    return [*shown, tr("and {more} more", more=more)] if more > 0 else shown
 
 
 class Language:

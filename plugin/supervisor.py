@@ -67,6 +67,7 @@ class FleetSupervisor:
         from .desk.plugin_menu import PluginMenu
         from .desk.replay.replay_action import ReplayAction
         from .desk.robot_feed import RobotFeed
+        from .desk.robots.removal import RobotRemoval
         from .desk.shortcuts import Shortcuts
         from .desk.site_choice.site_choice_action import SiteChoiceAction
         from .desk.site_drop import SiteDrop
@@ -98,6 +99,7 @@ class FleetSupervisor:
         add(ReplayAction(iface, MENU, window.desk))
         add(AccountsAction(iface, MENU, connections, window.desk))
         add(SiteChoiceAction(iface, MENU, connections, window.desk))
+        add(RobotRemoval(iface, MENU, connections, window.desk, window.dock.table))
         add(TourAction(iface, MENU, window))
         others = [part.action for part in self._parts if hasattr(part, "action")]
         # The last ones, so that they go first: while every action is still there.

@@ -22,12 +22,15 @@ COMMANDS = {
     "trajectories": "Where robots have been.",
     "placements": "Where cones were put down.",
     "operators": "Accounts of operators: their roles and tokens.",
+    "links": "Accounts of links, which speak for many robots.",
     "sessions": "Connections of operators to the desk.",
     "tls": "Certificates for wss://.",
     "serve": "Serve one site to robots (/robot, and tables rr and sa) and to operators (/desk).",
     "audit": "Print who did what, oldest first: when, who, role, from where, what, to what, done or refused.",
-    "schemas": "Write the JSON Schema of every message, and the AsyncAPI document of both endpoints.",
+    "schemas": "Write the JSON Schema of every message, and the AsyncAPI document of all endpoints.",
+    "link": "Run an adapter: robots and trackers of another kind, over one connection.",
     "robot": "Run the reference robot: a simulated body that speaks the protocol.",
+    "experiment": "Drive a simulated robot that finds itself on its map, and tell how far it is off.",
 }
 """The modules of ``commands`` with what each says of itself: a group ``app``, or a function of its name."""
 
@@ -91,10 +94,11 @@ def _only_named() -> None:
 def _foreseen() -> tuple[type[Exception], ...]:
     """Return the families of errors whose text is for people."""
     from .messages import MessageError
+    from .reference_robot.errors import ReferenceRobotError
     from .robotmap.errors import RobotMapError
     from .sites.errors import SiteError
 
-    return (BridgeError, SiteError, RobotMapError, MessageError)
+    return (BridgeError, SiteError, RobotMapError, MessageError, ReferenceRobotError)
 
 
 if __name__ == "__main__":

@@ -114,7 +114,7 @@ class Answering:
     async def _end(self, robot: str) -> SetPosEnd:
         given = await self._given("GetPosEnd", robot, "SetPosEnd", "SetPath")
         if isinstance(given, SetPath):
-            return SetPosEnd(*given.points[-1], given.theta)
+            return SetPosEnd(*given.points[-1], given.theta, bool(given.cone), given.collect)
         assert isinstance(given, SetPosEnd)
         return given
 

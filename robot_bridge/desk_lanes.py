@@ -27,6 +27,7 @@ from .messages import (
     GetRoute,
     GetSurfaces,
     GetTrajectory,
+    GetWaysOut,
     MakeCurrent,
     PauseRobot,
     ResolveConflict,
@@ -37,7 +38,7 @@ from .messages import (
     TakeOver,
 )
 
-SLOW = (GetRoute, GetConflicts, GetSurfaces, GetTrajectory, GetImage)
+SLOW = (GetRoute, GetConflicts, GetWaysOut, GetSurfaces, GetTrajectory, GetImage)
 """Questions that are answered aside: they change nothing, and take long or bring much."""
 STOPPING = (EmergencyStop, AbortTask, AbortAll, PauseRobot)
 MOVING = (

@@ -15,6 +15,7 @@ from . import map_requests
 from .access import account_requests, supervision
 from .errors import ForbiddenError, RefusedError
 from .fleet import Fleet
+from .foreign_places import route_in_site_frame
 from .messages import (
     AbortAll,
     AbortTask,
@@ -43,12 +44,14 @@ from .messages import (
     GetSites,
     GetSurfaces,
     GetTrajectory,
+    GetWaysOut,
     MakeCurrent,
     MoveTask,
     OpenRoad,
     PauseQueue,
     PauseRobot,
     QueueReport,
+    RemoveRobots,
     RemoveTask,
     ResolveConflict,
     ResumeQueue,
@@ -292,6 +295,7 @@ def _surfaces(fleet: Fleet, request: GetSurfaces) -> Json:
 
 
 async def _get_route(fleet: Fleet, request: GetRoute, _caller: Caller) -> Json:
+    request = await route_in_site_frame(fleet.site, request)
     return to_json(await road_requests.route(fleet.roads.planner, fleet.robots, fleet.roads.ways, request))
 
 
@@ -311,8 +315,16 @@ async def _get_conflicts(fleet: Fleet, _request: GetConflicts, _caller: Caller) 
     return to_json(await fleet.roads.traffic.conflicts())
 
 
+async def _get_ways_out(fleet: Fleet, request: GetWaysOut, _caller: Caller) -> Json:
+    return to_json(await fleet.roads.traffic.ways_out(request))
+
+
 async def _resolve_conflict(fleet: Fleet, request: ResolveConflict, caller: Caller) -> Json:
     return to_json(await fleet.roads.traffic.resolve(request, caller.operator))
+
+
+async def _remove_robots(fleet: Fleet, request: RemoveRobots, caller: Caller) -> Json:
+    return to_json(await fleet.removals.remove(request, caller.operator))
 
 
 SERVICES: dict[type[DeskRequest], Service] = {
@@ -355,7 +367,9 @@ SERVICES: dict[type[DeskRequest], Service] = {
     GetRoute: Service(Role.VIEWER, _get_route),
     GetClosures: Service(Role.VIEWER, _get_closures),
     GetConflicts: Service(Role.VIEWER, _get_conflicts),
+    GetWaysOut: Service(Role.VIEWER, _get_ways_out),
     CloseRoad: Service(Role.OPERATOR, _close_road),
     OpenRoad: Service(Role.OPERATOR, _open_road),
     ResolveConflict: Service(Role.OPERATOR, _resolve_conflict),
+    RemoveRobots: Service(Role.SUPERVISOR, _remove_robots),
 }

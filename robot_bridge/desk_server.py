@@ -28,7 +28,7 @@ from .messages import (
     Subscribe,
     to_json,
 )
-from .monitoring.unforeseen import note_unforeseen
+from .monitoring.unforeseen import going_on
 from .snapshots import EVERYTHING, Tick
 from .wire import decode_desk_request, error_code
 
@@ -116,13 +116,18 @@ class DeskSession:
             return jsonrpc.error(error.id, error.code, str(error))
         code, text = jsonrpc.INTERNAL_ERROR, str(error)
         if isinstance(error, (MessageError, BridgeError)):
-            log.warning("desk of %s: %s", self._operator, error)
+            self._fleet.repeated.warn(log, self._key_of(call), f"desk of {self._operator}: {error}")
             code = error_code(error)
         else:
-            text = note_unforeseen(log, f"desk of {self._operator}")
+            text = self._fleet.repeated.note_unforeseen(log, self._key_of(call), f"desk of {self._operator}")
         if isinstance(call, jsonrpc.Call):
             self._note(call, text, code)
         return jsonrpc.error(call.id if call else None, code, text, _data_of(error))
+
+    def _key_of(self, call: jsonrpc.Call | jsonrpc.Reply | None) -> tuple[str, ...]:
+        """Return what lines of the log about such a request are counted under."""
+        method = call.method if isinstance(call, jsonrpc.Call) else ""
+        return "desk of", self._operator, method if method in DESK_REQUESTS else "unknown methods"
 
     def _note(self, call: jsonrpc.Call, refusal: str | None = None, code: int | None = None) -> None:
         """Write down who asked for what to be changed, done or refused, and what a role does not reach."""
@@ -161,13 +166,18 @@ class DeskSession:
             )
         if not request.operator.strip():
             raise MessageError("hello: operator is empty; give the operator's name, it goes into the log")
-        self._operator = self._gate.name_desk(self._connection, request.operator.strip()[:128])
+        self._operator = self._gate.name_desk(self._connection, request.operator.strip())
+        if (suspensions := self._fleet.suspensions.report()).robots:
+            self.notify("suspensions", "", to_json(suspensions))
+        if (links := self._fleet.links.report()).links:
+            self.notify("links", "", to_json(links))
         return {
             "protocol": PROTOCOL_VERSION,
             "site": to_json(self._fleet.site.report),
             "operator": self._operator,
             "role": self._gate.role(self._connection).value,
             "emergency": to_json(self._fleet.emergency.report()),
+            "database": self._fleet.reception.database_id,
         }
 
     def _start(self, name: str, work: Any) -> None:
@@ -198,7 +208,9 @@ class DeskSession:
                 self._news_event.clear()
                 news, self._news = self._news, {}
                 for (method, _), params in news.items():
-                    await self._connection.send(jsonrpc.call(method, params))
+                    # What cannot be told of one robot must not keep back what is told of others.
+                    with going_on(log, f"news of {method}", except_for=ConnectionClosed):
+                        await self._connection.send(jsonrpc.call(method, params))
         except ConnectionClosed:
             return
 

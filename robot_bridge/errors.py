@@ -26,6 +26,10 @@ class RefusedError(BridgeError):
     """A request that was understood and is not done: unknown robot, target outside the site, ..."""
 
 
+class OtherRunError(RefusedError):
+    """What another robot says under the account of the one that was let in."""
+
+
 class ForbiddenError(RefusedError):
     """A request that the operator's role does not allow."""
 

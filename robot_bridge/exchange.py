@@ -15,12 +15,18 @@ from .store.trajectories import PackedFix
 
 @dataclass(frozen=True)
 class Outcome:
-    """What comes of a robot's request: its OpAck, an answer, and the kinds of older answers that are void."""
+    """What comes of a robot's request: its OpAck, an answer, and the kinds of older answers that are void.
+
+    What is ``written`` stands in SA already, and only the request is still to be deleted. ``part``: its
+    map is a part of the site, and more of it may have to follow.
+    """
 
     robot: str
     ack: OpAck | None = None
     answer: Answer | None = None
     void: tuple[str, ...] = ()
+    written: bool = False
+    part: bool = False
 
     @property
     def admitted(self) -> bool:
@@ -29,11 +35,15 @@ class Outcome:
 
     def rows(self, *, acks: bool) -> list[tuple[str, Answer]]:
         """Return what is to be written into SA, the OpAck first."""
+        if self.written:
+            return []
         messages: list[Answer | None] = [self.ack if acks else None, self.answer]
         return [(self.robot, message) for message in messages if message is not None]
 
     def voided(self) -> tuple[str, ...]:
         """Return the kinds of older answers that are void; a map or a Start is, when there is a newer one."""
+        if self.written:
+            return ()
         renewed = isinstance(self.answer, (SetMap, Start))
         return (*self.void, type(self.answer).__name__) if renewed else self.void
 
@@ -62,12 +72,19 @@ def finish(
 ) -> None:
     """Write what comes of requests, and where robots were, and delete the requests."""
     for outcome in outcomes:
-        kinds = outcome.voided()
-        if kinds:
-            answers.remove_kinds(connection, outcome.robot, kinds)
+        remove_voided(connection, outcome.robot, outcome.voided())
     answers.add_all(connection, rows)
     trajectories.add(connection, fixes)
     requests.remove(connection, request_ids)
+
+
+def remove_voided(connection: Connection, robot: str, kinds: Sequence[str]) -> None:
+    """Delete the robot's answers of ``kinds``; of maps those that nothing waits behind which needs one."""
+    others = [kind for kind in kinds if kind != SetMap.__name__]
+    if len(others) < len(kinds):
+        answers.remove_maps(connection, robot)
+    if others:
+        answers.remove_kinds(connection, robot, others)
 
 
 def look(connection: Connection, sent: Sequence[int]) -> tuple[list[requests.RequestRow], set[int]]:

@@ -9,19 +9,26 @@ from __future__ import annotations
 import logging
 import time
 from collections import Counter
-from collections.abc import Callable, Coroutine
+from collections.abc import Callable, Coroutine, Sequence
+from dataclasses import replace
 from typing import Any
 
+from .account_suspensions import AccountSuspensions
 from .answering import Answering
+from .command_life.open_command import Order
 from .commanding.book import CommandBook
 from .commanding.drafting import Rules
 from .commanding.orders import Orders
 from .emergency.journal import StopJournal
 from .emergency.stops import EmergencyStops
+from .errors import RefusedError
 from .exchange import Outcome
+from .geofence.watch import AuditNote, GeofenceWatch
 from .ground_track import GroundTracks
+from .link_watch import LinkWatch
 from .listeners import Listeners
 from .mailboxes import Mailboxes
+from .map_sending import MapSending
 from .messages import (
     Answer,
     Command,
@@ -40,8 +47,13 @@ from .messages import (
     Stopped,
     to_json,
 )
+from .messages.bounds import LONGEST_REFUSAL, one_line
+from .monitoring.repeated_lines import RepeatedLines
 from .monitoring.tally import Tally
+from .monitoring.tasks import Steps
+from .nearness.watch import NearnessWatch
 from .observation_book import ObservationBook
+from .place_checks import NO_FIX, PlaceChecks
 from .places import keepout_refusals
 from .planning import Planner, StraightPlanner
 from .queueing.book import QueueBook
@@ -53,7 +65,7 @@ from .reception import Reception
 from .removals import Removals
 from .road_traffic.road_planning import RoadPlanner
 from .road_traffic.roads import Roads
-from .robots import Robot, Robots
+from .robots import Robot, RobotPose, Robots
 from .served_site import ServedSite, SiteChoice
 from .snapshots import ReportRow, Snapshots
 from .store import commands
@@ -63,6 +75,9 @@ from .trajectories.recorder import Recorder
 from .trajectories.saving import Saving
 
 log = logging.getLogger(__name__)
+
+Rest = tuple[str, Coroutine[Any, Any, None] | Exception]
+"""A robot, and what is to be stored since it said where it is, or what is wrong with that."""
 
 
 class Fleet:
@@ -75,6 +90,7 @@ class Fleet:
         clock: Callable[[], float] = time.time,
         planner: Planner | None = None,
         stops: StopJournal | None = None,
+        note: AuditNote | None = None,
     ) -> None:
         self.site = site
         self.site_choice: SiteChoice | None = None
@@ -85,20 +101,22 @@ class Fleet:
         """the operators' sessions, told what happens."""
         announce = self.listeners.announce
         self.robots = Robots(site.report.stale_after, site.report.lost_after)
+        self.links = LinkWatch(self.robots, announce)
         self.snapshots = Snapshots(self.robots, clock)
         self._book = CommandBook(
             database,
             self.robots,
             site.report.reached_tolerance,
             clock,
-            Rules(self._check, self._consider, lambda messages: keepout_refusals(site, messages)),
+            Rules(self._check, self._consider, self._fence),
             self._command_changed,
             self._outbox_changed,
         )
         self.orders = Orders(site, self.robots, self._book, database)
-        self.emergency = EmergencyStops(self._book, database, clock, self.robots.names, announce, stops)
+        self.emergency = EmergencyStops(self._book, database, clock, self.robots.commanded, announce, stops)
         self._queue_book = QueueBook(database, self.robots, announce)
-        about_queues = QueueContext(site, self.robots, self._book, self._queue_book, database, clock)
+        planner = planner or StraightPlanner()
+        about_queues = QueueContext(site, self.robots, self._book, self._queue_book, database, clock, planner)
         self.queues = QueueOrders(about_queues)
         self.driving = QueueDriving(about_queues)
         self.roads = Roads(
@@ -113,19 +131,44 @@ class Fleet:
             announce,
         )
         self.pauses = RobotPauses(about_queues, self.roads.waiting.row_of)
+        self.geofence = GeofenceWatch(
+            site, self.robots, self.orders, self.pauses, self.emergency, clock, announce, note
+        )
+        self.nearness = NearnessWatch(
+            self.robots, self.links, self.roads.traffic, lambda: site.settings.nearness, clock, announce
+        )
         self.recorder = Recorder(lambda: self.site.settings.trajectories)
         self._saving = Saving(database, self.robots, self.recorder, clock)
         self.mailboxes = Mailboxes(database, self.robots, self._book, self.emergency, self._saving)
+        self.maps = MapSending(site, self.robots, self.mailboxes, database)
         self.reception = Reception(
-            site, self.robots, self._book, self.emergency, self.mailboxes, self._saving, database, clock
+            site,
+            self.robots,
+            self._book,
+            self.emergency,
+            self.mailboxes,
+            self.maps,
+            self._saving,
+            database,
+            clock,
         )
-        self._removals = Removals(self.robots, self._saving, self._book, self.emergency, self.roads.waiting)
+        self.removals = Removals(
+            self.robots,
+            self._saving,
+            self._book,
+            self.emergency,
+            self.roads.waiting,
+            self.queues,
+            database,
+        )
         self.observations = ObservationBook(site, database, clock, self._observation_changed)
-        self._answering = Answering(
-            site, database, self.robots, self._book, planner or StraightPlanner(), self.roads.ways
-        )
+        self._answering = Answering(site, database, self.robots, self._book, planner, self.roads.ways)
         self._tracks = GroundTracks()
+        self._places = PlaceChecks(lambda: site.settings)
+        self._steps = Steps("save")
+        self.suspensions = AccountSuspensions(database, self._book, announce, clock)
         self.tally = Tally()
+        self.repeated = RepeatedLines()
 
     @property
     def database(self) -> Database:
@@ -139,13 +182,14 @@ class Fleet:
         for robot in known:
             self.robots.restore(robot, self._clock())
         await self._book.restore()
-        self._removals.begin([robot.name for robot in known])
+        self.removals.begin([robot.name for robot in known])
         for robot in known:
             self.robots.assign(robot.name, self._book.busy_with(robot.name))
         await self.emergency.restore()
         await self.roads.restore()
         await self._queue_book.restore()
         await self.observations.restore()
+        await self.suspensions.restore()
         start = self.reception.greeting()
         greetings = [Outcome(robot.name, answer=start) for robot in known if robot.link == "sql"]
         await self.mailboxes.finish(greetings, [], acks=False)
@@ -166,8 +210,11 @@ class Fleet:
         self.tally.requests[link, type(request).__name__] += 1
         if isinstance(request, Ready):
             return await self.reception.receive(robot, link, request, id)
+        self.robots.check_run(robot, request.magic, link)
         if isinstance(request, SendGPS):
-            request = self._pose_of(robot, request, now)
+            request = self._pose_of(robot, link, request, now, waited=waited)
+        elif isinstance(request, SendPos):
+            self._check_place(robot, link, (request.x, request.y), now, waited=waited)
         if isinstance(request, SendPos):
             if (rest := self._take_pose(robot, link, request, now, waited=waited)) is not None:
                 await rest
@@ -185,7 +232,34 @@ class Fleet:
         That is the storing of a command that the robot has carried out, nearly always None.
         """
         self.tally.requests[link, "SendPos"] += 1
-        return self._take_pose(robot, link, pose, self._clock())
+        now = self._clock()
+        self.robots.check_run(robot, pose.magic, link)
+        self._check_place(robot, link, (pose.x, pose.y), now)
+        return self._take_pose(robot, link, pose, now)
+
+    def take_poses(self, link: str, poses: Sequence[RobotPose]) -> list[Rest]:
+        """Deal with positions of many robots, each named once, as :meth:`take_pose` does with that of one.
+
+        Return what is left for some: a coroutine to be awaited, or what is wrong with a position.
+        """
+        now = self._clock()
+        moved, others = self.robots.follow(poses, link, now, self._places.near())
+        self.tally.requests[link, "SendPos"] += len(poses) - len(others)
+        self._saving.observe(now, moved)
+        self.maps.located([robot for robot, _ in moved])
+        rests = [
+            *(
+                (robot, _attempt(self._book.observe, robot, pose))
+                for robot, pose in self._book.with_open_commands(moved)
+            ),
+            *((robot, _attempt(self.take_pose, robot, link, pose)) for robot, pose in others),
+        ]
+        return [(robot, rest) for robot, rest in rests if rest is not None]
+
+    def refuse_large(self, robot: str, link: str, fault: str) -> None:
+        """Note that a robot sent what is too large to be read: it is there, and its operators are told."""
+        if robot in self.robots:
+            self.robots.disbelieve(robot, link, self._clock(), fault)
 
     def closed(self, robot: str) -> None:
         """Note that the robot closed its link in good order."""
@@ -230,13 +304,21 @@ class Fleet:
         self.robots.age(self._clock())
 
     async def save(self) -> None:
-        """Store where robots are and have been since the last call, and see to who was removed."""
-        await self._saving.save()
-        await self._removals.carry_out()
-        await self.emergency.store()
-        await self.observations.catch_up()
-        await self._book.save_progress()
-        await self._book.expire(self.site.settings.commands.expire_after_s)
+        """Store what is not stored yet, an emergency stop first; see to who was removed and what is too old.
+
+        Each is done whatever becomes of the others. Raises StoreError when one of them could not be.
+        """
+        expire_after = self.site.settings.commands.expire_after_s
+        await self._steps.run(
+            {
+                "emergency stops": self.emergency.store,
+                "positions": self._saving.save,
+                "removed robots": self.removals.carry_out,
+                "observations": self.observations.catch_up,
+                "progress": self._book.save_progress,
+                "expiry": lambda: self._book.expire(expire_after),
+            }
+        )
 
     async def finish_trajectories(self) -> None:
         """Store where robots are and have been, up to the last position of each: the gateway ends."""
@@ -250,6 +332,8 @@ class Fleet:
     ) -> tuple[Answer | None, str]:
         """Deal with what is neither Ready nor a position; return the answer to it, and a note about that."""
         if isinstance(request, OpAck):
+            if request.reason is not None:
+                request = replace(request, reason=one_line(request.reason, LONGEST_REFUSAL))
             self._measure(robot, await self._book.acknowledged(robot.name, request))
         elif isinstance(request, Stopped):
             if (rest := self._book.rests(robot.name, robot.pose if robot.located else None)) is not None:
@@ -264,10 +348,26 @@ class Fleet:
             return answer, note
         return None, ""
 
-    def _pose_of(self, robot: str, fix: SendGPS, now: float) -> SendPos:
+    def _pose_of(self, robot: str, link: str, fix: SendGPS, now: float, *, waited: bool) -> SendPos:
         last = self.robots.get(robot).pose
-        place, theta = self.site.place_on_earth(fix.lat, fix.lon, fix.heading)
+        try:
+            if not fix.has_fix:
+                raise RefusedError(NO_FIX)
+            place, theta = self.site.place_on_earth(fix.lat, fix.lon, fix.heading)
+        except RefusedError as error:
+            self.robots.disbelieve(robot, link, now, str(error), waited=waited)
+            raise
+        self._check_place(robot, link, place, now, waited=waited)
         return self._tracks.pose(robot, fix, place, theta, last, now)
+
+    def _check_place(
+        self, robot: str, link: str, place: tuple[float, float], now: float, *, waited: bool = False
+    ) -> None:
+        """Raise RefusedError for a place where the robot cannot be; it is heard all the same."""
+        fault = self._places.fault(self.robots.get(robot), place, now)
+        if fault is not None:
+            self.robots.disbelieve(robot, link, now, fault, waited=waited)
+            raise RefusedError(f"robot {robot!r} cannot be where it says: {fault}")
 
     def _take_pose(
         self, robot: str, link: str, pose: SendPos, now: float, *, waited: bool = False
@@ -277,7 +377,8 @@ class Fleet:
             return None
         if unseen:
             self._book.lose_sight(robot)
-        self._saving.observe(robot, now, pose)
+        self._saving.observe(now, [(robot, pose)])
+        self.maps.located([robot])
         return self._book.observe(robot, pose)
 
     def _measure(self, robot: Robot, written_at: float | None) -> None:
@@ -296,12 +397,17 @@ class Fleet:
     async def _consider(self, message: Command) -> None:
         await self.roads.closures.consider(message)
 
+    async def _fence(self, orders: Sequence[Order]) -> Sequence[RefusedError | None]:
+        """Return for each order why it must not be sent, None where it leads into no keepout."""
+        straight_from = [self.robots.straight_from(order.robot, order.message) for order in orders]
+        return await keepout_refusals(self.site, [order.message for order in orders], straight_from)
+
     def _command_changed(self, command: CommandReport) -> None:
         self.robots.assign(command.robot, self._book.busy_with(command.robot))
         self.tally.steps[command.state.value] += 1
-        self.emergency.take(command)
-        self.driving.take(command)
-        self.roads.take(command)
+        self.emergency.note_step(command)
+        self.driving.note_step(command)
+        self.roads.note_step(command)
         self.listeners.announce("command", command.command, to_json(command))
 
     def _observation_changed(self, observation: ObservationReport) -> None:
@@ -309,3 +415,13 @@ class Fleet:
 
     def _outbox_changed(self, robot: str) -> None:
         self.mailboxes.changed(robot)
+
+
+def _attempt(
+    take: Callable[..., Coroutine[Any, Any, None] | None], *arguments: Any
+) -> Coroutine[Any, Any, None] | Exception | None:
+    """Return what is left to be awaited, or what went wrong: that concerns one robot and no other."""
+    try:
+        return take(*arguments)
+    except Exception as error:
+        return error

@@ -18,7 +18,10 @@ from sqlalchemy import URL
 from websockets.asyncio.server import Server
 from websockets.http11 import Request, Response
 
-from .access.gate import Gate
+from .access.errors import AccessError
+from .access.gate import PATHS, Gate
+from .access.hosts import host_fault
+from .access.link_accounts import check_link_name
 from .access.port import listen
 from .access.reach import check_reach, is_loopback
 from .access.tls import ServerFiles, ServerTls
@@ -31,20 +34,21 @@ from .emergency.journal import StopJournal, journal_file
 from .errors import BridgeError, StoreError
 from .farewell import say_farewell
 from .fleet import Fleet
-from .links.sql import SqlLink
-from .links.websocket import WebSocketLink
+from .link_processes import LinkProcesses
 from .messages import MessageError, check_robot_name
 from .monitoring.garbage import Leavings
 from .monitoring.metrics import Metrics
 from .monitoring.tasks import Work, every, keep_all_going
 from .retention import Retention
 from .road_traffic.road_planning import RoadPlanner
+from .robot_api.sql import SqlLink
+from .robot_api.websocket import WebSocketLink
 from .schemas.documents import served
 from .site_maps import SiteMaps
 from .site_watch import SiteWatch, stamp_of
 from .sites.errors import SiteError
 from .sites.neighbours import other_frame
-from .sites.publication import read_site
+from .sites.publication import check_site, read_site
 from .sites.site import Site
 from .status_pages import HEALTH, METRICS, StatusPages
 from .store import facts
@@ -59,9 +63,13 @@ AGE_INTERVAL = 0.25
 SAVE_INTERVAL = 1.0
 GARBAGE_INTERVAL = 1.0
 STUCK_INTERVAL = 5.0
+SUSPEND_INTERVAL = 0.5
 PRUNE_INTERVAL = 60.0
 ROADS_INTERVAL = 1.0
+GEOFENCE_INTERVAL = 0.25
+NEARNESS_INTERVAL = 0.5
 MOST_THREADS = 32
+ENDPOINTS = {path: kind for kind, path in PATHS.items()}
 SAVE_WITHIN, CLOSE_WITHIN = 2.2, 0.5
 """seconds for the last words to the database, so that a gateway ends within five in all."""
 
@@ -94,8 +102,9 @@ class Signals:
 class Gateway:
     """One site, one database, one port with ``/robot``, ``/desk`` and pages about the gateway itself."""
 
-    def __init__(self, fleet: Fleet, gate: Gate, tls: ServerTls | None = None) -> None:
+    def __init__(self, fleet: Fleet, gate: Gate, links: LinkProcesses, tls: ServerTls | None = None) -> None:
         self._fleet = fleet
+        self._links = links
         self._gate = gate
         self._tls = tls
         self._robots = WebSocketLink(fleet)
@@ -111,16 +120,20 @@ class Gateway:
         context = self._tls.context if self._tls else None
         return await listen(self._gate, host, port, context, self._admit, self._connected)
 
-    def works(self) -> dict[str, Work]:
-        """Return what keeps a gateway going: liveness, trajectories, expiry, the SQL link, accounts."""
+    def works(self, address: str) -> dict[str, Work]:
+        """Return what keeps a gateway at ``address`` going: liveness, trajectories, links, accounts."""
         fleet, tally = self._fleet, self._fleet.tally
         works: dict[str, Work] = {
             "sql link": SqlLink(fleet, fleet.database).run,
             "liveness": lambda: every(AGE_INTERVAL, self._age, "liveness", tally),
             "queues": fleet.driving.run,
+            "maps": fleet.maps.run,
             "save": lambda: every(SAVE_INTERVAL, fleet.save, "save", tally),
             "prune": lambda: every(PRUNE_INTERVAL, self.retention.prune, "prune", tally),
             "roads": lambda: every(ROADS_INTERVAL, fleet.watch_roads, "roads", tally),
+            "geofence": lambda: every(GEOFENCE_INTERVAL, fleet.geofence.watch, "geofence", tally),
+            "nearness": lambda: every(NEARNESS_INTERVAL, fleet.nearness.watch, "nearness", tally),
+            "links": lambda: self._links.run(_for_links(address)),
             "accounts": self._gate.watch,
             "audit log": self._gate.journal.run,
             "garbage": lambda: every(GARBAGE_INTERVAL, self._clear_away, "garbage", tally),
@@ -129,25 +142,33 @@ class Gateway:
             works["stuck robots"] = lambda: every(
                 STUCK_INTERVAL, fleet.database.end_stuck, "stuck robots", tally
             )
+            works["suspensions"] = lambda: every(
+                SUSPEND_INTERVAL, fleet.suspensions.update, "suspensions", tally
+            )
         if self._tls is not None:
             works["certificates"] = self._tls.watch
         return works
 
     async def _clear_away(self) -> None:
         self._leavings.clear_away(self._gate.gone)
+        self._fleet.repeated.summarise()
 
     async def _age(self) -> None:
         if (step := self._clock_watch.look()) is not None:
             way = "forward" if step.by > 0 else "back"
             log.warning("the clock of this computer was set %s by %.0f s", way, abs(step.by))
             self._fleet.robots.clock_was_set(step)
-        self._fleet.age()
-        self._robots.measure()
+        fleet = self._fleet
+        fleet.age()
+        self._robots.update()
+        fleet.links.update(self._robots.links(), self._links.states)
 
     async def _admit(self, visitor: Visitor, request: Request) -> Response | None:
         if (refusal := self._gate.refuse_page(visitor, request)) is not None:
             return refusal
         path = urlsplit(request.path).path
+        if path not in ENDPOINTS and (fault := self._host_fault(request)) is not None:
+            return visitor.respond(http.HTTPStatus.MISDIRECTED_REQUEST, f"{fault}.\n")
         if path in (HEALTH, METRICS):
             return await self._status_page(visitor, request, path)
         if (document := served(path)) is not None:
@@ -155,15 +176,20 @@ class Gateway:
             del response.headers["Content-Type"]
             response.headers["Content-Type"] = "application/json"
             return response
-        if path not in ("/robot", "/desk"):
-            text = f"{path} is not served here; robots connect to /robot, operators to /desk\n"
-            return visitor.respond(http.HTTPStatus.NOT_FOUND, text)
+        if path not in ENDPOINTS:
+            text = f"{path} is not served here; robots connect to /robot, operators to /desk, links to /link"
+            return visitor.respond(http.HTTPStatus.NOT_FOUND, f"{text}\n")
         try:
-            name = _robot_name(request.path)
-        except MessageError as error:
+            name = _name_in(request.path, ENDPOINTS[path])
+        except (MessageError, AccessError) as error:
             return visitor.respond(http.HTTPStatus.BAD_REQUEST, f"{error}\n")
-        kind = TokenKind.OPERATOR if path == "/desk" else TokenKind.ROBOT
+        kind = ENDPOINTS[path]
         return await self._gate.admit(visitor, request, kind, name, self._largest_message(kind))
+
+    def _host_fault(self, request: Request) -> str | None:
+        """Return why a page is not asked for by a name of this gateway, None where it is."""
+        names = (*self._gate.limits.hosts, *(self._tls.names if self._tls is not None else ()))
+        return host_fault(request.headers.get_all("Host"), names)
 
     async def _status_page(self, visitor: Visitor, request: Request, path: str) -> Response:
         if path == HEALTH:
@@ -182,8 +208,11 @@ class Gateway:
 
     async def _connected(self, visitor: Visitor) -> None:
         assert visitor.identity is not None
-        if visitor.identity.kind is TokenKind.OPERATOR:
+        kind = visitor.identity.kind
+        if kind is TokenKind.OPERATOR:
             await DeskSession(self._fleet, visitor, self._gate).run()
+        elif kind is TokenKind.LINK:
+            await self._robots.serve_link(visitor, self._gate)
         else:
             await self._robots.serve(visitor, visitor.identity.name)
 
@@ -198,7 +227,7 @@ async def run(settings: GatewaySettings, signals: Signals, started: Callable[[st
     asyncio.get_running_loop().set_default_executor(ThreadPoolExecutor(MOST_THREADS, "gateway"))
     tls = ServerTls(settings.tls) if settings.tls else None
     stamp = await asyncio.to_thread(stamp_of, settings.site)
-    site = await asyncio.to_thread(read_site, settings.site)
+    await asyncio.to_thread(check_site, settings.site)
     async with contextlib.AsyncExitStack() as stack:
         database = Database(settings.database)
         stack.push_async_callback(database.close, CLOSE_WITHIN)
@@ -206,6 +235,8 @@ async def run(settings: GatewaySettings, signals: Signals, started: Callable[[st
         sole = SoleGateway(settings.database)
         await sole.take()
         stack.push_async_callback(sole.release)
+        # After the database: a city takes a while to read, and a wrong address is told at once.
+        site = await asyncio.to_thread(read_site, settings.site)
         # Before anything is stored by this clock.
         doubt = clock_doubt(time.time(), await database.run(newest_time))
         folder = await _site_folder(settings, database)
@@ -219,10 +250,11 @@ async def run(settings: GatewaySettings, signals: Signals, started: Callable[[st
         check_reach(settings.host, tls=tls is not None, accounts=accounts)
         maps = SiteMaps(site)
         planner = await asyncio.to_thread(RoadPlanner, lambda: maps.site)
-        fleet = Fleet(maps, database, planner=planner, stops=journal)
+        fleet = Fleet(maps, database, planner=planner, stops=journal, note=gate.journal.note)
         await fleet.start()
         stack.push_async_callback(_save_last, fleet, gate)
-        gateway = Gateway(fleet, gate, tls)
+        links = LinkProcesses(site.settings.links, folder)
+        gateway = Gateway(fleet, gate, links, tls)
         if doubt is not None:
             log.warning("%s", doubt.text)
             if doubt.may_be_ahead:
@@ -230,9 +262,10 @@ async def run(settings: GatewaySettings, signals: Signals, started: Callable[[st
         server = await gateway.serve(settings.host, settings.port)
         gate.warn()
         stack.push_async_callback(say_farewell, server, fleet)
-        started(_address(server, tls is not None))
+        address = _address(server, tls is not None)
+        started(address)
         watch = fleet.site_choice = SiteWatch(folder, stamp, maps, fleet, signals.reload)
-        works = {**gateway.works(), "site": watch.run, "sole gateway": sole.hold}
+        works = {**gateway.works(address), "site": watch.run, "sole gateway": sole.hold}
         await _until_stopped(keep_all_going(works, fleet.tally), signals.stop)
 
 
@@ -295,9 +328,20 @@ async def _save_last(fleet: Fleet, gate: Gate) -> None:
         log.error("%s; the last positions are not stored", reason)
 
 
-def _robot_name(path: str) -> str | None:
+def _name_in(path: str, kind: TokenKind) -> str | None:
+    """Return who a request says to come from: ``?robot=NAME``, or ``?link=NAME``."""
+    if kind is TokenKind.LINK:
+        links = parse_qs(urlsplit(path).query).get("link")
+        return check_link_name(links[0]) if links else None
     names = parse_qs(urlsplit(path).query).get("robot")
     return check_robot_name(names[0]) if names else None
+
+
+def _for_links(address: str) -> str:
+    """Return where links on this computer find the gateway, of its address ``ws://host:port``."""
+    parts = urlsplit(address)
+    host = {"0.0.0.0": "127.0.0.1", "::": "::1"}.get(parts.hostname or "", parts.hostname or "")
+    return f"{parts.scheme}://{f'[{host}]' if ':' in host else host}:{parts.port}{PATHS[TokenKind.LINK]}"
 
 
 def _address(server: Server, tls: bool) -> str:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 from .messages import SendGPS, SendPos
+from .messages.bounds import SPEED
 
 LEAST_MOVE = 0.5
 """metres below which a move tells no course; more where the robot says that its fixes are worse."""
@@ -73,7 +74,7 @@ class GroundTracks:
             x=round(x, 4),
             y=round(y, 4),
             theta=round(turned, 5),
-            v=round(track.v, 3) if fix.v is None else fix.v,
+            v=round(min(track.v, SPEED[1]), 3) if fix.v is None else fix.v,
             t=fix.t,
             battery=fix.battery,
             status=fix.status,

@@ -1,6 +1,13 @@
-"""Which image bytes are, told by how they begin and not by what is said of them."""
+"""Images: which one bytes are, told by how they begin and not by what is said of them; and PNG."""
 
 from __future__ import annotations
+
+import struct
+import zlib
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
 
 from .errors import RefusedError
 from .messages import MessageError
@@ -36,3 +43,17 @@ def media_type_of(content: bytes, said: str | None = None) -> str:
     if said is not None and said != found:
         raise MessageError(f"SendImage: media_type is {said!r}, and the bytes are {found}; correct it")
     return found
+
+
+def encode_png(pixels: NDArray[Any]) -> bytes:
+    """Return the PNG of uint8 pixels: (rows, columns) grey or (rows, columns, 3) red, green, blue."""
+    rows, columns = pixels.shape[:2]
+    lines = np.zeros((rows, 1 + pixels[0].size), dtype=np.uint8)
+    lines[:, 1:] = pixels.reshape(rows, -1)
+    head = struct.pack(">IIBBBBB", columns, rows, 8, 2 if pixels.ndim == 3 else 0, 0, 0, 0)
+    parts = ((b"IHDR", head), (b"IDAT", zlib.compress(lines.tobytes())), (b"IEND", b""))
+    return b"\x89PNG\r\n\x1a\n" + b"".join(_chunk(name, body) for name, body in parts)
+
+
+def _chunk(name: bytes, body: bytes) -> bytes:
+    return struct.pack(">I", len(body)) + name + body + struct.pack(">I", zlib.crc32(name + body))

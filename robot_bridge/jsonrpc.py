@@ -7,6 +7,8 @@ from typing import Any
 
 import msgspec
 
+from .core.decoding import DecodingError, decode_json
+
 PARSE_ERROR = -32700
 INVALID_REQUEST = -32600
 METHOD_NOT_FOUND = -32601
@@ -51,8 +53,8 @@ class Reply:
 def decode(frame: str | bytes) -> Call | Reply:
     """Return the call or reply in one WebSocket frame; raises FrameError."""
     try:
-        value = msgspec.json.decode(frame)
-    except (msgspec.DecodeError, UnicodeDecodeError, RecursionError) as error:
+        value = decode_json(frame)
+    except DecodingError as error:
         raise FrameError(PARSE_ERROR, f"the frame is not JSON: {error}") from None
     if isinstance(value, list):
         raise FrameError(INVALID_REQUEST, "the frame is a batch; send each object in a frame of its own")
@@ -75,7 +77,7 @@ def _reply(value: dict[str, Any], id: int | str | None) -> Reply:
         error = value["error"] if isinstance(value["error"], dict) else {}
         code = error.get("code")
         text = str(error.get("message", "no reason given"))
-        return Reply(id, None, text, code if isinstance(code, int) else None)
+        return Reply(id, None, text, code if type(code) is int else None)
     if "result" in value:
         return Reply(id, value["result"])
     raise FrameError(INVALID_REQUEST, "the frame has neither method, result nor error", id)

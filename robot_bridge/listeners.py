@@ -2,7 +2,12 @@
 
 from __future__ import annotations
 
+import logging
 from typing import Any, Protocol
+
+from .monitoring.unforeseen import going_on
+
+log = logging.getLogger(__name__)
 
 
 class Listener(Protocol):
@@ -31,5 +36,6 @@ class Listeners:
 
     def announce(self, method: str, key: str, params: dict[str, Any]) -> None:
         """Tell every session what happened; see :meth:`Listener.notify`."""
-        for listener in self._all:
-            listener.notify(method, key, params)
+        for listener in list(self._all):
+            with going_on(log, f"telling an operator's session of {method}"):
+                listener.notify(method, key, params)

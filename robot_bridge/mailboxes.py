@@ -13,6 +13,7 @@ from . import exchange
 from .commanding.book import CommandBook
 from .emergency.stops import HELD_BACK, EmergencyStops
 from .exchange import Outcome
+from .messages import SetMap
 from .robots import Robots
 from .store import answers, requests
 from .store.answers import AnswerRow
@@ -37,6 +38,8 @@ class Mailboxes:
         self._emergency = emergency
         self._saving = saving
         self._events: dict[str, asyncio.Event] = {}
+        self.parts: asyncio.Queue[str] = asyncio.Queue()
+        """the robots for which a map of a part of the site was stored in place of the whole one."""
 
     def event(self, robot: str) -> asyncio.Event:
         """Return the event that is set whenever SA holds something new for the robot."""
@@ -71,9 +74,12 @@ class Mailboxes:
         Acknowledgements among that may have been dealt with already: their commands are judged by positions
         that come after them alone.
         """
-        newest, acks = await self._database.read(requests.backlog)
-        for robot, id in acks:
-            self._commands.await_again(robot, id)
+        # Only what concerns a command with a step to come: of other robots nothing is read here.
+        waiting = sorted(self._commands.robots())
+        newest, acknowledged = await self._database.read(requests.backlog, waiting)
+        for robot, ids in acknowledged.items():
+            for id in ids:
+                self._commands.await_again(robot, id)
         return newest
 
     async def look(self, link: str) -> list[requests.RequestRow]:
@@ -104,10 +110,15 @@ class Mailboxes:
                 # It may have waited for long: where the robot was then must not be in memory alone.
                 await self._saving.jot_with(exchange.finish, outcomes, rows, request_ids)
             else:
-                await self._database.run(exchange.finish, outcomes, rows, request_ids, [])
+                # A map that a power cut undoes is sent again: the robot says Ready on its next connection.
+                asked = all(isinstance(one.answer, SetMap) and not one.admitted for one in outcomes)
+                store = self._database.jot if asked else self._database.run
+                await store(exchange.finish, outcomes, rows, request_ids, [])
         for outcome in outcomes:
             if outcome.answer is not None:
                 self.changed(outcome.robot)
+            if outcome.part:
+                self.parts.put_nowait(outcome.robot)
 
     def _undelivered(self, link: str) -> set[int]:
         return {

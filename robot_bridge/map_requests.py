@@ -2,12 +2,9 @@
 
 from __future__ import annotations
 
-import asyncio
-
 from .errors import RefusedError
-from .exchange import Outcome
 from .fleet import Fleet
-from .messages import RobotState, SendMap, SetMap
+from .messages import RobotState, SendMap
 
 
 async def send_map(fleet: Fleet, request: SendMap) -> None:
@@ -20,5 +17,6 @@ async def send_map(fleet: Fleet, request: SendMap) -> None:
         raise RefusedError(
             f"robot {request.robot!r} is offline; it is sent the map by itself when it connects"
         )
-    content = await asyncio.to_thread(fleet.site.whole_map)
-    await fleet.mailboxes.finish([Outcome(request.robot, answer=SetMap(content))], [], acks=False)
+    if not fleet.robots.get(request.robot).can("map"):
+        raise RefusedError(f"robot {request.robot!r} takes no maps, as it said when it connected")
+    await fleet.maps.send(request.robot)

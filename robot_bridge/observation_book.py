@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import hashlib
 import json
+import logging
 from collections.abc import Callable, Sequence
 from typing import Any, Protocol
 
@@ -21,12 +22,15 @@ from .messages import (
     SetObject,
     to_json,
 )
+from .monitoring.unforeseen import going_on
 from .places import Ground, check_places
 from .robots import Robot
 from .sites.settings import SiteSettings
 from .store import observations
 from .store.database import Database
 from .store.observations import NewObservation
+
+log = logging.getLogger(__name__)
 
 PENDING, ACCEPTED, REJECTED = ObservationState
 
@@ -78,11 +82,13 @@ class ObservationBook:
             async with self._lock:
                 await self.restore()
         for robot, source in list(self._unsure):
-            self._tell(await self._database.run(observations.find_told, robot, source))
+            found = await self._database.run(observations.find_told, robot, source)
             self._unsure.discard((robot, source))
+            self._tell(found)
         for id in list(self._untold):
-            self._tell(await self._database.run(observations.find, id))
+            found = await self._database.run(observations.find, id)
             self._untold.discard(id)
+            self._tell(found)
 
     async def add(self, robot: Robot, link: str, told: Observed, id: int | None) -> ObservationReport:
         """Store what a robot told by its message ``id``; what it told before is there already.
@@ -150,12 +156,14 @@ class ObservationBook:
 
     def _tell(self, report: ObservationReport | None) -> None:
         if report is not None:
-            self._changed(report)
+            with going_on(log, f"telling of observation {report.observation}"):
+                self._changed(report)
 
 
 def _new(robot: str, told: Observed, occasion: str, now: float) -> NewObservation:
     is_image = isinstance(told, SendImage)
-    details = {} if is_image else {name: getattr(told, name) for name in ("label", "height", "radius")}
+    said = () if is_image else ("label", "height", "radius", "doubts")
+    details = {name: getattr(told, name) for name in said}
     return NewObservation(
         robot=robot,
         source=_source(told, occasion),
@@ -205,8 +213,18 @@ def _check_review(report: ObservationReport, review: ReviewObservation) -> None:
             f"observation {report.observation} was {report.state.value} by {report.reviewed_by} before; "
             "give revise to change that"
         )
-    if report.op == SendImage.__name__ and (review.semantics, review.height, review.radius) != (None,) * 3:
+    what = "an image" if report.op == SendImage.__name__ else "of what is missing"
+    is_drawn = report.op == SetObject.__name__ and report.doubts is None
+    if (
+        not is_drawn
+        and (
+            review.semantics,
+            review.height,
+            review.radius,
+        )
+        != (None,) * 3
+    ):
         raise MessageError(
-            f"review_observation: observation {report.observation} is an image, which is not drawn on the "
+            f"review_observation: observation {report.observation} is {what}, which is not drawn on the "
             "map; leave out semantics, height and radius"
         )

@@ -12,7 +12,7 @@ from typing import NamedTuple, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from .messages import SetPath, SetPosEnd
+from .messages import SetPath, SetPosEnd, path_to_end
 from .polyline import Polyline
 
 Floats = NDArray[np.float64]
@@ -26,14 +26,22 @@ _LOOK_AHEAD = 5.0
 
 
 class Planned(NamedTuple):
-    """A path from start to goal, at least two points; ``note`` says where it is not what one would expect."""
+    """A path from start to goal, at least two points; ``note`` says where it is not what one would expect.
+
+    ``along_roads`` is false of a straight line.
+    """
 
     points: Sequence[Point]
     note: str = ""
+    along_roads: bool = False
 
 
 class Planner(Protocol):
     """Finds a way. Paths begin at ``start`` and end at ``goal``."""
+
+    @property
+    def has_roads(self) -> bool:
+        """Whether there are any roads that paths may lead along."""
 
     def path(self, start: Point, goal: Point) -> Planned:
         """Return a path; raises RefusedError when there is none."""
@@ -41,6 +49,8 @@ class Planner(Protocol):
 
 class StraightPlanner:
     """Knows no roads: every path is one straight line."""
+
+    has_roads = False
 
     def path(self, start: Point, goal: Point) -> Planned:
         """Return ``start`` and ``goal``."""
@@ -62,9 +72,9 @@ def way_left(task: SetPosEnd | SetPath, start: Point, driven: float, planner: Pl
     """
     if isinstance(task, SetPosEnd):
         planned = planner.path(start, (task.x, task.y))
-        return WayLeft(SetPath(list(planned.points), task.theta), planned.note)
+        return WayLeft(path_to_end(task, list(planned.points)), planned.note)
     left = line_left(Polyline(task.points), start, driven)
-    return WayLeft(SetPath([(x, y) for x, y in left.tolist()], task.theta))
+    return WayLeft(path_to_end(task, [(x, y) for x, y in left.tolist()]))
 
 
 def line_left(line: Polyline, start: Point, driven: float) -> Floats:

@@ -40,9 +40,10 @@ class PoseOrder:
         or as old and sent earlier; where one of the two has no fix time, when it was sent earlier. A pose
         without any stamp counts as it comes.
         """
-        stamp = self._late_by(fix_t, t)
-        if stamp is not None and not self._set_back(stamp, link, now):
-            return False
+        if fix_t is not None or t is None or (self.t is not None and t < self.t):
+            stamp = self._late_by(fix_t, t)
+            if stamp is not None and not self._set_back(stamp, link, now):
+                return False
         self.fix_t = self.fix_t if fix_t is None else fix_t
         self.t = self.t if t is None else t
         self.link = link

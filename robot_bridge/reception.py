@@ -5,16 +5,19 @@ from __future__ import annotations
 import asyncio
 import logging
 from collections.abc import Callable
+from functools import partial
 
 from .commanding.book import CommandBook
 from .emergency.stops import EmergencyStops
 from .exchange import Outcome
 from .handshake import Holds, refusal
 from .mailboxes import Mailboxes
-from .messages import OpAck, Ready, SetMap, Start
+from .map_sending import MapSending
+from .messages import Answer, OpAck, Ready, SetMap, Start
 from .robots import Robots
 from .served_site import ServedSite
 from .store import facts
+from .store import robots as stored_robots
 from .store.database import Database
 from .trajectories.saving import Saving
 
@@ -31,6 +34,7 @@ class Reception:
         commands: CommandBook,
         emergency: EmergencyStops,
         mailboxes: Mailboxes,
+        maps: MapSending,
         saving: Saving,
         database: Database,
         clock: Callable[[], float],
@@ -41,6 +45,7 @@ class Reception:
         self._commands = commands
         self._emergency = emergency
         self._mailboxes = mailboxes
+        self._maps = maps
         self._saving = saving
         self._database = database
         self._clock = clock
@@ -50,6 +55,11 @@ class Reception:
     async def restore(self) -> None:
         """Learn the name of the database, which robots are greeted with; raises StoreError."""
         self._database_id = await self._database.run(facts.database_id)
+
+    @property
+    def database_id(self) -> str:
+        """The name that tells the database from every other."""
+        return self._database_id
 
     def greeting(self) -> Start:
         """Return what robots are told when the gateway begins to listen to them."""
@@ -65,23 +75,34 @@ class Reception:
             if reason is not None:
                 log.warning("link %s: a second robot said Ready: %s", link, reason)
                 return Outcome(robot, OpAck(id=id, ok=False, reason=reason, magic=request.magic))
-            await self._let_in(robot, link, request.magic)
-            content = await asyncio.to_thread(self._site.whole_map)
+            content, part = None, False
+            if request.abilities is None or "map" in request.abilities:
+                offer = await self._maps.first(robot)
+                content, part = SetMap(offer.content), not offer.is_whole
             ack = OpAck(id=id, magic=request.magic, robot=robot, database=self._database_id)
-            return Outcome(robot, ack, SetMap(content), void=("Start", "OpAck"))
+            welcome: list[Answer | None] = [ack if link == "sql" else None, content]
+            if await self._let_in(robot, link, request, [one for one in welcome if one is not None]):
+                return Outcome(robot, ack, content, written=True, part=part)
+            return Outcome(robot, ack, content, void=("Start", "OpAck"), part=part)
 
-    async def _let_in(self, robot: str, link: str, magic: int) -> None:
-        if starts_anew := self._robots.starts_anew(robot, magic):
+    async def _let_in(self, robot: str, link: str, ready: Ready, welcome: list[Answer]) -> bool:
+        """Let a robot in; tell whether it starts anew, and ``welcome`` is written before all else for it."""
+        if starts_anew := self._robots.starts_anew(robot, ready.magic):
             # Before it is known by its new number: after a failure it must be seen to start anew once more.
             await self._mailboxes.delivered_by_deletion(self._robots.get(robot).link)
             reason = f"robot {robot} started anew; sent once more"
-            await self._commands.deliver_again(robot, reason, self._site.settings.commands.expire_after_s)
-        self._robots.ready(robot, magic, link, self._clock())
+            expire_after = self._site.settings.commands.expire_after_s
+            # In one transaction: a gateway that dies next must not take it for one that starts anew again,
+            # and send it once more what it is doing by then.
+            note_run = partial(stored_robots.note_run, robot=self._robots.get(robot), magic=ready.magic)
+            await self._commands.deliver_again(robot, reason, expire_after, welcome, note_run)
+        self._robots.ready(robot, ready.magic, link, self._clock(), ready.paths, ready.can)
         self._saving.touch(robot)
         if starts_anew:
-            # Not only with its answer: should the gateway die until then, it has not started anew once more.
             await self._saving.save(robot)
-        await self._emergency.ready(robot)
+        if not self._robots.is_only_seen(robot):
+            await self._emergency.ready(robot)
+        return starts_anew
 
     async def _refusal(self, robot: str, magic: int) -> str | None:
         if robot not in self._robots:

@@ -6,29 +6,55 @@ which alone a robot is fresh, stale or lost.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field, replace
-from typing import TypeVar
+from typing import NamedTuple, TypeVar
 
 from .clock_watch import ClockStep
 from .command_life.arrival import standing
-from .errors import NotReadyError, RefusedError
+from .errors import NotReadyError, OtherRunError, RefusedError
 from .liveness import liveness
-from .messages import RobotReport, RobotState, SendPos, check_robot_name
+from .messages import (
+    Ability,
+    Command,
+    PathDeclaration,
+    RobotReport,
+    RobotState,
+    SendPos,
+    SetPath,
+    SetPosEnd,
+    check_robot_name,
+)
 from .pose_order import PoseOrder
 
 Report = TypeVar("Report")
+RobotPose = tuple[str, SendPos]
 AWAY = (RobotState.LOST, RobotState.OFFLINE)
 """States of robots that cannot be told anything."""
+
+
+class Near(NamedTuple):
+    """Where a place needs no second look: within limits of the site frame, and a ``step`` along each axis
+    from where the robot was a moment ago; metres.
+    """
+
+    x_min: float
+    y_min: float
+    x_max: float
+    y_max: float
+    step: float
 
 
 @dataclass
 class Robot:
     """One robot. ``received_at`` is the gateway's time of its last message, ``pose_at`` that of its pose.
 
-    ``latency`` is the seconds that its link took there and back when that was last measured. ``located`` is
-    true once it has said where it is since its last Ready: until then its pose is what was stored of it, or
-    what it was before its link broke, and it may have driven on unseen.
+    ``latency`` is the seconds that its link took there and back when that was last measured. ``paths`` is
+    what its last Ready declared, to this gateway or to an earlier one. ``located`` is true once it has said
+    where it is since its last Ready: until then its pose is what was stored of it, or what it was before its
+    link broke, and it may have driven on unseen. ``doubt`` is why the place that it said last is not
+    believed. ``says_magic`` is true once this run has said its number with a message. ``abilities`` are what
+    it can do with spaces between them, None for everything.
     """
 
     name: str
@@ -42,8 +68,26 @@ class Robot:
     state: RobotState = RobotState.FRESH
     command: str | None = None
     latency: float | None = None
+    doubt: str | None = None
+    says_magic: bool = False
     revision: int = 0
+    paths: PathDeclaration | None = None
+    abilities: str | None = None
     order: PoseOrder = field(default_factory=PoseOrder)
+
+    @property
+    def asks_path(self) -> bool:
+        """Whether it declared that it asks for its path to every target, and does not drive before."""
+        return self.paths in ("asks", "asks and cones")
+
+    @property
+    def places_on_paths(self) -> bool:
+        """Whether it declared that it places and collects cones at the ends of paths."""
+        return self.paths in ("cones", "asks and cones")
+
+    def can(self, ability: Ability) -> bool:
+        """Tell whether it did not declare that it cannot do this."""
+        return self.abilities is None or ability in self.abilities.split()
 
 
 class Robots:
@@ -70,6 +114,15 @@ class Robots:
         """Return the names of all robots, sorted."""
         return sorted(self._robots)
 
+    def commanded(self) -> list[str]:
+        """Return the names of those that are not only seen, sorted."""
+        return sorted(name for name, robot in self._robots.items() if robot.abilities != "")
+
+    def is_only_seen(self, name: str) -> bool:
+        """Tell whether the robot said that it can do nothing, so that it is told nothing."""
+        robot = self._robots.get(name)
+        return robot is not None and robot.abilities == ""
+
     def get(self, name: str) -> Robot:
         """Return the robot ``name``; raises NotReadyError if it never said Ready."""
         robot = self._robots.get(name)
@@ -89,13 +142,29 @@ class Robots:
         robot = self._robots.get(name)
         return None if robot is None else robot.pose
 
+    def straight_from(self, name: str, message: Command) -> tuple[float, float] | None:
+        """Return where a robot is that drives straight to a target, or to a path's first point, from there.
+
+        That is where it was when it said so last; None for one that never did, and for one that is told a way
+        to the target first.
+        """
+        robot = self._robots.get(name)
+        if robot is None or robot.pose is None or not isinstance(message, (SetPosEnd, SetPath)):
+            return None
+        if isinstance(message, SetPosEnd) and robot.asks_path:
+            return None
+        return robot.pose.x, robot.pose.y
+
     def is_placed(self, name: str) -> bool:
         """Tell whether it is known where a robot is now: it is heard, and has said so since its last Ready.
+
+        It is not known of one whose last place is not believed.
 
         What is known of others is where they were: they may have driven on unseen.
         """
         robot = self._robots.get(name)
-        return robot is not None and robot.located and robot.state is RobotState.FRESH
+        fresh = robot is not None and robot.located and robot.state is RobotState.FRESH
+        return robot is not None and fresh and robot.doubt is None
 
     def is_unseen(self, name: str, now: float) -> bool:
         """Tell whether a robot may have come further since it said where it is: too long ago, or before its
@@ -119,8 +188,16 @@ class Robots:
         robot = self._robots.get(name)
         return robot is not None and robot.magic != magic
 
-    def ready(self, name: str, magic: int, link: str, now: float) -> None:
-        """Register a robot, or this run of it."""
+    def ready(
+        self,
+        name: str,
+        magic: int,
+        link: str,
+        now: float,
+        paths: PathDeclaration | None = None,
+        abilities: str | None = None,
+    ) -> None:
+        """Register a robot, or this run of it; ``paths`` and ``abilities`` are what it declares of them."""
         anew = self.starts_anew(name, magic)
         robot = self._robots.setdefault(name, Robot(name, magic, link, now))
         self._removed.pop(name, None)
@@ -128,8 +205,25 @@ class Robots:
             # A robot that started anew may have a clock that did so too.
             robot.pose = replace(robot.pose, t=None)
             robot.order.restarted()
-        robot.magic, robot.link, robot.located = magic, link, False
+        robot.magic, robot.link, robot.located, robot.says_magic = magic, link, False, False
+        robot.doubt = None
+        robot.paths, robot.abilities = paths, abilities
         self.heard(name, link, now)
+
+    def check_run(self, name: str, magic: int | None, link: str) -> None:
+        """Raise OtherRunError for what the run of the robot that was let in did not say.
+
+        Over SQL all come under one name: a run that has said its ``magic`` number says it with everything.
+        """
+        robot = self.get(name)
+        if magic == robot.magic:
+            robot.says_magic = True
+        elif magic is not None or (robot.says_magic and link == "sql"):
+            came = "without a magic number" if magic is None else f"with magic {magic}"
+            raise OtherRunError(
+                f"this came {came}, and robot {name!r} was let in with {robot.magic}: another one under its "
+                "account, or one that has not said Ready; it counts for nothing until its Ready is taken"
+            )
 
     def heard(
         self, name: str, link: str, now: float, *, stopped: bool = False, waited: bool = False
@@ -158,12 +252,58 @@ class Robots:
         self.heard(name, link, now, stopped=standing_still, waited=waited)
         if not robot.order.admit(pose.fix_t, pose.t, link, now):
             return False
-        robot.pose = pose
+        robot.pose, robot.doubt = pose, None
         if waited:
             robot.pose_at = robot.received_at
         else:
             robot.pose_at, robot.located = now, True
         return True
+
+    def follow(
+        self, poses: Iterable[RobotPose], link: str, now: float, near: Near
+    ) -> tuple[list[RobotPose], list[RobotPose]]:
+        """Take in, as :meth:`observe`, the poses that only go on from where their robots were a moment ago.
+
+        Return those that moved a robot, and those that there is something to consider about, with which
+        nothing was done.
+        """
+        moved, others = [], []
+        revision, stale_after = self.revision, self._stale_after
+        x_min, y_min, x_max, y_max, step = near
+        for told in poses:
+            name, pose = told
+            robot = self._robots.get(name)
+            if (
+                robot is None
+                or (last := robot.pose) is None
+                or robot.pose_at is None
+                or not -step <= pose.x - last.x <= step
+                or not -step <= pose.y - last.y <= step
+                or not (x_min <= pose.x <= x_max and y_min <= pose.y <= y_max)
+                or not now - robot.pose_at < stale_after
+                or robot.state is not RobotState.FRESH
+                or not robot.located
+                or robot.doubt is not None
+                or robot.ended_in_order
+                or pose.magic is not None
+                or robot.link != link
+            ):
+                others.append(told)
+                continue
+            robot.received_at = now
+            revision += 1
+            robot.revision = revision
+            if robot.order.admit(pose.fix_t, pose.t, link, now):
+                robot.pose, robot.pose_at = pose, now
+                moved.append(told)
+        self.revision = revision
+        return moved, others
+
+    def disbelieve(self, name: str, link: str, now: float, doubt: str, *, waited: bool = False) -> None:
+        """Note that the robot is heard, and that the place that it says cannot be."""
+        robot = self.get(name)
+        robot.doubt = doubt
+        self.heard(name, link, now, stopped=robot.ended_in_order, waited=waited)
 
     def remove(self, name: str) -> None:
         """Know a robot no more, until it says Ready again."""
@@ -245,8 +385,11 @@ def _report(robot: Robot, now: float, kind: Callable[..., Report]) -> Report:
             age=_thousandths(now - robot.received_at),
             link=robot.link,
             stopped=robot.ended_in_order,
+            status=robot.doubt,
             command=robot.command,
             latency=None if latency is None else round(latency, 4),
+            paths=robot.paths,
+            abilities=robot.abilities,
         )
     return kind(
         robot=robot.name,
@@ -265,9 +408,11 @@ def _report(robot: Robot, now: float, kind: Callable[..., Report]) -> Report:
         fix_time=pose.fix_t,
         pose_age=_thousandths(now - robot.pose_at),
         battery=pose.battery,
-        status=pose.status,
+        status=pose.status if robot.doubt is None else robot.doubt,
         command=robot.command,
         latency=None if latency is None else round(latency, 4),
+        paths=robot.paths,
+        abilities=robot.abilities,
     )
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import dataclasses
+import logging
 import threading
 from collections.abc import Sequence
 from typing import NamedTuple
@@ -13,12 +15,22 @@ from .polyline import Track
 from .roads.surfaces.index import NOWHERE
 from .roads.surfaces.surface import Surface
 from .robotmap.binary import encode
-from .robotmap.errors import RobotMapError
+from .robotmap.errors import BinaryError, RobotMapError
+from .robotmap.group_texts import merged
+from .robotmap.model import Border, EncodedMap, RobotMap
 from .sites.any_crs import AnyCrs
 from .sites.earth import Earth, is_near
 from .sites.errors import CrsError
+from .sites.fences import FencedPolygons, Fences
 from .sites.settings import SiteSettings
 from .sites.site import Site
+
+AT_ONCE = 4000
+"""segments of a map that is made while a robot waits for its acknowledgement: some hundredths of a second."""
+STORED_AT_ONCE = 1_000_000
+"""bytes of a map that is stored meanwhile."""
+
+log = logging.getLogger(__name__)
 
 
 class Drawn(NamedTuple):
@@ -28,14 +40,40 @@ class Drawn(NamedTuple):
     objects: ObservedObjects
 
 
+def _encoded(drawn: Drawn) -> bytes | None:
+    site, limit = drawn.site, drawn.site.settings.maps.largest_whole_bytes
+    content = None if drawn.objects or drawn.objects.missing else site.whole_binary()
+    if content is not None:
+        return content if len(content) <= limit else None
+    if site.is_too_large(limit):
+        return None
+    try:
+        content = encode(_whole(drawn))
+    except BinaryError as error:
+        log.warning("robots of site %s are sent windows, and not the whole map: %s", site.id, error)
+        return None
+    return content if len(content) <= limit else None
+
+
+def _whole(drawn: Drawn) -> str | RobotMap:
+    """Return the whole map: from its stored texts, unless something of these is to be left out."""
+    site, objects = drawn
+    if objects.missing:
+        return objects.join(site.whole_map())
+    parts = merged(site.whole_texts(), objects.texts(Border(*site.bounds)))
+    return "".join([site.whole_head(), *(part.text for part in parts)])
+
+
 class SiteMaps:
     """Serves a published site to the fleet."""
 
     def __init__(self, site: Site) -> None:
         self._site = site
         self._earth = Earth(site.frame)
-        self._drawn = Drawn(site, ObservedObjects([], site.settings.observations.object_radius_m))
-        self._whole_map: tuple[Drawn, bytes] | None = None
+        self._shown: tuple[list[ObservationReport], float] = [], site.settings.observations.object_radius_m
+        self._drawn = Drawn(site, ObservedObjects(*self._shown))
+        self._whole_map: tuple[Drawn, bytes | None] | None = None
+        self._fences: tuple[Drawn, Fences] | None = None
         self._making = threading.Lock()
         self._any_crs = AnyCrs(site.frame)
         self._indexing = threading.Lock()
@@ -70,6 +108,7 @@ class SiteMaps:
             reached_tolerance=settings.reached_tolerance_m,
             stale_after=settings.liveness.stale_after_s,
             lost_after=settings.liveness.lost_after_s,
+            roads=bool(site.centrelines),
         )
 
     def contains(self, x: float, y: float) -> bool:
@@ -90,14 +129,56 @@ class SiteMaps:
             index = site.keepout_index
         return {track: site.keepouts[area].label for track, area in index.entered(tracks).items()}
 
-    def whole_map(self) -> bytes:
-        """Return the map of the whole site in the binary format."""
-        # Of a hundred robots that ask at once the first has it made, and the others wait.
+    def keepouts_crossed(self, ways: Sequence[Track]) -> dict[int, str]:
+        """Return the numbers of those of ``ways`` that lead through a keepout in which neither end lies.
+
+        Each with that keepout's name.
+        """
+        site = self._site
+        if not site.keepouts:
+            return {}
+        with self._indexing:
+            found = {number: site.keepout_between(way) for number, way in enumerate(ways)}
+        return {number: name for number, name in found.items() if name is not None}
+
+    def fences(self) -> Fences:
+        """Return the areas that robots must not be in: of the publication, and what operators accepted."""
+        drawn, made = self._drawn, self._fences
+        if made is None or made[0] is not drawn:
+            observed = FencedPolygons.of(drawn.objects.areas())
+            fences = dataclasses.replace(drawn.site.fences, observed=observed)
+            made = self._fences = (drawn, fences)
+        return made[1]
+
+    def whole_map(self) -> bytes | None:
+        """Return the map of the whole site in the binary format, None where that is larger than allowed.
+
+        A large one takes as long as it takes to be made; whoever else asks meanwhile waits for the same.
+        """
         with self._making:
             drawn, made = self._drawn, self._whole_map
             if made is None or made[0] is not drawn:
-                made = self._whole_map = (drawn, encode(drawn.objects.join(drawn.site.whole_map())))
+                made = self._whole_map = (drawn, _encoded(drawn))
             return made[1]
+
+    def map_at_once(self, place: tuple[float, float] | None) -> EncodedMap:
+        """Return the map of the whole site if small and at hand, else that of a window around ``place``.
+
+        Without a place the middle of the site is taken. It takes some hundredths of a second at most.
+        """
+        drawn, made = self._drawn, self._whole_map
+        site = drawn.site
+        if made is not None and made[0] is drawn:
+            content = made[1]
+        elif site.segment_count <= AT_ONCE:
+            content = self.whole_map()
+        else:
+            content = None
+        if content is not None and len(content) <= STORED_AT_ONCE:
+            return EncodedMap(content, Border(*site.bounds), is_whole=True)
+        x, y = place or (sum(site.bounds[::2]) / 2, sum(site.bounds[1::2]) / 2)
+        part = site.map_near(x, y, site.settings.maps.window_m, AT_ONCE)
+        return EncodedMap(encode(drawn.objects.join(part)), part.border, is_whole=False)
 
     def map_around(self, x: float, y: float, area: float) -> bytes:
         """Return the map of a square of ``area`` square metres centred on (x, y) in the binary format.
@@ -113,7 +194,11 @@ class SiteMaps:
     def show(self, objects: Sequence[ObservationReport]) -> None:
         """Draw accepted objects, and no others, on the maps from now on."""
         site = self._site
-        self._drawn = Drawn(site, ObservedObjects(objects, site.settings.observations.object_radius_m))
+        shown = list(objects), site.settings.observations.object_radius_m
+        # The map of a large site takes long to be made anew.
+        if shown != self._shown:
+            self._shown = shown
+            self._drawn = Drawn(site, ObservedObjects(*shown))
 
     def surfaces_at(self, points: Sequence[tuple[float, float]], crs: str | None) -> list[Surface | None]:
         """Return the road surface at each of ``points``, None where there is none.
@@ -129,6 +214,17 @@ class SiteMaps:
         with self._indexing:
             index = site.surface_index
         return [None if k == NOWHERE else site.surfaces[k] for k in index.at_many(places).tolist()]
+
+    def to_site(self, points: Sequence[tuple[float, float]], crs: str) -> list[tuple[float, float]]:
+        """Return ``points`` of ``crs``, x before y, in metres in the site frame, to a tenth of a millimetre.
+
+        Raises RefusedError for a CRS that leads nowhere, and for a point that has no place in the site's.
+        """
+        try:
+            moved = self._any_crs.to_site(points, crs)
+        except CrsError as error:
+            raise RefusedError(str(error)) from error
+        return [(round(x, 4), round(y, 4)) for x, y in moved.tolist()]
 
     def place_on_earth(
         self, lat: float, lon: float, heading: float | None

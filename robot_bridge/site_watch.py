@@ -8,9 +8,8 @@ import logging
 from pathlib import Path
 
 from .errors import BridgeError, RefusedError
-from .exchange import Outcome
 from .fleet import Fleet
-from .messages import RobotState, SetMap, SiteOffer, SiteReport
+from .messages import SiteOffer, SiteReport
 from .road_traffic.road_planning import check_roads
 from .site_maps import SiteMaps
 from .sites.errors import SiteError
@@ -150,14 +149,7 @@ class SiteWatch:
             if getattr(site.settings, table) != getattr(old, table):
                 log.warning("%s: [%s] takes effect when the gateway is started anew", SETTINGS_FILE, table)
         if (site.id, site.version) != (old.id, old.version):
-            await self._send_maps()
-
-    async def _send_maps(self) -> None:
-        """Send robots the new map, one by one; those that are offline get it with their next Ready."""
-        content = await asyncio.to_thread(self._maps.whole_map)
-        for name in self._fleet.robots.names():
-            if self._fleet.robots.get(name).state is not RobotState.OFFLINE:
-                await self._fleet.mailboxes.finish([Outcome(name, answer=SetMap(content))], [], acks=False)
+            await self._fleet.maps.send_all()
 
 
 def _stamp(file: Path) -> tuple[int, int, int] | None:

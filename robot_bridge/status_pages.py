@@ -10,6 +10,7 @@ import logging
 import time
 from collections import Counter
 from collections.abc import Iterator
+from functools import partial
 from typing import Any
 
 from sqlalchemy import Connection, func, select
@@ -42,6 +43,7 @@ class StatusPages:
         self._waiting: Values = {}
         self._database_up = False
         metrics.add(self._readings())
+        metrics.add(self._link_readings())
 
     async def health(self) -> Response:
         """Return 200 when all is well and 503 when not, with JSON that says what is not."""
@@ -54,6 +56,7 @@ class StatusPages:
             "version": _version(),
             "site": {"id": site.id, "version": site.version},
             "database": {"ok": latency is not None, "latency_s": latency},
+            "links": {one.link: {"ok": one.up, "text": one.text} for one in self._fleet.links.report().links},
             **tasks,
         }
         status = http.HTTPStatus.OK if well else http.HTTPStatus.SERVICE_UNAVAILABLE
@@ -109,6 +112,16 @@ class StatusPages:
         yield Reading(
             "robot_bridge_task_age_seconds", "Since a task did its work.", ("task",), self._task_ages
         )
+
+    def _link_readings(self) -> Iterator[Reading]:
+        links = self._fleet.links
+        for name, text in (
+            ("up", "1 while a link is connected and its own side is in order."),
+            ("robots", "Robots that a link speaks for."),
+            ("starts", "How often the gateway has started a link."),
+        ):
+            yield Reading(f"robot_bridge_link_{name}", text, ("link",), partial(links.numbers, name))
+        yield Reading("robot_bridge_link_counts", "What a link has counted.", ("link", "name"), links.counts)
 
     def _info(self) -> Values:
         site = self._fleet.site.report

@@ -4,11 +4,15 @@ from __future__ import annotations
 
 import base64
 import binascii
+import dataclasses
+import logging
+from collections.abc import Sequence
 from typing import Any, Literal, cast
 
 import msgspec
 
 from . import jsonrpc
+from .core.decoding import DecodingError, decode_json, has_few_brackets
 from .errors import (
     BusyError,
     ForbiddenError,
@@ -19,16 +23,26 @@ from .errors import (
 )
 from .messages import (
     ANSWERS,
+    COMMANDS,
     DESK_REQUESTS,
     PAYLOADS,
     REQUESTS,
+    Abort,
     Answer,
+    Command,
     DeskRequest,
+    EmergencyStop,
     MessageError,
     Request,
+    Send,
+    SendImage,
     SendPos,
+    refuse_unknown_keys,
     to_json,
+    unknown_keys,
 )
+
+log = logging.getLogger(__name__)
 
 
 class UnknownOperationError(MessageError):
@@ -44,8 +58,16 @@ def decode_request(op: str, params: Any, payload: bytes | None = None) -> Reques
 
 
 def decode_answer(op: str, params: Any, payload: bytes | None = None) -> Answer:
-    """Return the server's answer ``op``; ``params`` and ``payload`` as in :func:`decode_request`."""
-    return cast("Answer", _convert(ANSWERS, "operation", op, params, payload))
+    """Return the server's answer ``op``; ``params`` and ``payload`` as in :func:`decode_request`.
+
+    Parameters that are not known are passed over: a newer gateway may give more.
+    """
+    return cast("Answer", _convert(ANSWERS, "operation", op, params, payload, strict=False))
+
+
+def decode_command(op: str, params: Any) -> Command:
+    """Return what an operator wants a robot to be told, ``op`` with its parameters."""
+    return cast("Command", _convert(COMMANDS, "operation", op, params))
 
 
 def decode_desk_request(method: str, params: Any) -> DeskRequest:
@@ -53,17 +75,46 @@ def decode_desk_request(method: str, params: Any) -> DeskRequest:
     return cast("DeskRequest", _convert(DESK_REQUESTS, "method", method, params))
 
 
-def _convert(table: dict[str, Any], kind: str, name: str, params: Any, payload: bytes | None = None) -> Any:
+def _convert(
+    table: dict[str, Any],
+    kind: str,
+    name: str,
+    params: Any,
+    payload: bytes | None = None,
+    *,
+    strict: bool = True,
+) -> Any:
     cls = table.get(name)
     if cls is None:
         raise UnknownOperationError(f"unknown {kind} {name!r}; known are {', '.join(table)}")
+    if cls is EmergencyStop:
+        understood = EmergencyStop.understood(params)
+        if understood != params:
+            log.warning("%s: what cannot be understood of it is passed over: to stop is never refused", name)
+        params = understood
     if params is not None and not isinstance(params, dict):
         raise MessageError(f"{name}: params is {type(params).__name__}; give an object with named parameters")
     if name in PAYLOADS:
         params = _with_payload(name, params or {}, payload)
     try:
-        return msgspec.convert(params or {}, cls)
+        message = msgspec.convert(params or {}, cls)
     except msgspec.ValidationError as error:
+        raise MessageError(f"{name}: {error}") from None
+    if strict and params:
+        _check_keys(name, message, params)
+    return message
+
+
+def _check_keys(name: str, message: Any, params: dict[str, Any]) -> None:
+    """Refuse parameters that are not known; raises MessageError. What stops a robot is done all the same."""
+    cls = type(message)
+    if getattr(cls, "stops", False) or (isinstance(message, Send) and message.op == Abort.__name__):
+        for key in unknown_keys(cls, params):
+            log.warning("%s: %s is no parameter of it, and passed over: to stop is never refused", name, key)
+        return
+    try:
+        refuse_unknown_keys(cls, params)
+    except MessageError as error:
         raise MessageError(f"{name}: {error}") from None
 
 
@@ -88,18 +139,69 @@ class _Position(msgspec.Struct, forbid_unknown_fields=True):
 
 
 _POSITIONS = msgspec.json.Decoder(_Position)
+# A dataclass passes over keys that it does not know, and a struct does not.
+_KEYS = msgspec.json.Decoder(
+    msgspec.defstruct(
+        "_PositionKeys",
+        [
+            ("jsonrpc", Any),
+            ("method", Any),
+            (
+                "params",
+                msgspec.defstruct(
+                    "_Keys",
+                    [(field.name, Any, None) for field in dataclasses.fields(SendPos)],
+                    forbid_unknown_fields=True,
+                ),
+            ),
+        ],
+    )
+)
 
 
 def decode_position(frame: str | bytes) -> SendPos | None:
     """Return the pose in a notification of SendPos; None for any other frame, and for one that is wrong.
 
     In one step, and so several times faster than :func:`.jsonrpc.decode` and :func:`decode_request`, which
-    say what is wrong.
+    say what is wrong. What is nested, as no position is, is left to them.
     """
-    try:
-        return _POSITIONS.decode(frame).params
-    except (msgspec.DecodeError, UnicodeDecodeError, RecursionError):
+    if not has_few_brackets(frame):
         return None
+    try:
+        pose = _POSITIONS.decode(frame).params
+        _KEYS.decode(frame)
+        return pose
+    except (msgspec.DecodeError, UnicodeDecodeError):
+        return None
+
+
+class _Head(msgspec.Struct):
+    """What says which message a frame is; the rest is not looked at."""
+
+    id: int | str | None = None
+    method: str | None = None
+
+
+_HEADS = msgspec.json.Decoder(_Head)
+
+
+def check_size(frame: str | bytes, largest: int, exempt: Sequence[str] = (SendImage.__name__,)) -> None:
+    """Raise FrameError for a frame of more than ``largest`` bytes, unless its method is ``exempt``.
+
+    It is told without decoding what it holds.
+    """
+    if len(frame) <= largest:
+        return
+    try:
+        # Into what is nested nobody looks, not even for a name.
+        head = _HEADS.decode(frame) if has_few_brackets(frame) else _Head()
+    except (msgspec.DecodeError, UnicodeDecodeError):
+        head = _Head()
+    if head.method in exempt:
+        return
+    what = f"{head.method:.40}" if head.method else "the frame"
+    text = f"{what} has {len(frame)} bytes; at most {largest} are taken, but for {', '.join(exempt)}"
+    raise jsonrpc.FrameError(jsonrpc.INVALID_REQUEST, text, head.id)
 
 
 def error_code(error: Exception) -> int:
@@ -122,8 +224,8 @@ def parse_params(op: str, text: str | bytes | None) -> Any:
     if not text:
         return None
     try:
-        return msgspec.json.decode(text)
-    except (msgspec.DecodeError, UnicodeDecodeError, RecursionError) as error:
+        return decode_json(text)
+    except DecodingError as error:
         raise MessageError(f"{op}: params is not JSON ({error}): {str(text)[:80]!r}") from None
 
 

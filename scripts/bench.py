@@ -9,24 +9,11 @@ from plugin_files import ROOT
 
 sys.path.insert(0, str(ROOT))
 
-from benchmarks.page import Part, with_part
+from benchmarks.page import BENCH, Beginning, Part, write_part
+from benchmarks.trial import IS_TRIAL
 from stage.processes import leave_on_signals
 
 DATA = ROOT.parent / "shared" / "data"
-PAGE = ROOT / "docs" / "benchmarks.md"
-PARTS = [
-    "maps",
-    "load",
-    "round_trip",
-    "faults",
-    "attack",
-    "roads",
-    "surfaces",
-    "assignment",
-    "desk",
-    "endurance",
-]
-"""Modules of benchmarks; each has ``measure(data)``."""
 
 
 def main() -> int:
@@ -34,18 +21,19 @@ def main() -> int:
     if not DATA.is_dir():
         sys.exit(f"bench: the real data is not on this machine: {DATA} does not exist")
     leave_on_signals()
-    wanted = sys.argv[1:] or PARTS
-    unknown = sorted(set(wanted) - set(PARTS))
+    wanted = sys.argv[1:] or BENCH
+    unknown = sorted(set(wanted) - set(BENCH))
     if unknown:
-        sys.exit(f"bench: there is no part {', '.join(unknown)}; choose from {', '.join(PARTS)}")
+        sys.exit(f"bench: there is no part {', '.join(unknown)}; choose from {', '.join(BENCH)}")
     measured = [_measure(name) for name in wanted]
     return int(any(part.failed for part in measured))
 
 
 def _measure(name: str) -> Part:
+    began = Beginning.now()
     part: Part = importlib.import_module(f"benchmarks.{name}").measure(DATA)
-    page = PAGE.read_text(encoding="utf-8") if PAGE.is_file() else ""
-    PAGE.write_text(with_part(page, name, part, PARTS), encoding="utf-8")
+    if not IS_TRIAL:
+        write_part(name, part, began)
     print(f"## {part.heading}\n\n{part.text}")
     return part
 

@@ -1,5 +1,9 @@
 """Run the main job once, for real and without a display, and leave build/demo/.
 
+    .venv/bin/python scripts/demo.py [zalazone]
+
+`zalazone` is another demonstration, on the real proving ground (:mod:`zalazone`); it leaves build/zalazone/.
+
 A gateway with SQLite, three simulated robots, a robot map exported by qgis_process, QGIS Desktop with the
 plugin on a virtual screen, and an operator who clicks. The exit status is 0 only when every step really
 happened; every process that was started has ended then, and also when something failed.
@@ -25,6 +29,7 @@ from stage.qgis import Profile, virtual_screen
 from stage.report import PAPER_BYTES_PER_M2, Report
 from stage.session import follow, start_qgis
 from stage.verdict import Errand, Outcome, judge
+from zalazone import demonstration
 
 from robot_bridge.sites.publication import read_site
 from robot_bridge.sites.site import Site
@@ -136,8 +141,16 @@ def run() -> None:
     print(f"see {FOLDER}: report.md, canvas.png, site.map, site.bin")
 
 
+PARTS = {"": (run, FOLDER), "zalazone": (demonstration.run, demonstration.FOLDER)}
+
+
 def main() -> int:
-    return ended("demo", run, f"logs: {FOLDER / 'logs'}")
+    part = " ".join(sys.argv[1:])
+    if part not in PARTS:
+        print(f"demo: error: there is no PARTS={part}; write PARTS=zalazone, or nothing", file=sys.stderr)
+        return 1
+    work, folder = PARTS[part]
+    return ended("demo", work, f"logs: {folder / 'logs'}")
 
 
 if __name__ == "__main__":

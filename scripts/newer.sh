@@ -146,4 +146,4 @@ build_root
 copy_tree
 inside PIP_CERT=$CERTIFICATES make -C /srv/fleet/main --no-print-directory setup
 say_versions
-inside make -C /srv/fleet/main --no-print-directory test "JOBS=${JOBS:-4}" "ARGS=${ARGS:-}"
+inside make -C /srv/fleet/main --no-print-directory test "JOBS=${JOBS:-6}" "ARGS=${ARGS:-}"

@@ -13,6 +13,7 @@ DESTDIR=${DESTDIR:-}
 PREFIX=${PREFIX:-/opt/robot-bridge}
 PROGRAM=${PROGRAM:-yes}
 UNIT=$DESTDIR/etc/systemd/system/robot-bridge.service
+LINK_UNIT=$DESTDIR/etc/systemd/system/robot-bridge-link@.service
 USERS=$DESTDIR/usr/lib/sysusers.d/robot-bridge.conf
 SETTINGS=$DESTDIR/etc/robot-bridge/robot-bridge.env
 
@@ -51,6 +52,7 @@ install_service() {
     [ "$PROGRAM" = no ] || install_program
     install -d "$(dirname "$UNIT")" "$(dirname "$USERS")"
     sed "s|@PREFIX@|$PREFIX|g" resources/service/robot-bridge.service > "$UNIT"
+    sed "s|@PREFIX@|$PREFIX|g" resources/service/robot-bridge-link@.service > "$LINK_UNIT"
     install -m 644 resources/service/robot-bridge.sysusers "$USERS"
     [ -n "$DESTDIR" ] || systemd-sysusers "$USERS"
     install -d -m 750 "$(dirname "$SETTINGS")"
@@ -74,7 +76,7 @@ uninstall_service() {
     if [ -z "$DESTDIR" ] && [ -e "$UNIT" ]; then
         systemctl disable --now robot-bridge || true
     fi
-    rm -f "$UNIT" "$USERS"
+    rm -f "$UNIT" "$LINK_UNIT" "$USERS"
     if [ -e "$DESTDIR$PREFIX/pyvenv.cfg" ]; then
         rm -rf "$DESTDIR$PREFIX"
     fi

@@ -1,5 +1,5 @@
 #!/bin/sh
-# Makes this machine ready: QGIS with its Python bindings, Xvfb, the virtual environment .venv, and the database
+# Makes this machine ready: QGIS with its Python bindings, Xvfb, the virtual environment .venv, and the database and MQTT
 # servers that the tests start.
 # Uses what is there; installs what is missing with apt; says what to do where there is no apt.
 #
@@ -52,6 +52,7 @@ missing_servers() {
     has postgres || ls /usr/lib/postgresql/*/bin/postgres >/dev/null 2>&1 || echo postgresql
     has mariadbd || [ -x /usr/sbin/mariadbd ] || echo mariadb-server
     "$python" -c 'import MySQLdb' >/dev/null 2>&1 || echo python3-mysqldb
+    has mosquitto || [ -x /usr/sbin/mosquitto ] || echo mosquitto
 }
 
 as_root() {
@@ -96,19 +97,19 @@ install_packages() {
     rm -f "$log"
 }
 
-# Installs the database servers where that is possible; the services that come with them stay off.
+# Installs those servers where that is possible; the services that come with them stay off.
 install_servers() {
     if has apt-get && may_become_root; then
         say "installing $* for the tests"
         if apt_install "$@" >/dev/null 2>&1 ||
             { as_root apt-get update -q >/dev/null 2>&1; apt_install "$@" >/dev/null 2>&1; }; then
-            for service in postgresql mariadb; do
+            for service in postgresql mariadb mosquitto; do
                 case "$*" in *$service*) as_root systemctl disable --now $service >/dev/null 2>&1 || : ;; esac
             done
             return
         fi
     fi
-    say "not installed: $*; the tests on these databases will be skipped"
+    say "not installed: $*; the tests that need them will be skipped"
 }
 
 check_versions() {
@@ -158,5 +159,6 @@ servers=$(missing_servers | tr '\n' ' ')
 check_versions "$python"
 make_venv "$python"
 scripts/asyncapi_parser.sh || say "without AsyncAPI's parser the test that asks it is skipped"
+scripts/vda5050_vehicles.sh >/dev/null || say "without virtual vehicles the tests that lead them are skipped"
 touch $STAMP
 say "ready: $($VENV/bin/python -c 'from qgis.core import Qgis; print("QGIS", Qgis.QGIS_VERSION)'), $VENV"

@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+import gc
 import importlib.util
+import os
+import re
+import signal
 import sys
 from collections import deque
 from pathlib import Path
@@ -28,24 +32,197 @@ def register_plugin_package():
 
 register_plugin_package()
 
+
+def keep_bytecode():
+    """Have Python keep what it compiled of tests and programs, also where the environment says not to.
+
+    Else every worker compiles all tests anew, and every program that they start all of itself.
+    """
+    sys.dont_write_bytecode = False
+    os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
+
+
+keep_bytecode()
+
+
+def trust_nobody():
+    """Have nobody read the certificates of public authorities: no test connects to whom they certify.
+
+    Where the environment names a file of them, each connection to MariaDB takes 20 ms to read it.
+    """
+    os.environ["SSL_CERT_FILE"] = os.devnull
+
+
+trust_nobody()
+
+
+def hear_signals():
+    """Have the programs that tests start hear SIGINT and SIGHUP, whatever this process was started to ignore.
+
+    A shell ignores SIGINT for what runs in its background, nohup SIGHUP; programs inherit that. A handler of
+    this process is none of theirs: they begin with the default.
+    """
+    if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
+        signal.signal(signal.SIGINT, signal.default_int_handler)
+    if signal.getsignal(signal.SIGHUP) is signal.SIG_IGN:
+        signal.signal(signal.SIGHUP, lambda *_: None)
+
+
+hear_signals()
+
 # How long something takes on a busy machine says nothing of whether it is right.
 settings.register_profile("any machine", deadline=None, suppress_health_check=[HealthCheck.too_slow])
 settings.load_profile("any machine")
 
 
-def pytest_collection_modifyitems(items):
-    """Deal out the files with many tests and those with few by turns.
+# --- make test-core: what needs neither QGIS nor database servers nor a display, nor programs of its own ---
+
+NOT_CORE = (
+    "packaging",
+    "plugin",
+    "robot_bridge/access",
+    "robot_bridge/assignment",
+    "robot_bridge/databases",
+    "robot_bridge/faults",
+    "robot_bridge/fleet/crashes",
+    "robot_bridge/isolation",
+    "robot_bridge/links/ros2/test_dds_with_rclpy.py",
+    "robot_bridge/links/vda5050/test_broker.py",
+    "robot_bridge/links/vda5050/test_guide.py",
+    "robot_bridge/links/vda5050/test_live.py",
+    "robot_bridge/live",
+    "robot_bridge/reference_robot/test_experiments.py",
+    "robot_bridge/reference_robot/test_localised_robot.py",
+    "robot_bridge/reference_robot/test_map_gaps.py",
+    "robot_bridge/reference_robot/test_particle_filter.py",
+    "robot_bridge/reference_robot/test_ray_casting.py",
+    "robot_bridge/reference_robot/test_served_experiment.py",
+    "robot_bridge/robotmap/test_hostile_maps.py",
+    "robot_bridge/robotmap/test_watch.py",
+    "robot_bridge/robotmap_exporters/test_any_map.py",
+    "robot_bridge/running",
+    "robot_bridge/schemas/test_asyncapi.py",
+    "robot_bridge/servers",
+    "robot_bridge/sites/test_cache_writing.py",
+    "robot_bridge/traffic/test_conflicts.py",
+)
+"""Tests that take long, or need more than Python."""
+NOT_CORE_PATHS = {ROOT / "tests" / name for name in NOT_CORE}
+MORE_THAN_CORE = {"start_bridge", "postgresql_server", "mariadb_server", "data"}
+"""Fixtures that start programs, or read much."""
+SERVERS = {"postgresql", "mariadb"}
+GIS = re.compile(r"^\s*(?:from|import) (?:qgis|osgeo|PyQt5)\b", re.MULTILINE)
+
+
+@pytest.hookimpl(hookwrapper=True)
+def pytest_collection(session):
+    """Have nobody look for objects to remove while all tests are read in, nor later at what that has made.
+
+    It is half a million objects that last: each look at them takes a quarter of a second.
+    """
+    gc.disable()
+    yield
+    gc.enable()
+    gc.collect()
+    gc.freeze()
+
+
+def pytest_addoption(parser):
+    parser.addoption("--core", action="store_true", help="run only what needs no QGIS, no server, no display")
+
+
+def pytest_configure(config):
+    if config.getoption("--core"):
+        # Whoever imports it all the same fails.
+        sys.modules["qgis"] = sys.modules["osgeo"] = None
+
+
+def pytest_ignore_collect(collection_path, config):
+    if not config.getoption("--core"):
+        return None
+    if not NOT_CORE_PATHS.isdisjoint((collection_path, *collection_path.parents)):
+        return True
+    is_test = collection_path.match("test_*.py")
+    return True if is_test and GIS.search(collection_path.read_text(encoding="utf-8")) else None
+
+
+def is_core(item) -> bool:
+    """Whether a test needs no server and no program of its own."""
+    values = getattr(item, "callspec", None)
+    on_server = values is not None and not SERVERS.isdisjoint(map(str, values.params.values()))
+    return not on_server and MORE_THAN_CORE.isdisjoint(item.fixturenames)
+
+
+def pytest_collection_modifyitems(config, items):
+    """Select the core where that is asked for, and put the files in order."""
+    if config.getoption("--core"):
+        left_out = [item for item in items if not is_core(item)]
+        config.hook.pytest_deselected(items=left_out)
+        items[:] = [item for item in items if is_core(item)]
+    deal_out(items)
+
+
+LONG = (
+    "plugin/desk/test_endurance.py",
+    "plugin/desk/loop/test_roads.py",
+    "robot_bridge/live/test_queues.py",
+    "robot_bridge/databases/test_bridge_on_each.py",
+    "robot_bridge/live/test_restarts.py",
+    "plugin/desk/loop/test_cone_plan.py",
+    "plugin/language/test_room_for_words.py",
+    "robot_bridge/fleet/crashes/test_gateway_dies.py",
+    "packaging/test_walkthrough.py",
+    "robot_bridge/fleet/crashes/test_transaction_fails.py",
+    "plugin/desk/loop/test_queue.py",
+    "robot_bridge/running/test_choosing_a_site.py",
+    "packaging/test_qgis4.py",
+    "robot_bridge/running/test_backup.py",
+    "packaging/test_style.py",
+    "plugin/desk/alarms/test_alarms_at_desk.py",
+    "packaging/test_walkthrough_of_qgis.py",
+    "robot_bridge/running/test_gateway_as_service.py",
+    "packaging/test_demonstrations.py",
+    "packaging/test_zalazone.py",
+    "robot_bridge/faults/test_faults.py",
+    "robot_bridge/live/test_pausing.py",
+    "robot_bridge/links/rosbridge/test_rosbridge_live.py",
+    "robot_bridge/links/vda5050/test_live_restarts.py",
+    "robot_bridge/links/vda5050/test_live.py",
+    "packaging/test_walkthrough_of_processing.py",
+    "robot_bridge/live/test_two_robots.py",
+    "plugin/desk/loop/test_whole_loop.py",
+    "robot_bridge/live/test_gateway_starts.py",
+    "plugin/desk/live/test_memory.py",
+    "robot_bridge/running/test_trouble.py",
+    "robot_bridge/running/test_sole_gateway.py",
+    "plugin/processing/test_qgis_process.py",
+    "robot_bridge/fleet/crashes/test_links_cut.py",
+    "robot_bridge/databases/test_servers_that_fail.py",
+    "robot_bridge/live/test_geofence.py",
+    "robot_bridge/live/test_emergency_stop.py",
+    "plugin/processing/test_export_shaping.py",
+)
+"""Files that take a minute beside five other workers, however many tests they have; the longest first."""
+
+
+def deal_out(items):
+    """Deal out the files with many tests and those with few by turns, and before each a long one.
 
     Those with many reckon, those with few wait for real windows, databases and robots: workers that run one
-    kind all at once would first fight for the processors and then leave them idle.
+    kind all at once would first fight for the processors and then leave them idle. A long one that came late
+    would be waited for alone.
     """
     files = {}
     for item in items:
         files.setdefault(item.path, []).append(item)
+    long = deque(filter(None, (files.pop(ROOT / "tests" / name, None) for name in LONG)))
     waiting = deque(sorted(files.values(), key=len, reverse=True))
     items.clear()
-    while waiting:
-        items += waiting.popleft() if len(waiting) % 2 else waiting.pop()
+    while long or waiting:
+        if long:
+            items += long.popleft()
+        if waiting:
+            items += waiting.popleft() if len(waiting) % 2 else waiting.pop()
 
 
 @pytest.fixture(scope="session")

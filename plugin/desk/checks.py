@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from dataclasses import replace
 from typing import Any, TypeVar
 
 from qgis.core import QgsProject, QgsVectorLayer, QgsWkbTypes
@@ -16,7 +17,7 @@ from .drafting.keepout_check import KeepoutCheck
 from .drafting.obstacle_check import ObstacleCheck
 from .drafting.surface_check import SurfaceCheck
 from .drafting.tracks import Track, is_looked_at
-from .drafts import Draft, Findings, Point
+from .drafts import ROUTE, Draft, Findings, Point
 from .placement import Placement
 from .time_slices import Steps, part_of
 
@@ -142,7 +143,7 @@ class LayerCheck(QObject):
         self._kept[check] = still_needed
         # As with the alarms: of layers with nothing in them, as published sites without surfaces have them.
         is_watched = any(layer.featureCount() != 0 for layer in layers)
-        return (yield from check.told(found_for, is_watched))
+        return (yield from _told(check, draft, _without_repetition(draft, found_for), is_watched))
 
     def _unseen(self) -> Findings:
         """Tell of what a draft has to be held against and cannot be."""
@@ -181,6 +182,44 @@ class LayerCheck(QObject):
     def _forget(self) -> None:
         self._kept.clear()
         self.changed.emit()
+
+
+def _told(
+    check: Check, draft: Draft, found: Sequence[tuple[Track, list[Any]]], is_watched: bool
+) -> Steps[Findings]:
+    """Return what is to be told of what was ``found``, and which of that is about the way to the draft."""
+    if not draft.way.line:
+        return (yield from check.told(draft, found, is_watched))
+    of_place = yield from check.told(draft, [one for one in found if one[0] != draft.way.line], is_watched)
+    if draft.kind == ROUTE:
+        # By itself: what is told of the route's own legs must not change as its robot moves.
+        way = [one for one in found if one[0] == draft.way.line]
+        of_way = yield from check.told(draft, way, is_watched)
+        return of_place + replace(of_way, of_way=of_way.overridable + of_way.warnings)
+    told = yield from check.told(draft, found, is_watched)
+    texts = told.overridable + told.warnings
+    # What is told of the place alone is not of the way to it.
+    return replace(told, of_way=tuple(text for text in texts if text not in of_place.all_texts))
+
+
+def _without_repetition(
+    draft: Draft, found: Sequence[tuple[Track, list[Any]]]
+) -> Sequence[tuple[Track, list[Any]]]:
+    """Return what was ``found``, but of the way to a target not what is at the target as well."""
+    if not draft.way.line:
+        return found
+    at_target = {_name(hit) for track, hits in found if len(track) == 1 for hit in hits}
+    return [
+        (track, hits if len(track) == 1 else [hit for hit in hits if _name(hit) not in at_target])
+        for track, hits in found
+    ]
+
+
+def _name(hit: Any) -> Any:
+    """Return the name of a keepout or an obstacle; what a surface holds of a track has none."""
+    if isinstance(hit, str):
+        return hit
+    return hit[0] if isinstance(hit[0], str) else object()
 
 
 def _has_areas(layer: QgsVectorLayer) -> bool:

@@ -1,4 +1,4 @@
-"""The map tool that closes roads and opens them again."""
+"""The map tool that closes roads and opens them again, and what it asks."""
 
 from __future__ import annotations
 
@@ -7,20 +7,28 @@ import math
 import numpy as np
 from qgis.core import QgsPointXY
 from qgis.gui import QgsMapMouseEvent, QgsMapTool, QgsVertexMarker
-from qgis.PyQt.QtCore import QPoint, Qt
+from qgis.PyQt.QtCore import QPoint, Qt, pyqtSignal
 from qgis.PyQt.QtGui import QKeyEvent
-from qgis.PyQt.QtWidgets import QWidget
+from qgis.PyQt.QtWidgets import QLineEdit, QWidget
 
 from ...robot_bridge.messages import ClosureReport
 from ...robot_bridge.roads.points import foot_on
 from ..errors import FleetError
 from ..language import tr
-from .closure_dialog import ClosureDialog
 from .desk import Desk
 from .drafts import Point
+from .question_dialog import QuestionDialog
 from .safe_question import safe_question
 from .wall_clock import time_of_day
 
+TIMES = (
+    (tr("until it is opened"), None),
+    (tr("for 15 minutes"), 900.0),
+    (tr("for 1 hour"), 3600.0),
+    (tr("for 4 hours"), 14_400.0),
+    (tr("for 1 day"), 86_400.0),
+)
+LONGEST_REASON = 200
 REACH = 12.0
 """Pixels by which a click may miss a road."""
 LEAST_REACH = 3.0
@@ -138,3 +146,35 @@ class ClosureTool(QgsMapTool):
         box.setWindowTitle(tr("Open road"))
         box.setInformativeText(tr("Open it again for every robot?"))
         box.open()
+
+
+class ClosureDialog(QuestionDialog):
+    """Asks why a road is to be closed and for how long.
+
+    ``confirmed`` carries the reason and the seconds, None for no end.
+    """
+
+    confirmed = pyqtSignal(str, object)
+
+    def __init__(self, parent: QWidget):
+        super().__init__(
+            "fleet_closure_dialog",
+            tr("Close road"),
+            ("fleet_closure_confirm", tr("Close road")),
+            is_safe=False,
+            parent=parent,
+        )
+        self.add_text(
+            tr(
+                "The road is closed for every robot from this junction to the next. Robots whose way leads "
+                "along it get another way; one that has no other way is stopped, unless the site's settings "
+                "say otherwise."
+            )
+        )
+        reason = QLineEdit()
+        reason.setMaxLength(LONGEST_REASON)
+        reason.setPlaceholderText(tr("such as: tree on the road"))
+        self.add_field(tr("Reason"), reason, "fleet_closure_reason")
+        time = self.add_choice(tr("Closed"), TIMES, "fleet_closure_time")
+        self.lay_out()
+        self.accepted.connect(lambda: self.confirmed.emit(reason.text().strip(), time.currentData()))

@@ -116,17 +116,27 @@ def in_words(report: CommandReport) -> str:
         if report.params.get("cone"):
             return tr("cone at {x}, {y}", x=x, y=y)
         return tr("target at {x}, {y}", x=x, y=y)
+    if report.op == SetPath.__name__ and report.params.get("cone") and (place := place_of(report)):
+        return tr("cone at {x}, {y}", x=_metres(place[0]), y=_metres(place[1]))
     if report.op == SetPath.__name__:
         return tr("route of {number} points", number=len(report.params.get("points", [])))
     return {Abort.__name__: tr("abort")}.get(report.op, report.op)
 
 
+def state_word(op: str, state: CommandState) -> str:
+    """Return a state of a command in a word: an abort leads nowhere, and is done where others are reached."""
+    if state is CommandState.REACHED and op not in DRIVES:
+        return tr("done")
+    return COMMAND_STATES[state]
+
+
 def how_it_stands(report: CommandReport) -> str:
     """Return how far a command has come, and why where that was told, as in ``failed: battery empty``."""
-    if report.state is CommandState.REACHED and report.op not in DRIVES:
-        return tr("done")
+    word = state_word(report.op, report.state)
+    if word == tr("done"):
+        return word
     reason = report.steps[-1].reason if report.steps else None
-    return COMMAND_STATES[report.state] + (f": {reason}" if reason else "")
+    return word + (f": {reason}" if reason else "")
 
 
 def place_of(report: CommandReport) -> tuple[float, float] | None:

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 
+import numpy as np
 from qgis.core import (
     QgsCoordinateReferenceSystem,
     QgsExpressionContext,
@@ -91,6 +92,22 @@ class ConeStore:
         layer.updateExtents()
         layer.triggerRepaint()
         return layer
+
+    def take_out(self, layer_id: str, ids: Collection[str]) -> bool:
+        """Remove the cones ``ids`` from the layer ``layer_id``; false where none is there any more."""
+        layer = self.layer()
+        if layer is None or layer.id() != layer_id:
+            return False
+        found = [feature.id() for feature in layer.getFeatures() if feature["id"] in ids]
+        if not found or not layer.dataProvider().deleteFeatures(found):
+            return False
+        layer.updateExtents()
+        layer.triggerRepaint()
+        return True
+
+    def places(self) -> np.ndarray:
+        """Return where cones stand already, (n, 2) in the CRS of their layer."""
+        return np.array([(cone.x, cone.y) for cone in self._standing()], dtype=np.float64).reshape(-1, 2)
 
     def check(self, cones: Sequence[Cone], crs: QgsCoordinateReferenceSystem) -> list[Finding]:
         """Return what is wrong with ``cones`` by the project's layers and the cones that stand already.

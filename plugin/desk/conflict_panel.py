@@ -1,95 +1,287 @@
-"""The robots that will be in each other's way, soonest first, and who shall give way."""
+"""The robots that will be in each other's way, and who shall give way."""
 
 from __future__ import annotations
 
-from qgis.PyQt.QtCore import QSize
-from qgis.PyQt.QtWidgets import QHBoxLayout, QSizePolicy, QToolButton, QVBoxLayout, QWidget
+from collections.abc import Callable
 
-from ...robot_bridge.messages import ConflictReport, HoldReport
-from ..language import first_of, tr
-from .colours import DOUBTFUL_STYLE
+from qgis.PyQt.QtCore import Qt, QTimer, pyqtSignal
+from qgis.PyQt.QtGui import QHideEvent, QShowEvent
+from qgis.PyQt.QtWidgets import (
+    QAbstractItemView,
+    QGridLayout,
+    QListWidget,
+    QListWidgetItem,
+    QVBoxLayout,
+    QWidget,
+)
+
+from ...robot_bridge.messages import ConflictReport, HoldReport, WayOut
+from ..language import tr
 from .desk import Desk
+from .fixed_size import ElidedButton, ElidedText
+from .small_views import shrink
 from .state_words import MEETINGS
 from .wall_clock import time_of_day
-from .whole_text import WholeText
+from .ways_out import WaysOutQuery
 
-SHOWN = 3
-"""Conflicts that are listed; all of them are in the layer."""
+Pair = tuple[str, str]
+
+OVER_MS = 3000
+"""For so long the row of a conflict that is over stays, disabled: what is below it does not move up under
+the mouse."""
+PAIR = Qt.ItemDataRole.UserRole
+NONE = tr("No robot is in another one's way.")
+GIVE_WAY, ASIDE = "give way", "aside"
+CHOOSE_FIRST = tr("Choose a conflict in the list first.")
+NOT_KNOWN_YET = tr("the gateway is being asked")
 
 
 class ConflictPanel(QWidget):
-    """Hidden as long as nobody is in anybody's way and nobody waits."""
+    """A row for each conflict, and the buttons for the one that is chosen: a line for each of both robots.
+
+    What a robot cannot do is disabled, with the reason as its tip and as a text; the buttons never move.
+
+    A conflict keeps its row until it is over, whatever becomes more urgent meanwhile, and the buttons are
+    never another conflict's than the operator chose: the first one is chosen by itself where there was none.
+    """
+
+    counted = pyqtSignal(int)
+    """How many conflicts there are now."""
 
     def __init__(self, desk: Desk, parent: QWidget | None = None):
         super().__init__(parent)
         self.setObjectName("fleet_conflicts")
         self._desk = desk
-        self._rows = QVBoxLayout(self)
-        self._rows.setContentsMargins(0, 0, 0, 0)
-        self._rows.setSpacing(2)
-        self._pairs: list[tuple[str, str]] = []
-        self._rows_shown: list[QWidget] = []
-        self._labels: list[WholeText] = []
-        self._rest = _label("fleet_waiting")
-        self._rows.addWidget(self._rest)
+        self._conflicts: dict[Pair, ConflictReport] = {}
+        self._list = _conflict_list()
+        self._list.currentItemChanged.connect(lambda *_: self._show_buttons())
+        self._ways = WaysOutQuery(desk, self)
+        self._give_ways = [self._button(lambda k=k: self._give_way(k)) for k in (0, 1)]
+        self._asides = [self._button(lambda k=k: self._send_aside(k)) for k in (0, 1)]
+        self._stops = [self._button(lambda k=k: self._stop(k)) for k in (0, 1)]
+        self._reasons = ElidedText("fleet_conflict_reasons")
+        self._over = QTimer(self)
+        self._over.setSingleShot(True)
+        self._over.setInterval(OVER_MS)
+        self._over.timeout.connect(self._drop_over)
+        self._lay_out()
+        self._ways.changed.connect(self._show_buttons)
         desk.roads.conflicts_changed.connect(self._show)
         self._show()
 
-    def sizeHint(self) -> QSize:
-        # As wide as its buttons. A panel that nobody has dragged yet is as wide as its parts wish to be: by a
-        # text on one line it would push the map aside, under the mouse of who is about to click there.
-        return QSize(self.minimumSizeHint().width(), super().sizeHint().height())
+    @property
+    def chosen(self) -> ConflictReport | None:
+        """The conflict that the buttons are about; None for none."""
+        item = self._list.currentItem()
+        return None if item is None else self._conflicts.get(item.data(PAIR))
+
+    def texts(self) -> list[str]:
+        """Return what stands in the rows."""
+        return [self._list.item(row).text() for row in range(self._list.count())]
+
+    def _lay_out(self) -> None:
+        grid = QGridLayout()
+        grid.setSpacing(4)
+        for column, buttons in enumerate((self._give_ways, self._asides, self._stops)):
+            for row, button in enumerate(buttons):
+                grid.addWidget(button, row, column)
+                grid.setColumnStretch(column, 1)
+        rows = QVBoxLayout(self)
+        rows.setContentsMargins(0, 2, 0, 0)
+        rows.setSpacing(4)
+        rows.addLayout(grid)
+        rows.addWidget(self._reasons)
+        rows.addWidget(self._list, 1)
+
+    def showEvent(self, event: QShowEvent) -> None:
+        super().showEvent(event)
+        self._watch_chosen()
+
+    def hideEvent(self, event: QHideEvent) -> None:
+        super().hideEvent(event)
+        # Nobody looks: the gateway need not reckon it.
+        self._ways.watch(None)
+
+    def _button(self, pressed: Callable[[], None]) -> ElidedButton:
+        button = ElidedButton("")
+        button.clicked.connect(lambda _=False: pressed())
+        return button
 
     def _show(self) -> None:
         roads = self._desk.roads.conflicts
-        shown = roads.conflicts[:SHOWN]
-        pairs = [(conflict.robot, conflict.other) for conflict in shown]
-        if pairs != self._pairs:
-            self._lay_out(pairs)
-        for label, conflict in zip(self._labels, shown, strict=True):
-            label.setText(_in_words(conflict))
-        more = len(roads.conflicts) - SHOWN
-        told = [tr("and {more} more: see the layer Conflicts", more=more)] if more > 0 else []
-        told += first_of([_waiting(hold) for hold in roads.waiting], SHOWN)
-        self._rest.setText("\n".join(told))
-        self._rest.setVisible(bool(self._rest.text()))
-        self.setVisible(bool(roads.conflicts or roads.waiting))
+        self._conflicts = {}
+        for one in roads.conflicts:
+            # Of two between the same robots the sooner one, which comes first.
+            self._conflicts.setdefault(_pair_of(one), one)
+        self._drop_waiting()
+        listed = self._renew_rows()
+        for pair, conflict in self._conflicts.items():
+            if pair not in listed:
+                item = QListWidgetItem(_in_words(conflict), self._list)
+                item.setData(PAIR, pair)
+                item.setToolTip(item.text())
+        self._list_waiting(roads.waiting)
+        if not self._list.count():
+            self._add_note(NONE)
+        if self._list.currentItem() is None:
+            self._choose_first()
+        self._show_buttons()
+        self.counted.emit(len(self._conflicts))
 
-    def _lay_out(self, pairs: list[tuple[str, str]]) -> None:
-        """Make a row for each pair. Rows that stay are left alone: somebody may be pressing a button."""
-        for row in self._rows_shown:
-            self._rows.removeWidget(row)
-            row.deleteLater()
-        self._pairs, self._labels = pairs, []
-        self._rows_shown = [self._row(*pair) for pair in pairs]
-        for at, row in enumerate(self._rows_shown):
-            self._rows.insertWidget(at, row)
+    def _renew_rows(self) -> set[Pair]:
+        """Bring the rows of conflicts up to date, and return their pairs."""
+        listed = set()
+        for item in self._items():
+            pair = item.data(PAIR)
+            conflict = self._conflicts.get(pair)
+            if conflict is None:
+                item.setFlags(Qt.ItemFlag.NoItemFlags)
+                item.setText(tr("{robot} × {other}: over", robot=pair[0], other=pair[1]))
+                if not self._over.isActive():
+                    self._over.start()
+            else:
+                listed.add(pair)
+                item.setFlags(Qt.ItemFlag.ItemIsEnabled | Qt.ItemFlag.ItemIsSelectable)
+                item.setText(_in_words(conflict))
+            item.setToolTip(item.text())
+        return listed
 
-    def _row(self, one: str, another: str) -> QWidget:
-        row = QWidget()
-        columns = QHBoxLayout(row)
-        columns.setContentsMargins(0, 0, 0, 0)
-        columns.setSpacing(4)
-        label = _label("fleet_conflict")
-        label.setStyleSheet(DOUBTFUL_STYLE)
-        self._labels.append(label)
-        columns.addWidget(label, 1)
-        for robot, other in ((one, another), (another, one)):
-            button = QToolButton()
-            button.setObjectName(f"fleet_give_way_{robot}")
-            button.setText(tr("{robot} gives way", robot=robot))
-            button.setToolTip(
-                tr(
-                    "{robot} waits for {other} or takes another way, whichever gets it there sooner",
-                    robot=robot,
-                    other=other,
-                )
+    def _drop_over(self) -> None:
+        """Take away the rows of conflicts that are over."""
+        for item in self._items():
+            if item.data(PAIR) not in self._conflicts:
+                self._list.takeItem(self._list.row(item))
+        if not any(item.data(PAIR) in self._conflicts for item in self._list.selectedItems()):
+            self._list.setCurrentItem(None)
+        self._show()
+
+    def _drop_waiting(self) -> None:
+        for row in reversed(range(self._list.count())):
+            if self._list.item(row).data(PAIR) is None:
+                self._list.takeItem(row)
+
+    def _list_waiting(self, waiting: list[HoldReport]) -> None:
+        for hold in waiting:
+            self._add_note(_waiting(hold))
+
+    def _add_note(self, text: str) -> None:
+        note = QListWidgetItem(text, self._list)
+        note.setFlags(Qt.ItemFlag.ItemIsEnabled)
+        note.setToolTip(text)
+
+    def _items(self) -> list[QListWidgetItem]:
+        rows = [self._list.item(row) for row in range(self._list.count())]
+        return [item for item in rows if item.data(PAIR) is not None]
+
+    def _choose_first(self) -> None:
+        first = next((item for item in self._items() if item.data(PAIR) in self._conflicts), None)
+        if first is not None:
+            self._list.setCurrentItem(first)
+
+    def _watch_chosen(self) -> None:
+        chosen = self.chosen
+        if chosen is None or not self.isVisible():
+            self._ways.watch(None)
+        else:
+            self._ways.watch(_pair_of(chosen), chosen.kind)
+
+    def _show_buttons(self) -> None:
+        self._watch_chosen()
+        chosen = self.chosen
+        pair = ("", "") if chosen is None else _pair_of(chosen)
+        reasons = []
+        for column, robot, other in zip((0, 1), pair, reversed(pair), strict=True):
+            self._give_ways[column].setObjectName(f"fleet_give_way_{robot}")
+            self._asides[column].setObjectName(f"fleet_aside_{robot}")
+            self._stops[column].setObjectName(f"fleet_stop_{robot}")
+            if chosen is None:
+                self._disable(column)
+                continue
+            reasons += [self._show_give_way(column, robot, other), self._show_aside(column, robot, other)]
+            self._stops[column].setEnabled(True)
+            self._stops[column].set_words(
+                tr("Stop {robot}", robot=robot),
+                tr("{robot} is paused: it stands, and keeps what it is doing for later", robot=robot),
             )
-            button.clicked.connect(
-                lambda _=False, robot=robot, other=other: self._desk.resolve_conflict(robot, other)
-            )
-            columns.addWidget(button)
-        return row
+        # Both columns may lack the same thing.
+        self._reasons.setText("\n".join(dict.fromkeys(reason for reason in reasons if reason)))
+
+    def _disable(self, column: int) -> None:
+        words = (
+            (self._give_ways, tr("Give way")),
+            (self._asides, tr("Send aside")),
+            (self._stops, tr("Stop")),
+        )
+        for buttons, text in words:
+            buttons[column].setEnabled(False)
+            buttons[column].set_words(text, CHOOSE_FIRST)
+
+    def _show_give_way(self, column: int, robot: str, other: str) -> str:
+        """Show whether a robot can give way; return why not. Not known, it is asked by being pressed."""
+        way = self._ways.way(robot, GIVE_WAY)
+        tip = tr(
+            "{robot} waits for {other} or takes another way, whichever gets it there sooner",
+            robot=robot,
+            other=other,
+        )
+        button = self._give_ways[column]
+        button.setEnabled(way is None or way.possible)
+        button.set_words(tr("{robot} gives way", robot=robot), tip if way is None else way.text)
+        return "" if way is None or way.possible else way.text
+
+    def _show_aside(self, column: int, robot: str, other: str) -> str:
+        """Show whether a robot can go aside, and return why not."""
+        way = self._ways.way(robot, ASIDE)
+        possible = way is not None and way.possible
+        why_not = "" if possible else self._why_not_aside(robot, way)
+        tip = why_not
+        if way is not None and possible:
+            tip = tr("{text}; the route is shown first, and sent as any other", text=way.text)
+        self._asides[column].setEnabled(possible)
+        self._asides[column].set_words(tr("Send {robot} aside", robot=robot), tip)
+        return why_not
+
+    def _why_not_aside(self, robot: str, way: WayOut | None) -> str:
+        if way is not None:
+            return way.text
+        why = self._ways.why_not or NOT_KNOWN_YET
+        return tr("Nobody can be sent aside: {why}", why=why)
+
+    def _give_way(self, which: int) -> None:
+        chosen = self.chosen
+        if chosen is not None:
+            pair = _pair_of(chosen)
+            self._desk.resolve_conflict(pair[which], pair[1 - which])
+
+    def _send_aside(self, which: int) -> None:
+        chosen = self.chosen
+        way = None if chosen is None else self._ways.way(_pair_of(chosen)[which], ASIDE)
+        if way is not None and way.possible:
+            self._desk.propose_route(way.robot, way.points)
+
+    def _stop(self, which: int) -> None:
+        chosen = self.chosen
+        if chosen is not None:
+            self._desk.pause_robot(_pair_of(chosen)[which])
+
+
+def _pair_of(conflict: ConflictReport) -> Pair:
+    """Return the robots by name: which of them is told first changes with how they meet.
+
+    Told so, the buttons of one would be the other's from one moment to the next.
+    """
+    first, second = sorted((conflict.robot, conflict.other))
+    return first, second
+
+
+def _conflict_list() -> QListWidget:
+    view = QListWidget()
+    view.setObjectName("fleet_conflict_list")
+    view.setSelectionMode(QAbstractItemView.SelectionMode.SingleSelection)
+    view.setAlternatingRowColors(True)
+    view.setUniformItemSizes(True)
+    shrink(view)
+    return view
 
 
 def _in_words(conflict: ConflictReport) -> str:
@@ -105,10 +297,3 @@ def _waiting(hold: HoldReport) -> str:
         other=hold.other,
         time_of_day=time_of_day(hold.until),
     )
-
-
-def _label(name: str) -> WholeText:
-    label = WholeText()
-    label.setObjectName(name)
-    label.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Preferred)
-    return label

@@ -27,9 +27,12 @@ from ..wire.addresses import DEFAULT_URL, Credentials
 from ..wire.status import LinkStatus, Phase
 from .access_fields import AccessFields
 from .connection_menu import ConnectionMenu
+from .fixed_size import ScrollingText, SteadyButton
 
 URL_KEY = "fleet_supervisor/url"
 OPERATOR_KEY = "fleet_supervisor/operator"
+GAP = 4
+"""Pixels between two lines."""
 
 MARKS = {
     Phase.CLOSED: ("#757575", tr("Not connected")),
@@ -41,10 +44,11 @@ MARKS = {
 
 
 class ConnectionPanel(QWidget):
-    """URL, operator, and a line that tells the link's state with its reason, with the button.
+    """A line that tells the link's state with its reason, with the button; URL and operator beneath it.
 
     While there is a link the fields are folded away: nothing can be changed in them, and the robots need the
-    room. A link that broke leaves them so, until the operator disconnects or the gateway refuses.
+    room. A link that broke leaves them so, until the operator disconnects or the gateway refuses. The line is
+    as high whatever it says, and the fields are at the panel's end: no button moves.
     """
 
     def __init__(self, connect: QAction, parent: QWidget | None = None):
@@ -66,8 +70,8 @@ class ConnectionPanel(QWidget):
         self._access = AccessFields()
         self._more = _more_button()
         self._more.toggled.connect(self._access.setVisible)
-        self._state = _state_label()
-        self._fields = QWidget()
+        self._state = _state_text()
+        self._line, self._fields, self._gateway = QWidget(), QWidget(), QWidget()
         self._lay_out(_connect_button(connect))
         self._url.textChanged.connect(self._url_changed)
         last = self._connections.get(self._connections.last)
@@ -116,7 +120,7 @@ class ConnectionPanel(QWidget):
         text = _in_words(link, site, now)
         if text != self._state.text():
             self._state.setText(text)
-            self._state.setToolTip(self._which(site))
+            self._state.setToolTip(self._which(link, site))
         wanted = link.phase not in (Phase.CLOSED, Phase.FAILED)
         self._fold(link.phase is Phase.CONNECTED or (wanted and self._fields.isHidden()))
         for field in (self._url, self._operator):
@@ -128,18 +132,27 @@ class ConnectionPanel(QWidget):
             self._more.setChecked(True)
         self._shown = link
 
+    def height_with_fields(self) -> int:
+        """Return the pixels of height that all of it takes, folded or not."""
+        parts = (self._line.sizeHint(), self._gateway.sizeHint(), self._access.sizeHint())
+        return sum(part.height() for part in parts) + (len(parts) - 1) * GAP
+
+    def height_without_fields(self) -> int:
+        """Return the pixels of height that it takes while there is a link."""
+        return self._line.sizeHint().height()
+
     def _fold(self, folded: bool) -> None:
         if folded == self._fields.isHidden():
             return
         held = QApplication.focusWidget()
         if folded and held is not None and self._fields.isAncestorOf(held):
             # Else the next in line would have the keyboard, which is the button that ends the link.
-            self._state.setFocus()
+            self._state.label.setFocus()
         self._fields.setHidden(folded)
 
-    def _which(self, site: SiteReport | None) -> str:
+    def _which(self, link: LinkStatus, site: SiteReport | None) -> str:
         which = [self.url(), *([] if site is None else [site.name, site.crs])]
-        return "\n".join(which)
+        return "\n".join([*which, *([link.reason] if link.reason else [])])
 
     def _as_it_stands(self) -> GatewayConnection:
         """What the fields say, as a connection that has no name yet."""
@@ -159,10 +172,10 @@ class ConnectionPanel(QWidget):
             self._more.setChecked(True)
 
     def _lay_out(self, connect: QToolButton) -> None:
-        grid = QGridLayout(self._fields)
+        grid = QGridLayout(self._gateway)
         grid.setContentsMargins(0, 0, 0, 0)
         grid.setHorizontalSpacing(6)
-        grid.setVerticalSpacing(4)
+        grid.setVerticalSpacing(GAP)
         # The one letter leads into the panel; the others would be those of QGIS's menus in some language.
         for row, (text, field) in enumerate(((tr("&Gateway"), self._url), (tr("Operator"), self._operator))):
             label = QLabel(text)
@@ -171,22 +184,27 @@ class ConnectionPanel(QWidget):
         grid.addWidget(self._url, 0, 1)
         grid.addWidget(self._more, 0, 2)
         grid.addWidget(self._operator, 1, 1, 1, 2)
-        grid.addWidget(self._access, 2, 0, 1, 3)
-        line = QHBoxLayout()
-        line.setSpacing(2)
+        fields = QVBoxLayout(self._fields)
+        fields.setContentsMargins(0, 0, 0, 0)
+        fields.setSpacing(GAP)
+        fields.addWidget(self._gateway)
+        fields.addWidget(self._access)
+        line = QHBoxLayout(self._line)
+        line.setContentsMargins(0, 0, 0, 0)
+        line.setSpacing(4)
         line.addWidget(self._state, 1)
         for button in (connect, self.menu.button):
-            line.addWidget(button, 0, Qt.AlignmentFlag.AlignTop)
+            line.addWidget(button, 0, Qt.AlignmentFlag.AlignVCenter)
         rows = QVBoxLayout(self)
         rows.setContentsMargins(0, 0, 0, 0)
-        rows.setSpacing(4)
+        rows.setSpacing(GAP)
+        # In this order the keyboard goes through them; the line comes first on screen.
         rows.addWidget(self._fields)
-        rows.addLayout(line)
+        rows.insertWidget(0, self._line)
 
 
 def _connect_button(connect: QAction) -> QToolButton:
-    button = QToolButton()
-    button.setObjectName("fleet_connect_button")
+    button = SteadyButton("fleet_connect_button", (tr("Connect"), tr("Disconnect")))
     button.setDefaultAction(connect)
     button.setToolButtonStyle(Qt.ToolButtonStyle.ToolButtonTextBesideIcon)
     button.setSizePolicy(QSizePolicy.Policy.Minimum, QSizePolicy.Policy.Preferred)
@@ -204,13 +222,11 @@ def _more_button() -> QToolButton:
     return button
 
 
-def _state_label() -> QLabel:
-    label = QLabel()
-    label.setObjectName("fleet_link_state")
-    label.setWordWrap(True)
-    label.setTextFormat(Qt.TextFormat.RichText)
-    label.setTextInteractionFlags(Qt.TextInteractionFlag.TextSelectableByMouse)
-    return label
+def _state_text() -> ScrollingText:
+    state = ScrollingText("fleet_link_state", lines=2)
+    state.label.setTextFormat(Qt.TextFormat.RichText)
+    state.label.setAlignment(Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter)
+    return state
 
 
 def _in_words(link: LinkStatus, site: SiteReport | None, now: float) -> str:

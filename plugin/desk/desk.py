@@ -10,7 +10,16 @@ from qgis.core import QgsProject
 from qgis.gui import QgsMapCanvas
 from qgis.PyQt.QtCore import QObject, QTimer, pyqtSignal
 
-from ...robot_bridge.messages import EmergencyReport, EmergencyStop, SiteReport, to_json
+from ...robot_bridge.messages import (
+    EmergencyReport,
+    EmergencyStop,
+    Links,
+    PauseRobot,
+    RobotReport,
+    SiteReport,
+    Suspensions,
+    to_json,
+)
 from ...robot_bridge.steady_time import steady_time
 from ..connection import Connection
 from ..errors import FleetError, NotSentError, PlacementError
@@ -24,7 +33,23 @@ from .command_book import CommandBook
 from .draft_rules import DraftRules
 from .drafting.draft_checker import DraftChecker
 from .drafting.draft_sending import DraftSending
-from .drafts import Draft, DraftBoard, Point, in_brief
+from .drafting.target_way import TargetWays
+from .drafts import ROUTE, Draft, DraftBoard, Point, in_brief
+from .geofence_state import GeofenceState
+from .messages import (
+    EMERGENCY,
+    NO_DRAFT,
+    SELECTION,
+    Level,
+    LinkNotices,
+    MessageBoard,
+    MessageEndings,
+    SuspensionNotices,
+    Topic,
+    draft_topic,
+    robot_topic,
+)
+from .nearness_state import NearnessState
 from .observation_book import ObservationBook
 from .orders import Orders
 from .picture import Gone, RobotPicture
@@ -34,6 +59,8 @@ from .queue_book import QueueBook
 from .road_board import RoadBoard
 from .route_preview import RoutePreview
 
+STOPPED_BY = "emergency stop"
+"""What a gateway's refusal holds where an emergency stop is the reason."""
 LATE_S = 0.1
 """Seconds after which what was pulled is not passed on without a look for what is newer."""
 
@@ -88,25 +115,42 @@ class Desk(QObject):
         self.queues = QueueBook()
         self.placements = PlacementBook()
         self.observations = ObservationBook()
+        self.messages = MessageBoard(self)
         self.drafts = DraftBoard(self)
         self.orders = Orders(self._submit, clock, self)
         self.preview = RoutePreview(self._submit, clock, self)
         self.roads = RoadBoard(self.orders.ask, clock, self)
+        self.geofence = GeofenceState(clock)
+        self.nearness = NearnessState(clock)
+        self._endings = MessageEndings(self.messages, self.drafts, self.roads, self)
+        self.suspensions = SuspensionNotices(self)
+        self.links = LinkNotices(self)
         self.link = LinkStatus(Phase.CLOSED)
         self.site: SiteReport | None = None
         self._url, self._is_other_gateway = "", False
+        self._database = ""
+        """What tells the gateway's database from every other; empty where it does not say."""
         self._not_sent_yet = ""
         """What was told of a stop that waits for the link."""
         self.emergency: EmergencyReport | None = None
         self.selection: tuple[str, ...] = ()
         self._placement: Placement | None = None
         self._rules = DraftRules(
-            project, self.placement, lambda: self.link.operator, self.book, self.queues, self
+            project,
+            self.placement,
+            lambda: self.link.operator,
+            self.book,
+            self.queues,
+            lambda robot: self.picture.view(robot, self.clock()),
+            self,
         )
         self.checks = DraftChecker(self.drafts, self._rules.look, self)
         self.checks.found.connect(self._found)
+        self.drafts.changed.connect(self._drafted)
         self._rules.changed.connect(self.checks.begin_anew)
-        self.sending = DraftSending(self.drafts, self.checks, self.orders, self)
+        self.target_ways = TargetWays(self.drafts, self.checks, self._report_of, self._submit, clock, self)
+        self.sending = DraftSending(self.drafts, self.checks, self.target_ways, self.orders, self)
+        self._rules.changed.connect(self.sending.outgoing.begin_anew)
         self._timer = QTimer(self)
         self._timer.setInterval(PULL_EVERY_MS)
         self._timer.timeout.connect(self.pull)
@@ -118,12 +162,28 @@ class Desk(QObject):
 
     def _pass_on_words(self) -> None:
         """Tell as the desk's own what its parts have to say to the operator."""
-        self.sending.failed.connect(self.failed)
-        self.sending.complained.connect(self.complained)
+        for signal, level in (
+            (self.failed, Level.ERROR),
+            (self.complained, Level.WARNING),
+            (self.noted, Level.INFO),
+        ):
+            signal.connect(lambda text, level=level: self.messages.post(text, level))
+        self.settled.connect(self.messages.withdraw)
+        self.orders.asked_again.connect(self.messages.end)
+        self.sending.failed.connect(lambda text, topics: self.report_failure(text, *topics))
+        self.selection_changed.connect(self._endings.selection_changed)
+        self.commands_changed.connect(self._endings.commands_changed)
+        self.queues_changed.connect(lambda _: self._endings.queues_changed(self.queues))
+        self.observations_changed.connect(lambda _: self._endings.observations_changed(self.observations))
+        self.sending.complained.connect(lambda text: self.messages.post(text, Level.WARNING, NO_DRAFT))
         self.orders.accepted.connect(self.remarked)
         self.orders.slow.connect(self.failed)
         self.orders.settled.connect(self.settled)
-        self.roads.failed.connect(self.failed)
+        self.roads.failed.connect(self._robot_strays)
+        self.suspensions.began.connect(self.failed)
+        self.suspensions.over.connect(self.settled)
+        self.links.began.connect(self.failed)
+        self.links.over.connect(self.settled)
         self.roads.remarked.connect(self.remarked)
         self.preview.refused.connect(self.complained)
 
@@ -152,6 +212,7 @@ class Desk(QObject):
         self._timer.stop()
         self._after_pull.stop()
         self.checks.stop()
+        self.sending.outgoing.withdraw()
         self._rules.remove()
         self.connection.shut_down()
 
@@ -169,12 +230,16 @@ class Desk(QObject):
         if news.link != self.link:
             self.link = news.link
             self.link_changed.emit()
+            if self.link.phase is not Phase.CONNECTED:
+                self.preview.forget()
             if self.link.phase is Phase.CONNECTED:
+                self.geofence.begin_link()
                 self.settled.emit(self._not_sent_yet)
         if news.site is not None:
-            self._take_site(news.site, news.is_greeting)
+            self._take_site(news.site, news.greeting_of)
         self._take_news(news)
         self.orders.watch()
+        self.target_ways.watch()
         self.preview.watch()
 
     def _pass_on(self) -> None:
@@ -184,27 +249,41 @@ class Desk(QObject):
         self.beat.pulls += 1
         self.pulled.emit()
 
-    def _take_site(self, site: SiteReport, is_greeting: bool) -> None:
-        if site == self.site and not self._is_other_gateway:
+    def _take_site(self, site: SiteReport, greeting_of: str | None = None) -> None:
+        before, is_elsewhere = self.site, self._is_other_gateway
+        is_other_database = bool(greeting_of and self._database and greeting_of != self._database)
+        self._database = greeting_of or self._database
+        if site == before and not is_elsewhere and not is_other_database:
             return
-        if self.site is not None and site.id != self.site.id and not self._is_other_gateway:
+        is_another = is_other_database or self._is_another(site, is_greeting=greeting_of is not None)
+        if before is not None and is_another:
+            self.messages.clear()
+        if before is not None and site.id != before.id and not is_elsewhere:
             # Nobody at this desk asked for it, and it comes with alarms that would hide what goes by itself.
             self.failed.emit(
                 tr(
                     "Another site is served now: {site}, no longer {before}. Open its project.",
                     site=site.name,
-                    before=self.site.name,
+                    before=before.name,
                 )
             )
-        if self._is_another(site, is_greeting):
+        elif is_other_database and not is_elsewhere:
+            self.failed.emit(
+                tr(
+                    "The gateway has another database than before: its robots and commands are others, "
+                    "and those of before are not shown any more."
+                )
+            )
+        if is_another:
             self._forget_robots()
         self.site, self._is_other_gateway = site, False
+        self.target_ways.site = site
         self.picture.stale_after, self.picture.lost_after = site.stale_after, site.lost_after
         self._placement = None
         self._look_at_draft_anew()
         self.site_changed.emit()
 
-    def _is_another(self, site: SiteReport, is_greeting: bool) -> bool:
+    def _is_another(self, site: SiteReport, *, is_greeting: bool) -> bool:
         """Tell whether other robots are on ``site`` than on the one before.
 
         Two gateways may serve one site, for practice and for work, each with robots of its own. Chosen while
@@ -222,11 +301,18 @@ class Desk(QObject):
         self.placements.clear()
         self.observations.clear()
         self.emergency = None
+        self.suspensions.show(Suspensions())
+        self.links.show(Links())
         self.roads.clear()
+        self.geofence.clear()
+        self.nearness.clear()
         self._rules.forget_targets()
         self.select(None)
+        lost = self.sending.outgoing.withdraw()
         if self.drafts.draft is not None:
-            words = self.drafts.draft.in_words()
+            lost.append(self.drafts.draft)
+        for draft in lost:
+            words = draft.in_words()
             self.failed.emit(
                 tr("{words} was not sent: another site is served now. Draw it anew.", words=words)
             )
@@ -235,6 +321,7 @@ class Desk(QObject):
     def _let_go(self, gone: Gone) -> None:
         """Forget robots that an administrator has removed; what they did stays in the log."""
         self.queues.forget(gone.names)
+        self._endings.robots_removed(gone.names)
         self.robots_removed.emit(gone)
         self.select_all(robot for robot in self.selection if robot not in gone.names)
         self._rules.take_targets(gone.names)
@@ -249,6 +336,7 @@ class Desk(QObject):
 
     def _look_at_draft_anew(self) -> None:
         """Check the draft on the map once more: the site has been published anew beneath it."""
+        self.sending.outgoing.begin_anew()
         if self.checks.is_under_way:
             self.checks.begin_anew()
         elif self.drafts.draft is not None:
@@ -263,15 +351,28 @@ class Desk(QObject):
             self._rules.take_targets(report.robot for report in changed)
             self.commands_changed.emit(changed)
         self.roads.take(news.roads)
+        if news.geofence is not None:
+            self.geofence.update(news.geofence)
+        if news.nearness is not None:
+            self.nearness.update(news.nearness)
         self._take_queues(news)
         for answer in news.answers:
-            if not self.preview.take(answer):
+            if not (self.target_ways.accept_answer(answer) or self.preview.accept_answer(answer)):
                 self.orders.answered(answer)
                 self.answered.emit(answer)
+        self._take_notices(news)
         if news.emergency is not None:
             self.emergency = news.emergency
+            if not news.emergency.in_force:
+                self._endings.emergency_cleared()
         if news.emergency is not None or news.answers:
             self.emergency_changed.emit()
+
+    def _take_notices(self, news: News) -> None:
+        if news.suspensions is not None:
+            self.suspensions.show(news.suspensions)
+        if news.links is not None:
+            self.links.show(news.links)
 
     def _take_queues(self, news: News) -> None:
         queues = self.queues.merge(news.queues)
@@ -304,11 +405,21 @@ class Desk(QObject):
 
         :raises FleetError: when there is no site or a layer cannot be read; what was on the map stays then.
         """
-        self.checks.put(draft)
+        self.checks.put(self.target_ways.begun(draft))
+
+    def _drafted(self) -> None:
+        if self.drafts.draft is None:
+            # It was sent, or given up: so is what led to the mouse.
+            self.preview.forget()
+
+    def _report_of(self, robot: str) -> RobotReport | None:
+        view = self.picture.view(robot, self.clock())
+        return None if view is None else view.report
 
     def _found(self, draft: Draft) -> None:
         if draft.findings.faults:
-            self.complained.emit(in_brief(draft.findings.faults))
+            text = in_brief(draft.findings.faults)
+            self.messages.post(text, Level.WARNING, draft_topic(draft.place))
 
     # --- what the operator does ---
 
@@ -331,23 +442,27 @@ class Desk(QObject):
     def abort_selected(self) -> None:
         """Ask every selected robot to give up its task."""
         if not self.selection:
-            self.complained.emit(
-                tr("No robot is selected, so none was aborted. Select it in the table or on the map.")
-            )
+            text = tr("No robot is selected, so none was aborted. Select it in the table or on the map.")
+            self.messages.post(text, Level.WARNING, SELECTION)
         for robot in self.selection:
             self._try(lambda robot=robot: self.orders.abort(robot))
-        self.sending.withdraw()
+        self._give_up_drafting()
 
     def abort_all(self) -> None:
         """Ask every robot to give up its task, at once and without a question."""
         self._try(self.orders.abort_all)
-        self.sending.withdraw()
+        self._give_up_drafting()
 
     def emergency_stop(self) -> None:
         """Stop every robot at once and without a question, until a supervisor clears it."""
         self._try(self.orders.emergency_stop)
-        self.sending.withdraw()
+        self._give_up_drafting()
         self.emergency_changed.emit()
+
+    def _give_up_drafting(self) -> None:
+        """Send nothing that is still looked at, and show no way to the mouse: robots are to stand."""
+        self.sending.withdraw()
+        self.preview.forget()
 
     def clear_emergency(self, stop: str, reason: str) -> None:
         """Ask for the emergency stop ``stop`` to be cleared; the gateway lets supervisors only."""
@@ -365,15 +480,25 @@ class Desk(QObject):
         """Ask for ``robot`` to give way to ``other``."""
         self._try(lambda: self.roads.resolve(robot, other))
 
-    def ask(self, request: Any, words: str) -> str:
+    def pause_robot(self, robot: str) -> None:
+        """Ask for ``robot`` to stand and keep what it is doing; never refused here, as nothing that stops."""
+        self._try(lambda: self.ask(PauseRobot(robot), tr("Pause of {robot}", robot=robot)))
+
+    def propose_route(self, robot: str, points: list[Point]) -> None:
+        """Put a route for ``robot`` on the map, to be looked at, and sent as any other."""
+        route = Draft(robot, ROUTE, tuple(points), legs=(1,) * len(points))
+        self._try(lambda: self.put_draft(route))
+
+    def ask(self, request: Any, words: str, *topics: Topic, draft: Draft | None = None) -> str:
         """Ask the gateway for ``request``, which is ``words`` to the operator, and return the order's key.
 
-        What becomes of it comes with :attr:`answered`.
+        What becomes of it comes with :attr:`answered`. A refusal is told until one of ``topics`` is over;
+        the ``draft`` that it was made of comes back then.
 
         :raises NotSentError: when it cannot be sent.
         """
         order = Order(str(uuid.uuid4()), request.method, to_json(request), self.clock())
-        self.orders.ask(order, words)
+        self.orders.ask(order, words, topics, draft)
         return order.key
 
     def inquire(self, request: Any, *, lasting: bool = False) -> str:
@@ -391,9 +516,19 @@ class Desk(QObject):
         try:
             action()
         except FleetError as error:
-            self.failed.emit(str(error))
+            self.report_failure(str(error), *error.topics)
             return False
         return True
+
+    def report_failure(self, text: str, *topics: Topic) -> None:
+        """Say that something was not done, until one of ``topics`` is over."""
+        in_force = self.emergency is not None and self.emergency.in_force
+        if in_force and STOPPED_BY in text:
+            topics = (*topics, EMERGENCY)
+        self.messages.post(text, Level.ERROR, *topics)
+
+    def _robot_strays(self, text: str, robot: str) -> None:
+        self.messages.post(text, Level.ERROR, robot_topic(robot))
 
     def _submit(self, order: Order) -> None:
         if self.link.phase is Phase.CONNECTED:

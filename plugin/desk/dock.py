@@ -6,13 +6,10 @@ from qgis.gui import QgsDockWidget
 from qgis.PyQt.QtCore import Qt
 from qgis.PyQt.QtWidgets import (
     QAction,
-    QFrame,
     QGridLayout,
     QHBoxLayout,
     QPushButton,
     QSizePolicy,
-    QSplitter,
-    QTabWidget,
     QToolButton,
     QVBoxLayout,
     QWidget,
@@ -20,12 +17,15 @@ from qgis.PyQt.QtWidgets import (
 
 from ..language import tr
 from .actions import Actions
+from .colours import DOUBTFUL, for_letters
 from .command_log.log_panel import CommandLog
 from .conflict_panel import ConflictPanel
 from .connection_panel import ConnectionPanel
 from .desk import Desk
+from .dock_room import LinkAndRobots, ListsWithReserve, SharingSplitter
 from .draft_panel import DraftPanel
 from .emergency_banner import EmergencyBanner
+from .fixed_size import SteadyTabs
 from .queues.queue_edits import QueueEdits
 from .queues.queue_panel import QueuePanel
 from .robots.robot_details import RobotDetails
@@ -47,10 +47,17 @@ EMERGENCY_STYLE = (
 
 LEAST_WIDTH = 404
 """Pixels of its parts, however few their words need."""
+GAP = 4
+"""Pixels between two parts."""
 
 
 class FleetDock(QgsDockWidget):
-    """As narrow as it can be made, it still shows all of its parts uncut."""
+    """As narrow as it can be made, it still shows all of its parts uncut.
+
+    No button in it moves while its window and its splitter are left alone, whatever is reported or shown.
+    What comes and goes takes its room from a list: the fields of a gateway from the robot table, the banner
+    of an emergency stop from the end of the lists at the bottom.
+    """
 
     def __init__(self, desk: Desk, actions: Actions, edits: QueueEdits, parent: QWidget | None = None):
         super().__init__(tr("Fleet"), parent)
@@ -64,54 +71,55 @@ class FleetDock(QgsDockWidget):
         self.queue_panel = QueuePanel(desk, edits)
         self.draft_panel = DraftPanel(desk, actions)
         self.conflict_panel = ConflictPanel(desk)
+        self.banner = EmergencyBanner(desk, actions.clear_emergency)
+        self.tabs = SteadyTabs()
+        self.tabs.setObjectName("fleet_tabs")
+        self._lay_out(actions)
+        self.setToggleVisibilityAction(actions.panel)
+        self.conflict_panel.counted.connect(self._count_conflicts)
+        desk.pulled.connect(self._show_link)
+        desk.link_changed.connect(self._show_link)
+        self._show_link()
+
+    def _lay_out(self, actions: Actions) -> None:
+        lists = ListsWithReserve(self._lists(), self.banner)
+        split = SharingSplitter(self._upper(actions), lists)
         body = QWidget()
         rows = QVBoxLayout(body)
-        rows.setContentsMargins(8, 6, 8, 8)
-        rows.setSpacing(6)
+        rows.setContentsMargins(6, 6, 6, 6)
+        rows.setSpacing(GAP)
         # A least width of the widget would stand in place of what its words need, where that is more.
         rows.addStrut(LEAST_WIDTH)
-        self.banner = EmergencyBanner(desk, actions.clear_emergency)
-        rows.addWidget(self.connection_panel)
-        rows.addWidget(_line())
-        rows.addWidget(self.banner)
-        split = QSplitter(Qt.Orientation.Vertical)
-        split.setChildrenCollapsible(False)
-        split.addWidget(self._upper(actions))
-        split.addWidget(self._lower())
-        split.setStretchFactor(0, 1)
-        split.setStretchFactor(1, 1)
         # The banner and the buttons that stop robots are outside of it: they are seen on every screen.
         rows.addWidget(TallContent(split), 1)
+        rows.addWidget(self.banner)
         stops = QHBoxLayout()
         # First: of a window that is broader than its screen the right end is not seen.
         stops.addWidget(_stop_button(actions.emergency, EMERGENCY_STYLE))
         stops.addWidget(_stop_button(actions.abort_all, STOP_STYLE))
         rows.addLayout(stops)
         self.setWidget(body)
-        self.setToggleVisibilityAction(actions.panel)
-        desk.pulled.connect(self._show_link)
-        desk.link_changed.connect(self._show_link)
-        self._show_link()
 
     def _upper(self, actions: Actions) -> QWidget:
         part = QWidget()
         rows = QVBoxLayout(part)
         rows.setContentsMargins(0, 0, 0, 0)
-        rows.setSpacing(6)
-        rows.addWidget(self.robots, 1)
+        rows.setSpacing(GAP)
+        rows.addWidget(LinkAndRobots(self.connection_panel, self.table), 1)
+        rows.addWidget(self.robots)
         rows.addLayout(_tools(actions))
         rows.addWidget(self.draft_panel)
-        rows.addWidget(self.conflict_panel)
         return part
 
-    def _lower(self) -> QWidget:
-        self.tabs = QTabWidget()
-        self.tabs.setObjectName("fleet_tabs")
-        self.tabs.setDocumentMode(True)
-        self.tabs.addTab(self.log, tr("Commands"))
-        self.tabs.addTab(self.queue_panel, tr("Queue"))
-        self.tabs.addTab(self.details, tr("Robot"))
+    def _lists(self) -> QWidget:
+        self.tabs.add_page(self.log, tr("Commands"))
+        self.tabs.add_page(self.queue_panel, tr("Queue"))
+        self.tabs.add_page(self.details, tr("Robot"))
+        self.tabs.add_page(self.conflict_panel, tr("Conflicts"))
         return self.tabs
+
+    def _count_conflicts(self, number: int) -> None:
+        self.tabs.show_colour(self.conflict_panel, for_letters(DOUBTFUL) if number else None)
 
     def _show_link(self) -> None:
         self.connection_panel.show_link(self._desk.link, self._desk.site, self._desk.clock())
@@ -149,10 +157,3 @@ def _stop_button(action: QAction, style: str) -> QPushButton:
     button.setStyleSheet(style)
     button.clicked.connect(action.trigger)
     return button
-
-
-def _line() -> QFrame:
-    line = QFrame()
-    line.setFrameShape(QFrame.Shape.HLine)
-    line.setFrameShadow(QFrame.Shadow.Sunken)
-    return line

@@ -10,16 +10,21 @@ from qgis.PyQt.QtCore import QObject, pyqtSignal
 
 from .checks import LayerCheck, check_bounds, check_map
 from .command_book import CommandBook
-from .drafting.order_check import check_orders
+from .drafting.ability_check import check_abilities, has
+from .drafting.order_check import check_heard, check_orders
 from .drafting.target_check import TargetCheck
-from .drafts import Draft
+from .drafts import Draft, Findings
+from .picture import RobotView
 from .placement import Placement
 from .queue_book import QueueBook
 from .time_slices import Steps
 
 
 class DraftRules(QObject):
-    """Looks at drafts for the ``operator``, on the site as ``placement`` puts it on the map now."""
+    """Looks at drafts for the ``operator``, on the site as ``placement`` puts it on the map now.
+
+    ``view`` tells how a robot stands at this moment.
+    """
 
     changed = pyqtSignal()
     """A layer is not as it was: what is under way has to begin anew."""
@@ -31,12 +36,14 @@ class DraftRules(QObject):
         operator: Callable[[], str],
         book: CommandBook,
         queues: QueueBook,
+        view: Callable[[str], RobotView | None],
         parent: QObject,
     ):
         super().__init__(parent)
         self._placement = placement
         self._operator = operator
         self._book = book
+        self._view = view
         self._layers = LayerCheck(project, self)
         self._layers.changed.connect(self.changed)
         self._targets = TargetCheck(book, queues)
@@ -51,11 +58,15 @@ class DraftRules(QObject):
         placement = self._placement()
         found = check_bounds(draft.points, placement.site) + check_map(placement)
         found += yield from self._layers.look(draft, placement, afresh)
+        found += _of_way(draft)
         # At the end, so that nobody is sent there meanwhile.
         found += self._targets.look(draft)
+        robot = self._view(draft.robot)
+        found += check_heard(draft, robot) + check_abilities(draft, robot)
         found += check_orders(draft, self._book.task_of(draft.robot), self._operator())
         override = draft.override if found.overridable == draft.findings.overridable else None
-        return replace(draft, findings=found, override=override, is_checked=True)
+        cones = has(robot, "cones")
+        return replace(draft, findings=found, override=override, is_checked=True, places_cone=cones)
 
     def take_targets(self, robots: Iterable[str]) -> None:
         """Take in that something new is known of what these robots have to do."""
@@ -68,3 +79,13 @@ class DraftRules(QObject):
     def remove(self) -> None:
         """Watch the project's layers no more."""
         self._layers.remove()
+
+
+def _of_way(draft: Draft) -> Findings:
+    """Return what is to be told of the way to a target, besides what is in it."""
+    way = draft.way
+    if way.refusal:
+        return Findings(refused=(way.refusal,), of_way=(way.refusal,))
+    if way.note and not way.is_along_roads:
+        return Findings(warnings=(way.note,), of_way=(way.note,))
+    return Findings()

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from qgis.core import QgsCoordinateReferenceSystem, QgsPointXY
+from qgis.core import QgsCoordinateReferenceSystem
 from qgis.gui import QgsMapMouseEvent, QgsMapTool, QgsSnapIndicator
 from qgis.PyQt.QtCore import QEvent, QObject, QPoint, Qt
 from qgis.PyQt.QtGui import QKeyEvent, QKeySequence
@@ -13,9 +13,9 @@ from qgis.PyQt.QtWidgets import QApplication
 from ..errors import FleetError
 from ..language import tr
 from .desk import Desk
-from .drafting.place_text import read_place
+from .drafting.typed_place import read_site_place
 from .drafts import Draft, Point
-from .placement import Placement
+from .messages import SELECTION, Level
 
 SEND_KEYS = (Qt.Key.Key_Return, Qt.Key.Key_Enter)
 UNDO, REDO = QKeySequence.StandardKey.Undo, QKeySequence.StandardKey.Redo
@@ -45,7 +45,8 @@ class DraftTool(QgsMapTool):
         self.canvas().installEventFilter(self)
         self.canvas().setFocus()
         if self.desk.selected is None:
-            self.desk.complained.emit(tr("Select a robot first, in the table or on the map."))
+            text = tr("Select a robot first, in the table or on the map.")
+            self.desk.messages.post(text, Level.WARNING, SELECTION)
 
     def deactivate(self) -> None:
         self._pressed_at = None
@@ -56,9 +57,14 @@ class DraftTool(QgsMapTool):
         super().deactivate()
 
     @property
+    def on_map(self) -> Draft | None:
+        """The draft that can be changed; one that was sent goes out as it is once it has been checked."""
+        return None if self.desk.checks.has_order else self.desk.drafts.draft
+
+    @property
     def draft(self) -> Draft | None:
         """The draft if it is one of this tool's."""
-        draft = self.desk.drafts.draft
+        draft = self.on_map
         return draft if draft is not None and draft.kind == self.kind else None
 
     def canvasPressEvent(self, event: QgsMapMouseEvent) -> None:
@@ -160,11 +166,10 @@ class DraftTool(QgsMapTool):
         self.clicked(where())
 
     def _pasted(self) -> Point:
-        lon, lat = read_place(QApplication.clipboard().text(), geographic=True)
         self.desk.placement()
         wgs84 = QgsCoordinateReferenceSystem(PASTED_IN)
-        placement = Placement(self.desk.site, wgs84, self.desk.project.transformContext())
-        return placement.to_site(QgsPointXY(lon, lat))
+        context = self.desk.project.transformContext()
+        return read_site_place(QApplication.clipboard().text(), wgs84, self.desk.site, context)
 
     def _try(self, change: Callable[[], object]) -> None:
         try:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
+from enum import Enum
 from functools import cached_property
 from itertools import chain
 from typing import Any
@@ -33,24 +34,75 @@ class Findings:
     """What a check of a draft found.
 
     ``refused`` forbids sending it. ``overridable`` does so until somebody overrides it, who says why.
-    ``warnings`` do not.
+    ``warnings`` do not. ``of_way`` are those of all these that are about the way to a target from where its
+    robot is now: a task of a queue is driven from elsewhere.
     """
 
     refused: tuple[str, ...] = ()
     warnings: tuple[str, ...] = ()
     overridable: tuple[str, ...] = ()
+    of_way: tuple[str, ...] = ()
 
     def __add__(self, other: Findings) -> Findings:
         return Findings(
             self.refused + other.refused,
             self.warnings + other.warnings,
             self.overridable + other.overridable,
+            self.of_way + other.of_way,
         )
 
     @property
     def faults(self) -> tuple[str, ...]:
         """All that speaks against sending it."""
         return self.refused + self.overridable
+
+    @property
+    def all_texts(self) -> frozenset[str]:
+        """All that was found."""
+        return frozenset(self.refused + self.warnings + self.overridable)
+
+    def without_way(self) -> Findings:
+        """Return what was found but for the way to a target."""
+        kinds = (self.refused, self.warnings, self.overridable)
+        return Findings(*(tuple(text for text in kind if text not in self.of_way) for kind in kinds))
+
+
+class WayKind(Enum):
+    """How a robot comes to a cone target, or to where its route begins."""
+
+    UNKNOWN = "unknown"
+    """Nobody knows: it has not said where it is, or the gateway does not answer."""
+    SOUGHT = "sought"
+    """The gateway is asked for the way along the roads."""
+    STRAIGHT = "straight"
+    """The target or route is sent, and the robot drives straight to it."""
+    PATH = "path"
+    """The way is sent, with the cone at its end."""
+    ASKED = "asked"
+    """The target is sent, and the robot asks the gateway for the same way."""
+
+
+@dataclass(frozen=True)
+class Way:
+    """The way to a cone target, or to where a route begins, from where the robot is: metres, site frame.
+
+    ``note`` is what operators are told of it, ``refusal`` why it cannot be driven. ``declared`` is what the
+    robot had declared of its paths when it was found.
+    """
+
+    kind: WayKind = WayKind.UNKNOWN
+    line: tuple[Point, ...] = ()
+    note: str = ""
+    refusal: str = ""
+    declared: str | None = None
+
+    @property
+    def is_along_roads(self) -> bool:
+        """Whether it leads along the roads."""
+        return self.kind in (WayKind.PATH, WayKind.ASKED)
+
+
+NO_WAY = Way()
 
 
 @dataclass(frozen=True)
@@ -61,7 +113,9 @@ class Draft:
     another selection does not change it. ``legs`` says how many of a route's points each click brought: one,
     or a way along the roads. ``note`` is what the operator is told of such ways. ``theta`` is the heading of
     a start position. ``names`` are those of several targets. ``override`` says why it is sent in spite of
-    what can be overridden. Nothing was found yet unless it ``is_checked``.
+    what can be overridden. Nothing was found yet unless it ``is_checked``. ``way`` leads to a cone
+    target, or to where a route begins; with ``is_direct`` the operator wants it straight. A robot that cannot
+    place cones is sent there without: ``places_cone`` is false then.
     """
 
     robot: str
@@ -74,6 +128,9 @@ class Draft:
     names: tuple[str, ...] = ()
     override: str | None = None
     is_checked: bool = False
+    way: Way = NO_WAY
+    is_direct: bool = False
+    places_cone: bool = True
 
     def with_leg(self, points: tuple[Point, ...], note: str = "") -> Draft:
         """Return the route with another leg, unchecked."""
@@ -90,13 +147,24 @@ class Draft:
         return Draft(self.robot, self.kind, left, legs=self.legs[:-1], note=note)
 
     @property
+    def place(self) -> tuple[str, str, tuple[Point, ...]]:
+        """What makes it another draft: for whom, of which kind and where."""
+        return self.robot, self.kind, self.points
+
+    @property
     def fault(self) -> str | None:
         """Why it cannot be sent, None if it can."""
         if self.kind == ROUTE and len(self.points) < LEAST_POINTS:
             return tr("a route needs at least two points: click the next one")
+        if self.way.kind is WayKind.SOUGHT:
+            return tr("the way there is not known yet")
         if not self.is_checked:
             return tr("it has not been checked to its end")
         return in_brief(self.findings.refused if self.override else self.findings.faults) or None
+
+    def as_task(self) -> Draft:
+        """Return what a task of a queue is made of: the way to that is found when its turn has come."""
+        return replace(self, way=NO_WAY, findings=self.findings.without_way())
 
     @property
     def can_be_overridden(self) -> bool:
@@ -105,7 +173,9 @@ class Draft:
 
     @property
     def outline(self) -> tuple[Point, ...]:
-        """What is drawn: the points, and one ahead of a start position that has a heading."""
+        """What is drawn: the points, the way along the roads to a target, a heading of a start position."""
+        if self.way.is_along_roads:
+            return self.way.line
         if self.theta is None:
             return self.points
         ((x, y),) = self.points
@@ -121,8 +191,10 @@ class Draft:
     def message(self) -> tuple[str, dict[str, Any]]:
         """Return the operation and its parameters."""
         x, y = self.points[0]
+        if self.kind == CONE and self.way.kind is WayKind.PATH:
+            return SetPath.__name__, to_json(SetPath(list(self.way.line), cone=self.places_cone or None))
         if self.kind == CONE:
-            return SetPosEnd.__name__, to_json(SetPosEnd(x, y, cone=True))
+            return SetPosEnd.__name__, to_json(SetPosEnd(x, y, cone=self.places_cone))
         if self.kind == START:
             return SetPosIni.__name__, to_json(SetPosIni(x, y, self.theta))
         return SetPath.__name__, to_json(SetPath(list(self.points)))
@@ -130,7 +202,8 @@ class Draft:
     def in_words(self) -> str:
         """Return what would be sent to whom."""
         if self.kind == CONE:
-            return tr("Cone for {robot} at {place}", robot=self.robot, place=_place(self.points[0]))
+            cone = tr("Cone for {robot} at {place}", robot=self.robot, place=_place(self.points[0]))
+            return cone + self._way_in_words()
         if self.kind == START:
             turned = (
                 ""
@@ -157,6 +230,15 @@ class Draft:
             told=told,
         )
 
+    def _way_in_words(self) -> str:
+        if self.way.is_along_roads:
+            return tr("; along the roads {note}", note=self.way.note)
+        if self.way.kind is WayKind.SOUGHT:
+            return tr("; the way there is being found")
+        if self.is_direct:
+            return tr("; straight")
+        return ""
+
 
 class DraftBoard(QObject):
     """Holds the one draft that there can be, tells who shows it when it changes, and takes changes back."""
@@ -182,7 +264,7 @@ class DraftBoard(QObject):
 
     def renew(self, draft: Draft) -> None:
         """Put ``draft`` in place of the present one, of which it differs in what was found or overridden."""
-        self._show(draft)
+        self._show(draft, cursor=self.cursor)
 
     def drag(self, draft: Draft) -> None:
         """Show ``draft`` as it becomes while the mouse drags it; :meth:`renew` or :meth:`put` ends that."""
@@ -190,8 +272,12 @@ class DraftBoard(QObject):
 
     def done(self) -> None:
         """Take the draft away for good: it was sent, or belongs to another site."""
-        self._before, self._after = [], []
+        self.forget_changes()
         self._show(None)
+
+    def forget_changes(self) -> None:
+        """Let no change be taken back that was made so far."""
+        self._before, self._after = [], []
 
     @property
     def can_undo(self) -> bool:
@@ -223,10 +309,10 @@ class DraftBoard(QObject):
         self._show(here.pop())
         return True
 
-    def _show(self, draft: Draft | None, is_dragged: bool = False) -> None:
+    def _show(self, draft: Draft | None, is_dragged: bool = False, cursor: Point | None = None) -> None:
         self.draft = draft
         self.is_dragged = is_dragged
-        self.cursor = None
+        self.cursor = cursor
         self.changed.emit()
 
 

@@ -2,43 +2,53 @@
 
 from __future__ import annotations
 
-from qgis.PyQt.QtCore import Qt
-from qgis.PyQt.QtWidgets import QAction, QFrame, QGridLayout, QLabel, QToolButton, QWidget
+from qgis.PyQt.QtCore import Qt, pyqtSignal
+from qgis.PyQt.QtWidgets import QAction, QFrame, QHBoxLayout, QToolButton, QWidget
 
 from ...robot_bridge.messages import EmergencyReport
 from ..language import first_of, tr, tr_count
 from ..wire.status import Phase
 from .desk import Desk
+from .fixed_size import ScrollingText
 from .wall_clock import time_of_day
 
 STYLE = (
     "QFrame#fleet_emergency_banner { background: #B00020; border: 2px solid #FFC400; border-radius: 4px; }"
     "QLabel { color: white; background: transparent; }"
+    # QGIS's dark themes give every widget a ground of its own.
+    "QScrollArea, QScrollArea > QWidget { background: transparent; }"
 )
 MOST_NAMES = 6
+LINES = 3
+"""Lines that are seen at once."""
 
 
 class EmergencyBanner(QFrame):
-    """Hidden as long as all is well. What stands in it is what the gateway said, never what is hoped for."""
+    """Hidden as long as all is well. What stands in it is what the gateway said, never what is hoped for.
+
+    It is as high whatever it says.
+    """
+
+    toggled = pyqtSignal()
+    """It came or went."""
 
     def __init__(self, desk: Desk, clear: QAction, parent: QWidget | None = None):
         super().__init__(parent)
         self.setObjectName("fleet_emergency_banner")
         self.setStyleSheet(STYLE)
         self._desk = desk
-        self._text = QLabel()
-        self._text.setObjectName("fleet_emergency_text")
-        self._text.setWordWrap(True)
-        self._text.setTextFormat(Qt.TextFormat.PlainText)
-        self._text.setTextInteractionFlags(Qt.TextInteractionFlag.TextSelectableByMouse)
+        self._text = ScrollingText("fleet_emergency_text", LINES)
         self._clear = QToolButton()
         self._clear.setObjectName("fleet_clear_emergency_button")
-        self._clear.setDefaultAction(clear)
-        self._clear.setToolButtonStyle(Qt.ToolButtonStyle.ToolButtonTextBesideIcon)
-        grid = QGridLayout(self)
-        grid.setContentsMargins(8, 6, 8, 6)
-        grid.addWidget(self._text, 0, 0)
-        grid.addWidget(self._clear, 1, 0, Qt.AlignmentFlag.AlignRight)
+        self._clear.setText(tr("Clear…"))
+        self._clear.setAccessibleName(clear.text())
+        self._clear.setToolTip(f"{clear.text()}\n{clear.toolTip()}")
+        self._clear.clicked.connect(lambda _=False: clear.trigger())
+        columns = QHBoxLayout(self)
+        columns.setContentsMargins(6, 3, 4, 3)
+        columns.addWidget(self._text, 1)
+        columns.addWidget(self._clear, 0, Qt.AlignmentFlag.AlignVCenter)
+        self.hide()
         desk.emergency_changed.connect(self.refresh)
         desk.link_changed.connect(self.refresh)
         self.refresh()
@@ -52,12 +62,13 @@ class EmergencyBanner(QFrame):
         report = self._desk.emergency
         in_force = report is not None and report.in_force
         asked = self._desk.orders.awaits_stop
-        self.setVisible(in_force or asked)
-        self._clear.setVisible(in_force)
+        self._clear.setEnabled(in_force)
         connected = self._desk.link.phase is Phase.CONNECTED
         text = in_words(report, asked, connected)
-        if text != self._text.text():
-            self._text.setText(text)
+        self._text.setText(text)
+        if self.isHidden() is (in_force or asked):
+            self.setVisible(in_force or asked)
+            self.toggled.emit()
 
 
 def in_words(report: EmergencyReport | None, asked: bool, connected: bool) -> str:
@@ -105,15 +116,16 @@ def _counts(report: EmergencyReport) -> list[str]:
         )
     ]
     if report.waiting:
-        lines.append(tr("No answer from {names}", names=_names(report.waiting)))
+        # The gateway names some fifty at most, and counts all of them.
+        silent = report.robots - report.acknowledged - len(report.refused)
+        names = ", ".join(first_of(report.waiting, MOST_NAMES, silent))
+        lines.append(tr("No answer from {names}", names=names))
     if report.refused:
-        lines.append(tr("REFUSED by {names}", names=_names(report.refused)))
+        refusing = report.robots - report.acknowledged if not report.waiting else 0
+        names = ", ".join(first_of(report.refused, MOST_NAMES, refusing))
+        lines.append(tr("REFUSED by {names}", names=names))
     if not report.stored:
         lines.append(
             tr("Not stored yet: the gateway cannot write its database, so robots on SQL are not told.")
         )
     return lines
-
-
-def _names(names: list[str]) -> str:
-    return ", ".join(first_of(names, MOST_NAMES))

@@ -12,6 +12,7 @@ from ...robot_bridge.layouts.layout import Layout
 from ..language import tr
 from ..layout_words import layout_in_words
 from .actions import ICONS
+from .cone_file import ConeFile
 from .layout_dimensions import LayoutDimensions, remembered
 from .layout_tool import LayoutTool
 from .notices import Notices
@@ -28,8 +29,8 @@ class LayoutAction:
         self.action.setToolTip(
             tr(
                 "Place a cone layout: it is shown under the cursor, the wheel turns it (Shift: finely), a "
-                "click places it, Esc ends; by keys PgUp and PgDown turn it, Enter places it, F2 leads to "
-                "its dimensions. Nothing is sent to robots"
+                "click places it, Ctrl+Z takes it back, Esc ends; by keys PgUp and PgDown turn it, Enter "
+                "places it, F2 leads to its dimensions. Nothing is sent to robots"
             )
         )
         self.tool = LayoutTool(iface.mapCanvas(), QgsProject.instance(), notices)
@@ -39,6 +40,9 @@ class LayoutAction:
         self.dimensions.left.connect(iface.mapCanvas().setFocus)
         self.tool.turned.connect(self.dimensions.show_heading)
         self.tool.dimensions_wanted.connect(self.dimensions.take_keys)
+        self.dimensions.undo_wanted.connect(self.tool.undo)
+        self.tool.undo_changed.connect(self.dimensions.undo.setEnabled)
+        self._file = ConeFile(QgsProject.instance(), notices)
         self.tool.deactivated.connect(self.dimensions.hide)
         self._layouts = QMenu(window)
         for kind in LAYOUTS.values():
@@ -58,6 +62,7 @@ class LayoutAction:
     def remove(self) -> None:
         """Put the tool away and take the entries out of the menu."""
         self._iface.mapCanvas().unsetMapTool(self.tool)
+        self._file.remove()
         self.tool.remove()
         self.tool.deleteLater()
         self.dimensions.deleteLater()

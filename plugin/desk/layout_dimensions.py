@@ -5,6 +5,7 @@ from __future__ import annotations
 from qgis.core import QgsSettings
 from qgis.gui import QgsDoubleSpinBox
 from qgis.PyQt.QtCore import Qt, pyqtSignal
+from qgis.PyQt.QtGui import QWheelEvent
 from qgis.PyQt.QtWidgets import (
     QComboBox,
     QDialog,
@@ -30,10 +31,23 @@ _FURTHEST = 1e6
 
 
 class NumberField(QgsDoubleSpinBox):
-    """A number with as many decimals as it has; its button sets it back to the standard's."""
+    """A number with as many decimals as it has; its button sets it back to the standard's.
+
+    The wheel scrolls past it: a dimension is changed by who means to, and not by who looks for another one.
+    """
+
+    def wheelEvent(self, event: QWheelEvent) -> None:
+        event.ignore()
 
     def textFromValue(self, value: float) -> str:
         return self.locale().toString(value, "g", 9)
+
+
+class ChoiceField(QComboBox):
+    """A choice that the wheel scrolls past, as with :class:`NumberField`."""
+
+    def wheelEvent(self, event: QWheelEvent) -> None:
+        event.ignore()
 
 
 class LayoutDimensions(QDialog):
@@ -43,6 +57,8 @@ class LayoutDimensions(QDialog):
     """The layout with the dimensions as they are now, all of them possible."""
     turned = pyqtSignal(float)
     """The heading that the operator gave, degrees clockwise from north."""
+    undo_wanted = pyqtSignal()
+    """The operator wants the layout that was placed last taken back."""
     left = pyqtSignal()
     """The operator is done here: the keys are the map's again."""
 
@@ -71,7 +87,13 @@ class LayoutDimensions(QDialog):
         self._area.setWidgetResizable(True)
         self._area.setFrameShape(QFrame.Shape.NoFrame)
         rows = QVBoxLayout(self)
-        for widget in (self.standard, self._area, self.problem, self.reset):
+        self.undo = QPushButton(tr("Take back the last layout"))
+        self.undo.setObjectName("fleet_layout_undo")
+        self.undo.setAutoDefault(False)
+        self.undo.setEnabled(False)
+        self.undo.setToolTip(tr("Remove the cones that were placed last; Ctrl+Z over the map does so too"))
+        self.undo.clicked.connect(self.undo_wanted)
+        for widget in (self.standard, self._area, self.problem, self.reset, self.undo):
             rows.addWidget(widget)
         self.resize(460, 480)
 
@@ -133,7 +155,7 @@ class LayoutDimensions(QDialog):
         return field
 
     def _choice(self, one: Dimension) -> QComboBox:
-        field = QComboBox()
+        field = ChoiceField()
         for choice, name in one.choices.items():
             field.addItem(CHOICES[name], choice)
         field.currentIndexChanged.connect(self._edited)

@@ -3,20 +3,28 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import NamedTuple
 
 import numpy as np
-from qgis.core import QgsCoordinateTransform, QgsPointXY, QgsProject, QgsWkbTypes
+from qgis.core import (
+    QgsCoordinateReferenceSystem,
+    QgsCoordinateTransform,
+    QgsPointXY,
+    QgsProject,
+    QgsWkbTypes,
+)
 from qgis.gui import QgsMapCanvas, QgsMapMouseEvent, QgsMapTool, QgsRubberBand
-from qgis.PyQt.QtCore import QPoint, Qt, pyqtSignal
-from qgis.PyQt.QtGui import QColor, QKeyEvent, QWheelEvent
+from qgis.PyQt.QtCore import QEvent, QObject, QPoint, Qt, QTimer, pyqtSignal
+from qgis.PyQt.QtGui import QColor, QKeyEvent, QKeySequence, QWheelEvent
 from qgis.PyQt.QtWidgets import QApplication
 
 from ...robot_bridge.compass import theta_of
 from ...robot_bridge.layouts.cone import Cone
 from ...robot_bridge.layouts.layout import Layout
 from ...robot_bridge.layouts.placing import placed
-from ..errors import FleetError
-from ..language import tr_count
+from ..errors import FleetError, PlacementError
+from ..language import tr, tr_count
+from .cone_checks import ConeGroundReader
 from .cone_store import ConeStore
 from .notices import Notices
 from .placement import transformed
@@ -32,11 +40,33 @@ _TURNS = {
 }
 
 
+GOOD, BAD = QColor("#f26a1b"), QColor("#b00020")
+"""Of cones that may stand where they are shown, and of those that should not."""
+CHECK_MS = 60
+"""Milliseconds that the mouse rests before the cones under it are checked."""
+UNDO, REDO = QKeySequence.StandardKey.Undo, QKeySequence.StandardKey.Redo
+
+
+class PlacedLayout(NamedTuple):
+    """Cones that were placed at once."""
+
+    cones: list[Cone]
+    name: str
+    crs: QgsCoordinateReferenceSystem
+    layer: str
+    """The id of the layer that they are in: another project has cones of the same names."""
+
+
 class LayoutTool(QgsMapTool):
-    """Places ``layout`` and says in ``notices`` what came of it. Nothing is sent by it."""
+    """Places ``layout`` and says in ``notices`` what came of it. Nothing is sent by it.
+
+    Cones that should not stand where they are shown are marked in red once the mouse rests.
+    """
 
     turned = pyqtSignal(float)
     """The wheel or a key has turned the layout; degrees as :attr:`heading`."""
+    undo_changed = pyqtSignal(bool)
+    """Whether there is a layout to take back."""
     dimensions_wanted = pyqtSignal()
     """F2: the operator wants to type dimensions."""
 
@@ -48,6 +78,15 @@ class LayoutTool(QgsMapTool):
         self._pressed_at: QPoint | None = None
         self._cursor: QgsPointXY | None = None
         self._band: QgsRubberBand | None = None
+        self._bad: QgsRubberBand | None = None
+        self._placed: list[PlacedLayout] = []
+        self._taken_back: list[PlacedLayout] = []
+        self._ground = ConeGroundReader(project, self)
+        self._ground.ready.connect(self._mark_bad)
+        self._rest = QTimer(self)
+        self._rest.setSingleShot(True)
+        self._rest.setInterval(CHECK_MS)
+        self._rest.timeout.connect(self._mark_bad)
         self.layout: Layout | None = None
         self.heading = 90.0
         """Degrees clockwise from the north of the cones' CRS."""
@@ -65,12 +104,49 @@ class LayoutTool(QgsMapTool):
 
     def preview(self) -> np.ndarray:
         """Return where the cones are shown, (n, 2) in the canvas's CRS."""
-        if self._band is None:
-            return np.empty((0, 2))
-        points = [self._band.getPoint(0, k) for k in range(self._band.numberOfVertices())]
-        return np.array([(point.x(), point.y()) for point in points]).reshape(-1, 2)
+        return _points_of(self._band)
+
+    def bad_preview(self) -> np.ndarray:
+        """Return which of :meth:`preview` should not stand where they are shown, (n, 2)."""
+        return _points_of(self._bad)
+
+    def undo(self) -> None:
+        """Take the layout that was placed last back out of its layer."""
+        while self._placed:
+            last = self._placed.pop()
+            if self._store.take_out(last.layer, {cone.id for cone in last.cones}):
+                self._taken_back.append(last)
+                break
+        else:
+            self._notices.info(tr("There is nothing to take back."))
+        self._changed()
+
+    def redo(self) -> None:
+        """Place again what was taken back last, where the cones' layer is in the same CRS still."""
+        if not self._taken_back:
+            self._notices.info(tr("There is nothing to do again."))
+            return
+        last = self._taken_back.pop()
+        if self._store.crs(last.crs) != last.crs:
+            self._taken_back.clear()
+            raise PlacementError(tr("The layer of cones is another one now: place the layout again."))
+        layer = self._store.add(last.cones, last.name, last.crs)
+        self._placed.append(last._replace(layer=layer.id()))
+        self._changed()
+
+    def activate(self) -> None:
+        super().activate()
+        self.canvas().installEventFilter(self)
+
+    def eventFilter(self, watched: QObject, event: QEvent) -> bool:
+        # QGIS's own Undo is about layers; over the map the tool in hand comes first.
+        is_ours = event.type() == QEvent.Type.ShortcutOverride
+        if is_ours and any(event.matches(key) for key in (UNDO, REDO)):
+            event.accept()
+        return False
 
     def deactivate(self) -> None:
+        self.canvas().removeEventFilter(self)
         self._pressed_at = self._cursor = None
         self._clear()
         super().deactivate()
@@ -110,6 +186,10 @@ class LayoutTool(QgsMapTool):
             self._try(self._place)
         elif event.key() in _TURNS:
             self._turn(_TURNS[event.key()] * (FINE_STEP if fine else STEP))
+        elif event.matches(UNDO):
+            self._try(self.undo)
+        elif event.matches(REDO):
+            self._try(self.redo)
         elif event.key() == Qt.Key.Key_F2:
             self.dimensions_wanted.emit()
         else:
@@ -118,7 +198,8 @@ class LayoutTool(QgsMapTool):
         event.accept()
 
     def remove(self) -> None:
-        """Take the preview off the canvas."""
+        """Take the preview off the canvas, and read no layers any more."""
+        self._ground.remove()
         self._clear()
 
     def _cones(self) -> tuple[list[Cone], QgsCoordinateTransform]:
@@ -149,13 +230,36 @@ class LayoutTool(QgsMapTool):
             points = transformed(np.array([(cone.x, cone.y) for cone in cones]), forward)
         except FleetError:
             return
-        self._band = QgsRubberBand(self.canvas(), QgsWkbTypes.GeometryType.PointGeometry)
-        self._band.setIcon(QgsRubberBand.IconType.ICON_CIRCLE)
-        self._band.setColor(QColor("#f26a1b"))
-        self._band.setIconSize(8)
-        self._band.setWidth(2)
+        self._band = self._drawn(points, GOOD, 8)
+        self._rest.start()
+
+    def _mark_bad(self) -> None:
+        """Mark the cones that should not stand where they are shown now, as far as the layers are read."""
+        self._remove_bad()
+        if self._band is None:
+            return
+        try:
+            cones, forward = self._cones()
+            ground = self._ground.ground(forward.sourceCrs())
+            if ground is None:
+                return
+            bad = ground.bad_cones(cones, self._store.places())
+            points = transformed(bad, forward) if len(bad) else bad
+        except FleetError:
+            return
+        if len(points):
+            self._bad = self._drawn(points, BAD, 14)
+
+    def _drawn(self, points: np.ndarray, colour: QColor, size: int) -> QgsRubberBand:
+        """Return circles at ``points``, (n, 2) in the canvas's CRS, that are on the map."""
+        band = QgsRubberBand(self.canvas(), QgsWkbTypes.GeometryType.PointGeometry)
+        band.setIcon(QgsRubberBand.IconType.ICON_CIRCLE)
+        band.setColor(colour)
+        band.setIconSize(size)
+        band.setWidth(2 if size < 10 else 3)
         for number, (x, y) in enumerate(points.tolist(), 1):
-            self._band.addPoint(QgsPointXY(x, y), number == len(points))
+            band.addPoint(QgsPointXY(x, y), number == len(points))
+        return band
 
     def _place(self) -> None:
         if self.layout is None:
@@ -164,6 +268,9 @@ class LayoutTool(QgsMapTool):
         crs = self._store.crs(self.canvas().mapSettings().destinationCrs())
         findings = self._store.check(cones, crs)
         layer = self._store.add(cones, self.layout.NAME, crs)
+        self._placed.append(PlacedLayout(cones, self.layout.NAME, crs, layer.id()))
+        self._taken_back.clear()
+        self._changed()
         if findings:
             wrong = len({finding.cone for finding in findings})
             self._notices.warning(
@@ -192,7 +299,27 @@ class LayoutTool(QgsMapTool):
         except FleetError as error:
             self._notices.warning(error)
 
+    def _changed(self) -> None:
+        """Show what the cones that stand now leave room for, and whether there is a layout to take back."""
+        self.undo_changed.emit(bool(self._placed))
+        self._rest.start()
+
+    def _remove_bad(self) -> None:
+        if self._bad is not None:
+            self.canvas().scene().removeItem(self._bad)
+            self._bad = None
+
     def _clear(self) -> None:
+        self._rest.stop()
+        self._remove_bad()
         if self._band is not None:
             self.canvas().scene().removeItem(self._band)
             self._band = None
+
+
+def _points_of(band: QgsRubberBand | None) -> np.ndarray:
+    """Return the points of ``band``, (n, 2); none where it is not there."""
+    if band is None:
+        return np.empty((0, 2))
+    points = [band.getPoint(0, k) for k in range(band.numberOfVertices())]
+    return np.array([(point.x(), point.y()) for point in points]).reshape(-1, 2)

@@ -4,11 +4,18 @@ from __future__ import annotations
 
 from qgis.core import Qgis, QgsMessageLog
 from qgis.gui import QgsMessageBar, QgsMessageBarItem
-from qgis.PyQt.QtCore import QObject, QSize, Qt
+from qgis.PyQt.QtCore import QObject, QSize, Qt, pyqtSignal
 from qgis.PyQt.QtGui import QResizeEvent
 from qgis.PyQt.QtWidgets import QLabel, QSizePolicy
 
+from .messages import Level
+
 TITLE = "Fleet Supervisor"
+LEVELS = {
+    Level.ERROR: Qgis.MessageLevel.Critical,
+    Level.WARNING: Qgis.MessageLevel.Warning,
+    Level.INFO: Qgis.MessageLevel.Info,
+}
 SECONDS = {Qgis.MessageLevel.Info: 6, Qgis.MessageLevel.Success: 5, Qgis.MessageLevel.Warning: 12}
 """How long a text stays; what is critical stays until it is closed."""
 BESIDE_TEXT = 190
@@ -16,13 +23,23 @@ BESIDE_TEXT = 190
 
 
 class Notices(QObject):
-    """Shows texts in the message bar, each once at a time, and writes all of them to QGIS's message log."""
+    """Shows texts in the message bar, each once at a time, and writes all of them to QGIS's message log.
+
+    The newest one is seen first, also one that hung beneath others already.
+    """
+
+    closed = pyqtSignal(str)
+    """A text does not hang there any more."""
 
     def __init__(self, bar: QgsMessageBar, parent: QObject | None = None):
         super().__init__(parent)
         self._bar = bar
         self._shown: dict[str, QgsMessageBarItem] = {}
         bar.widgetRemoved.connect(self._removed)
+
+    def show_message(self, text: str, level: Level) -> None:
+        """Show a message of the desk."""
+        self._show(text, LEVELS[level])
 
     def error(self, error: Exception | str) -> None:
         """Say what failed; stays until it is closed."""
@@ -42,8 +59,9 @@ class Notices(QObject):
 
     def take_down(self, text: str) -> None:
         """Take down a text that is over; one that does not hang there is passed over."""
-        if text in self._shown:
-            self._bar.popWidget(self._shown[text])
+        item = self._shown.pop(text, None)
+        if item is not None:
+            self._bar.popWidget(item)
 
     def withdraw(self) -> None:
         """Take down whatever still hangs there."""
@@ -53,15 +71,21 @@ class Notices(QObject):
         self._shown.clear()
 
     def _show(self, text: str, level: Qgis.MessageLevel) -> None:
-        if text in self._shown:
+        hanging = self._shown.get(text)
+        if hanging is not None and self._bar.currentItem() is hanging:
             return
-        QgsMessageLog.logMessage(text, TITLE, level, False)
+        if hanging is None:
+            QgsMessageLog.logMessage(text, TITLE, level, False)
+        else:
+            self.take_down(text)
         item = QgsMessageBarItem(NoticeLabel(text, self._bar), level, SECONDS.get(level, 0))
         self._shown[text] = item
         self._bar.pushItem(item)
 
     def _removed(self, item: QgsMessageBarItem) -> None:
-        self._shown = {text: shown for text, shown in self._shown.items() if shown is not item}
+        for text in [text for text, shown in self._shown.items() if shown is item]:
+            del self._shown[text]
+            self.closed.emit(text)
 
 
 class NoticeLabel(QLabel):

@@ -5,14 +5,24 @@ from __future__ import annotations
 import uuid
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 from qgis.PyQt.QtCore import QObject, pyqtSignal
 
-from ...robot_bridge.messages import Abort, AbortAll, ClearEmergencyStop, EmergencyStop, Send, to_json
+from ...robot_bridge.messages import (
+    Abort,
+    AbortAll,
+    ClearEmergencyStop,
+    EmergencyStop,
+    ResolveConflict,
+    Send,
+    to_json,
+)
 from ..errors import NotSentError
 from ..language import tr, tr_count
 from ..wire.outbox import Answer, Order
 from .drafts import TARGETS, Draft
+from .messages import Topic, conflict_topic, request_topic
 
 SLOW_AFTER = 5.0
 
@@ -26,13 +36,17 @@ class Pending:
     draft: Draft | None = None
     stops: bool = False
     told_slow: str = ""
+    topics: tuple[Topic, ...] = ()
+    """What a refusal is about."""
 
 
 class Orders(QObject):
     """Gives each press of a button its own id, hands it to the connection and tells what became of it."""
 
-    refused = pyqtSignal(str, object)
-    """An order was not carried out: the text, and the draft it came from or None."""
+    refused = pyqtSignal(str, object, object)
+    """An order was not carried out: the text, the draft it came from or None, and the text's topics."""
+    asked_again = pyqtSignal(object)
+    """Something is asked for now that may have been refused before: the Topic of that."""
     accepted = pyqtSignal(str)
     kept = pyqtSignal(str, str)
     """A command is in the gateway's keeping: its id, and what it is in words. Its steps follow as reports."""
@@ -112,9 +126,16 @@ class Orders(QObject):
         order = Order(str(uuid.uuid4()), ClearEmergencyStop.method, params, self._clock())
         return self._put(order, tr("Clear emergency stop"))
 
-    def ask(self, order: Order, words: str) -> None:
-        """Ask for something else, which is ``words`` to the operator; raises NotSentError."""
-        self._put(order, words)
+    def ask(
+        self, order: Order, words: str, topics: tuple[Topic, ...] = (), draft: Draft | None = None
+    ) -> None:
+        """Ask for something else, which is ``words`` to the operator.
+
+        ``topics`` are what else a refusal is about, ``draft`` what it was made of.
+
+        :raises NotSentError: when it cannot be sent.
+        """
+        self._put(order, words, draft, topics)
 
     def answered(self, answer: Answer) -> None:
         """Take in what became of an order."""
@@ -124,7 +145,7 @@ class Orders(QObject):
         if pending.told_slow:
             self.settled.emit(pending.told_slow)
         if answer.error is not None:
-            self.refused.emit(f"{pending.words}: {answer.error}", pending.draft)
+            self.refused.emit(f"{pending.words}: {answer.error}", pending.draft, pending.topics)
             return
         result = answer.result or {}
         commands = result.get("commands")
@@ -176,10 +197,23 @@ class Orders(QObject):
         order = Order(command, Send.method, to_json(send), self._clock())
         return self._put(order, words, draft)
 
-    def _put(self, order: Order, words: str, draft: Draft | None = None) -> str:
+    def _put(self, order: Order, words: str, draft: Draft | None = None, more: tuple[Topic, ...] = ()) -> str:
+        topics = topics_of(order.method, order.params) + more
+        self.asked_again.emit(topics[0])
         try:
             self._submit(order)
         except NotSentError as error:
-            raise NotSentError(tr("{words} was NOT sent: {error}", words=words, error=error)) from error
-        self._pending[order.key] = Pending(words, order.asked_at, draft)
+            text = tr("{words} was NOT sent: {error}", words=words, error=error)
+            raise NotSentError(text, topics) from error
+        self._pending[order.key] = Pending(words, order.asked_at, draft, topics=topics)
         return order.key
+
+
+def topics_of(method: str, params: dict[str, Any]) -> tuple[Topic, ...]:
+    """Return what a refusal of this request is about; the first of them is the request itself."""
+    robot, other = params.get("robot", ""), params.get("other", "")
+    # An Abort is no other try of a target that was refused.
+    what = params.get("op", "") == Abort.__name__
+    about = (robot, other, what, params.get("closure", ""), params.get("observation", ""))
+    topics = (request_topic(method, about),)
+    return (*topics, conflict_topic(robot, other)) if method == ResolveConflict.method else topics

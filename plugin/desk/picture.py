@@ -169,6 +169,11 @@ class RobotPicture:
         holds = np.array([bool(text) and word in text.casefold() for text in words] + [False])
         return holds[np.nan_to_num(places, nan=len(words)).astype(np.intp)]
 
+    def only_seen(self) -> npt.NDArray[np.bool_]:
+        """Tell which robots said that they take no commands."""
+        places, words = self._seen.texts("abilities")
+        return places == words.index("") if "" in words else np.zeros(len(places), dtype=bool)
+
     def told(self, row: int) -> dict[str, Any]:
         """Return what was told last of the robot in ``row``, as it came."""
         return self._seen.told(row)

@@ -30,8 +30,8 @@ class RoadBoard(QObject):
 
     closures_changed = pyqtSignal()
     conflicts_changed = pyqtSignal()
-    failed = pyqtSignal(str)
-    """A robot stopped, or drives where it should not: the text must not go unseen."""
+    failed = pyqtSignal(str, str)
+    """A robot stopped, or drives where it should not: the text, which must not go unseen, and the robot."""
     remarked = pyqtSignal(str)
 
     def __init__(
@@ -110,4 +110,7 @@ class RoadBoard(QObject):
             self.conflicts_changed.emit()
 
     def _tell(self, robot: ReplannedRobot) -> None:
-        (self.remarked if robot.became == "another way" else self.failed).emit(robot.text)
+        if robot.became == "another way":
+            self.remarked.emit(robot.text)
+        else:
+            self.failed.emit(robot.text, robot.robot)

@@ -81,14 +81,14 @@ class RoutePreview(QObject):
         self.why_not = ""
         self.shown.emit()
 
-    def take(self, answer: Answer) -> bool:
+    def accept_answer(self, answer: Answer) -> bool:
         """Take in the answer to a question; false when it is one to something else."""
         if answer.order.method != GetRoute.method:
             return False
         if self._asked is None or answer.order.key != self._asked[0]:
             return True
         question, self._asked = self._asked[1], None
-        self._show(question, *_way_in(answer))
+        self._show(question, *way_in(answer))
         self._ask_next()
         return True
 
@@ -144,8 +144,8 @@ class RoutePreview(QObject):
         self._asked = key, question, self._clock()
 
 
-def _way_in(answer: Answer) -> tuple[RouteReport | None, str]:
-    """Return the way that an answer holds, and why it holds none."""
+def way_in(answer: Answer) -> tuple[RouteReport | None, str]:
+    """Return the way that the answer to a GetRoute holds, and why it holds none."""
     if answer.error is not None:
         return None, answer.error
     try:

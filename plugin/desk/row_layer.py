@@ -21,7 +21,7 @@ from qgis.PyQt.QtGui import QColor
 
 from ...robot_bridge.messages import SiteReport
 from ...robot_bridge.sites.frame import SiteFrame
-from ..sites.fleet_group import fleet_group, remove_if_empty
+from ..sites.fleet_group import fleet_group, leave_clean, remove_if_empty
 from .live_layers import give_style, make_live
 from .placement import frame_of
 from .project_watch import ProjectWatch
@@ -126,8 +126,8 @@ class RowLayer:
         if self.layer is not None:
             dirty = self._project.isDirty()
             self._project.removeMapLayer(self._id)
-            self._project.setDirty(dirty)
             remove_if_empty(self._project)
+            leave_clean(self._project, dirty)
         self._id = None
 
     def _left_of(self, rows: Sequence[Row]) -> list[Row]:
@@ -164,7 +164,7 @@ class RowLayer:
         self._project.addMapLayer(layer, False)
         fleet_group(self._project).addLayer(layer)
         self._id = layer.id()
-        self._project.setDirty(dirty)
+        leave_clean(self._project, dirty)
 
 
 def _features(layer: QgsVectorLayer, rows: Sequence[Row], frame: SiteFrame) -> list[QgsFeature]:

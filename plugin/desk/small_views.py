@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from qgis.PyQt.QtWidgets import QAbstractItemView, QHeaderView
 
-LOWEST = 50
+LOWEST = 44
 """Pixels that a table keeps on a low screen: its head and a row or two."""
 
 

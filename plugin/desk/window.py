@@ -22,6 +22,7 @@ from .emergency_key import EmergencyKey
 from .live.following import Whom
 from .live.live_view import LiveView
 from .live.select_tool import SelectTool
+from .messages import OUTAGE, Level, request_topic
 from .notices import Notices
 from .project_match import ProjectMatch
 from .queues.queue_edits import QueueEdits
@@ -30,9 +31,12 @@ from .queues.robot_pauses import RobotPauses
 from .road_layers import RoadLayers
 from .road_route_tool import RoadRouteTool
 from .route_tool import RouteTool
-from .way_wishes_dialog import WayWishesDialog
+from .standing_cones import StandingCones
+from .way_wishes import WayWishesDialog
 
 MENU = "Fleet Supervisor"
+CONNECTING = request_topic("hello", "")
+"""What was asked for with Connect."""
 
 
 class DeskWindow(QObject):
@@ -43,8 +47,6 @@ class DeskWindow(QObject):
         super().__init__(iface.mainWindow())
         self._iface = iface
         self._told = ""
-        self._told_of_link: set[str] = set()
-        """What hangs in the message bar, at most, of a link that broke or never came up."""
         canvas = iface.mapCanvas()
         self.desk = Desk(canvas, QgsProject.instance(), self)
         self.actions = Actions(self)
@@ -56,6 +58,7 @@ class DeskWindow(QObject):
         self.queue_marks = QueueMarks(self.desk)
         self.dock = FleetDock(self.desk, self.actions, self.queue_edits, iface.mainWindow())
         self.road_layers = RoadLayers(self.desk, self)
+        self.standing_cones = StandingCones(self.desk, self)
         self.toolbar: QToolBar = iface.addToolBar("Fleet Supervisor")
         self.toolbar.setObjectName("fleet_toolbar")
         self._road_route = RoadRouteTool(self.desk)
@@ -85,6 +88,7 @@ class DeskWindow(QObject):
         self.draft_commands.remove()
         self.queue_marks.remove()
         self.road_layers.remove()
+        self.standing_cones.remove()
         self.view.remove()
         self._project_match.remove()
         self._key.remove()
@@ -141,10 +145,9 @@ class DeskWindow(QObject):
         desk.emergency_changed.connect(self._show_emergency)
         self.dock.table.zoom_wanted.connect(self.view.zoom_to)
         self.dock.log.place_wanted.connect(self.view.show_place)
-        desk.failed.connect(self.notices.error)
-        desk.settled.connect(self.notices.take_down)
-        desk.complained.connect(self.notices.warning)
-        desk.noted.connect(self.notices.info)
+        desk.messages.posted.connect(self.notices.show_message)
+        desk.messages.withdrawn.connect(self.notices.take_down)
+        self.notices.closed.connect(desk.messages.forget)
         self._project_match.differs.connect(self.notices.error)
         self._project_match.over.connect(self.notices.take_down)
         desk.link_changed.connect(self._show_link)
@@ -165,6 +168,7 @@ class DeskWindow(QObject):
             self._iface.actionPan().trigger()
 
     def _connect_or_not(self, wanted: bool) -> None:
+        self.desk.messages.end(CONNECTING)
         if not wanted:
             self.desk.close_link()
             return
@@ -172,7 +176,7 @@ class DeskWindow(QObject):
         try:
             self.desk.open_link(panel.url(), panel.operator(), panel.credentials())
         except FleetError as error:
-            self.notices.error(error)
+            self.desk.messages.post(str(error), Level.ERROR, CONNECTING)
             self._show_link()
             return
         try:
@@ -186,21 +190,13 @@ class DeskWindow(QObject):
         self.actions.connect.setChecked(wanted)
         self.actions.connect.setText(tr("Disconnect") if wanted else tr("Connect"))
         if link.phase is Phase.FAILED:
-            self.notices.error(link.reason)
-            self._told_of_link.add(link.reason)
+            self.desk.messages.post(link.reason, Level.ERROR, OUTAGE)
         elif link.phase is Phase.RETRYING and link.reason != self._told:
             # The panel goes on showing it; the message bar says it once for each outage.
-            self.notices.warning(link.reason)
-            self._told_of_link.add(link.reason)
+            self.desk.messages.post(link.reason, Level.WARNING, OUTAGE)
         self._told = "" if link.phase in (Phase.CONNECTED, Phase.CLOSED) else link.reason
         if not self._told:
-            self._take_down_what_was_told()
-
-    def _take_down_what_was_told(self) -> None:
-        """Let nothing hang of an outage that is over: a warning waits there while others lie on it."""
-        for text in self._told_of_link:
-            self.notices.take_down(text)
-        self._told_of_link.clear()
+            self.desk.messages.end(OUTAGE)
 
     def _show_emergency(self) -> None:
         if not self.dock.banner.isHidden() and not self.dock.isUserVisible():

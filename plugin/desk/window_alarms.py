@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from qgis.gui import QgisInterface
 from qgis.PyQt.QtCore import QObject
-from qgis.PyQt.QtGui import QPalette
 
 from ..language import tr
 from ..sites.surface_store import SurfaceStore
@@ -25,7 +24,7 @@ class WindowAlarms(QObject):
         self.panel = AlarmPanel(self.watch)
         self.bar = AlarmBar(iface.messageBar(), self.watch, self)
         self._tabs = window.dock.tabs
-        self._tabs.addTab(self.panel, tr("Alarms"))
+        self._tabs.add_page(self.panel, tr("Alarms"), counts=True)
         window.dock.details.alarms_of = self.watch.board.of
         self.watch.changed.connect(self._changed)
         self.panel.robots_wanted.connect(self._go)
@@ -48,10 +47,8 @@ class WindowAlarms(QObject):
         self._window.dock.robots.mark_troubled(robots)
 
     def _count(self, new: int) -> None:
-        tab = self._tabs.indexOf(self.panel)
-        self._tabs.setTabText(tab, tr("Alarms ({number})", number=new) if new else tr("Alarms"))
-        plain = self._tabs.palette().color(QPalette.ColorRole.WindowText)
-        self._tabs.tabBar().setTabTextColor(tab, letters(True) if new else plain)
+        self._tabs.show_count(self.panel, tr("Alarms"), new)
+        self._tabs.show_colour(self.panel, letters(True) if new else None)
 
     def _go(self, robots: list[str]) -> None:
         self._window.desk.select_all(robots)

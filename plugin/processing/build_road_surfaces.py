@@ -150,7 +150,7 @@ class BuildRoadSurfaces(FleetAlgorithm):
         old = [one for one in drawn.items if one.origin == GENERATED]
         drawn.items = [one for one in drawn.items if one.origin != GENERATED]
         if old:
-            drawn.warnings.append(
+            drawn.notes.add_text(
                 tr_count(
                     len(old),
                     "1 of the surfaces that are given as drawn says that it was generated (field "

@@ -20,12 +20,12 @@ from ..sites.errors import LayerTypeError
 from ..sites.obstacle_source import ObstacleSource, obstacle_sources
 from ..sites.placing import SitePlacing
 from ..sites.reading import check_sources
-from ..sites.roles import LayerExpressions
+from ..sites.roles import OBSTACLE_ROLES, LayerExpressions
 from .errors import ParameterError
 from .fleet_algorithm import Parameters
 from .given_layers import layers_problem
 from .map_format import MapFormat, format_of
-from .map_profile import setups_of
+from .map_profile import layers_of_project, setups_of
 from .map_shaping import shaping_of
 from .map_window import LOCAL, map_window, site_frame
 from .site_crs_choice import chosen_crs
@@ -125,10 +125,22 @@ def obstacle_plan_of(
 def obstacle_layers(
     algorithm: QgsProcessingAlgorithm, parameters: Parameters, context: QgsProcessingContext
 ) -> list[QgsVectorLayer]:
-    """Return the layers in OBSTACLES.
+    """Return the layers in OBSTACLES; without any the project's that have a role of obstacles.
 
     :raises LayerTypeError: naming the first that cannot be read or is no vector layer.
+    :raises ParameterError: when there are none.
     """
+    if not parameters.get(OBSTACLES):
+        setups = setups_of(algorithm, parameters, context)
+        found = layers_of_project(context.project(), OBSTACLE_ROLES, setups)
+        if not found:
+            raise ParameterError(
+                tr(
+                    "No obstacle layer is given, and no layer of the project has a role of obstacles. Give "
+                    "OBSTACLES, roles (Fleet Supervisor > Layer roles), or a PROFILE."
+                )
+            )
+        return found
     problem = layers_problem(parameters, OBSTACLES, context)
     if problem:
         raise LayerTypeError(problem)

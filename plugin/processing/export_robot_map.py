@@ -32,12 +32,13 @@ from .export_plan import (
     OUTDOOR_EXPRESSION,
     OUTPUT,
     SEMANTICS_EXPRESSION,
+    obstacle_layers,
     plan_of,
 )
 from .fleet_algorithm import FleetAlgorithm, Parameters
 from .given_layers import layers_problem
 from .map_format import format_parameters
-from .map_profile import profile_parameter
+from .map_profile import profile_parameter, warn_of_profile
 from .map_shaping import shaping_parameters
 from .map_window import window_parameters, window_problem
 from .obstacle_outlines import obstacle_outlines
@@ -66,7 +67,10 @@ class ExportRobotMap(FleetAlgorithm):
     def initAlgorithm(self, configuration: dict[str, Any] | None = None):
         for parameter in (
             QgsProcessingParameterMultipleLayers(
-                OBSTACLES, tr("Obstacle layers"), QgsProcessing.SourceType.TypeVectorAnyGeometry
+                OBSTACLES,
+                tr("Obstacle layers (default: those of the project with such a role)"),
+                QgsProcessing.SourceType.TypeVectorAnyGeometry,
+                optional=True,
             ),
             *window_parameters(),
             *value_parameters(),
@@ -94,6 +98,8 @@ class ExportRobotMap(FleetAlgorithm):
     ):
         with shown_by_processing():
             self._plan = plan_of(self, parameters, context)
+            layers = obstacle_layers(self, parameters, context)
+            warn_of_profile(self, parameters, context, layers, feedback)
         return True
 
     def processAlgorithm(
@@ -190,7 +196,7 @@ def _report_size(
     feedback.pushInfo(obstacles_in_words(len(robot_map.obstacles), robot_map.segment_count))
     feedback.pushInfo(
         tr(
-            "{size} bytes of text, {ratio:.2f} bytes/m² (paper 1: about 3 bytes/m² as text)",
+            "{size} bytes of text, {ratio:.3g} bytes/m² (paper 1: about 3 bytes/m² as text)",
             size=size,
             ratio=size / area,
         )
@@ -198,7 +204,7 @@ def _report_size(
     if len(content) != size:
         feedback.pushInfo(
             tr(
-                "{size} bytes in binary, {ratio:.2f} bytes/m²",
+                "{size} bytes in binary, {ratio:.3g} bytes/m²",
                 size=len(content),
                 ratio=len(content) / area,
             )

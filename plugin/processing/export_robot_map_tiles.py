@@ -27,13 +27,13 @@ from ...robot_bridge.robotmap.index import OutlineIndex
 from ..errors import FleetError
 from ..language import tr, tr_count, tr_page
 from .errors import shown_by_processing
-from .export_plan import OBSTACLES
+from .export_plan import OBSTACLES, obstacle_layers
 from .export_robot_map import value_parameters
 from .fleet_algorithm import FleetAlgorithm, Parameters, fields_of
 from .given_layers import layers_problem
 from .map_file import layer_crs
 from .map_format import format_parameters
-from .map_profile import profile_parameter
+from .map_profile import profile_parameter, warn_of_profile
 from .map_shaping import shaping_parameters
 from .map_window import EXTENT, PAPERS_SIDE_M, frame_parameters
 from .obstacle_outlines import obstacle_outlines
@@ -105,7 +105,10 @@ class ExportRobotMapTiles(FleetAlgorithm):
         kinds = QgsProcessing.SourceType
         for parameter in (
             QgsProcessingParameterMultipleLayers(
-                OBSTACLES, tr("Obstacle layers"), kinds.TypeVectorAnyGeometry
+                OBSTACLES,
+                tr("Obstacle layers (default: those of the project with such a role)"),
+                kinds.TypeVectorAnyGeometry,
+                optional=True,
             ),
             QgsProcessingParameterExtent(EXTENT, tr("Extent of a grid (or choose a route)"), optional=True),
             QgsProcessingParameterFeatureSource(
@@ -149,6 +152,8 @@ class ExportRobotMapTiles(FleetAlgorithm):
     ):
         with shown_by_processing():
             self._plan = tile_plan_of(self, parameters, context)
+            layers = obstacle_layers(self, parameters, context)
+            warn_of_profile(self, parameters, context, layers, feedback)
         self._fields = fields_of(_FIELDS)
         return True
 
@@ -167,7 +172,7 @@ class ExportRobotMapTiles(FleetAlgorithm):
             steps.setCurrentStep(1)
             skip_empty = self.parameterAsBool(parameters, SKIP_EMPTY, context)
             maker = _TileMaker(plan, [*plan.warnings, *reading.warnings], skip_empty)
-            if not maker.make_all(OutlineIndex(outlines), folder, steps):
+            if not maker.make_all(OutlineIndex.of(outlines), folder, steps):
                 return {}
             folder.publish()
             # Only now, so that no index tells of tiles that are not there.

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import html
+import re
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 from qgis.core import (
+    QgsApplication,
     QgsFields,
     QgsProcessingAlgorithm,
     QgsProcessingContext,
@@ -19,6 +22,8 @@ from qgis.PyQt.QtGui import QIcon
 
 from ..language import tr
 from .label_room import fit_label
+from .parameter_labels import errors_with_labels, problems_with_labels
+from .tree_order import put_above_areas
 from .value_spelling import spelling_problem
 
 RESOURCES = Path(__file__).parents[2] / "resources"
@@ -35,6 +40,14 @@ _AS_SHOWN = {
 }
 
 
+_WITH_LABELS = {
+    "checkParameterValues": problems_with_labels,
+    "prepareAlgorithm": errors_with_labels,
+    "processAlgorithm": errors_with_labels,
+}
+"""What tells people of parameters, and what has it name them as their dialog does."""
+
+
 class FleetAlgorithm(QgsProcessingAlgorithm):
     """An algorithm of the provider; subclasses say who they are in their class attributes."""
 
@@ -48,6 +61,14 @@ class FleetAlgorithm(QgsProcessingAlgorithm):
     TAGS: tuple[str, ...] = ()
     STYLES: dict[str, str] = {}  # noqa: RUF012
     """The style, in resources/styles, of each output layer."""
+    ABOVE_AREAS: tuple[str, ...] = ()
+    """Output layers that are put where no area covers them, from top to bottom."""
+
+    def __init_subclass__(cls, **more: Any) -> None:
+        super().__init_subclass__(**more)
+        for name, dressed in _WITH_LABELS.items():
+            if name in vars(cls):
+                setattr(cls, name, dressed(vars(cls)[name]))
 
     def name(self):
         return self.NAME
@@ -69,6 +90,8 @@ class FleetAlgorithm(QgsProcessingAlgorithm):
 
     def shortHelpString(self):
         text = self.HELP
+        if QgsApplication.platform() == "qgis_process":
+            return plain_text(text)
         # QGIS shows <b> in a dark grey, which its dark themes swallow; <pre> it does not break into lines.
         for written, shown in _AS_SHOWN.items():
             text = text.replace(written, shown)
@@ -96,13 +119,24 @@ class FleetAlgorithm(QgsProcessingAlgorithm):
         self._made = layers
 
     def postProcessAlgorithm(self, context: QgsProcessingContext, feedback: QgsProcessingFeedback):
+        made = getattr(self, "_made", {})
+        loaded = {name: source for name, source in made.items() if context.willLoadLayerOnCompletion(source)}
         for name, style in self.STYLES.items():
-            source = getattr(self, "_made", {}).get(name)
-            if source and context.willLoadLayerOnCompletion(source):
-                layer = QgsProcessingUtils.mapLayerFromString(source, context)
+            if name in loaded:
+                layer = QgsProcessingUtils.mapLayerFromString(loaded[name], context)
                 if layer is not None:
                     layer.loadNamedStyle(str(RESOURCES / "styles" / style))
+        put_above_areas([loaded[name] for name in self.ABOVE_AREAS if name in loaded], context)
         return {}
+
+
+def plain_text(page: str) -> str:
+    """Return a help as a terminal shows it: a blank line between paragraphs, no tags."""
+    text = re.sub(r"\s+", " ", page)
+    text = re.sub(r"\s*<li>", "\n- ", text)
+    text = re.sub(r"\s*</?(?:p|pre|ul|table|tr)>\s*", "\n\n", text)
+    text = re.sub(r"<[^<>]+>", "", text)
+    return html.unescape(re.sub(r"\n{3,}", "\n\n", text)).strip()
 
 
 def fields_of(columns: dict[str, str]) -> QgsFields:

@@ -24,6 +24,14 @@ from qgis.core import (
 from ...robot_bridge.layouts.cone import Cone
 from ...robot_bridge.layouts.placing import placed
 from ...robot_bridge.layouts.table import Columns, cones_of, read_csv
+from ...robot_bridge.layouts.track_file import (
+    COLOUR,
+    HEAD,
+    colour_table,
+    headless_rows,
+    is_track,
+    read_track,
+)
 from ..language import tr, tr_page
 from ..sites.placing import SitePlacing
 from ..sites.point_rows import point_rows
@@ -36,6 +44,7 @@ from .places import point_in
 
 FILE, INPUT, ORIGIN, ROTATION, NAME = "FILE", "INPUT", "ORIGIN", "ROTATION", "LAYOUT_NAME"
 X, Y = "X_FIELD", "Y_FIELD"
+SUFFIXES = (".csv", ".txt", ".yaml", ".yml", ".sdf", ".world")
 _COLUMNS = {
     X: ("x", tr("Column of x [m]"), "x_m"),
     Y: ("y", tr("Column of y [m]"), "y_m"),
@@ -62,7 +71,10 @@ class ImportConeLayout(FleetAlgorithm):
     TAGS = ("cone", "layout", "CSV", "import")
     STYLES = STYLES
     HELP = tr_page("""
-    <p>Reads cones from a <b>CSV file</b> with a head line, in UTF-8, or from a <b>layer</b>. The columns are
+    <p>Reads cones from a <b>CSV file</b> in UTF-8, from a <b>track</b> of Formula Student, or from a
+    <b>layer</b>. Tracks are YAML with <i>cones_left</i>, <i>cones_right</i>, <i>cones_orange</i> and
+    <i>cones_orange_big</i>, SDF with models of cones, CSV with columns such as <i>blue_x</i> and
+    <i>blue_y</i> for each colour, or CSV without a head line: colour, x, y. Of other tables the columns are
     named by parameters; only those of x and y are needed, and not even those for a layer of points with a
     CRS, which is taken as it lies. A file or layer with several layouts gives one of them, by
     <b>LAYOUT_FIELD</b> and <b>LAYOUT</b>.</p>
@@ -77,7 +89,15 @@ class ImportConeLayout(FleetAlgorithm):
     def initAlgorithm(self, configuration: dict[str, Any] | None = None):
         real = QgsProcessingParameterNumber.Type.Double
         for parameter in (
-            QgsProcessingParameterFile(FILE, tr("CSV file"), extension="csv", optional=True),
+            QgsProcessingParameterFile(
+                FILE,
+                tr("CSV file, or track of Formula Student (YAML, SDF)"),
+                optional=True,
+                # "All files" has every file reach the check below, which says what is accepted.
+                fileFilter=tr(
+                    "Cone layouts ({kinds});;All files (*)", kinds=" ".join(f"*{s}" for s in SUFFIXES)
+                ),
+            ),
             QgsProcessingParameterFeatureSource(
                 INPUT, tr("Layer, instead of a file"), [QgsProcessing.SourceType.TypeVector], optional=True
             ),
@@ -101,6 +121,11 @@ class ImportConeLayout(FleetAlgorithm):
         if len(given) != 1:
             how = tr("Both FILE and INPUT are") if given else tr("Neither FILE nor INPUT is")
             return False, tr("{how} given: give a CSV file, or a layer.", how=how)
+        file = parameters.get(FILE)
+        if isinstance(file, str) and file and Path(file).suffix.lower() not in SUFFIXES:
+            return False, tr(
+                "FILE {file} is none that is read: give one of {kinds}.", file=file, kinds=", ".join(SUFFIXES)
+            )
         return super().checkParameterValues(parameters, context)
 
     def prepareAlgorithm(
@@ -146,8 +171,7 @@ class ImportConeLayout(FleetAlgorithm):
         self, columns: Columns, name: str, parameters: Parameters, context: QgsProcessingContext
     ) -> list[Cone]:
         if self._source is None:
-            head, rows = read_csv(Path(self.parameterAsFile(parameters, FILE, context)))
-            return cones_of(rows, head, columns, name)
+            return _cones_in(Path(self.parameterAsFile(parameters, FILE, context)), columns, name)
         rows = [_attributes(feature) for feature in self._source.getFeatures()]
         return cones_of(rows, self._source.fields().names(), columns, name, first=1)
 
@@ -167,6 +191,19 @@ class ImportConeLayout(FleetAlgorithm):
         origin = point_in(self, parameters, ORIGIN, context, self._setup.crs)
         turn = math.radians(self.parameterAsDouble(parameters, ROTATION, context))
         return placed(cones, *origin, turn)
+
+
+def _cones_in(file: Path, columns: Columns, name: str) -> list[Cone]:
+    """Return the cones of a table or a track, in its own metres."""
+    of_track = Columns(colour=COLOUR)
+    if is_track(file):
+        return cones_of(read_track(file), HEAD, of_track, name, first=1)
+    if (rows := headless_rows(file)) is not None:
+        return cones_of(rows, HEAD, of_track, name, first=1)
+    head, table = read_csv(file)
+    if columns.x not in head and (rows := colour_table(head, table)) is not None:
+        return cones_of(rows, HEAD, of_track, name, first=1)
+    return cones_of(table, head, columns, name)
 
 
 def _attributes(feature: QgsFeature) -> dict[str, Any]:

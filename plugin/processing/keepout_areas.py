@@ -12,6 +12,7 @@ from qgis.core import (
     QgsProcessingParameterMultipleLayers,
 )
 
+from ...robot_bridge.roads.network import Network
 from ...robot_bridge.roads.routes import Router
 from ..language import tr, tr_count
 from ..sites.ground_reading import read_areas
@@ -50,19 +51,32 @@ class KeepoutAreas:
     ) -> list[str]:
         """Close the edges of ``router``, whose network is in ``crs``, that come into an area.
 
-        Return what was warned of. What runs along the rim of an area does not come into it.
+        Return what was warned of.
+
+        :raises LayerReadingError: when a layer has no known place in ``crs``.
+        """
+        closed, warnings = self.edges_inside(router.network, crs, feedback)
+        if closed:
+            router.close(closed)
+        return warnings
+
+    def edges_inside(
+        self, network: Network, crs: QgsCoordinateReferenceSystem, feedback: QgsProcessingFeedback
+    ) -> tuple[list[int], list[str]]:
+        """Return the edges of ``network``, which is in ``crs``, that come into an area, and the warnings.
+
+        What runs along the rim of an area does not come into it.
 
         :raises LayerReadingError: when a layer has no known place in ``crs``.
         """
         if not self._sources:
-            return []
+            return [], []
         site = SitePlacing.in_crs(crs, self._transforms)
         reading = read_areas(self._sources, site, KEEPOUT, feedback)
         for warning in reading.warnings:
             feedback.pushWarning(warning)
-        closed = edges_through(router.network, [area.rings for area in reading.items])
+        closed = edges_through(network, [area.rings for area in reading.items])
         if closed:
-            router.close(closed)
             feedback.pushInfo(
                 tr_count(
                     len(closed),
@@ -70,4 +84,4 @@ class KeepoutAreas:
                     "%n edges lead through areas to be avoided, and are closed",
                 )
             )
-        return reading.warnings
+        return closed, reading.warnings

@@ -89,6 +89,7 @@ class LoadRobotMap(FleetAlgorithm):
         SEGMENTS: "robot_map_segments.qml",
         BORDER: "robot_map_border.qml",
     }
+    ABOVE_AREAS = (SEGMENTS, LINES, AREAS, BORDER)
     HELP = tr_page("""
     <p>Reads a robot map, text or binary, and makes layers of it.</p>
     <p><b>Obstacles that are areas</b>: outlines that close, courtyards as holes. <b>Obstacles that are

@@ -15,10 +15,12 @@ from .check_road_network import CheckRoadNetwork
 from .check_robot_map import CheckRobotMap
 from .cone_layout import ConeLayout
 from .export_navigation_map import ExportNavigationMap
+from .export_road_network import ExportRoadNetwork
 from .export_robot_map import ExportRobotMap
 from .export_robot_map_tiles import ExportRobotMapTiles
 from .find_route import FindRoute
 from .import_cone_layout import ImportConeLayout
+from .import_navigation_map import ImportNavigationMap
 from .load_robot_map import LoadRobotMap
 from .publish_site import PublishSite
 from .surface_at_point import SurfaceAtPoint
@@ -42,6 +44,7 @@ class FleetProvider(QgsProcessingProvider):
     def loadAlgorithms(self):
         self.addAlgorithm(ExportRobotMap())
         self.addAlgorithm(ExportNavigationMap())
+        self.addAlgorithm(ImportNavigationMap())
         self.addAlgorithm(PublishSite())
         self.addAlgorithm(ExportRobotMapTiles())
         self.addAlgorithm(LoadRobotMap())
@@ -49,6 +52,7 @@ class FleetProvider(QgsProcessingProvider):
         self.addAlgorithm(BuildRoadNetwork())
         self.addAlgorithm(CheckRoadNetwork())
         self.addAlgorithm(FindRoute())
+        self.addAlgorithm(ExportRoadNetwork())
         self.addAlgorithm(BuildRoadSurfaces())
         self.addAlgorithm(SurfaceAtPoint())
         self.addAlgorithm(ConeLayout())

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -12,7 +11,6 @@ from qgis.core import (
     QgsMapLayer,
     QgsProcessingAlgorithm,
     QgsProcessingContext,
-    QgsProject,
     QgsVectorLayer,
 )
 
@@ -25,7 +23,6 @@ from ...robot_bridge.sites.settings import (
 )
 from ...robot_bridge.sites.settings_toml import value_text
 from ..language import tr
-from ..sites.content_reading import SiteSources, check_content_sources
 from ..sites.errors import LayerTypeError
 from ..sites.obstacle_source import Setups, obstacle_sources
 from ..sites.placing import SitePlacing
@@ -37,12 +34,13 @@ from ..sites.roles import (
     ROAD_SURFACE,
     LayerExpressions,
 )
+from ..sites.site_content import SiteSources, check_content_sources
 from ..sites.site_crs import crs_name, is_engineering
 from .errors import ParameterError
 from .export_plan import default_height
 from .fleet_algorithm import Parameters
 from .given_layers import layers_problem
-from .map_profile import setups_of
+from .map_profile import check_vectors, layers_of_project, setups_of
 from .map_window import LOCAL, site_frame
 from .places import extent_in
 from .site_crs_choice import chosen_crs
@@ -130,6 +128,18 @@ def publish_plan(
     )
 
 
+def layers_to_publish(
+    algorithm: QgsProcessingAlgorithm, parameters: Parameters, context: QgsProcessingContext
+) -> list[QgsMapLayer]:
+    """Return the layers that are given, and those of the project where some are not given."""
+    given = [name for name in LAYERS if parameters.get(name)]
+    layers = [layer for name in given for layer in algorithm.parameterAsLayerList(parameters, name, context)]
+    project = context.project()
+    if len(given) < len(LAYERS) and project is not None:
+        layers += project.mapLayers().values()
+    return layers
+
+
 def _sources(
     algorithm: QgsProcessingAlgorithm, parameters: Parameters, context: QgsProcessingContext
 ) -> SiteSources:
@@ -147,28 +157,13 @@ def _layers(
     setups: Setups,
 ) -> list[QgsVectorLayer]:
     if not parameters.get(name):
-        return _project_layers(context.project(), LAYERS[name], setups)
+        return layers_of_project(context.project(), LAYERS[name], setups)
     problem = layers_problem(parameters, name, context)
     if problem:
         raise LayerTypeError(problem)
     layers = algorithm.parameterAsLayerList(parameters, name, context)
-    _check_vectors(layers)
+    check_vectors(layers)
     return layers
-
-
-def _project_layers(project: QgsProject, roles: Sequence[str], setups: Setups) -> list[QgsVectorLayer]:
-    layers = project.mapLayers().values() if project is not None else ()
-    found = [layer for layer in layers if setups(layer).role in roles]
-    _check_vectors(found)
-    return sorted(found, key=lambda layer: (layer.name(), layer.id()))
-
-
-def _check_vectors(layers: Sequence[QgsMapLayer]) -> None:
-    for layer in layers:
-        if not isinstance(layer, QgsVectorLayer):
-            raise LayerTypeError(
-                tr("The layer {layer} is no vector layer: take its role away.", layer=layer.name())
-            )
 
 
 def _check_published_crs(crs: QgsCoordinateReferenceSystem) -> None:

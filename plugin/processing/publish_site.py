@@ -24,15 +24,15 @@ from qgis.core import (
 from ...robot_bridge.sites.settings import Bounds, LivenessLimits, SiteSettings
 from ..errors import FleetError
 from ..language import tr, tr_count
-from ..sites.content_reading import read_content
 from ..sites.ground_reading import DEFAULT_WIDTH_M
-from ..sites.publication import next_version, publish
+from ..sites.placing import SitePlacing
+from ..sites.publication import new_publication, next_version
 from ..sites.publication_lock import only_publication
 from ..sites.site_content import SiteContent
 from .errors import ParameterError, shown_by_processing
 from .export_plan import DEFAULT_HEIGHT
 from .fleet_algorithm import FleetAlgorithm, Parameters
-from .map_profile import profile_parameter
+from .map_profile import profile_parameter, warn_of_profile
 from .map_window import frame_parameters
 from .publish_help import HELP
 from .publish_plan import (
@@ -46,6 +46,7 @@ from .publish_plan import (
     STALE_AFTER,
     TOLERANCE,
     PublishPlan,
+    layers_to_publish,
     publish_plan,
 )
 
@@ -55,6 +56,8 @@ LAYER_TITLES = {
     "ROAD_SURFACES": tr("Road surface layers (default: the project's with that role)"),
     "KEEPOUTS": tr("Keepout layers (default: the project's with that role)"),
 }
+FAR_ORIGIN_M = 50_000.0
+"""Metres from the origin of a site frame to its site above which somebody may have forgotten to give one."""
 NUMBERS = {
     "VERSION": tr("Version of the site"),
     "OBSTACLE_COUNT": tr("Obstacle outlines"),
@@ -116,6 +119,8 @@ class PublishSite(FleetAlgorithm):
     ):
         with shown_by_processing():
             self._plan = publish_plan(self, parameters, context)
+            layers = layers_to_publish(self, parameters, context)
+            warn_of_profile(self, parameters, context, layers, feedback)
         return True
 
     def processAlgorithm(
@@ -125,18 +130,19 @@ class PublishSite(FleetAlgorithm):
         with shown_by_processing(feedback), only_publication(plan.folder):
             # Anew: another publication may have ended since the plan was made.
             settings = next_version(plan.settings, plan.folder, replace_other=plan.replace_other)
-            content = _content(plan, feedback)
-            if content is None:
-                return {}
-            if not plan.bounds_given:
-                settings = replace(settings, bounds=_all_of(content))
-            for warning in content.warnings:
-                feedback.pushWarning(warning)
-            if not publish(plan.folder, content, settings, feedback):
-                return {}
+            content = _content(plan)
+            with new_publication(plan.folder) as publication:
+                if not publication.write_layers(content, settings, feedback):
+                    return {}
+                if not plan.bounds_given:
+                    settings = replace(settings, bounds=_all_of(content))
+                warnings = [*content.warnings(), *_origin_warnings(plan.site, settings.bounds)]
+                for warning in warnings:
+                    feedback.pushWarning(warning)
+                if not publication.replace_earlier(settings, feedback):
+                    return {}
         feedback.setProgress(100)
-        groups = (content.obstacles, content.centrelines, content.surfaces, content.keepouts)
-        figures = (settings.version, *map(len, groups), len(content.warnings))
+        figures = (settings.version, *content.counts.values(), len(warnings))
         feedback.pushInfo(
             tr(
                 "Site {id} version {version} is published in {folder}: {outlines}, "
@@ -154,9 +160,24 @@ class PublishSite(FleetAlgorithm):
         return {FOLDER: str(plan.folder), ID: settings.id, **dict(zip(NUMBERS, figures, strict=True))}
 
 
-def _content(plan: PublishPlan, feedback: QgsProcessingFeedback) -> SiteContent | None:
+def _origin_warnings(site: SitePlacing, bounds: Bounds) -> list[str]:
+    """Warn of a site frame that begins where its CRS does, which may be thousands of kilometres away."""
+    away = math.hypot((bounds[0] + bounds[2]) / 2, (bounds[1] + bounds[3]) / 2)
+    if site.local or site.frame.origin != (0.0, 0.0) or away < FAR_ORIGIN_M:
+        return []
+    return [
+        tr(
+            "The origin of the site frame is 0,0 of {crs}, {away:.0f} km from the site: robots get positions "
+            "of seven digits. Give ORIGIN, a place of the site, unless that is meant.",
+            crs=site.crs.authid(),
+            away=away / 1000,
+        )
+    ]
+
+
+def _content(plan: PublishPlan) -> SiteContent:
     bounds = plan.settings.bounds if plan.bounds_given else None
-    return read_content(plan.sources, plan.site, bounds, plan.default_height, plan.default_width, feedback)
+    return SiteContent(plan.sources, plan.site, bounds, plan.default_height, plan.default_width)
 
 
 def _all_of(content: SiteContent) -> Bounds:

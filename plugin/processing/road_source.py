@@ -183,10 +183,10 @@ class RoadSource:
                 tr("Layer {name}, feature {id}: {note}", name=name, id=feature.id(), note=note)
                 for note in notes
             ]
+        if not lines:
+            raise ParameterError(_no_roads(name, source.featureCount(), warnings))
         reading = RoadReading(self._columns(lines, known, name, warnings), features, crs, placing, warnings)
         reading.warnings += rules.warnings
-        if not lines:
-            reading.warnings.append(tr("Layer {name}: none of its features is a road", name=name))
         reading.without_width += [k for k, one in enumerate(known) if one.width is None]
         return reading
 
@@ -219,6 +219,20 @@ class RoadSource:
             closed=[one.traffic.closed for one in known],
             level=[one.traffic.level for one in known],
         )
+
+
+def _no_roads(name: str, count: int, warnings: list[str]) -> str:
+    """Return the error for a layer that holds no road, with what it holds instead."""
+    if count == 0:
+        return tr(
+            "ROADS: the layer {name} has no features: choose the layer of the road centrelines.", name=name
+        )
+    return tr(
+        "ROADS: no feature of the layer {name} is a road: each has to be a line with a "
+        "length that the layer's filter keeps. {first}",
+        name=name,
+        first=warnings[0] if warnings else tr("The filter of its role keeps none of them."),
+    )
 
 
 def network_of_roads(

@@ -51,8 +51,9 @@ def measure(source: ObstacleSource, site: SitePlacing, feedback: QgsFeedback) ->
         if source.role in OBSTACLE_ROLES:
             reading = read_outlines([source], site, None, ESTIMATED_HEIGHT_M, feedback)
             flights = ShapeType.STAIRS
-            lines = [_risers(r.points) if r.shape_type is flights else _chain(r.points) for r in reading.rows]
-            solid = sum(not row.courtyard for row in reading.rows)
+            rows = reading.rows
+            lines = [_risers(row.points) if row.shape_type is flights else _chain(row.points) for row in rows]
+            solid = sum(not row.courtyard for row in rows)
             found = Measure(source.role, solid, _joined(lines), reading.warnings)
         elif source.role == ROAD_CENTRELINE:
             reading = read_centrelines([source], site, ESTIMATED_WIDTH_M, feedback)

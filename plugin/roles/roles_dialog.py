@@ -51,19 +51,23 @@ from .table_model import (
 )
 
 WIDTHS = {
-    LAYER: 120,
+    LAYER: 140,
     ROLE: 130,
-    FILTER: 90,
-    HEIGHT: 85,
-    ESTIMATE: 95,
-    BASE: 70,
-    SEMANTICS: 140,
-    OUTDOOR: 75,
-    WIDTH: 80,
+    FILTER: 70,
+    HEIGHT: 80,
+    ESTIMATE: 90,
+    BASE: 65,
+    SEMANTICS: 110,
+    OUTDOOR: 70,
+    WIDTH: 75,
     TEMPLATE: 75,
-    ROTATION: 80,
+    ROTATION: 75,
     RESULT: 200,
 }
+WIDEST_NAME = 320
+"""Pixels that names of layers get at most; longer ones are cut in the middle, and whole in a tool tip."""
+WIDE = 1280
+"""Pixels that the dialog is wide with short names."""
 
 MOST_OF_TABLE = 370
 """How high the table is at first when it has many rows, pixels."""
@@ -89,7 +93,8 @@ class RolesDialog(QDialog):
         self._buttons = self._make_buttons()
         self._lay_out()
         self._wire()
-        self.resize(1280, 760)
+        long_names = self._table.columnWidth(LAYER) - WIDTHS[LAYER]
+        self.resize(max(WIDE, min(WIDE + long_names, self.screen().availableGeometry().width())), 760)
         self.preview.refresh()
 
     def apply(self) -> None:
@@ -127,8 +132,10 @@ class RolesDialog(QDialog):
             self._bar.pushWarning(
                 "",
                 tr(
-                    "{name} knows none of these layers by name and fields.",
+                    "{name} knows none of these layers. It looks for layers that are named, in their source "
+                    "or in the project: {sought}.",
                     name=profile.name,
+                    sought=profile.sought(),
                 ),
             )
 
@@ -157,9 +164,13 @@ class RolesDialog(QDialog):
         table.verticalHeader().setDefaultSectionSize(26)
         table.setAlternatingRowColors(True)
         table.setWordWrap(False)
+        # Layers of one file differ at their ends, as in "campus — buildings".
+        table.setTextElideMode(Qt.TextElideMode.ElideMiddle)
         header = table.horizontalHeader()
         for column, width in WIDTHS.items():
             table.setColumnWidth(column, width)
+        name_width = min(table.sizeHintForColumn(LAYER), WIDEST_NAME)
+        table.setColumnWidth(LAYER, max(name_width, WIDTHS[LAYER]))
         fit_heads(table)
         # The column that takes what is left keeps room for its head.
         header.setMinimumSectionSize(header.fontMetrics().horizontalAdvance(TITLES[RESULT]) + 8)

@@ -13,6 +13,8 @@ from ..wire.addresses import check_address
 
 FORMAT = "fleet-supervisor-connections"
 VERSION = 1
+_LARGEST = 200_000
+"""characters: a thousand connections, each of which is written into QGIS's settings."""
 CHOOSE = tr("Choose a file that Export wrote.")
 
 
@@ -58,8 +60,10 @@ def connections_in(text: str, source: str) -> list[GatewayConnection]:
     :raises FleetError: naming ``source``, the entry and what is wrong with it.
     """
     try:
+        if len(text) > _LARGEST:
+            raise ValueError(f"it has {len(text)} characters, more than {_LARGEST}")
         content = json.loads(text)
-    except ValueError as error:
+    except (ValueError, RecursionError) as error:
         raise BadConnectionError(
             tr("{source} is not JSON: {error}. {choose}", source=source, error=error, choose=CHOOSE)
         ) from error

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+import sys
+from typing import NamedTuple
 
 from qgis.core import QgsExpression, QgsFeature
 
@@ -14,8 +15,7 @@ HEIGHT_FIELDS = ("height", "height_m")
 """Fields that hold a height in metres where no expression says otherwise."""
 
 
-@dataclass(frozen=True)
-class Values:
+class Values(NamedTuple):
     """What a robot map says of one feature.
 
     ``height`` is ``estimated`` where it is not told, and ``unknown`` where nothing but the default is left.
@@ -28,7 +28,7 @@ class Values:
     base: float
     semantics: str
     outdoor: bool
-    notes: list[str] = field(default_factory=list)
+    notes: list[str]
 
 
 class FeatureValues:
@@ -54,6 +54,9 @@ class FeatureValues:
         self._semantics = rules.rule("semantics", expressions.semantics)
         self._outdoor = rules.rule("outdoor", expressions.outdoor)
         self._base = rules.rule("base", expressions.base)
+        # Once: to translate a text takes longer than to evaluate most expressions.
+        self._default_is_used = tr("the default is used")
+        self._no_height = tr("the estimate is used") if self._estimate is not None else self._default_is_used
 
     def of(self, feature: QgsFeature) -> Values:
         """Return the values of ``feature``; what is missing or not understood gets the default and a note."""
@@ -61,10 +64,11 @@ class FeatureValues:
         notes: list[str] = []
         height = 0.0 if self._is_ramp else self._height_of("height", self._height, notes)
         estimate = self._height_of("estimate", self._estimate, notes) if height is None else None
+        known = estimate if height is None else height
         return Values(
-            height=next(h for h in (height, estimate, self._default_height) if h is not None),
+            height=self._default_height if known is None else known,
             estimated=height is None,
-            unknown=height is None and estimate is None,
+            unknown=known is None,
             base=self._base_of(notes),
             semantics=self._semantics_of(notes),
             outdoor=self._outdoor_of(notes),
@@ -72,8 +76,7 @@ class FeatureValues:
         )
 
     def _height_of(self, what: str, rule: QgsExpression | None, notes: list[str]) -> float | None:
-        has_estimate = rule is self._height and self._estimate is not None
-        otherwise = tr("the estimate is used") if has_estimate else tr("the default is used")
+        otherwise = self._no_height if rule is self._height else self._default_is_used
         value = self._rules.value(what, rule, notes, otherwise=otherwise)
         if value is None or value == "":
             return None
@@ -107,7 +110,8 @@ class FeatureValues:
 
     def _semantics_of(self, notes: list[str]) -> str:
         value = self._rules.value("semantics", self._semantics, notes)
-        return self._layer if value is None else str(value)
+        # A city has few different labels, and keeps each once.
+        return self._layer if value is None else sys.intern(str(value))
 
     def _outdoor_of(self, notes: list[str]) -> bool:
         value = self._rules.value("outdoor", self._outdoor, notes)

@@ -14,14 +14,16 @@ from ...robot_bridge.roads.surfaces.surface import DRAWN, GENERATED, Surface
 from ...robot_bridge.sites.features import Area, Centreline
 from ..language import tr
 from .feature_filter import FeatureFilter
+from .feature_warnings import FeatureWarnings, SomeFeatures
 from .layer_rules import LayerRules
 from .obstacle_source import ObstacleSource
-from .parts import parts_of
+from .parts import Parts, parts_of
 from .placing import LayerPlacing, SitePlacing
 from .road_attributes import WIDTH_FIELDS, RoadExpressions, RoadRules
 from .roles import KEEPOUT, ROAD_CENTRELINE, ROAD_SURFACE
-from .shapes import SAGITTA_M, polygons_of, shapes_of
+from .shapes import NO_PLACE, SAGITTA_M, polygons_of, shapes_of
 from .soundness import lines_with_length
+from .wkb import rings_of
 
 DEFAULT_WIDTH_M = 3.5
 """The width of a road where none is known: one lane."""
@@ -35,14 +37,24 @@ Item = TypeVar("Item", bound="Centreline | Area | Surface")
 
 @dataclass
 class GroundReading(Generic[Item]):
-    """What was read, in the site frame, and warnings naming layer and feature.
+    """What was read, in the site frame, and what is to be warned of, by layer and feature.
 
     ``complete`` is false after a cancel.
     """
 
     items: list[Item] = field(default_factory=list)
-    warnings: list[str] = field(default_factory=list)
+    notes: FeatureWarnings = field(default_factory=FeatureWarnings)
     complete: bool = True
+
+    @property
+    def warnings(self) -> list[str]:
+        """The warnings, naming layer and feature."""
+        return self.notes.texts()
+
+    def note_layer(self, warnings: Sequence[str]) -> None:
+        """Add warnings about a layer as a whole."""
+        for warning in warnings:
+            self.notes.add_text(warning)
 
 
 def read_centrelines(
@@ -53,40 +65,57 @@ def read_centrelines(
     :raises LayerReadingError: when a layer has no known place on the site or an expression is not one.
     """
     reading: GroundReading[Centreline] = GroundReading()
+    reading.items += each_centreline(sources, site, default_width, reading, feedback)
+    return reading
+
+
+def each_centreline(
+    sources: Sequence[ObstacleSource],
+    site: SitePlacing,
+    default_width: float,
+    reading: GroundReading[Centreline],
+    feedback: QgsFeedback,
+) -> Iterator[Centreline]:
+    """Yield what :func:`read_centrelines` returns; ``reading`` gets the warnings and no items."""
     for source in sources:
-        unknown = _read_roads(_GroundLayer(source, site, ROAD_CENTRELINE), default_width, reading, feedback)
-        if unknown:
-            reading.warnings.append(
+        unknown = SomeFeatures()
+        layer = _GroundLayer(source, site, ROAD_CENTRELINE)
+        yield from _roads(layer, default_width, unknown, reading, feedback)
+        if unknown.count:
+            reading.notes.add_text(
                 tr(
                     "Layer {layer}: the width of {count} of its roads is not known and taken as "
                     "{width:g} m (feature {first} is the first)",
                     layer=source.name,
-                    count=len(unknown),
+                    count=unknown.count,
                     width=default_width,
-                    first=unknown[0],
+                    first=unknown.first[0],
                 )
             )
-    return reading
 
 
-def _read_roads(
-    layer: _GroundLayer, default_width: float, reading: GroundReading[Centreline], feedback: QgsFeedback
-) -> list[int]:
-    """Read the roads of one layer; return the features whose width is not known."""
+def _roads(
+    layer: _GroundLayer,
+    default_width: float,
+    unknown: SomeFeatures,
+    reading: GroundReading[Centreline],
+    feedback: QgsFeedback,
+) -> Iterator[Centreline]:
+    """Yield the roads of one layer; ``unknown`` gets the features whose width is not known."""
     given = layer.source.expressions.width or layer.rules.column(*WIDTH_FIELDS)
     width = layer.rules.rule("width", given)
     roads = RoadRules(layer.rules, RoadExpressions())
-    unknown: list[int] = []
     for feature, geometry in layer.features(reading, feedback):
         notes: list[str] = []
         metres = layer.rules.metres("width", width, notes)
         if metres is None:
-            unknown.append(feature.id())
+            unknown.add(feature.id())
         lines = lines_of(geometry, notes)
         label = layer.label(feature, notes)
         traffic = roads.traffic(notes)
-        reading.items += [
-            Centreline(
+        layer.note(feature, notes, reading)
+        for line in lines:
+            yield Centreline(
                 layer.placing.to_site(line),
                 metres or default_width,
                 label,
@@ -95,11 +124,7 @@ def _read_roads(
                 closed=traffic.closed,
                 level=traffic.level,
             )
-            for line in lines
-        ]
-        layer.note(feature, notes, reading)
-    reading.warnings += layer.rules.warnings
-    return unknown
+    reading.note_layer(layer.rules.warnings)
 
 
 def read_areas(
@@ -110,12 +135,23 @@ def read_areas(
     :raises LayerReadingError: as :func:`read_centrelines`.
     """
     reading: GroundReading[Area] = GroundReading()
+    reading.items += each_area(sources, site, role, reading, feedback)
+    return reading
+
+
+def each_area(
+    sources: Sequence[ObstacleSource],
+    site: SitePlacing,
+    role: str,
+    reading: GroundReading[Area],
+    feedback: QgsFeedback,
+) -> Iterator[Area]:
+    """Yield what :func:`read_areas` returns; ``reading`` gets the warnings and no items."""
     for source in sources:
         layer = _GroundLayer(source, site, role)
         for rings, label in _polygons(layer, reading, feedback):
-            reading.items.append(Area(rings, label))
-        reading.warnings += layer.rules.warnings
-    return reading
+            yield Area(rings, label)
+        reading.note_layer(layer.rules.warnings)
 
 
 def read_surfaces(
@@ -128,6 +164,17 @@ def read_surfaces(
     :raises LayerReadingError: as :func:`read_centrelines`.
     """
     reading: GroundReading[Surface] = GroundReading()
+    reading.items += each_surface(sources, site, reading, feedback)
+    return reading
+
+
+def each_surface(
+    sources: Sequence[ObstacleSource],
+    site: SitePlacing,
+    reading: GroundReading[Surface],
+    feedback: QgsFeedback,
+) -> Iterator[Surface]:
+    """Yield what :func:`read_surfaces` returns; ``reading`` gets the warnings and no items."""
     for source in sources:
         layer = _GroundLayer(source, site, ROAD_SURFACE)
         name, origin = (layer.rules.rule(field, layer.rules.column(field)) for field in ("name", "origin"))
@@ -135,9 +182,8 @@ def read_surfaces(
             notes: list[str] = []
             made = layer.rules.value("origin", origin, notes) == GENERATED
             called = str(layer.rules.value("name", name, notes) or "")
-            reading.items.append(Surface(rings, label, called, GENERATED if made else DRAWN))
-        reading.warnings += layer.rules.warnings
-    return reading
+            yield Surface(rings, label, called, GENERATED if made else DRAWN)
+        reading.note_layer(layer.rules.warnings)
 
 
 def _polygons(
@@ -196,21 +242,26 @@ class _GroundLayer:
 
     def note(self, feature: QgsFeature, notes: Sequence[str], reading: GroundReading) -> None:
         """Warn of ``feature``."""
-        reading.warnings += [
-            tr("Layer {layer}, feature {id}: {note}", layer=self.source.name, id=feature.id(), note=note)
-            for note in notes
-        ]
+        for note in notes:
+            reading.notes.add(self.source.name, feature.id(), note)
 
 
 def lines_of(geometry: QgsGeometry, notes: list[str]) -> list[np.ndarray]:
     """Return the lines of ``geometry`` that have a length, (n, 2) each; curves as chords."""
+    rings = rings_of(geometry.asWkb().data())
+    if rings is not None and not rings.closed:
+        plain = Parts([], [np.frombuffer(points, "<f8").reshape(-1, 2) for points in rings.points], [])
+        return _lines_in(plain, notes)
     if geometry.constGet().hasCurvedSegments():
         maximum = QgsAbstractGeometry.SegmentationToleranceType.MaximumDifference
         geometry = QgsGeometry(geometry.constGet().segmentize(SAGITTA_M, maximum))
-    parts = parts_of(geometry)
+    return _lines_in(parts_of(geometry), notes)
+
+
+def _lines_in(parts: Parts, notes: list[str]) -> list[np.ndarray]:
     notes += parts.notes
-    if not parts.finite:
-        notes.append(tr("has a coordinate that is no number; it is left out"))
+    if not parts.on_earth:
+        notes.append(NO_PLACE)
         return []
     if parts.polygons:
         notes.append(tr("has a polygon, which is no centreline; it is left out"))

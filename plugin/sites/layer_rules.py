@@ -4,16 +4,22 @@ from __future__ import annotations
 
 import math
 import re
+from collections.abc import Sequence
 from typing import Any
 
 from qgis.core import NULL, QgsExpression, QgsExpressionContext, QgsFeature, QgsFeatureRequest, QgsFields
 
 from ..language import tr
 from .errors import ExpressionError
+from .feature_tags import TaggedFields
 
+_PLAIN = (float, str, int)
 _FLAGS = {"1": True, "true": True, "yes": True, "0": False, "false": False, "no": False}
 DEFAULT_IS_USED = tr("the default is used")
 _METRES = re.compile(r"\s*([+-]?\d+(?:[.,]\d+)?)\s*m?\s*", re.ASCII)
+_NUMBER = r"(\d+(?:[.,]\d+)?)"
+_FEET = re.compile(rf"""\s*(?:{_NUMBER}\s*(?:'|ft|feet))?\s*(?:{_NUMBER}\s*(?:"|''|in))?\s*""", re.ASCII)
+FOOT_M, INCH_M = 0.3048, 0.0254
 
 
 class LayerRules:
@@ -21,9 +27,10 @@ class LayerRules:
 
     def __init__(self, layer: str, fields: QgsFields, context: QgsExpressionContext):
         self._layer = layer
-        self._fields = fields
+        self._tagged = TaggedFields(fields)
+        self._fields = self._tagged.fields
         self._context = QgsExpressionContext(context)
-        self._context.setFields(fields)
+        self._context.setFields(self._fields)
         self.warnings: list[str] = []
 
     def rule(self, what: str, text: str) -> QgsExpression | None:
@@ -76,7 +83,7 @@ class LayerRules:
 
     def at(self, feature: QgsFeature) -> None:
         """Let :meth:`value` speak of ``feature`` from now on."""
-        self._context.setFeature(feature)
+        self._context.setFeature(self._tagged.feature(feature))
 
     def value(
         self,
@@ -99,7 +106,8 @@ class LayerRules:
                 )
             )
             return None
-        return None if value is None or value == NULL else value
+        # Numbers and texts first: to compare them with NULL takes longer than to evaluate most expressions.
+        return None if value is None or (not isinstance(value, _PLAIN) and value == NULL) else value
 
     def metres(self, what: str, expression: QgsExpression | None, notes: list[str]) -> float | None:
         """Return the metres above 0 that ``expression`` says of the feature, None where it says none.
@@ -122,10 +130,24 @@ class LayerRules:
         return metres
 
     def column(self, *names: str) -> str:
-        """Return the expression that reads the first of the fields ``names`` that is there, else nothing."""
+        """Return the expression that reads the first of the fields ``names`` that is there, else nothing.
+
+        Fields of the layer come before tags in one of its fields.
+        """
+        return self.own_column(*names) or self._column(names)
+
+    def own_column(self, *names: str) -> str:
+        """Return as :meth:`column`, without the tags."""
+        return self._column(names, self._tagged.own_count)
+
+    def warn_of_layer(self, note: str) -> None:
+        """Add a warning about the layer as a whole."""
+        self.warnings.append(tr("Layer {layer}: {note}", layer=self._layer, note=note))
+
+    def _column(self, names: Sequence[str], count: int | None = None) -> str:
         for name in names:
             index = self._fields.lookupField(name)
-            if index >= 0:
+            if index >= 0 and (count is None or index < count):
                 return QgsExpression.quotedColumnRef(self._fields.at(index).name())
         return ""
 
@@ -156,12 +178,23 @@ def as_flag(value: Any) -> bool | None:
 
 
 def as_metres(value: Any) -> float | None:
-    """Return a number of metres, also from text such as ``12,5 m``."""
+    """Return a number of metres, also from text such as ``12,5 m``, ``25'8"`` and ``30 ft``."""
     if isinstance(value, str):
         match = _METRES.fullmatch(value)
-        return float(match[1].replace(",", ".")) if match else None
+        return _number(match[1]) if match else _from_feet(value)
     try:
         number = float(value)
     except (TypeError, ValueError):
         return None
     return number if math.isfinite(number) else None
+
+
+def _from_feet(text: str) -> float | None:
+    match = _FEET.fullmatch(text)
+    if match is None or (match[1] is None and match[2] is None):
+        return None
+    return _number(match[1] or "0") * FOOT_M + _number(match[2] or "0") * INCH_M
+
+
+def _number(text: str) -> float:
+    return float(text.replace(",", "."))

@@ -28,7 +28,8 @@ from .site_crs import stated_crs
 class ObstacleSource:
     """One obstacle layer, readable from any thread.
 
-    ``name`` is unique among the layers read together, so that ``name:id`` names one feature.
+    ``name`` is unique among the layers read together, so that ``name:id`` names one feature. ``provider`` and
+    ``uri`` say where its features are stored; there is no ``uri`` while it has changes that are not.
     """
 
     name: str
@@ -39,6 +40,8 @@ class ObstacleSource:
     features: QgsAbstractFeatureSource
     expressions: LayerExpressions
     context: QgsExpressionContext
+    provider: str = ""
+    uri: str = ""
 
 
 Setups = Callable[[QgsVectorLayer], LayerSetup]
@@ -112,6 +115,8 @@ def _source(
             **{name: getattr(own, name) or getattr(general, name) for name in EXPRESSIONS}
         ),
         context=scoped,
+        provider=layer.providerType(),
+        uri="" if layer.isEditable() else layer.source(),
     )
 
 
@@ -120,10 +125,27 @@ def plain_name(layer: QgsVectorLayer) -> str:
 
     That is what qgis_process calls ``campus.gpkg|layername=walls``: all layers of a file alike.
     """
+    inside, path = _source_of(layer)
+    called_as_file = bool(inside and path) and layer.name() == Path(path).stem
+    return inside if called_as_file else layer.name()
+
+
+def names_of(layer: QgsVectorLayer) -> list[str]:
+    """Return the names that the layer goes by: the one that is shown, and the one in its file or database.
+
+    QGIS's browser shows ``campus — walls`` for the layer ``walls`` of ``campus.gpkg``. A file of one layer
+    may say no name of it: then it is the file's.
+    """
+    inside, path = _source_of(layer)
+    return list(dict.fromkeys(name for name in (plain_name(layer), inside or Path(path).stem) if name))
+
+
+def _source_of(layer: QgsVectorLayer) -> tuple[str, str]:
+    """Return the layer's name in its source, and the source's path; each empty where there is none."""
     parts = QgsProviderRegistry.instance().decodeUri(layer.providerType(), layer.source())
-    inside, path = parts.get("layerName"), parts.get("path")
-    called_as_file = bool(inside and path) and layer.name() == Path(str(path)).stem
-    return str(inside) if called_as_file else layer.name()
+    # Of a database the name of the table is the layer's.
+    inside = parts.get("layerName") or parts.get("table") or ""
+    return str(inside), str(parts.get("path") or "")
 
 
 def _unique(names: Sequence[str]) -> list[str]:

@@ -10,6 +10,9 @@ from qgis.core import QgsAbstractGeometry, QgsCurve, QgsCurvePolygon, QgsGeometr
 
 from ..language import tr
 
+FARTHEST_M = 1e8
+"""Metres: more than twice around the Earth, and more than any projection has."""
+
 
 class Parts(NamedTuple):
     """Polygons as lists of (n, 2) rings, shell first; (n, 2) lines; a note for each part that is neither."""
@@ -19,9 +22,9 @@ class Parts(NamedTuple):
     notes: list[str]
 
     @property
-    def finite(self) -> bool:
-        """Whether every coordinate is a finite number."""
-        return all(np.isfinite(points).all() for points in [*self._rings(), *self.lines])
+    def on_earth(self) -> bool:
+        """Whether every coordinate is a number within :data:`FARTHEST_M` of the origin."""
+        return all((np.abs(points) <= FARTHEST_M).all() for points in [*self._rings(), *self.lines])
 
     @property
     def rings_have_points(self) -> bool:

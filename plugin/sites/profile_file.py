@@ -9,6 +9,7 @@ from typing import Any
 
 from qgis.core import QgsExpression
 
+from ...robot_bridge.sites.toml_reading import LARGEST, toml_tables
 from ..language import tr
 from .errors import ProfileError
 from .profile import GEOMETRIES, Profile, ProfileRule
@@ -19,6 +20,8 @@ SUFFIXES = (".toml", ".json")
 
 _RULE_KEYS = ("names", "fields", "geometry", "role", *EXPRESSIONS)
 _KEYS = ("name", "about", "layers")
+_LONGEST_EXPRESSION = 10_000
+"""characters."""
 
 
 def shipped_profiles() -> list[Path]:
@@ -68,7 +71,7 @@ def _content(file: Path) -> Mapping[str, Any]:
             tr("The profile {file} cannot be read: {error}.", file=file, error=error)
         ) from error
     try:
-        content = json.loads(text) if file.suffix.lower() == ".json" else _toml(text, file)
+        content = _json(text) if file.suffix.lower() == ".json" else _toml(text, file)
     except (ValueError, RecursionError) as error:
         kind = "JSON" if file.suffix.lower() == ".json" else "TOML"
         raise ProfileError(
@@ -84,9 +87,15 @@ def _content(file: Path) -> Mapping[str, Any]:
     return content
 
 
+def _json(text: str) -> Any:
+    if len(text) > LARGEST:
+        raise ValueError(f"it has {len(text)} characters, more than {LARGEST}")
+    return json.loads(text)
+
+
 def _toml(text: str, file: Path) -> Mapping[str, Any]:
     try:
-        import tomllib
+        return toml_tables(text)
     except ImportError as error:
         raise ProfileError(
             tr(
@@ -95,7 +104,6 @@ def _toml(text: str, file: Path) -> Mapping[str, Any]:
                 file=file,
             )
         ) from error
-    return tomllib.loads(text)
 
 
 def _rule(content: Any, key: str, file: Path) -> ProfileRule:
@@ -151,17 +159,24 @@ def _setup(content: Mapping[str, Any], key: str, file: Path) -> LayerSetup:
 
 def _expression(content: Mapping[str, Any], name: str, key: str, file: Path) -> str:
     text = " ".join(_text(content, name, f"{key}.", file).split())
-    if text and (parsed := QgsExpression(text)).hasParserError():
+    if text and (problem := _expression_problem(text)):
         raise ProfileError(
             tr(
                 "{file}: {key}.{name} is no QGIS expression: {error}. Correct it.",
                 file=file,
                 key=key,
                 name=name,
-                error=parsed.parserErrorString().strip(),
+                error=problem,
             )
         )
     return text
+
+
+def _expression_problem(text: str) -> str:
+    # QGIS goes down into each operator of a long sum, and crashes where there are some ten thousand.
+    if len(text) > _LONGEST_EXPRESSION:
+        return tr("it has {count} characters, more than {most}", count=len(text), most=_LONGEST_EXPRESSION)
+    return QgsExpression(text).parserErrorString().strip()
 
 
 def _text(content: Mapping[str, Any], name: str, prefix: str, file: Path) -> str:

@@ -5,6 +5,8 @@ from __future__ import annotations
 import re
 import shutil
 import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -12,6 +14,9 @@ from qgis.core import QgsFeedback
 
 from ...robot_bridge.sites.errors import SettingsError
 from ...robot_bridge.sites.geopackage import GEOPACKAGE_FILE
+from ...robot_bridge.sites.mapped.cache import CACHE_FILE
+from ...robot_bridge.sites.mapped.writing import CacheWriter
+from ...robot_bridge.sites.publication import cache_writer, put_cache, write_site_cache
 from ...robot_bridge.sites.settings import (
     SETTINGS_FILE,
     SiteSettings,
@@ -91,52 +96,93 @@ def next_version(settings: SiteSettings, folder: Path, *, replace_other: bool = 
     return replace(settings, version=1)
 
 
-def publish(folder: Path, content: SiteContent, settings: SiteSettings, feedback: QgsFeedback) -> bool:
-    """Publish ``content`` in ``folder``; return whether it was, false after a cancel.
+class NewPublication:
+    """A publication that is being made in ``partial``, a folder inside ``folder``."""
 
-    Other files in ``folder`` stay, and in ``site.toml`` the tables that the operator set. An earlier
-    publication is replaced only after the new one is complete. A gateway that reads between the replacement
-    of the two files refuses what it finds and reads no half site. To be called where no other publication
-    is under way, see ``publication_lock``.
+    def __init__(self, folder: Path, partial: Path) -> None:
+        self._folder, self._partial = folder, partial
+        self._cache: CacheWriter | None = None
 
-    :raises PublicationError: when a setting is wrong or the folder cannot be written.
+    def write_layers(self, content: SiteContent, settings: SiteSettings, feedback: QgsFeedback) -> bool:
+        """Write the layers, in the frame and with the stamp of ``settings``; return false after a cancel.
+
+        :raises PublicationError: when a layer cannot be written.
+        """
+        self._cache = cache = cache_writer(self._partial, settings.frame)
+        return write_site_file(self._partial / GEOPACKAGE_FILE, content, settings, cache, feedback)
+
+    def replace_earlier(self, settings: SiteSettings, feedback: QgsFeedback) -> bool:
+        """Put the layers that were written, and ``settings``, in the place of what is published.
+
+        To be called behind :meth:`write_layers`. Return false after a cancel. Other files in the folder stay,
+        and in ``site.toml`` the tables that the operator set. A gateway that reads between the replacement of
+        the files refuses what it finds and reads no half site.
+
+        :raises PublicationError: when a setting is wrong.
+        """
+        check_publication_values(settings, self._folder)
+        text = settings_text(settings, earlier_settings(self._folder, settings.id))
+        (self._partial / SETTINGS_FILE).write_text(text, encoding="utf-8")
+        if self._cache is not None:
+            write_site_cache(self._partial, settings, text, self._cache)
+        if feedback.isCanceled():
+            return False
+        _replace(self._partial, self._folder)
+        return True
+
+    def remove(self) -> None:
+        """Delete what was written and not put into the folder."""
+        if self._cache is not None:
+            self._cache.remove()
+        shutil.rmtree(self._partial, ignore_errors=True)
+
+
+@contextmanager
+def new_publication(folder: Path) -> Iterator[NewPublication]:
+    """Give a publication to be made in ``folder``; what is not complete at the end leaves nothing there.
+
+    To be called where no other publication is under way, see ``publication_lock``.
+
+    :raises PublicationError: when the folder cannot be written.
     """
-    check_publication_values(settings, folder)
     try:
         folder.mkdir(parents=True, exist_ok=True)
         for left_by_a_crash in folder.glob(f"{_PARTIAL}*"):
             shutil.rmtree(left_by_a_crash, ignore_errors=True)
         # A folder inside the target, so that both renames stay on one file system.
-        partial = Path(tempfile.mkdtemp(prefix=_PARTIAL, dir=folder))
+        publication = NewPublication(folder, Path(tempfile.mkdtemp(prefix=_PARTIAL, dir=folder)))
         try:
-            if not write_site_file(partial / GEOPACKAGE_FILE, content, settings, feedback):
-                return False
-            text = settings_text(settings, earlier_settings(folder, settings.id))
-            (partial / SETTINGS_FILE).write_text(text, encoding="utf-8")
-            if feedback.isCanceled():
-                return False
-            _replace(partial, folder)
+            yield publication
         finally:
-            shutil.rmtree(partial, ignore_errors=True)
+            publication.remove()
     except OSError as error:
         raise unwritable(folder, error.strerror or str(error)) from error
-    return True
 
 
 def _replace(partial: Path, folder: Path) -> None:
-    """Put both files of ``partial`` in the place of those in ``folder``, or leave these as they were."""
-    layers, earlier = folder / GEOPACKAGE_FILE, partial / "earlier.gpkg"
+    """Put the files of ``partial`` in the place of those in ``folder``, or leave these as they were."""
+    layers, cache = folder / GEOPACKAGE_FILE, folder / CACHE_FILE
+    earlier, earlier_cache = partial / "earlier.gpkg", partial / "earlier.cache"
     if layers.exists():
         shutil.copyfile(layers, earlier)
-    (partial / GEOPACKAGE_FILE).replace(layers)
+    if cache.exists():
+        # A gateway that looks meanwhile does without.
+        cache.replace(earlier_cache)
     try:
+        put_cache(partial, folder)
+        (partial / GEOPACKAGE_FILE).replace(layers)
         (partial / SETTINGS_FILE).replace(folder / SETTINGS_FILE)
     except OSError:
-        if earlier.exists():
-            earlier.replace(layers)
-        else:
-            layers.unlink()
+        _put_back(earlier, layers)
+        _put_back(earlier_cache, cache)
         raise
+
+
+def _put_back(earlier: Path, file: Path) -> None:
+    if earlier.exists():
+        earlier.replace(file)
+    else:
+        file.unlink(missing_ok=True)
 
 
 def check_publication_values(settings: SiteSettings, folder: Path) -> None:

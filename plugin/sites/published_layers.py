@@ -175,7 +175,7 @@ def _site_name(folder: Path) -> str:
         value = value_text(text, "site", key) or ""
         try:
             return str(json.loads(value))
-        except ValueError:
+        except (ValueError, RecursionError):
             if len(value) > 2:
                 return value[1:-1]
     raise PublicationError(

@@ -2,45 +2,57 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
-from qgis.core import QgsFeature, QgsFeedback, QgsGeometry, QgsRectangle, QgsWkbTypes
+from qgis.core import (
+    QgsFeature,
+    QgsFeatureRequest,
+    QgsFeedback,
+    QgsGeometry,
+    QgsWkbTypes,
+)
 
 from ...robot_bridge.robotmap.outlines import OutlineRow, Outlines
 from ..language import tr, tr_count
 from .feature_filter import FeatureFilter
 from .feature_values import FeatureValues
+from .feature_warnings import FeatureWarnings
 from .layer_rules import LayerRules
+from .missing_geometry import without_geometry
 from .obstacle_source import ObstacleSource
+from .outline_batch import OutlineBatch, ReadFeature
 from .placing import Bounds, LayerPlacing, PlacingError, SitePlacing, widened
 from .posts import REACH_M, Posts
-from .ramps import normal_extra
 from .roles import OBSTACLE_ROLES, RAMP, STAIRS
-from .shapes import Shape, Shapes, shapes_of
+from .shapes import Shape, Shapes
+from .wkb import Rings, rings_of
 
-NAMED = 5
-"""How many features a warning about a whole layer names."""
-
-ESTIMATED = {"h": "est"}
-"""The extra of an obstacle whose height nobody knows."""
+TOGETHER = 2000
+"""Features made into outlines at a time: few enough to keep, enough to be quick."""
+NO_GEOMETRY = tr("has no geometry; it is left out")
 
 
 @dataclass
 class Reading:
     """What was read: outlines in the site frame, warnings naming layer and feature.
 
-    Rows whose height is the default say so in their ``ext``. ``complete`` is false after a cancel.
+    Outlines whose height is the default say so in their ``ext``. ``complete`` is false after a cancel.
     """
 
-    rows: list[OutlineRow] = field(default_factory=list)
+    parts: list[Outlines] = field(default_factory=list)
     warnings: list[str] = field(default_factory=list)
     complete: bool = True
 
+    @property
+    def rows(self) -> list[OutlineRow]:
+        """The outlines one by one, in the order of layers and features."""
+        return [row for part in self.parts for row in part.rows()]
+
     def outlines(self) -> Outlines:
         """Return the outlines in the order of layers and features."""
-        return Outlines.from_rows(self.rows)
+        return Outlines.joined(self.parts)
 
 
 def read_outlines(
@@ -58,35 +70,68 @@ def read_outlines(
 
     :raises LayerReadingError: when a layer has no known place on the site or an expression is not one.
     """
-    readers = [_LayerReader(source, site, window, default_height) for source in sources]
-    total = max(sum(max(source.count, 0) for source in sources), 1)
-    reading, done = Reading(), 0
-    for reader in readers:
-        for feature in reader.source.features.getFeatures():
-            if feedback.isCanceled():
-                reading.complete = False
-                return reading
-            reader.read(feature, reading)
-            done += 1
-            feedback.setProgress(90.0 * done / total)
-        reader.finish(reading)
-    return reading
+    reader = ObstacleReader(sources, site, window, default_height)
+    parts = list(reader.parts(feedback))
+    return Reading(parts, reader.warnings.texts(), reader.complete)
 
 
 def check_sources(sources: Sequence[ObstacleSource], site: SitePlacing) -> None:
     """Raise :class:`LayerReadingError` for what :func:`read_outlines` would refuse, without reading."""
-    for source in sources:
-        _LayerReader(source, site, (0.0, 0.0, 1.0, 1.0), 0.0)
+    ObstacleReader(sources, site, (0.0, 0.0, 1.0, 1.0), 0.0)
+
+
+class ObstacleReader:
+    """Reads as :func:`read_outlines`, and keeps nothing of what it has read but ``warnings``.
+
+    ``complete`` is false after a cancel.
+    """
+
+    def __init__(
+        self,
+        sources: Sequence[ObstacleSource],
+        site: SitePlacing,
+        window: Bounds | None,
+        default_height: float,
+    ) -> None:
+        self.warnings = FeatureWarnings()
+        self.complete = True
+        self._layers = [
+            _LayerReader(source, site, window, default_height, self.warnings) for source in sources
+        ]
+
+    def parts(self, feedback: QgsFeedback) -> Iterator[Outlines]:
+        """Yield the outlines, some features' at a time, in the order of layers and features."""
+        total = max(sum(max(layer.source.count, 0) for layer in self._layers), 1)
+        step, done = max(total // 1000, 1), 0
+        for layer in self._layers:
+            for feature in layer.features():
+                if feedback.isCanceled():
+                    self.complete = False
+                    return
+                layer.read(feature)
+                done += 1
+                if done % step == 0:
+                    feedback.setProgress(90.0 * done / total)
+                if layer.waiting >= TOGETHER:
+                    yield from layer.outlines()
+            yield from layer.outlines()
+            layer.finish()
 
 
 class _LayerReader:
-    """Reads the features of one layer into a :class:`Reading`."""
+    """Reads the features of one layer, and keeps them until their outlines are asked for."""
 
     def __init__(
-        self, source: ObstacleSource, site: SitePlacing, window: Bounds | None, default_height: float
+        self,
+        source: ObstacleSource,
+        site: SitePlacing,
+        window: Bounds | None,
+        default_height: float,
+        warnings: FeatureWarnings,
     ):
         self.source = source
         self._default_height = default_height
+        self._warnings = warnings
         self._filter = FeatureFilter(source.name, source.fields, source.expressions.filter, source.context)
         self._rules = LayerRules(source.name, source.fields, source.context)
         self._values = FeatureValues(
@@ -94,70 +139,100 @@ class _LayerReader:
         )
         self._posts = Posts(self._rules, source.expressions)
         self._placing: LayerPlacing = site.of_layer(source.name, source.crs)
+        # Ramps need their corners' heights, stairs their risers in order.
+        self._is_plain = source.role not in (RAMP, STAIRS)
         self._window = window
         self._area = self._placing.area_of(window) if window else None
         self._around = self._placing.area_of(widened(window, REACH_M)) if window else None
-        self._unknown: list[int] = []
-        self._odd_for_role: list[int] = []
+        self._batch = OutlineBatch(source.name, source.role, self._placing, warnings)
+        self._read: list[ReadFeature] = []
 
-    def read(self, feature: QgsFeature, reading: Reading) -> None:
-        """Add the outlines of ``feature`` if it counts, or a warning why there are none."""
+    @property
+    def waiting(self) -> int:
+        """How many features are read whose outlines nobody has asked for."""
+        return len(self._read)
+
+    def features(self) -> Iterator[QgsFeature]:
+        """Yield the features that may touch the window, and those that are nowhere.
+
+        By the layer's own index: most of a city is nowhere near a window. All features where the window has
+        no place in the layer.
+        """
+        request = QgsFeatureRequest()
+        if self._around is not None:
+            yield from without_geometry(self.source)
+            request.setFilterRect(self._around)
+        yield from self.source.features.getFeatures(request)
+
+    def read(self, feature: QgsFeature) -> None:
+        """Keep ``feature`` if it counts, or a warning why there is nothing of it."""
         doubts: list[str] = []
         if not self._filter.keeps(feature, doubts):
-            reading.warnings.extend(self._named(feature, doubt) for doubt in doubts)
+            self._warn(feature, doubts)
             return
         geometry = feature.geometry()
         if geometry.isNull() or geometry.isEmpty():
-            reading.warnings.append(self._named(feature, tr("has no geometry; it is left out")))
+            self._warn(feature, [NO_GEOMETRY])
             return
-        is_points = geometry.type() == QgsWkbTypes.GeometryType.PointGeometry
-        if not _may_touch(geometry.boundingBox(), self._around if is_points else self._area):
+        if self._area is not None and not self._may_touch(geometry):
             return
         try:
             metres = self._placing.to_metres(geometry)
-            shapes, notes = (
-                self._posts_in(feature, metres) if is_points else shapes_of(metres, self.source.role)
-            )
         except PlacingError as error:
-            shapes, notes = (
-                [],
-                [tr("cannot be transformed into the site's CRS ({error}); it is left out", error=error)],
-            )
-        if shapes:
-            notes = [*notes, *self._add(feature, shapes, reading)]
-        reading.warnings.extend(self._named(feature, note) for note in notes)
+            note = tr("cannot be transformed into the site's CRS ({error}); it is left out", error=error)
+            self._warn(feature, [note])
+            return
+        values = self._values.of(feature)
+        rings, shapes = rings_of(metres.asWkb().data()) if self._is_plain else None, None
+        if rings is None and _is_points(geometry):
+            shapes, notes = self._posts_in(feature, metres)
+            rings = _rings(shapes)
+            values = values._replace(notes=[*notes, *(values.notes if shapes else [])])
+        self._read.append(ReadFeature(feature.id(), metres, rings, shapes, values))
 
-    def finish(self, reading: Reading) -> None:
+    def outlines(self) -> Iterator[Outlines]:
+        """Yield the outlines of the features that wait."""
+        read, self._read = self._read, []
+        yield from self._batch.outlines(read)
+
+    def finish(self) -> None:
         """Add the warnings that are about the layer as a whole."""
         name, role = self.source.name, self.source.role
-        reading.warnings.extend(self._rules.warnings)
+        for warning in self._rules.warnings:
+            self._warnings.add_text(warning)
         if role and role not in OBSTACLE_ROLES:
-            reading.warnings.append(
+            self._warnings.add_text(
                 tr("Layer {name}: its role is {role}, yet it is exported as obstacles", name=name, role=role)
             )
-        if self._unknown:
-            reading.warnings.append(
+        if self._batch.unknown.count:
+            self._warnings.add_text(
                 tr_count(
-                    len(self._unknown),
+                    self._batch.unknown.count,
                     "Layer {name}: 1 height is not known and estimated as {height:g} m ({features})",
                     "Layer {name}: %n heights are not known and estimated as {height:g} m ({features})",
                     name=name,
                     height=self._default_height,
-                    features=_features(self._unknown),
+                    features=self._batch.unknown,
                 )
             )
-        if self._odd_for_role:
+        if self._batch.odd_for_role.count:
             wanted = tr("lines, one a riser") if role == STAIRS else tr("polygons")
-            reading.warnings.append(
+            self._warnings.add_text(
                 tr(
                     "Layer {name}: its role {role} wants {wanted}; other features are exported as plain "
                     "obstacles ({features})",
                     name=name,
                     role=role,
                     wanted=wanted,
-                    features=_features(self._odd_for_role),
+                    features=self._batch.odd_for_role,
                 )
             )
+
+    def _may_touch(self, geometry: QgsGeometry) -> bool:
+        """Tell whether a feature of ``geometry`` must be looked at, where there is a window."""
+        area = self._around if _is_points(geometry) else self._area
+        box = geometry.boundingBox()
+        return area is None or box.isNull() or not box.isFinite() or area.intersects(box)
 
     def _posts_in(self, feature: QgsFeature, points: QgsGeometry) -> Shapes:
         """Return the shapes of ``points``; nothing where none of them reaches into the window."""
@@ -173,59 +248,14 @@ class _LayerReader:
             (points.max(axis=0) >= (x_min, y_min)).all() and (points.min(axis=0) <= (x_max, y_max)).all()
         )
 
-    def _add(self, feature: QgsFeature, shapes: Sequence[Shape], reading: Reading) -> list[str]:
-        source = f"{self.source.name}:{feature.id()}"
-        values = self._values.of(feature)
-        if values.unknown:
-            self._unknown.append(feature.id())
-        if any(_odd(shape, self.source.role) for shape in shapes):
-            self._odd_for_role.append(feature.id())
-        notes, ext = list(values.notes), {}
-        for shape in shapes:
-            points = self._placing.to_site(shape.points)
-            if not shape.courtyard:
-                # A courtyard is in the surface of the ring around it and says the same.
-                ext = _extras(shape, points, values.estimated, notes)
-            reading.rows.append(
-                OutlineRow(
-                    points=points,
-                    shape_type=shape.shape_type,
-                    height=values.height,
-                    semantics=values.semantics,
-                    source=source,
-                    courtyard=shape.courtyard,
-                    outdoor=values.outdoor,
-                    base=values.base,
-                    ext=ext,
-                )
-            )
-        return notes
-
-    def _named(self, feature: QgsFeature, note: str) -> str:
-        return tr("Layer {layer}, feature {id}: {note}", layer=self.source.name, id=feature.id(), note=note)
+    def _warn(self, feature: QgsFeature, notes: Sequence[str]) -> None:
+        for note in notes:
+            self._warnings.add(self.source.name, feature.id(), note)
 
 
-def _may_touch(box: QgsRectangle, area: QgsRectangle | None) -> bool:
-    """Tell whether a feature with this bounding box must be looked at."""
-    if area is None or box.isNull() or not box.isFinite():
-        return True
-    return area.intersects(box)
+def _rings(posts: Sequence[Shape]) -> Rings:
+    return Rings([post.points.tobytes() for post in posts], [False] * len(posts), True)
 
 
-def _extras(shape: Shape, points: np.ndarray, estimated: bool, notes: list[str]) -> dict[str, str]:
-    """Return what else ``shape`` has to say, whose ``points`` are (n, 2) in the site frame."""
-    if shape.z is not None:
-        return normal_extra(points, shape.z, notes)
-    return dict(ESTIMATED) if estimated else {}
-
-
-def _odd(shape: Shape, role: str) -> bool:
-    """Tell whether a layer of ``role`` should not hold this shape."""
-    return (role == STAIRS and shape.closed) or (role == RAMP and not shape.closed)
-
-
-def _features(ids: Sequence[int]) -> str:
-    shown = ", ".join(str(number) for number in ids[:NAMED])
-    if len(ids) > NAMED:
-        return tr("features {shown} and {more} more", shown=shown, more=len(ids) - NAMED)
-    return tr("features {shown}", shown=shown) if len(ids) > 1 else tr("feature {shown}", shown=shown)
+def _is_points(geometry: QgsGeometry) -> bool:
+    return bool(geometry.type() == QgsWkbTypes.GeometryType.PointGeometry)

@@ -22,6 +22,9 @@ _MPH = re.compile(r"\s*(\d+(?:[.,]\d+)?)\s*mph\s*", re.ASCII)
 
 WIDTH_FIELDS = ("width_m", "width")
 DIRECTION_FIELDS = ("direction", "oneway", "one_way")
+DIRECTION_TAGS = ("oneway",)
+"""Of OpenStreetMap's tags; its ``direction`` says where a sign or a bench faces."""
+ROUNDABOUTS = ("roundabout", "circular")
 SPEED_FIELDS = ("speed_ms",)
 KMH_FIELDS = ("maxspeed", "speed_limit")
 LEVEL_FIELDS = ("level", "layer")
@@ -69,7 +72,8 @@ class RoadRules:
         column = rules.column
         self._width = self._rule("width", given.width, *WIDTH_FIELDS)
         self._surface = self._rule("surface", given.surface, "surface")
-        self._direction = self._rule("direction", given.direction, *DIRECTION_FIELDS)
+        self._direction = self._direction_rule(given.direction)
+        self._junction = None if given.direction else rules.rule("direction", column("junction"))
         self._speed = self._rule("speed", given.speed, *SPEED_FIELDS)
         self._kmh = None if self._speed else rules.rule("speed", column(*KMH_FIELDS))
         self._closed = self._rule("closed", given.closed, "closed")
@@ -102,6 +106,19 @@ class RoadRules:
             return self._rules.needed_rule(what, given)
         return self._rules.rule(what, self._rules.column(*fields))
 
+    def _direction_rule(self, given: str) -> QgsExpression | None:
+        if given.strip():
+            return self._rules.needed_rule("direction", given)
+        column = self._rules.own_column(*DIRECTION_FIELDS) or self._rules.column(*DIRECTION_TAGS)
+        if not column:
+            self._rules.warn_of_layer(
+                tr(
+                    "none of its fields direction, oneway, one_way and other_tags is there to tell one-way "
+                    "roads; all are taken as driven both ways"
+                )
+            )
+        return self._rules.rule("direction", column)
+
     def _value(self, what: str, rule: QgsExpression | None, notes: list[str]) -> Any:
         value = self._rules.value(what, rule, notes)
         return None if value is None or str(value).strip() == "" else value
@@ -109,7 +126,9 @@ class RoadRules:
     def _direction_of(self, notes: list[str]) -> int:
         value = self._value("direction", self._direction, notes)
         if value is None:
-            return BOTH
+            junction = self._value("direction", self._junction, notes)
+            # OpenStreetMap: a roundabout is one-way where it does not say otherwise.
+            return FORWARD if junction in ROUNDABOUTS else BOTH
         direction = _DIRECTIONS.get(str(value).strip().lower())
         if direction is None:
             notes.append(
@@ -151,8 +170,8 @@ class RoadRules:
             return round(number)
         for level, rule in self._structures:
             there = self._value("level", rule, notes)
-            # Kinds of bridges and tunnels are many; none is called no.
-            if there is not None and as_flag(there) is not False:
+            # Kinds of bridges and tunnels are many; none is called no, or F as in Geofabrik's shapefiles.
+            if there is not None and as_flag(there) is not False and str(there).strip() not in ("F", "f"):
                 return level
         return 0
 

@@ -18,7 +18,10 @@ from .soundness import lines_with_length, risers_of, sound_polygons
 SAGITTA_M = 0.02
 """How far a chord may be from the curve it stands for (design, section 6)."""
 
-NO_PLACE = tr("has a coordinate that is no number or has no place in the site's CRS; it is left out")
+NO_PLACE = tr(
+    "has a coordinate that is no number, has no place in the site's CRS or lies beyond 100 000 km; "
+    "it is left out"
+)
 
 
 class Shape(NamedTuple):
@@ -57,7 +60,7 @@ def shapes_of(geometry: QgsGeometry, role: str = "") -> Shapes:
         maximum = QgsAbstractGeometry.SegmentationToleranceType.MaximumDifference
         geometry = QgsGeometry(geometry.constGet().segmentize(SAGITTA_M, maximum))
     parts = parts_of(geometry)
-    if not parts.finite:
+    if not parts.on_earth:
         return Shapes([], [NO_PLACE])
     # Valid as a whole is the rule and quickly told; GEOS takes a ring without points for valid, too.
     sound = parts.rings_have_points and geometry.isGeosValid()

@@ -39,7 +39,9 @@ def lines_with_length(lines: Sequence[np.ndarray]) -> tuple[list[np.ndarray], li
     for number, line in enumerate(lines, 1):
         moves = np.ones(len(line), dtype=bool)
         moves[1:] = (line[1:] != line[:-1]).any(axis=1)
-        if moves.sum() < 2:
+        if len(line) > 1 and moves.all():
+            kept.append(line)
+        elif moves.sum() < 2:
             notes.append(
                 tr("line {number} has fewer than two different points; it is left out", number=number)
             )

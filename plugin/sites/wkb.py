@@ -1,37 +1,80 @@
-"""Plain arrays as well-known binary, which every writer of geometries takes (OGC 06-103r4, section 8)."""
+"""Plain arrays to and from well-known binary, which geometry libraries speak (OGC 06-103r4, section 8)."""
 
 from __future__ import annotations
 
 import struct
 from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 
-_LINE, _POLYGON, _MULTI_LINE = 2, 3, 5
+_LINE, _POLYGON, _MULTI_LINE, _MULTI_POLYGON = 2, 3, 5, 6
+_HEAD, _COUNT = struct.Struct("<BI"), struct.Struct("<I")
+_BEFORE_POINTS = _HEAD.size + _COUNT.size
+_POINT_BYTES = (16, 24, 24, 32)
+"""Bytes of a point without Z and M, with Z, with M, and with both: a thousand between their kinds."""
+_OLD_Z = 0x80000000
+"""What a kind with Z has besides itself in older files."""
 
 
-def line_wkb(points: np.ndarray) -> bytes:
-    """Return the (n, 2) ``points`` as a line string."""
-    return _head(_LINE) + _points(points)
+class Rings(NamedTuple):
+    """The rings or lines of one geometry: ``points`` holds x and y of each as bytes of float64.
+
+    ``inner`` says of each whether it is a hole of the ring before it; lines are not ``closed``.
+    """
+
+    points: list[bytes]
+    inner: list[bool]
+    closed: bool
 
 
-def multi_line_wkb(lines: Sequence[np.ndarray]) -> bytes:
-    """Return (n, 2) arrays as one multi line string."""
-    return _head(_MULTI_LINE) + _count(lines) + b"".join(line_wkb(line) for line in lines)
+def rings_of(wkb: bytes) -> Rings | None:
+    """Return what a line, a polygon or several of them are made of; Z and M are dropped.
+
+    None for everything else: points, curves, collections, and big-endian ones.
+    """
+    order, kind = _HEAD.unpack_from(wkb)
+    dimensions, kind = (1, kind - _OLD_Z) if kind >= _OLD_Z else divmod(kind, 1000)
+    closed = kind in (_POLYGON, _MULTI_POLYGON)
+    if order != 1 or dimensions > 3 or not (closed or kind in (_LINE, _MULTI_LINE)):
+        return None
+    size = _POINT_BYTES[dimensions]
+    parts, at = 1, 0
+    if kind in (_MULTI_LINE, _MULTI_POLYGON):
+        (parts,), at = _COUNT.unpack_from(wkb, _HEAD.size), _BEFORE_POINTS
+    points: list[bytes] = []
+    inner: list[bool] = []
+    for _ in range(parts):
+        count = 1
+        if closed:
+            (count,), at = _COUNT.unpack_from(wkb, at + _HEAD.size), at + _BEFORE_POINTS
+        else:
+            at += _HEAD.size
+        for k in range(count):
+            start = at + _COUNT.size
+            at = start + size * _COUNT.unpack_from(wkb, at)[0]
+            points.append(wkb[start:at])
+            inner.append(k > 0)
+    return Rings(points if size == _POINT_BYTES[0] else [_flat(one, size) for one in points], inner, closed)
 
 
-def polygon_wkb(rings: Sequence[np.ndarray]) -> bytes:
-    """Return closed (n, 2) rings, the outer one first, as a polygon."""
-    return _head(_POLYGON) + _count(rings) + b"".join(_points(ring) for ring in rings)
+def _flat(points: bytes, size: int) -> bytes:
+    return np.frombuffer(points, "<f8").reshape(-1, size // 8)[:, :2].tobytes()
 
 
-def _head(kind: int) -> bytes:
-    return struct.pack("<BI", 1, kind)
+def line_wkb(points: bytes) -> bytes:
+    """Return a line string; ``points`` is x and y of each as bytes of float64."""
+    return _HEAD.pack(1, _LINE) + _COUNT.pack(len(points) // _POINT_BYTES[0]) + points
 
 
-def _count(items: Sequence[np.ndarray]) -> bytes:
-    return struct.pack("<I", len(items))
+def multi_line_wkb(lines: Sequence[bytes]) -> bytes:
+    """Return lines, as :func:`line_wkb` takes each, as one multi line string."""
+    return _HEAD.pack(1, _MULTI_LINE) + _COUNT.pack(len(lines)) + b"".join(map(line_wkb, lines))
 
 
-def _points(points: np.ndarray) -> bytes:
-    return _count(points) + np.ascontiguousarray(points, dtype="<f8").tobytes()
+def polygon_wkb(rings: Sequence[bytes]) -> bytes:
+    """Return closed rings, the outer one first, as a polygon; each as :func:`line_wkb` takes a line."""
+    pieces = [_HEAD.pack(1, _POLYGON), _COUNT.pack(len(rings))]
+    for ring in rings:
+        pieces += (_COUNT.pack(len(ring) // _POINT_BYTES[0]), ring)
+    return b"".join(pieces)

@@ -12,6 +12,8 @@ from ..errors import AddressError
 from ..language import tr
 
 DEFAULT_URL = "ws://127.0.0.1:8765/desk"
+DESK_PATH, ROBOTS_PATH = "/desk", "/robot"
+"""The gateway's paths; a proxy may have put others in front of them."""
 
 
 @dataclass(frozen=True)
@@ -103,6 +105,15 @@ def check_address(url: str) -> str:
                 "The gateway's URL {url} has port 0, where nothing can listen. {example}",
                 url=url,
                 example=example,
+            )
+        )
+    if parts.path.rstrip("/").endswith(ROBOTS_PATH):
+        desk = url.replace(parts.path, parts.path.rstrip("/").removesuffix(ROBOTS_PATH) + DESK_PATH)
+        raise AddressError(
+            tr(
+                "{url} is where robots connect; operators connect to {desk}. Write that instead.",
+                url=url,
+                desk=desk,
             )
         )
     return url

@@ -14,10 +14,14 @@ from typing import Any
 from ...robot_bridge.messages import (
     CommandReport,
     EmergencyReport,
+    Geofence,
+    Links,
+    Nearness,
     ObservationReport,
     PlacementReport,
     QueueReport,
     SiteReport,
+    Suspensions,
 )
 from .observation_news import ObservationNews
 from .outbox import Answer
@@ -34,17 +38,22 @@ MOST_COMMANDS = 1000
 class News:
     """What arrived since the last look; ``site`` is set when a gateway said which site it serves.
 
-    ``is_greeting`` when it said so on a new link: it may be another gateway than before.
+    ``greeting_of`` names the database of the gateway that said so on a new link, empty where it does not say:
+    it may be another gateway than before. None on a link that goes on.
     """
 
     link: LinkStatus
     site: SiteReport | None = None
-    is_greeting: bool = False
+    greeting_of: str | None = None
     robots: Sightings = field(default_factory=Sightings)
     commands: dict[str, CommandReport] = field(default_factory=dict)
     answers: list[Answer] = field(default_factory=list)
     emergency: EmergencyReport | None = None
+    suspensions: Suspensions | None = None
+    links: Links | None = None
     roads: RoadNews = field(default_factory=RoadNews)
+    geofence: Geofence | None = None
+    nearness: Nearness | None = None
     queues: QueueNews = field(default_factory=QueueNews)
     placements: PlacementNews = field(default_factory=PlacementNews)
     observations: ObservationNews = field(default_factory=ObservationNews)
@@ -62,11 +71,12 @@ class Mailbox:
         with self._lock:
             self._news.link = link
 
-    def put_site(self, site: SiteReport, *, is_greeting: bool = False) -> None:
-        """Leave the site that the gateway serves; ``is_greeting`` where it is the first word on a link."""
+    def put_site(self, site: SiteReport, *, greeting_of: str | None = None) -> None:
+        """Leave the site that the gateway serves; ``greeting_of`` its database as first word on a link."""
         with self._lock:
             self._news.site = site
-            self._news.is_greeting |= is_greeting
+            if greeting_of is not None:
+                self._news.greeting_of = greeting_of
 
     def put_robots(self, robots: Sightings) -> None:
         """Leave what was told of robots; it replaces what is older of the same robots."""
@@ -91,10 +101,30 @@ class Mailbox:
         with self._lock:
             self._news.emergency = report
 
+    def put_suspensions(self, report: Suspensions) -> None:
+        """Leave which robots' accounts are locked."""
+        with self._lock:
+            self._news.suspensions = report
+
+    def put_links(self, report: Links) -> None:
+        """Leave how links to robots of another kind are."""
+        with self._lock:
+            self._news.links = report
+
     def put_roads(self, method: str, params: dict[str, Any]) -> None:
         """Leave what was told of roads."""
         with self._lock:
             self._news.roads.take(method, params)
+
+    def put_geofence(self, report: Geofence) -> None:
+        """Leave which robots are in keepouts and at obstacles."""
+        with self._lock:
+            self._news.geofence = report
+
+    def put_nearness(self, report: Nearness) -> None:
+        """Leave who is near which robot."""
+        with self._lock:
+            self._news.nearness = report
 
     def put_queue(self, report: QueueReport) -> None:
         """Leave how a robot's queue stands."""

@@ -3,20 +3,12 @@
 
 from __future__ import annotations
 
-import json
-
 import numpy as np
 import numpy.typing as npt
 
-from ...robot_bridge.messages import (
-    POSITION_ALWAYS,
-    POSITION_FLAGS,
-    POSITION_HEAD,
-    POSITION_NUMBERS,
-    POSITION_TEXTS,
-    POSITION_VALUE,
-)
-from .absence import absence, texts
+from ...robot_bridge.core.position_frame import split_frame
+from ...robot_bridge.messages import POSITION_ALWAYS, POSITION_FLAGS, POSITION_NUMBERS, POSITION_TEXTS
+from .absence import absence
 from .sightings import AT, COLUMNS, STATES, Sightings
 
 _STATE_CODES = {state.value: code for code, state in enumerate(STATES)}
@@ -29,15 +21,7 @@ def sightings_in(frame: bytes, received: float) -> Sightings:
     :raises ValueError: when it is not such a frame, or something in it is not what it has to be.
     :raises KeyError: when the head lacks something.
     """
-    begin = POSITION_HEAD + int.from_bytes(frame[:POSITION_HEAD], "little")
-    head = json.loads(frame[POSITION_HEAD:begin])
-    if not isinstance(head, dict) or head.get("method") != "positions":
-        raise ValueError("a binary frame without the head of positions")
-    params = head["params"]
-    robots, columns, words = (texts(name, params[name]) for name in ("robots", "columns", "words"))
-    if len(set(robots)) < len(robots) or len(set(columns)) < len(columns):
-        raise ValueError("a robot or a column that is named twice")
-    table = np.frombuffer(frame, dtype=POSITION_VALUE, offset=begin).reshape(len(columns), len(robots))
+    params, robots, columns, words, table = split_frame(frame)
     missing = [name for name in POSITION_ALWAYS if name not in columns]
     if missing:
         raise KeyError(missing[0])

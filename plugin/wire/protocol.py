@@ -8,7 +8,9 @@ import math
 from collections.abc import Callable
 from typing import Any
 
+from ...robot_bridge.core.decoding import DOCUMENT, check_bounds
 from ...robot_bridge.messages import (
+    LONGEST_OPERATOR,
     PROTOCOL_VERSION,
     ClearEmergencyStop,
     EmergencyStop,
@@ -20,14 +22,20 @@ from ...robot_bridge.messages import (
     SiteReport,
     Subscribe,
     emergency_report,
+    geofence_report,
+    links_report,
+    nearness_report,
     observation_report,
+    one_line,
     placement_report,
     queue_report,
     site_report,
+    suspensions_report,
     to_json,
 )
 from ..errors import LinkError
 from ..language import tr
+from .addresses import DEFAULT_URL
 from .command_news import METHOD as COMMAND_NEWS
 from .command_news import command_in, commands_in
 from .mailbox import Mailbox
@@ -44,6 +52,8 @@ from .road_news import METHODS as ROAD_NEWS
 
 Clock = Callable[[], float]
 
+UNKNOWN_METHOD = -32601
+"""The error code of JSON-RPC for what is not known there: robots' addresses know no greeting."""
 OUTDATED = -32006
 OVERRIDABLE = -32007
 """The error code of a change to what is not as it was seen; the newer state comes with it."""
@@ -76,7 +86,9 @@ class DeskProtocol:
         """Return the first texts to send on a new link."""
         self._asked.clear()
         self.ready = False
-        return [self._request(Order("hello", Hello.method, to_json(Hello(self._operator))))]
+        # A name that the gateway would refuse must not keep its operator away.
+        name = one_line(self._operator.strip(), LONGEST_OPERATOR)
+        return [self._request(Order("hello", Hello.method, to_json(Hello(name))))]
 
     def submit(self, order: Order) -> list[str]:
         """Return the texts to send now for a new order: none while the link is not ready."""
@@ -106,6 +118,8 @@ class DeskProtocol:
             if isinstance(text, bytes):
                 self._mailbox.put_robots(sightings_in(text, self._clock()))
                 return []
+            # Numbers that are none are named by what reads them.
+            check_bounds(text, DOCUMENT)
             message = json.loads(text)
             if not isinstance(message, dict):
                 raise ValueError(f"a JSON object was expected, not {type(message).__name__}")
@@ -146,10 +160,22 @@ class DeskProtocol:
             self._mailbox.put_queue(queue_report(params))
         elif method in ROAD_NEWS:
             self._mailbox.put_roads(method, params)
+        elif method == "geofence":
+            self._mailbox.put_geofence(geofence_report(params))
         elif method == PLACEMENT_NEWS:
             self._mailbox.put_placements([placement_report(params)])
         elif method == OBSERVATION_NEWS:
             self._mailbox.put_observations([observation_report(params)])
+        else:
+            self._notified_of_robots(method, params)
+
+    def _notified_of_robots(self, method: str, params: dict[str, Any]) -> None:
+        if method == "suspensions":
+            self._mailbox.put_suspensions(suspensions_report(params))
+        elif method == "links":
+            self._mailbox.put_links(links_report(params))
+        elif method == "nearness":
+            self._mailbox.put_nearness(nearness_report(params))
         # Another notification is of a newer gateway and nothing that this desk asked for.
 
     def _answered(self, message: dict[str, Any]) -> list[str]:
@@ -180,6 +206,17 @@ class DeskProtocol:
 
     def _welcomed(self, message: dict[str, Any]) -> list[str]:
         if "error" in message:
+            if _code(message) == UNKNOWN_METHOD:
+                raise LinkError(
+                    tr(
+                        "No operator can connect at {url}: what answers there knows no desk, as the address "
+                        "of robots does not. A gateway's desk has the path /desk, as in {default_url}. "
+                        "Correct the URL, then press Connect.",
+                        url=self._url,
+                        default_url=DEFAULT_URL,
+                    ),
+                    final=True,
+                )
             raise LinkError(
                 tr(
                     "The gateway at {url} turned the desk away: {error}",
@@ -199,7 +236,8 @@ class DeskProtocol:
                 ),
                 final=True,
             )
-        self._mailbox.put_site(checked_site(site_report(result["site"])), is_greeting=True)
+        database = str(result.get("database") or "")
+        self._mailbox.put_site(checked_site(site_report(result["site"])), greeting_of=database)
         self.operator, self.role = (str(result.get(name) or "") for name in ("operator", "role"))
         if "emergency" in result:
             self._mailbox.put_emergency(emergency_report(result["emergency"]))

@@ -686,11 +686,6 @@
         </message>
         <message>
             <location filename="../../plugin/desk/alarms/alarm_bar.py" />
-            <source>Acknowledge all</source>
-            <translation>Reconeix-les totes</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/alarms/alarm_bar.py" />
             <source>Show</source>
             <translation>Mostra</translation>
         </message>
@@ -728,6 +723,11 @@
             <location filename="../../plugin/desk/alarms/alarm_panel.py" />
             <source>Acknowledge</source>
             <translation>Reconeix</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/alarm_panel.py" />
+            <source>Acknowledge all</source>
+            <translation>Reconeix-les totes</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/alarms/alarm_panel.py" />
@@ -826,6 +826,76 @@
             </translation>
         </message>
         <message>
+            <location filename="../../plugin/desk/alarms/reported.py" />
+            <source> at {x:.1f}, {y:.1f} m</source>
+            <translation> a {x:.1f}, {y:.1f} m</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/reported.py" />
+            <source>it could NOT be stopped yet: {why}</source>
+            <translation>encara NO s'ha pogut aturar: {why}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/reported.py" />
+            <source>it is being aborted</source>
+            <translation>s'està avortant</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/reported.py" />
+            <source>it is being paused</source>
+            <translation>s'està posant en pausa</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/reported.py" />
+            <source>the emergency stop holds it</source>
+            <translation>la parada d'emergència el reté</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/reported.py" />
+            <source>the gateway has aborted its task</source>
+            <translation>la passarel·la n'ha avortat la tasca</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/reported.py" />
+            <source>the gateway has paused it</source>
+            <translation>la passarel·la l'ha posat en pausa</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/reported.py" />
+            <source>{robot} is at the obstacle {name}</source>
+            <translation>{robot} és a l'obstacle {name}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/reported.py" />
+            <source>{robot} is in the keepout {name}</source>
+            <translation>{robot} és a la zona prohibida {name}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/reported.py" />
+            <source>{robot} will pass {other} at {metres:.1f} m (clearance {clearance:.1f} m){where}</source>
+            <translation>{robot} passarà a {metres:.1f} m de {other} (distància mínima {clearance:.1f} m){where}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/reported.py" />
+            <source>{robot} will pass {other} at {metres:.1f} m{where}</source>
+            <translation>{robot} passarà a {metres:.1f} m de {other}{where}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/reported.py" />
+            <source>{seen} comes within {metres:.1f} m of {robot} in {seconds:.0f} s</source>
+            <translation>{seen} serà a menys de {metres:.1f} m de {robot} d’aquí a {seconds:.0f} s</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/reported.py" />
+            <source>{seen} is {metres:.1f} m from {robot}</source>
+            <translation>{seen} és a {metres:.1f} m de {robot}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/reported.py" />
+            <source>{text} (it is not heard now)</source>
+            <translation>{text} (ara no se'l sent)</translation>
+        </message>
+        <message>
             <location filename="../../plugin/desk/alarms/road_ground.py" />
             <source>layers of road surfaces cannot be read: {why}</source>
             <translation>les capes de superfícies de via no es poden llegir: {why}</translation>
@@ -877,6 +947,16 @@
         </message>
         <message>
             <location filename="../../plugin/desk/alarms/thresholds_form.py" />
+            <source>begins so long before</source>
+            <translation>comença aquest temps abans</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/thresholds_form.py" />
+            <source>begins when less exact than</source>
+            <translation>comença quan és menys exacta que</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/thresholds_form.py" />
             <source>begins when two are nearer than</source>
             <translation>comença quan dos són més a prop de</translation>
         </message>
@@ -887,8 +967,18 @@
         </message>
         <message>
             <location filename="../../plugin/desk/alarms/thresholds_form.py" />
+            <source>ends so much below that</source>
+            <translation>acaba tant per sota</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/thresholds_form.py" />
             <source>ends so much further apart</source>
             <translation>acaba tant més lluny</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/thresholds_form.py" />
+            <source>the gateway judges it by the published site, and says what it does</source>
+            <translation>la passarel·la ho jutja segons el recinte publicat i diu què fa</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/alarms/thresholds_form.py" />
@@ -917,11 +1007,6 @@
         </message>
         <message>
             <location filename="../../plugin/desk/alarms/words.py" />
-            <source> at {x:.1f}, {y:.1f} m</source>
-            <translation> a {x:.1f}, {y:.1f} m</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/alarms/words.py" />
             <source>; last{where}</source>
             <translation>; l'últim cop{where}</translation>
         </message>
@@ -929,6 +1014,11 @@
             <location filename="../../plugin/desk/alarms/words.py" />
             <source>acknowledged</source>
             <translation>reconeguda</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/words.py" />
+            <source>at an obstacle</source>
+            <translation>en un obstacle</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/alarms/words.py" />
@@ -942,6 +1032,11 @@
         </message>
         <message>
             <location filename="../../plugin/desk/alarms/words.py" />
+            <source>in a keepout</source>
+            <translation>en una zona prohibida</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/words.py" />
             <source>lost</source>
             <translation>perdut</translation>
         </message>
@@ -949,6 +1044,11 @@
             <location filename="../../plugin/desk/alarms/words.py" />
             <source>low battery</source>
             <translation>bateria baixa</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/words.py" />
+            <source>near a robot</source>
+            <translation>a prop d’un robot</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/alarms/words.py" />
@@ -982,6 +1082,21 @@
         </message>
         <message>
             <location filename="../../plugin/desk/alarms/words.py" />
+            <source>unsure of its place</source>
+            <translation>insegur del seu lloc</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/words.py" />
+            <source>will come near a robot</source>
+            <translation>s’acostarà a un robot</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/words.py" />
+            <source>will pass too near</source>
+            <translation>passarà massa a prop</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/words.py" />
             <source>{robot} and {other}</source>
             <translation>{robot} i {other}</translation>
         </message>
@@ -989,6 +1104,11 @@
             <location filename="../../plugin/desk/alarms/words.py" />
             <source>{robot} and {other} are {apart:.1f} m apart{where}</source>
             <translation>{robot} i {other} són a {apart:.1f} m l'un de l'altre{where}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/words.py" />
+            <source>{robot} does not know its place: ± {accuracy:.1f} m{where}</source>
+            <translation>{robot} no sap on és: ± {accuracy:.1f} m{where}</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/alarms/words.py" />
@@ -1061,44 +1181,9 @@
             <translation>Per què els robots poden tornar a circular, per al registre</translation>
         </message>
         <message>
-            <location filename="../../plugin/desk/closure_dialog.py" />
+            <location filename="../../plugin/desk/closure_tool.py" />
             <source>Closed</source>
             <translation>Tancada</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/closure_dialog.py" />
-            <source>Reason</source>
-            <translation>Motiu</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/closure_dialog.py" />
-            <source>The road is closed for every robot from this junction to the next. Robots whose way leads along it get another way; one that has no other way is stopped, unless the site's settings say otherwise.</source>
-            <translation>La via es tanca a tots els robots des d'aquesta cruïlla fins a la següent. Els que hi havien de passar reben un altre recorregut; el que no en té cap altre s'atura, si la configuració del recinte no diu una altra cosa.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/closure_dialog.py" />
-            <source>for 1 hour</source>
-            <translation>durant 1 hora</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/closure_dialog.py" />
-            <source>for 15 minutes</source>
-            <translation>durant 15 minuts</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/closure_dialog.py" />
-            <source>for 4 hours</source>
-            <translation>durant 4 hores</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/closure_dialog.py" />
-            <source>such as: tree on the road</source>
-            <translation>com ara: arbre a la via</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/closure_dialog.py" />
-            <source>until it is opened</source>
-            <translation>fins que s'obri</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/closure_tool.py" />
@@ -1109,6 +1194,41 @@
             <location filename="../../plugin/desk/closure_tool.py" />
             <source>Open road</source>
             <translation>Obre la via</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/closure_tool.py" />
+            <source>Reason</source>
+            <translation>Motiu</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/closure_tool.py" />
+            <source>The road is closed for every robot from this junction to the next. Robots whose way leads along it get another way; one that has no other way is stopped, unless the site's settings say otherwise.</source>
+            <translation>La via es tanca a tots els robots des d'aquesta cruïlla fins a la següent. Els que hi havien de passar reben un altre recorregut; el que no en té cap altre s'atura, si la configuració del recinte no diu una altra cosa.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/closure_tool.py" />
+            <source>for 1 hour</source>
+            <translation>durant 1 hora</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/closure_tool.py" />
+            <source>for 15 minutes</source>
+            <translation>durant 15 minuts</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/closure_tool.py" />
+            <source>for 4 hours</source>
+            <translation>durant 4 hores</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/closure_tool.py" />
+            <source>such as: tree on the road</source>
+            <translation>com ara: arbre a la via</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/closure_tool.py" />
+            <source>until it is opened</source>
+            <translation>fins que s'obri</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/closure_tool.py" />
@@ -1484,6 +1604,31 @@
             <translation>perquè: {reason}</translation>
         </message>
         <message>
+            <location filename="../../plugin/desk/cone_checks.py" />
+            <source>Reading what cones must keep clear of</source>
+            <translation>Lectura d'allò de què els cons s'han de mantenir lluny</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/cone_file.py" />
+            <source>The cones of the layer {layer} are not saved with the project: {problem}. Export the layer to a file before you close QGIS.</source>
+            <translation>Els cons de la capa {layer} no s'han desat amb el projecte: {problem}. Exporteu la capa a un fitxer abans de tancar QGIS.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/cone_file.py" />
+            <source>the project is not a file</source>
+            <translation>el projecte no és un fitxer</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/cone_file.py" />
+            <source>{path} cannot be read again</source>
+            <translation>{path} no es pot tornar a llegir</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/cone_file.py" />
+            <source>{path} cannot be written ({words})</source>
+            <translation>{path} no es pot escriure ({words})</translation>
+        </message>
+        <message>
             <location filename="../../plugin/desk/cone_store.py" />
             <source>Cones</source>
             <translation>Cons</translation>
@@ -1500,8 +1645,43 @@
         </message>
         <message>
             <location filename="../../plugin/desk/conflict_panel.py" />
-            <source>and {more} more: see the layer Conflicts</source>
-            <translation>i {more} més: vegeu la capa Conflictes</translation>
+            <source>Choose a conflict in the list first.</source>
+            <translation>Trieu primer un conflicte de la llista.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/conflict_panel.py" />
+            <source>Give way</source>
+            <translation>Cedeix el pas</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/conflict_panel.py" />
+            <source>No robot is in another one's way.</source>
+            <translation>Cap robot no és al pas d'un altre.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/conflict_panel.py" />
+            <source>Nobody can be sent aside: {why}</source>
+            <translation>No es pot enviar ningú a un costat: {why}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/conflict_panel.py" />
+            <source>Send aside</source>
+            <translation>Aparta</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/conflict_panel.py" />
+            <source>Send {robot} aside</source>
+            <translation>Aparta {robot}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/conflict_panel.py" />
+            <source>Stop</source>
+            <translation>Aturar</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/conflict_panel.py" />
+            <source>Stop {robot}</source>
+            <translation>Atura {robot}</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/conflict_panel.py" />
@@ -1510,8 +1690,18 @@
         </message>
         <message>
             <location filename="../../plugin/desk/conflict_panel.py" />
+            <source>the gateway is being asked</source>
+            <translation>s'està preguntant a la passarel·la</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/conflict_panel.py" />
             <source>{robot} gives way</source>
             <translation>{robot} cedeix el pas</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/conflict_panel.py" />
+            <source>{robot} is paused: it stands, and keeps what it is doing for later</source>
+            <translation>{robot} es posa en pausa: s'atura i guarda per a més tard el que fa</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/conflict_panel.py" />
@@ -1522,6 +1712,16 @@
             <location filename="../../plugin/desk/conflict_panel.py" />
             <source>{robot} waits for {other}, until {time_of_day} at the earliest</source>
             <translation>{robot} espera {other}, com a mínim fins a les {time_of_day}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/conflict_panel.py" />
+            <source>{robot} × {other}: over</source>
+            <translation>{robot} × {other}: acabat</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/conflict_panel.py" />
+            <source>{text}; the route is shown first, and sent as any other</source>
+            <translation>{text}; primer es mostra la ruta, i s'envia com qualsevol altra</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/connection_menu.py" />
@@ -1562,6 +1762,11 @@
             <location filename="../../plugin/desk/connection_panel.py" />
             <source>Connecting</source>
             <translation>Connectant</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/connection_panel.py" />
+            <source>Disconnect</source>
+            <translation>Desconnecta</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/connection_panel.py" />
@@ -1615,6 +1820,16 @@
         </message>
         <message>
             <location filename="../../plugin/desk/desk.py" />
+            <source>Pause of {robot}</source>
+            <translation>Pausa de {robot}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/desk.py" />
+            <source>The gateway has another database than before: its robots and commands are others, and those of before are not shown any more.</source>
+            <translation>La passarel·la té una altra base de dades que abans: els seus robots i ordres són uns altres, i els d'abans ja no es mostren.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/desk.py" />
             <source>The operator's name is empty. Write who you are: it stands in every log.</source>
             <translation>El nom de l'operador és buit. Escriviu qui sou: és a tots els registres.</translation>
         </message>
@@ -1645,6 +1860,11 @@
         </message>
         <message>
             <location filename="../../plugin/desk/dock.py" />
+            <source>Conflicts</source>
+            <translation>Conflictes</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/dock.py" />
             <source>Fleet</source>
             <translation>Flota</translation>
         </message>
@@ -1665,6 +1885,11 @@
         </message>
         <message>
             <location filename="../../plugin/desk/draft_panel.py" />
+            <source>{in_words} is being checked: {share:.0%}. It goes out when nothing speaks against it.</source>
+            <translation>{in_words} s'està comprovant: {share:.0%}. Sortirà si res no hi parla en contra.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/draft_panel.py" />
             <source>{in_words}. Being checked: {share:.0%}.</source>
             <translation>{in_words}. S'està comprovant: {share:.0%}.</translation>
         </message>
@@ -1672,6 +1897,11 @@
             <location filename="../../plugin/desk/draft_panel.py" />
             <source>{in_words}. Being checked: {share:.0%}. It goes out when nothing speaks against it; Esc keeps it back.</source>
             <translation>{in_words}. S'està comprovant: {share:.0%}. S'enviarà si res no hi va en contra; Esc ho atura.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/draft_panel.py" />
+            <source>{in_words}. It goes out when that is found and nothing speaks against it; Esc keeps it back.</source>
+            <translation>{in_words}. S'enviarà quan s'hagi trobat el camí i si res no hi va en contra; Esc ho atura.</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/draft_panel.py" />
@@ -1712,6 +1942,36 @@
             <location filename="../../plugin/desk/draft_tool.py" />
             <source>There is nothing to take back.</source>
             <translation>No hi ha res a desfer.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/ability_check.py" />
+            <source>{robot} cannot be sent to targets.</source>
+            <translation>{robot} no es pot enviar a objectius.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/ability_check.py" />
+            <source>{robot} cannot be told where it starts.</source>
+            <translation>A {robot} no se li pot dir on comença.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/ability_check.py" />
+            <source>{robot} cannot follow routes.</source>
+            <translation>{robot} no pot seguir rutes.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/ability_check.py" />
+            <source>{robot} is only seen: it takes no commands.</source>
+            <translation>{robot} només es veu: no accepta ordres.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/ability_check.py" />
+            <source>{robot} places no cones.</source>
+            <translation>{robot} no col·loca cons.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/ability_check.py" />
+            <source>{robot} places no cones: it only drives there.</source>
+            <translation>{robot} no col·loca cons: només hi va.</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/drafting/datum_path.py" />
@@ -1779,9 +2039,19 @@
             <translation>{in_words} no s'ha enviat: {error}</translation>
         </message>
         <message>
+            <location filename="../../plugin/desk/drafting/draft_sending.py" />
+            <source>{in_words} was not sent: {robot} has moved since its way was found. It is found again from where the robot is now; send it when it is drawn.</source>
+            <translation>{in_words} no s’ha enviat: {robot} s’ha mogut des que es va trobar el seu camí. Es torna a buscar des d’on és ara el robot; envieu-lo quan estigui dibuixat.</translation>
+        </message>
+        <message>
             <location filename="../../plugin/desk/drafting/keepout_check.py" />
             <source>The route</source>
             <translation>La ruta</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/keepout_check.py" />
+            <source>The way to {to}</source>
+            <translation>El camí fins a {to}</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/drafting/keepout_check.py" />
@@ -1797,11 +2067,6 @@
             <location filename="../../plugin/desk/drafting/obstacle_check.py" />
             <source>The layer {layer} cannot be placed on the site ({error}), so obstacles in it are not seen. Correct its CRS, or take its role away.</source>
             <translation>La capa {layer} no es pot situar al recinte ({error}), així que els seus obstacles no es veuen. Corregiu-ne el SRC, o traieu-li el paper.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/drafting/obstacle_check.py" />
-            <source>The way to {to}</source>
-            <translation>El camí fins a {to}</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/drafting/obstacle_check.py" />
@@ -1822,6 +2087,11 @@
             <location filename="../../plugin/desk/drafting/order_check.py" />
             <source>{robot} is at work for {operator} ({task}): sending this takes its place.</source>
             <translation>{robot} treballa per a {operator} ({task}): si s'envia, ho substitueix.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/order_check.py" />
+            <source>{robot} is {state}, last heard {age} ago: it is told this when it is heard again, if that is soon enough.</source>
+            <translation>{robot}: {state}, se'n va saber per darrer cop fa {age}: rebrà això quan se'n torni a saber, si és prou aviat.</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/drafting/place_text.py" />
@@ -1894,6 +2164,26 @@
             <translation>l'objectiu</translation>
         </message>
         <message>
+            <location filename="../../plugin/desk/drafting/target_way.py" />
+            <source>It is not known where {robot} is, so nobody has looked at the way that it drives.</source>
+            <translation>No se sap on és {robot}, de manera que ningú no ha comprovat el camí que fa.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/target_way.py" />
+            <source>No way along the roads leads there: {why}.</source>
+            <translation>Cap camí per les vies hi porta: {why}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/target_way.py" />
+            <source>The gateway does not answer which way leads there. Set the target again when the link is there.</source>
+            <translation>La passarel·la no respon quin camí hi porta. Torneu a posar l’objectiu quan hi hagi connexió.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/target_way.py" />
+            <source>{robot} has not declared that it asks for its path or takes cones with one: sent now it drives straight. Add to queue, with a route around what is in its way, where that is not wanted.</source>
+            <translation>{robot} no ha declarat que demani el seu camí ni que accepti cons amb un camí: enviat ara, va recte. On això no convingui, afegiu-lo a la cua amb una ruta que eviti el que hi ha al mig.</translation>
+        </message>
+        <message>
             <location filename="../../plugin/desk/drafting/tasks.py" />
             <source>A start position is no task: Send tells the robot at once.</source>
             <translation>Una posició inicial no és cap tasca: Envia ho diu al robot de seguida.</translation>
@@ -1902,6 +2192,16 @@
             <location filename="../../plugin/desk/drafting/tracks.py" />
             <source>({x:.2f}, {y:.2f}) m</source>
             <translation>({x:.2f}, {y:.2f}) m</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/typed_place.py" />
+            <source>{text!r} is not on the site {name}; with its two numbers swapped it is. Write {order}: {first:.10g}, {second:.10g}.</source>
+            <translation>{text!r} no és al recinte {name}; amb els dos nombres intercanviats, sí. Escriviu {order}: {first:.10g}, {second:.10g}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/typed_place.py" />
+            <source>{text!r} is {away:.0f} km outside the site {name}. Write {order}, and check the numbers and the CRS that they are in ({crs}).</source>
+            <translation>{text!r} és {away:.0f} km fora del recinte {name}. Escriviu {order}, i comproveu els nombres i el seu SRC ({crs}).</translation>
         </message>
         <message numerus="yes">
             <location filename="../../plugin/desk/drafts.py" />
@@ -1920,6 +2220,16 @@
             <location filename="../../plugin/desk/drafts.py" />
             <source>; along the roads {note}</source>
             <translation>; per les vies {note}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafts.py" />
+            <source>; straight</source>
+            <translation>; recte</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafts.py" />
+            <source>; the way there is being found</source>
+            <translation>; s’està buscant el camí fins allà</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/drafts.py" />
@@ -1953,6 +2263,11 @@
         </message>
         <message>
             <location filename="../../plugin/desk/drafts.py" />
+            <source>the way there is not known yet</source>
+            <translation>encara no se sap el camí fins allà</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafts.py" />
             <source>{x:.2f}, {y:.2f} m</source>
             <translation>{x:.2f}, {y:.2f} m</translation>
         </message>
@@ -1960,6 +2275,11 @@
             <location filename="../../plugin/desk/emergency_banner.py" />
             <source> since {time}</source>
             <translation> des de les {time}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/emergency_banner.py" />
+            <source>Clear…</source>
+            <translation>Aixeca…</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/emergency_banner.py" />
@@ -2000,14 +2320,54 @@
             </translation>
         </message>
         <message>
+            <location filename="../../plugin/desk/geofence_state.py" />
+            <source>Keepouts and obstacles are not watched: the gateway tells nothing of them. It may be older than this plugin.</source>
+            <translation>Les zones prohibides i els obstacles no es vigilen: la passarel·la no en diu res. Potser és més antiga que aquest connector.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/geofence_state.py" />
+            <source>Keepouts and obstacles are not watched: {why}.</source>
+            <translation>Les zones prohibides i els obstacles no es vigilen: {why}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/geofence_state.py" />
+            <source>Not judged by keepouts and obstacles, since it is not known where they are: {names}.</source>
+            <translation>No jutjats per zones prohibides i obstacles, perquè no se sap on són: {names}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/geofence_state.py" />
+            <source>The published site has no keepouts.</source>
+            <translation>El recinte publicat no té zones prohibides.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/geofence_state.py" />
+            <source>The published site has no obstacles, so nobody is told to be at one.</source>
+            <translation>El recinte publicat no té obstacles, i per això no s'avisa de ningú que hi sigui.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/geofence_state.py" />
+            <source>{more} more</source>
+            <translation>{more} més</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/geofence_state.py" />
+            <source>{more} more are in keepouts or at obstacles and not listed.</source>
+            <translation>N'hi ha {more} més en zones prohibides o obstacles, sense llistar.</translation>
+        </message>
+        <message>
             <location filename="../../plugin/desk/inquiries.py" />
             <source>{words}: the gateway's answer cannot be read ({kind}). Update the gateway or the plugin, whichever is older.</source>
             <translation>{words}: la resposta de la passarel·la no es pot llegir ({kind}). Actualitzeu la passarel·la o el connector, el que sigui més antic.</translation>
         </message>
         <message>
+            <location filename="../../plugin/desk/last_heard.py" />
+            <source>{state}, last heard {age} ago over {link}</source>
+            <translation>{state}, últim missatge fa {age} per {link}</translation>
+        </message>
+        <message>
             <location filename="../../plugin/desk/layout_action.py" />
-            <source>Place a cone layout: it is shown under the cursor, the wheel turns it (Shift: finely), a click places it, Esc ends; by keys PgUp and PgDown turn it, Enter places it, F2 leads to its dimensions. Nothing is sent to robots</source>
-            <translation>Col·loca una disposició de cons: es mostra sota el cursor, la roda la gira (Maj: finament), un clic la col·loca, Esc acaba; amb tecles, RePàg i AvPàg la giren, Retorn la col·loca, F2 porta a les seves dimensions. No s'envia res als robots</translation>
+            <source>Place a cone layout: it is shown under the cursor, the wheel turns it (Shift: finely), a click places it, Ctrl+Z takes it back, Esc ends; by keys PgUp and PgDown turn it, Enter places it, F2 leads to its dimensions. Nothing is sent to robots</source>
+            <translation>Col·loca una disposició de cons: es mostra sota el cursor, la roda la gira (Maj: finament), un clic la col·loca, Ctrl+Z la retira, Esc acaba; amb tecles, RePàg i AvPàg la giren, Retorn la col·loca, F2 porta a les dimensions. No s'envia res als robots</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/layout_action.py" />
@@ -2026,6 +2386,11 @@
         </message>
         <message>
             <location filename="../../plugin/desk/layout_dimensions.py" />
+            <source>Remove the cones that were placed last; Ctrl+Z over the map does so too</source>
+            <translation>Treu els cons col·locats en darrer lloc; Ctrl+Z sobre el mapa també ho fa</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/layout_dimensions.py" />
             <source>Reset to the standard</source>
             <translation>Restableix la norma</translation>
         </message>
@@ -2034,6 +2399,11 @@
             <source>Standard: {value}</source>
             <translation>Norma: {value}</translation>
         </message>
+        <message>
+            <location filename="../../plugin/desk/layout_dimensions.py" />
+            <source>Take back the last layout</source>
+            <translation>Retira la darrera disposició</translation>
+        </message>
         <message numerus="yes">
             <location filename="../../plugin/desk/layout_tool.py" />
             <source>%n cones are in the layer {layer}.</source>
@@ -2041,6 +2411,11 @@
                 <numerusform>%n con és a la capa {layer}.</numerusform>
                 <numerusform>%n cons són a la capa {layer}.</numerusform>
             </translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/layout_tool.py" />
+            <source>The layer of cones is another one now: place the layout again.</source>
+            <translation>La capa de cons ara és una altra: torneu a col·locar la disposició.</translation>
         </message>
         <message numerus="yes">
             <location filename="../../plugin/desk/layout_tool.py" />
@@ -2206,6 +2581,36 @@
             <translation>Theta (rad)</translation>
         </message>
         <message>
+            <location filename="../../plugin/desk/messages.py" />
+            <source>Link {link} is down: {reason}.</source>
+            <translation>L'enllaç {link} està caigut: {reason}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/messages.py" />
+            <source>Link {link} is down: {reason}. Nothing reaches {robots}.</source>
+            <translation>L'enllaç {link} està caigut: {reason}. Res no arriba a {robots}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/messages.py" />
+            <source>The database account of robot {robot} is locked until {time}: its program kept all others waiting. Nothing but a stop reaches it: Abort unlocks the account. Have the program mended.</source>
+            <translation>El compte de base de dades del robot {robot} està bloquejat fins a les {time}: el seu programa feia esperar tots els altres. Només hi arriba una parada: Avorta desbloqueja el compte. Feu arreglar el programa.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/messages.py" />
+            <source>The program of robot {robot} keeps all others waiting at the database, and its account cannot be locked. Have an administrator run: robot-bridge database upgrade</source>
+            <translation>El programa del robot {robot} fa esperar tots els altres a la base de dades, i el seu compte no es pot bloquejar. Que un administrador executi: robot-bridge database upgrade</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/messages.py" />
+            <source>{names} and {count} more</source>
+            <translation>{names} i {count} més</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/nearness_state.py" />
+            <source>People near robots are not watched: {why}.</source>
+            <translation>No es vigilen les persones a prop dels robots: {why}.</translation>
+        </message>
+        <message>
             <location filename="../../plugin/desk/observations/observation_dock.py" />
             <source>All are reviewed.</source>
             <translation>Totes estan revisades.</translation>
@@ -2277,6 +2682,11 @@
         </message>
         <message>
             <location filename="../../plugin/desk/observations/observation_model.py" />
+            <source>not there any more: {what}</source>
+            <translation>ja no hi és: {what}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/observations/observation_model.py" />
             <source>object</source>
             <translation>objecte</translation>
         </message>
@@ -2327,6 +2737,16 @@
         </message>
         <message>
             <location filename="../../plugin/desk/observations/review_form.py" />
+            <source>It is gone: leave it out of the maps that robots get from now on</source>
+            <translation>Ja no hi és: no surt en els mapes que els robots rebin a partir d’ara</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/observations/review_form.py" />
+            <source>It is there: leave it on the maps</source>
+            <translation>Hi és: queda en els mapes</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/observations/review_form.py" />
             <source>It stands there: draw it on the maps that robots get from now on</source>
             <translation>És allà: dibuixa'l als mapes que els robots rebin a partir d'ara</translation>
         </message>
@@ -2339,6 +2759,11 @@
             <location filename="../../plugin/desk/observations/review_form.py" />
             <source>Look at it: is it of use?</source>
             <translation>Mireu-la: és útil?</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/observations/review_form.py" />
+            <source>Not there any more? {robot} looks through {what} ({source}) of its map again and again, at {x:.2f}, {y:.2f} m.</source>
+            <translation>Ja no hi és? {robot} veu una vegada i una altra a través de {what} ({source}) del seu mapa, a {x:.2f}, {y:.2f} m.</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/observations/review_form.py" />
@@ -3376,11 +3801,6 @@
         </message>
         <message>
             <location filename="../../plugin/desk/queues/queue_edits.py" />
-            <source>Pause of {robot}</source>
-            <translation>Pausa de {robot}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/queues/queue_edits.py" />
             <source>Pausing the queue of {robot}</source>
             <translation>Posar en pausa la cua de {robot}</translation>
         </message>
@@ -3717,11 +4137,6 @@
         </message>
         <message>
             <location filename="../../plugin/desk/replay/stretch_form.py" />
-            <source>Stop</source>
-            <translation>Aturar</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/replay/stretch_form.py" />
             <source>Until when</source>
             <translation>Fins quan</translation>
         </message>
@@ -3769,11 +4184,6 @@
             <location filename="../../plugin/desk/road_layers.py" />
             <source>Closed roads</source>
             <translation>Vies tancades</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/road_layers.py" />
-            <source>Conflicts</source>
-            <translation>Conflictes</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/road_layers.py" />
@@ -3887,6 +4297,11 @@
         </message>
         <message>
             <location filename="../../plugin/desk/robots/columns.py" />
+            <source>paused</source>
+            <translation>en pausa</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/columns.py" />
             <source>route</source>
             <translation>ruta</translation>
         </message>
@@ -3941,11 +4356,6 @@
             <translation>{told}, per {operator}</translation>
         </message>
         <message>
-            <location filename="../../plugin/desk/robots/last_heard.py" />
-            <source>{state}, last heard {age} ago over {link}</source>
-            <translation>{state}, últim missatge fa {age} per {link}</translation>
-        </message>
-        <message>
             <location filename="../../plugin/desk/robots/last_image.py" />
             <source>No image: {why}</source>
             <translation>Cap imatge: {why}</translation>
@@ -3984,6 +4394,88 @@
             <location filename="../../plugin/desk/robots/position_crs.py" />
             <source>site frame</source>
             <translation>marc del recinte</translation>
+        </message>
+        <message numerus="yes">
+            <location filename="../../plugin/desk/robots/removal.py" />
+            <source>%n robots were not removed: {why}</source>
+            <translation>
+                <numerusform>%n robot no s'ha eliminat: {why}</numerusform>
+                <numerusform>%n robots no s'han eliminat: {why}</numerusform>
+            </translation>
+        </message>
+        <message numerus="yes">
+            <location filename="../../plugin/desk/robots/removal.py" />
+            <source>%n robots were removed: {names}</source>
+            <translation>
+                <numerusform>%n robot eliminat: {names}</numerusform>
+                <numerusform>%n robots eliminats: {names}</numerusform>
+            </translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/removal.py" />
+            <source>&amp;Robots</source>
+            <translation>&amp;Robots</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/removal.py" />
+            <source>No robot is lost or offline.</source>
+            <translation>Cap robot no és perdut ni fora de línia.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/removal.py" />
+            <source>No robot was removed: {why}</source>
+            <translation>No s'ha eliminat cap robot: {why}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/removal.py" />
+            <source>None is stopped by that. One that comes back is told to abort what it still does, and is a new robot.</source>
+            <translation>Això no n'atura cap. Al que torni se li diu que avorti el que encara fa, i és un robot nou.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/removal.py" />
+            <source>Remove robots that are gone?</source>
+            <translation>Voleu eliminar els robots que ja no hi són?</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/removal.py" />
+            <source>Remove robots…</source>
+            <translation>Elimina robots…</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/removal.py" />
+            <source>Remove {names}</source>
+            <translation>Elimina {names}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/removal.py" />
+            <source>Take robots that are lost or offline off every desk; takes a supervisor</source>
+            <translation>Treu de totes les consoles els robots perduts o fora de línia; cal un supervisor</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/removal.py" />
+            <source>They go from every desk. What is in their queues is removed, what they were told and have not done has failed; what they did stays stored.</source>
+            <translation>Desapareixen de totes les consoles. El que hi ha a les seves cues s'elimina, les ordres que no han fet fallen; el que han fet continua desat.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/removal.py" />
+            <source>Why, for the log</source>
+            <translation>Per què, per al registre</translation>
+        </message>
+        <message numerus="yes">
+            <location filename="../../plugin/desk/robots/removal.py" />
+            <source>all %n that are lost or offline</source>
+            <translation>
+                <numerusform>l'únic perdut o fora de línia (%n)</numerusform>
+                <numerusform>els %n perduts o fora de línia</numerusform>
+            </translation>
+        </message>
+        <message numerus="yes">
+            <location filename="../../plugin/desk/robots/removal.py" />
+            <source>the %n selected ones</source>
+            <translation>
+                <numerusform>el seleccionat (%n)</numerusform>
+                <numerusform>els %n seleccionats</numerusform>
+            </translation>
         </message>
         <message>
             <location filename="../../plugin/desk/robots/robot_details.py" />
@@ -4267,6 +4759,11 @@
             </translation>
         </message>
         <message>
+            <location filename="../../plugin/desk/standing_cones.py" />
+            <source>Cones put down</source>
+            <translation>Cons posats</translation>
+        </message>
+        <message>
             <location filename="../../plugin/desk/state_words.py" />
             <source>aborted</source>
             <translation>avortada</translation>
@@ -4528,8 +5025,8 @@
         </message>
         <message>
             <location filename="../../plugin/desk/tour/tour_action.py" />
-            <source>Fleet Supervisor is new here: a five-minute tour shows it.</source>
-            <translation>El Fleet Supervisor és nou aquí: una visita de cinc minuts el mostra.</translation>
+            <source>A five-minute tour shows how it works.</source>
+            <translation>Un recorregut de cinc minuts mostra com funciona.</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/tour/tour_action.py" />
@@ -4588,6 +5085,51 @@
         </message>
         <message>
             <location filename="../../plugin/desk/way_wishes.py" />
+            <source>Keep off roads on which other robots are sent</source>
+            <translation>Evita les vies per on s'han enviat altres robots</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/way_wishes.py" />
+            <source>Lead ways so</source>
+            <translation>Porta-ho així</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/way_wishes.py" />
+            <source>Surfaces</source>
+            <translation>Superfícies</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/way_wishes.py" />
+            <source>This holds for every leg that is led from now on, until QGIS is closed.</source>
+            <translation>Això val per a cada tram que es traci d'ara endavant, fins que es tanqui el QGIS.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/way_wishes.py" />
+            <source>Way</source>
+            <translation>Recorregut</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/way_wishes.py" />
+            <source>Ways on roads</source>
+            <translation>Camins per vies</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/way_wishes.py" />
+            <source>Width</source>
+            <translation>Amplada</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/way_wishes.py" />
+            <source>all, or such as: asphalt, concrete</source>
+            <translation>totes, o com ara: asphalt, concrete</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/way_wishes.py" />
+            <source>as wide as the robots are</source>
+            <translation>tan ampla com els robots</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/way_wishes.py" />
             <source>off the roads of other robots</source>
             <translation>fora de les vies d'altres robots</translation>
         </message>
@@ -4603,68 +5145,23 @@
         </message>
         <message>
             <location filename="../../plugin/desk/way_wishes.py" />
-            <source>the fastest way</source>
-            <translation>el camí més ràpid</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/way_wishes_dialog.py" />
-            <source>Keep off roads on which other robots are sent</source>
-            <translation>Evita les vies per on s'han enviat altres robots</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/way_wishes_dialog.py" />
-            <source>Lead ways so</source>
-            <translation>Porta-ho així</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/way_wishes_dialog.py" />
-            <source>Surfaces</source>
-            <translation>Superfícies</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/way_wishes_dialog.py" />
-            <source>This holds for every leg that is led from now on, until QGIS is closed.</source>
-            <translation>Això val per a cada tram que es traci d'ara endavant, fins que es tanqui el QGIS.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/way_wishes_dialog.py" />
-            <source>Way</source>
-            <translation>Recorregut</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/way_wishes_dialog.py" />
-            <source>Ways on roads</source>
-            <translation>Camins per vies</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/way_wishes_dialog.py" />
-            <source>Width</source>
-            <translation>Amplada</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/way_wishes_dialog.py" />
-            <source>all, or such as: asphalt, concrete</source>
-            <translation>totes, o com ara: asphalt, concrete</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/way_wishes_dialog.py" />
-            <source>as wide as the robots are</source>
-            <translation>tan ampla com els robots</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/way_wishes_dialog.py" />
             <source>the fastest</source>
             <translation>el més ràpid</translation>
         </message>
         <message>
-            <location filename="../../plugin/desk/way_wishes_dialog.py" />
+            <location filename="../../plugin/desk/way_wishes.py" />
+            <source>the fastest way</source>
+            <translation>el camí més ràpid</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/way_wishes.py" />
             <source>the shortest</source>
             <translation>el més curt</translation>
         </message>
         <message>
-            <location filename="../../plugin/desk/window.py" />
-            <source>Disconnect</source>
-            <translation>Desconnecta</translation>
+            <location filename="../../plugin/desk/ways_out.py" />
+            <source>the gateway's answer cannot be read; it may be older than this plugin</source>
+            <translation>la resposta de la passarel·la no es pot llegir; potser és més antiga que aquest connector</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/window.py" />
@@ -4675,11 +5172,6 @@
             <location filename="../../plugin/desk/window.py" />
             <source>Targets and routes</source>
             <translation>Objectius i rutes</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/window_alarms.py" />
-            <source>Alarms ({number})</source>
-            <translation>Alarmes ({number})</translation>
         </message>
         <message>
             <location filename="../../plugin/expressions/distance_to_robot.py" />
@@ -5986,6 +6478,11 @@
         </message>
         <message>
             <location filename="../../plugin/processing/export_plan.py" />
+            <source>No obstacle layer is given, and no layer of the project has a role of obstacles. Give OBSTACLES, roles (Fleet Supervisor &gt; Layer roles), or a PROFILE.</source>
+            <translation>No s'ha indicat cap capa d'obstacles, i cap capa del projecte té un paper d'obstacle. Indiqueu OBSTACLES, papers (Fleet Supervisor &gt; Layer roles) o un PROFILE.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_plan.py" />
             <source>OUTPUT {target} is the file of the layer {layer}: choose another one.</source>
             <translation>OUTPUT {target} és el fitxer de la capa {layer}: trieu-ne un altre.</translation>
         </message>
@@ -5998,6 +6495,81 @@
             <location filename="../../plugin/processing/export_plan.py" />
             <source>The robot map</source>
             <translation>El mapa de robots</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_road_network.py" />
+            <source>&lt;p&gt;Writes the network of road centrelines as other robots read it.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Formats&lt;/b&gt;, several at once:&lt;/p&gt; &lt;ul&gt; &lt;li&gt;&lt;i&gt;nav2&lt;/i&gt;: graph for Nav2's route server (GeoJSON). Nav2 drives straight from node to node, so every point of a road becomes a node.&lt;/li&gt; &lt;li&gt;&lt;i&gt;lif&lt;/i&gt;: VDMA's Layout Interchange Format 1.0, for masters of VDA 5050 vehicles (JSON). Roads that are not straight have a trajectory.&lt;/li&gt; &lt;li&gt;&lt;i&gt;lanelet2&lt;/i&gt;: lanes with borders for Lanelet2 and Autoware (OSM). Traffic keeps to the right, or to the left on request.&lt;/li&gt; &lt;/ul&gt; &lt;p&gt;Roads that are driven both ways become two edges; one-way roads one. Closed roads are left out, and so are edges that lead through a polygon of the &lt;b&gt;areas that must not be driven through&lt;/b&gt;. Speeds go over as limits.&lt;/p&gt; &lt;p&gt;Coordinates are metres in the &lt;b&gt;site frame&lt;/b&gt;, as on robot maps: &lt;i&gt;ORIGIN&lt;/i&gt; and &lt;i&gt;ROTATION&lt;/i&gt;, else as the project has it. Nav2 keeps 32 bits of a coordinate: give an origin on the site, or a warning says by how much places move.&lt;/p&gt; &lt;p&gt;Existing files are replaced, each in one step, after all of them could be made. docs/navigation-maps.md says what is in each.&lt;/p&gt; &lt;pre&gt;qgis_process run fleet:exportroadnetwork -- ROADS=roads.gpkg FORMATS=nav2 FORMATS=lif ORIGIN="640420,5193480" NAME=campus OUTPUT=graphs&lt;/pre&gt;</source>
+            <translation>&lt;p&gt;Escriu la xarxa d'eixos de via tal com la llegeixen altres robots.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Formats&lt;/b&gt;, diversos alhora:&lt;/p&gt; &lt;ul&gt; &lt;li&gt;&lt;i&gt;nav2&lt;/i&gt;: graf per al servidor de rutes de Nav2 (GeoJSON). Nav2 circula recte de node a node, per això cada punt d'una via es converteix en un node.&lt;/li&gt; &lt;li&gt;&lt;i&gt;lif&lt;/i&gt;: Layout Interchange Format 1.0 de la VDMA, per a controls de vehicles VDA 5050 (JSON). Les vies que no són rectes tenen una trajectòria.&lt;/li&gt; &lt;li&gt;&lt;i&gt;lanelet2&lt;/i&gt;: carrils amb vores per a Lanelet2 i Autoware (OSM). Es circula per la dreta, o per l'esquerra si es demana.&lt;/li&gt; &lt;/ul&gt; &lt;p&gt;Les vies de dos sentits es converteixen en dues arestes; les de sentit únic, en una. Les vies tancades queden fora, i també les arestes que passen per un polígon de les &lt;b&gt;àrees per on no s'ha de circular&lt;/b&gt;. Les velocitats hi passen com a límits.&lt;/p&gt; &lt;p&gt;Les coordenades són metres en el &lt;b&gt;marc del recinte&lt;/b&gt;, com als mapes de robots: &lt;i&gt;ORIGIN&lt;/i&gt; i &lt;i&gt;ROTATION&lt;/i&gt;, si no el del projecte. Nav2 conserva 32 bits d'una coordenada: doneu un origen al recinte, o un avís dirà quant es mouen els llocs.&lt;/p&gt; &lt;p&gt;Els fitxers existents se substitueixen, cadascun d'un sol cop, quan tots s'han pogut fer. docs/navigation-maps.md diu què hi ha a cadascun.&lt;/p&gt; &lt;pre&gt;qgis_process run fleet:exportroadnetwork -- ROADS=roads.gpkg FORMATS=nav2 FORMATS=lif ORIGIN="640420,5193480" NAME=campus OUTPUT=graphs&lt;/pre&gt;</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_road_network.py" />
+            <source>Export road network</source>
+            <translation>Exporta la xarxa de vies</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_road_network.py" />
+            <source>FORMATS is empty: choose of {known}.</source>
+            <translation>FORMATS és buit: trieu entre {known}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_road_network.py" />
+            <source>Lanelet2 map (OSM)</source>
+            <translation>Mapa Lanelet2 (OSM)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_road_network.py" />
+            <source>Name of the files</source>
+            <translation>Nom dels fitxers</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_road_network.py" />
+            <source>Nav2 route graph (GeoJSON)</source>
+            <translation>Graf de rutes de Nav2 (GeoJSON)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_road_network.py" />
+            <source>Origin of the site frame (default: as the project has it, else 0,0)</source>
+            <translation>Origen del marc del recinte (per defecte: el del projecte, si no 0,0)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_road_network.py" />
+            <source>Robots' name for the site frame</source>
+            <translation>Nom del marc del recinte per als robots</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_road_network.py" />
+            <source>Rotation of the site frame, counter-clockwise from the CRS's x axis [degrees]</source>
+            <translation>Rotació del marc del recinte, en sentit antihorari des de l'eix x del SRC [graus]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_road_network.py" />
+            <source>The road network</source>
+            <translation>La xarxa de vies</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_road_network.py" />
+            <source>Traffic keeps to the left (Lanelet2)</source>
+            <translation>Es circula per l'esquerra (Lanelet2)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_road_network.py" />
+            <source>Type of vehicle that drives here (LIF)</source>
+            <translation>Tipus de vehicle que hi circula (LIF)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_road_network.py" />
+            <source>VDMA LIF, for VDA 5050 (JSON)</source>
+            <translation>VDMA LIF, per a VDA 5050 (JSON)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_road_network.py" />
+            <source>Writes the road network as a Nav2 route graph, a VDMA LIF layout or a Lanelet2 map.</source>
+            <translation>Escriu la xarxa de vies com a graf de rutes de Nav2, disposició VDMA LIF o mapa Lanelet2.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_road_network.py" />
+            <source>{name} {value!r} cannot be used: give a plain word.</source>
+            <translation>{name} {value!r} no es pot fer servir: doneu una paraula simple.</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/export_robot_map.py" />
@@ -6031,8 +6603,8 @@
         </message>
         <message>
             <location filename="../../plugin/processing/export_robot_map.py" />
-            <source>Obstacle layers</source>
-            <translation>Capes d'obstacles</translation>
+            <source>Obstacle layers (default: those of the project with such a role)</source>
+            <translation>Capes d'obstacles (per defecte: les del projecte amb aquest paper)</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/export_robot_map.py" />
@@ -6086,13 +6658,13 @@
         </message>
         <message>
             <location filename="../../plugin/processing/export_robot_map.py" />
-            <source>{size} bytes in binary, {ratio:.2f} bytes/m²</source>
-            <translation>{size} bytes en binari, {ratio:.2f} bytes/m²</translation>
+            <source>{size} bytes in binary, {ratio:.3g} bytes/m²</source>
+            <translation>{size} bytes en binari, {ratio:.3g} bytes/m²</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/export_robot_map.py" />
-            <source>{size} bytes of text, {ratio:.2f} bytes/m² (paper 1: about 3 bytes/m² as text)</source>
-            <translation>{size} bytes de text, {ratio:.2f} bytes/m² (article 1: uns 3 bytes/m² com a text)</translation>
+            <source>{size} bytes of text, {ratio:.3g} bytes/m² (paper 1: about 3 bytes/m² as text)</source>
+            <translation>{size} bytes de text, {ratio:.3g} bytes/m² (article 1: uns 3 bytes/m² com a text)</translation>
         </message>
         <message numerus="yes">
             <location filename="../../plugin/processing/export_robot_map_tiles.py" />
@@ -6345,8 +6917,8 @@
         </message>
         <message>
             <location filename="../../plugin/processing/import_cone_layout.py" />
-            <source>&lt;p&gt;Reads cones from a &lt;b&gt;CSV file&lt;/b&gt; with a head line, in UTF-8, or from a &lt;b&gt;layer&lt;/b&gt;. The columns are named by parameters; only those of x and y are needed, and not even those for a layer of points with a CRS, which is taken as it lies. A file or layer with several layouts gives one of them, by &lt;b&gt;LAYOUT_FIELD&lt;/b&gt; and &lt;b&gt;LAYOUT&lt;/b&gt;.&lt;/p&gt; &lt;p&gt;Metres of a table are turned by &lt;b&gt;rotation&lt;/b&gt; (degrees, counter-clockwise) and then moved to the &lt;b&gt;origin&lt;/b&gt;. A row that cannot be read is named with its column, and nothing is placed.&lt;/p&gt; &lt;p&gt;Every cone is &lt;b&gt;checked&lt;/b&gt; as those of &lt;i&gt;Cone layout&lt;/i&gt; are.&lt;/p&gt; &lt;pre&gt;qgis_process run fleet:importconelayout -- FILE=cone_layouts.csv COLOUR_FIELD=colour LAYOUT_FIELD=track LAYOUT=eufs_skidpad ORIGIN="640520,5193530 [EPSG:32633]" ROTATION=90 SITE_CRS=EPSG:32633 CONES=cones.gpkg&lt;/pre&gt;</source>
-            <translation>&lt;p&gt;Llegeix cons d'un &lt;b&gt;fitxer CSV&lt;/b&gt; amb línia de capçalera, en UTF-8, o d'una &lt;b&gt;capa&lt;/b&gt;. Les columnes s'anomenen amb paràmetres; només calen les de x i y, i ni tan sols aquestes per a una capa de punts amb SRC, que es pren tal com és. Un fitxer o una capa amb diverses disposicions en dona una, amb &lt;b&gt;LAYOUT_FIELD&lt;/b&gt; i &lt;b&gt;LAYOUT&lt;/b&gt;.&lt;/p&gt; &lt;p&gt;Els metres d'una taula es giren segons &lt;b&gt;rotation&lt;/b&gt; (graus, en sentit antihorari) i després es mouen a l'&lt;b&gt;origen&lt;/b&gt;. Una fila que no es pot llegir s'anomena amb la seva columna, i no es col·loca res.&lt;/p&gt; &lt;p&gt;Cada con es &lt;b&gt;comprova&lt;/b&gt; com els de &lt;i&gt;Disposició de cons&lt;/i&gt;.&lt;/p&gt; &lt;pre&gt;qgis_process run fleet:importconelayout -- FILE=cone_layouts.csv COLOUR_FIELD=colour LAYOUT_FIELD=track LAYOUT=eufs_skidpad ORIGIN="640520,5193530 [EPSG:32633]" ROTATION=90 SITE_CRS=EPSG:32633 CONES=cones.gpkg&lt;/pre&gt;</translation>
+            <source>&lt;p&gt;Reads cones from a &lt;b&gt;CSV file&lt;/b&gt; in UTF-8, from a &lt;b&gt;track&lt;/b&gt; of Formula Student, or from a &lt;b&gt;layer&lt;/b&gt;. Tracks are YAML with &lt;i&gt;cones_left&lt;/i&gt;, &lt;i&gt;cones_right&lt;/i&gt;, &lt;i&gt;cones_orange&lt;/i&gt; and &lt;i&gt;cones_orange_big&lt;/i&gt;, SDF with models of cones, CSV with columns such as &lt;i&gt;blue_x&lt;/i&gt; and &lt;i&gt;blue_y&lt;/i&gt; for each colour, or CSV without a head line: colour, x, y. Of other tables the columns are named by parameters; only those of x and y are needed, and not even those for a layer of points with a CRS, which is taken as it lies. A file or layer with several layouts gives one of them, by &lt;b&gt;LAYOUT_FIELD&lt;/b&gt; and &lt;b&gt;LAYOUT&lt;/b&gt;.&lt;/p&gt; &lt;p&gt;Metres of a table are turned by &lt;b&gt;rotation&lt;/b&gt; (degrees, counter-clockwise) and then moved to the &lt;b&gt;origin&lt;/b&gt;. A row that cannot be read is named with its column, and nothing is placed.&lt;/p&gt; &lt;p&gt;Every cone is &lt;b&gt;checked&lt;/b&gt; as those of &lt;i&gt;Cone layout&lt;/i&gt; are.&lt;/p&gt; &lt;pre&gt;qgis_process run fleet:importconelayout -- FILE=cone_layouts.csv COLOUR_FIELD=colour LAYOUT_FIELD=track LAYOUT=eufs_skidpad ORIGIN="640520,5193530 [EPSG:32633]" ROTATION=90 SITE_CRS=EPSG:32633 CONES=cones.gpkg&lt;/pre&gt;</source>
+            <translation>&lt;p&gt;Llegeix cons d'un &lt;b&gt;fitxer CSV&lt;/b&gt; en UTF-8, d'una &lt;b&gt;pista&lt;/b&gt; de Formula Student o d'una &lt;b&gt;capa&lt;/b&gt;. Les pistes són YAML amb &lt;i&gt;cones_left&lt;/i&gt;, &lt;i&gt;cones_right&lt;/i&gt;, &lt;i&gt;cones_orange&lt;/i&gt; i &lt;i&gt;cones_orange_big&lt;/i&gt;, SDF amb models de cons, CSV amb columnes com &lt;i&gt;blue_x&lt;/i&gt; i &lt;i&gt;blue_y&lt;/i&gt; per a cada color, o CSV sense línia de capçalera: color, x, y. De les altres taules, les columnes s'anomenen amb paràmetres; només calen les de x i y, i ni tan sols aquestes per a una capa de punts amb SRC, que es pren tal com és. Un fitxer o una capa amb diverses disposicions en dona una, amb &lt;b&gt;LAYOUT_FIELD&lt;/b&gt; i &lt;b&gt;LAYOUT&lt;/b&gt;.&lt;/p&gt; &lt;p&gt;Els metres d'una taula es giren segons &lt;b&gt;rotation&lt;/b&gt; (graus, en sentit antihorari) i després es mouen a l'&lt;b&gt;origen&lt;/b&gt;. Una fila que no es pot llegir s'anomena amb la seva columna, i no es col·loca res.&lt;/p&gt; &lt;p&gt;Cada con es &lt;b&gt;comprova&lt;/b&gt; com els de &lt;i&gt;Disposició de cons&lt;/i&gt;.&lt;/p&gt; &lt;pre&gt;qgis_process run fleet:importconelayout -- FILE=cone_layouts.csv COLOUR_FIELD=colour LAYOUT_FIELD=track LAYOUT=eufs_skidpad ORIGIN="640520,5193530 [EPSG:32633]" ROTATION=90 SITE_CRS=EPSG:32633 CONES=cones.gpkg&lt;/pre&gt;</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/import_cone_layout.py" />
@@ -6355,8 +6927,8 @@
         </message>
         <message>
             <location filename="../../plugin/processing/import_cone_layout.py" />
-            <source>CSV file</source>
-            <translation>Fitxer CSV</translation>
+            <source>CSV file, or track of Formula Student (YAML, SDF)</source>
+            <translation>Fitxer CSV o pista de Formula Student (YAML, SDF)</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/import_cone_layout.py" />
@@ -6397,6 +6969,16 @@
             <location filename="../../plugin/processing/import_cone_layout.py" />
             <source>Column that names the layout of each row</source>
             <translation>Columna de la disposició</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/import_cone_layout.py" />
+            <source>Cone layouts ({kinds});;All files (*)</source>
+            <translation>Disposicions de cons ({kinds});;Tots els fitxers (*)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/import_cone_layout.py" />
+            <source>FILE {file} is none that is read: give one of {kinds}.</source>
+            <translation>FILE: {file} no és de cap tipus que es llegeixi: doneu-ne un de {kinds}.</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/import_cone_layout.py" />
@@ -6447,6 +7029,61 @@
             <location filename="../../plugin/processing/import_cone_layout.py" />
             <source>{how} given: give a CSV file, or a layer.</source>
             <translation>{how}: doneu un fitxer CSV o una capa.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/import_navigation_map.py" />
+            <source>&lt;p&gt;Reads a map of Nav2: the &lt;b&gt;YAML&lt;/b&gt; and the image that it names (PGM, PNG, BMP or JPEG), in the modes &lt;i&gt;trinary&lt;/i&gt;, &lt;i&gt;scale&lt;/i&gt; and &lt;i&gt;raw&lt;/i&gt;, with its thresholds, &lt;i&gt;negate&lt;/i&gt;, and origin with yaw.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Raster&lt;/b&gt;: a value for each cell, 0 free to 100 occupied, -1 unknown. &lt;b&gt;Obstacles&lt;/b&gt;: a polygon for each patch of cells of at least &lt;i&gt;OCCUPIED_FROM&lt;/i&gt;, along the edges of the cells.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Place&lt;/b&gt;: the map's metres are those of the site frame. &lt;i&gt;SITE_CRS&lt;/i&gt;, &lt;i&gt;ORIGIN&lt;/i&gt; and &lt;i&gt;ROTATION&lt;/i&gt; say where that is; files of &lt;i&gt;Export navigation map&lt;/i&gt; say it themselves. Where neither does, the layers are in local metres, said in a warning.&lt;/p&gt; &lt;pre&gt;qgis_process run fleet:importnavigationmap -- MAP=warehouse.yaml SITE_CRS=EPSG:32633 ORIGIN="640420,5193480 [EPSG:32633]" ROTATION=0 RASTER=warehouse.tif OBSTACLES=warehouse.gpkg&lt;/pre&gt;</source>
+            <translation>&lt;p&gt;Llegeix un mapa de Nav2: el &lt;b&gt;YAML&lt;/b&gt; i la imatge que anomena (PGM, PNG, BMP o JPEG), en els modes &lt;i&gt;trinary&lt;/i&gt;, &lt;i&gt;scale&lt;/i&gt; i &lt;i&gt;raw&lt;/i&gt;, amb els seus llindars, &lt;i&gt;negate&lt;/i&gt; i l’origen amb el gir.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Ràster&lt;/b&gt;: un valor per a cada cel·la, de 0 lliure a 100 ocupada, -1 desconeguda. &lt;b&gt;Obstacles&lt;/b&gt;: un polígon per a cada clapa de cel·les d’almenys &lt;i&gt;OCCUPIED_FROM&lt;/i&gt;, al llarg de les vores de les cel·les.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Lloc&lt;/b&gt;: els metres del mapa són els del marc del recinte. &lt;i&gt;SITE_CRS&lt;/i&gt;, &lt;i&gt;ORIGIN&lt;/i&gt; i &lt;i&gt;ROTATION&lt;/i&gt; diuen on és; els fitxers de &lt;i&gt;Exporta el mapa de navegació&lt;/i&gt; ho diuen ells mateixos. Si no ho diu ningú, les capes són en metres locals i un avís ho diu.&lt;/p&gt; &lt;pre&gt;qgis_process run fleet:importnavigationmap -- MAP=warehouse.yaml SITE_CRS=EPSG:32633 ORIGIN="640420,5193480 [EPSG:32633]" ROTATION=0 RASTER=warehouse.tif OBSTACLES=warehouse.gpkg&lt;/pre&gt;</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/import_navigation_map.py" />
+            <source>Import navigation map</source>
+            <translation>Importa un mapa de navegació</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/import_navigation_map.py" />
+            <source>Nav2 map (YAML)</source>
+            <translation>Mapa de Nav2 (YAML)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/import_navigation_map.py" />
+            <source>Nav2 maps (*.yaml *.yml);;All files (*)</source>
+            <translation>Mapes de Nav2 (*.yaml *.yml);;Tots els fitxers (*)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/import_navigation_map.py" />
+            <source>Occupied cells</source>
+            <translation>Cel·les ocupades</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/import_navigation_map.py" />
+            <source>Occupied from [of 100]</source>
+            <translation>Ocupada a partir de [de 100]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/import_navigation_map.py" />
+            <source>Raster</source>
+            <translation>Ràster</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/import_navigation_map.py" />
+            <source>Reads a Nav2 occupancy grid or mask as raster, and polygons of what is occupied.</source>
+            <translation>Llegeix una graella d’ocupació o una màscara de Nav2 com a ràster i polígons del que és ocupat.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/import_navigation_map.py" />
+            <source>The Nav2 map {file} cannot be read: {error}</source>
+            <translation>No es pot llegir el mapa de Nav2 {file}: {error}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/import_navigation_map.py" />
+            <source>There is no file {file}: choose the YAML of a Nav2 map (MAP).</source>
+            <translation>No hi ha cap fitxer {file}: trieu el YAML d’un mapa de Nav2 (MAP).</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/import_navigation_map.py" />
+            <source>Unknown cells</source>
+            <translation>Cel·les desconegudes</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/job_source.py" />
@@ -6697,6 +7334,16 @@
             <translation>Perfil de mapa: què són les capes, pel seu nom (per defecte: com ho guarda cada capa)</translation>
         </message>
         <message>
+            <location filename="../../plugin/processing/map_profile.py" />
+            <source>The layer {layer} is no vector layer: take its role away.</source>
+            <translation>La capa {layer} no és vectorial: traieu-li el paper.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_profile.py" />
+            <source>{name} knows none of these layers. It looks for layers that are named, in their source or in the project: {sought}.</source>
+            <translation>{name} no coneix cap d'aquestes capes. Cerca capes que, a l'origen o al projecte, s'anomenin: {sought}.</translation>
+        </message>
+        <message>
             <location filename="../../plugin/processing/map_shaping.py" />
             <source>0 is off. An outline that would cross itself stays as it is. Needs the Python package shapely 2.</source>
             <translation>0: desactivat. Un contorn que es creuaria a si mateix es queda com és. Necessita el paquet de Python shapely 2.</translation>
@@ -6818,18 +7465,8 @@
         </message>
         <message>
             <location filename="../../plugin/processing/map_window.py" />
-            <source>Origin of the site frame (default: as the project has it, else 0,0)</source>
-            <translation>Origen del marc del recinte (per defecte: el del projecte, si no 0,0)</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/map_window.py" />
             <source>ROTATION {degrees} is not finite: give a number.</source>
             <translation>ROTATION {degrees} no és finit: doneu un nombre.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/map_window.py" />
-            <source>Rotation of the site frame, counter-clockwise from the CRS's x axis [degrees]</source>
-            <translation>Rotació del marc del recinte, en sentit antihorari des de l'eix x del SRC [graus]</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/map_window.py" />
@@ -6860,6 +7497,26 @@
             <location filename="../../plugin/processing/mask_areas.py" />
             <source>has no speed above 0 m/s, so it sets no limit; it is left out</source>
             <translation>no té cap velocitat superior a 0 m/s, així que no limita; s'omet</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/nav2_image.py" />
+            <source>The image {file} cannot be read as PGM, PNG, BMP or JPEG: {why}</source>
+            <translation>No es pot llegir la imatge {file} com a PGM, PNG, BMP o JPEG: {why}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/nav2_image.py" />
+            <source>The image {file} has no bands of 8 bits: save it as grey, without a palette.</source>
+            <translation>La imatge {file} no té bandes de 8 bits: deseu-la en gris, sense paleta.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/nav2_image.py" />
+            <source>The raster {file} cannot be written: {why}</source>
+            <translation>No es pot escriure el ràster {file}: {why}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/nav2_image.py" />
+            <source>There is no image {file}, which the map names: put it there, or correct the YAML.</source>
+            <translation>No hi ha la imatge {file}, que el mapa anomena: poseu-la-hi o corregiu el YAML.</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/navigation_help.py" />
@@ -6958,11 +7615,6 @@
             <location filename="../../plugin/processing/publish_plan.py" />
             <source>SITE_ID is empty and the project has no variable {site_variable}: give the site an id of letters, digits, '_', '.' and '-', such as north_yard.</source>
             <translation>SITE_ID és buit i el projecte no té la variable {site_variable}: doneu al recinte un id de lletres, dígits, '_', '.' i '-', com ara north_yard.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/publish_plan.py" />
-            <source>The layer {layer} is no vector layer: take its role away.</source>
-            <translation>La capa {layer} no és vectorial: traieu-li el paper.</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/publish_plan.py" />
@@ -7118,6 +7770,11 @@
         </message>
         <message>
             <location filename="../../plugin/processing/publish_site.py" />
+            <source>The origin of the site frame is 0,0 of {crs}, {away:.0f} km from the site: robots get positions of seven digits. Give ORIGIN, a place of the site, unless that is meant.</source>
+            <translation>L'origen del marc del recinte és 0,0 de {crs}, a {away:.0f} km del recinte: els robots reben posicions de set xifres. Indiqueu ORIGIN, un punt del recinte, si no és el que voleu.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/publish_site.py" />
             <source>There is nothing to publish: the layers hold nothing that can be read. See the warnings, or give BOUNDS to publish an empty site.</source>
             <translation>No hi ha res a publicar: les capes no contenen res que es pugui llegir. Vegeu els avisos, o doneu BOUNDS per publicar un recinte buit.</translation>
         </message>
@@ -7230,6 +7887,21 @@
             <translation>ΔN cm</translation>
         </message>
         <message>
+            <location filename="../../plugin/processing/road_network_files.py" />
+            <source>Lanelet2 needs longitudes and latitudes, and the CRS of the roads has no place on the Earth: give the layer its CRS, or leave lanelet2 out.</source>
+            <translation>Lanelet2 necessita longituds i latituds, i el SRC de les vies no té lloc a la Terra: doneu a la capa el seu SRC, o deixeu fora lanelet2.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/road_network_files.py" />
+            <source>Lanelet2 reads lanes the wrong way round where corners are tighter than lanes are wide: {count} here, the first at ({x:.2f}, {y:.2f}). Draw the roads there smoother, or give them less width.</source>
+            <translation>Lanelet2 llegeix els carrils al revés on les corbes són més tancades que l'amplada dels carrils: aquí {count}, el primer a ({x:.2f}, {y:.2f}). Dibuixeu-hi les vies més suaus, o doneu-los menys amplada.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/road_network_files.py" />
+            <source>Nav2 keeps 32 bits of a coordinate, which here moves nodes by up to {metres:.2f} m: give ORIGIN, a place of the site, for robots and their maps alike.</source>
+            <translation>Nav2 conserva 32 bits d'una coordenada, cosa que aquí mou els nodes fins a {metres:.2f} m: doneu ORIGIN, un lloc del recinte, tant per als robots com per als seus mapes.</translation>
+        </message>
+        <message>
             <location filename="../../plugin/processing/road_source.py" />
             <source>CRS in metres (default: the layer's, or the project's)</source>
             <translation>SRC en metres (per defecte: el de la capa o el del projecte)</translation>
@@ -7249,11 +7921,6 @@
             <source>Layer {name}, feature {id}: {note}</source>
             <translation>Capa {name}, entitat {id}: {note}</translation>
         </message>
-        <message>
-            <location filename="../../plugin/processing/road_source.py" />
-            <source>Layer {name}: none of its features is a road</source>
-            <translation>Capa {name}: cap de les seves entitats no és una via</translation>
-        </message>
         <message numerus="yes">
             <location filename="../../plugin/processing/road_source.py" />
             <source>Layer {name}: the width of %n roads is not known; {width:g} m is used</source>
@@ -7271,6 +7938,16 @@
             <location filename="../../plugin/processing/road_source.py" />
             <source>ROADS {roads} cannot be opened: check the file and the layer's name.</source>
             <translation>ROADS {roads} no es pot obrir: comproveu el fitxer i el nom de la capa.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/road_source.py" />
+            <source>ROADS: no feature of the layer {name} is a road: each has to be a line with a length that the layer's filter keeps. {first}</source>
+            <translation>ROADS: cap element de la capa {name} no és una via: cadascun ha de ser una línia amb longitud que el filtre de la capa conservi. {first}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/road_source.py" />
+            <source>ROADS: the layer {name} has no features: choose the layer of the road centrelines.</source>
+            <translation>ROADS: la capa {name} no té elements: trieu la capa dels eixos de via.</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/road_source.py" />
@@ -7296,6 +7973,11 @@
             <location filename="../../plugin/processing/road_source.py" />
             <source>Surface of each road (default: the layer's role, else a field surface)</source>
             <translation>Superfície de cada via (per defecte: el paper de la capa, si no un camp surface)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/road_source.py" />
+            <source>The filter of its role keeps none of them.</source>
+            <translation>El filtre del seu paper no en conserva cap.</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/road_source.py" />
@@ -7680,11 +8362,6 @@
             <location filename="../../plugin/roles/roles_dialog.py" />
             <source>Profile from file…</source>
             <translation>Perfil d'un fitxer…</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/roles/roles_dialog.py" />
-            <source>{name} knows none of these layers by name and fields.</source>
-            <translation>{name} no coneix cap d'aquestes capes pel nom i els camps.</translation>
         </message>
         <message numerus="yes">
             <location filename="../../plugin/roles/roles_dialog.py" />
@@ -8131,14 +8808,39 @@
             <translation>es fa servir l'estimació</translation>
         </message>
         <message>
-            <location filename="../../plugin/sites/ground_reading.py" />
-            <source>Layer {layer}: the width of {count} of its roads is not known and taken as {width:g} m (feature {first} is the first)</source>
-            <translation>Capa {layer}: l'amplada de {count} de les seves vies no es coneix i es pren com a {width:g} m (l'entitat {first} és la primera)</translation>
+            <location filename="../../plugin/sites/feature_warnings.py" />
+            <source>Layer {layer}, {features}: {note}</source>
+            <translation>Capa {layer}, {features}: {note}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/feature_warnings.py" />
+            <source>Layer {layer}, {features}; of the first: {note}</source>
+            <translation>Capa {layer}, {features}; de la primera: {note}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/feature_warnings.py" />
+            <source>Layer {layer}: warnings of more kinds about {features}</source>
+            <translation>Capa {layer}: avisos de més tipus sobre {features}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/feature_warnings.py" />
+            <source>feature {shown}</source>
+            <translation>entitat {shown}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/feature_warnings.py" />
+            <source>features {shown}</source>
+            <translation>entitats {shown}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/feature_warnings.py" />
+            <source>features {shown} and {more} more</source>
+            <translation>entitats {shown} i {more} més</translation>
         </message>
         <message>
             <location filename="../../plugin/sites/ground_reading.py" />
-            <source>has a coordinate that is no number; it is left out</source>
-            <translation>té una coordenada que no és un nombre; queda fora</translation>
+            <source>Layer {layer}: the width of {count} of its roads is not known and taken as {width:g} m (feature {first} is the first)</source>
+            <translation>Capa {layer}: l'amplada de {count} de les seves vies no es coneix i es pren com a {width:g} m (l'entitat {first} és la primera)</translation>
         </message>
         <message>
             <location filename="../../plugin/sites/ground_reading.py" />
@@ -8154,6 +8856,11 @@
             <location filename="../../plugin/sites/layer_rules.py" />
             <source>Layer {layer}: it has no field {missing}, which the {what} expression {text!r} reads; the default is used for all its features</source>
             <translation>Capa {layer}: no té el camp {missing}, que llegeix l'expressió de {what} {text!r}; es fa servir el valor per defecte per a totes les seves entitats</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/layer_rules.py" />
+            <source>Layer {layer}: {note}</source>
+            <translation>Capa {layer}: {note}</translation>
         </message>
         <message>
             <location filename="../../plugin/sites/layer_rules.py" />
@@ -8271,6 +8978,11 @@
             <translation>{error}; es fa servir la seva amplada</translation>
         </message>
         <message>
+            <location filename="../../plugin/sites/profile.py" />
+            <source>{names} with {fields}</source>
+            <translation>{names} amb {fields}</translation>
+        </message>
+        <message>
             <location filename="../../plugin/sites/profile_file.py" />
             <source>The profile {file} cannot be read: {error}.</source>
             <translation>El perfil {file} no es pot llegir: {error}.</translation>
@@ -8279,6 +8991,11 @@
             <location filename="../../plugin/sites/profile_file.py" />
             <source>The profile {file} is not there: give the path of a file, or one of {shipped}.</source>
             <translation>El perfil {file} no hi és: doneu el camí d'un fitxer, o un de {shipped}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/profile_file.py" />
+            <source>it has {count} characters, more than {most}</source>
+            <translation>té {count} caràcters, més de {most}</translation>
         </message>
         <message>
             <location filename="../../plugin/sites/profile_file.py" />
@@ -8425,21 +9142,6 @@
         </message>
         <message>
             <location filename="../../plugin/sites/reading.py" />
-            <source>feature {shown}</source>
-            <translation>entitat {shown}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/sites/reading.py" />
-            <source>features {shown}</source>
-            <translation>entitats {shown}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/sites/reading.py" />
-            <source>features {shown} and {more} more</source>
-            <translation>entitats {shown} i {more} més</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/sites/reading.py" />
             <source>lines, one a riser</source>
             <translation>línies, una per graó</translation>
         </message>
@@ -8465,13 +9167,18 @@
         </message>
         <message>
             <location filename="../../plugin/sites/road_attributes.py" />
+            <source>none of its fields direction, oneway, one_way and other_tags is there to tell one-way roads; all are taken as driven both ways</source>
+            <translation>no hi ha cap dels camps direction, oneway, one_way i other_tags que digui quines vies són de sentit únic; totes es prenen com de doble sentit</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/road_attributes.py" />
             <source>whether it is closed, {value!r}, is neither true nor false; it is taken as closed</source>
             <translation>si és tancada, {value!r}, no és ni cert ni fals; es pren com a tancada</translation>
         </message>
         <message>
             <location filename="../../plugin/sites/shapes.py" />
-            <source>has a coordinate that is no number or has no place in the site's CRS; it is left out</source>
-            <translation>té una coordenada que no és un nombre o que no té lloc al SRC del recinte; queda fora</translation>
+            <source>has a coordinate that is no number, has no place in the site's CRS or lies beyond 100 000 km; it is left out</source>
+            <translation>té una coordenada que no és un nombre, no té lloc en el SRC del recinte o és més enllà de 100 000 km; s'omet</translation>
         </message>
         <message>
             <location filename="../../plugin/sites/site_crs.py" />
@@ -8642,6 +9349,11 @@
             <translation>cap esquema</translation>
         </message>
         <message>
+            <location filename="../../plugin/wire/addresses.py" />
+            <source>{url} is where robots connect; operators connect to {desk}. Write that instead.</source>
+            <translation>{url} és on es connecten els robots; els operadors es connecten a {desk}. Escriviu això.</translation>
+        </message>
+        <message>
             <location filename="../../plugin/wire/client.py" />
             <source>The gateway at {url} closed the link. It is tried again.</source>
             <translation>La passarel·la a {url} ha tancat l'enllaç. Es torna a provar.</translation>
@@ -8775,6 +9487,11 @@
             <location filename="../../plugin/wire/failures.py" />
             <source>{url} takes no desk now: {said} It is tried again by itself.</source>
             <translation>{url} ara no admet cap consola: {said} Es torna a provar sol.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/wire/protocol.py" />
+            <source>No operator can connect at {url}: what answers there knows no desk, as the address of robots does not. A gateway's desk has the path /desk, as in {default_url}. Correct the URL, then press Connect.</source>
+            <translation>Cap operador no es pot connectar a {url}: el que hi respon no coneix cap consola, com tampoc l'adreça dels robots. La consola d'una passarel·la té el camí /desk, com a {default_url}. Corregiu l'URL i premeu Connecta.</translation>
         </message>
         <message>
             <location filename="../../plugin/wire/protocol.py" />

@@ -686,11 +686,6 @@
         </message>
         <message>
             <location filename="../../plugin/desk/alarms/alarm_bar.py" />
-            <source>Acknowledge all</source>
-            <translation>Reconocer todas</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/alarms/alarm_bar.py" />
             <source>Show</source>
             <translation>Mostrar</translation>
         </message>
@@ -728,6 +723,11 @@
             <location filename="../../plugin/desk/alarms/alarm_panel.py" />
             <source>Acknowledge</source>
             <translation>Reconocer</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/alarm_panel.py" />
+            <source>Acknowledge all</source>
+            <translation>Reconocer todas</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/alarms/alarm_panel.py" />
@@ -826,6 +826,76 @@
             </translation>
         </message>
         <message>
+            <location filename="../../plugin/desk/alarms/reported.py" />
+            <source> at {x:.1f}, {y:.1f} m</source>
+            <translation> en {x:.1f}, {y:.1f} m</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/reported.py" />
+            <source>it could NOT be stopped yet: {why}</source>
+            <translation>todavía NO se ha podido parar: {why}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/reported.py" />
+            <source>it is being aborted</source>
+            <translation>se está abortando</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/reported.py" />
+            <source>it is being paused</source>
+            <translation>se está poniendo en pausa</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/reported.py" />
+            <source>the emergency stop holds it</source>
+            <translation>la parada de emergencia lo retiene</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/reported.py" />
+            <source>the gateway has aborted its task</source>
+            <translation>la pasarela ha abortado su tarea</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/reported.py" />
+            <source>the gateway has paused it</source>
+            <translation>la pasarela lo ha puesto en pausa</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/reported.py" />
+            <source>{robot} is at the obstacle {name}</source>
+            <translation>{robot} está en el obstáculo {name}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/reported.py" />
+            <source>{robot} is in the keepout {name}</source>
+            <translation>{robot} está en la zona prohibida {name}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/reported.py" />
+            <source>{robot} will pass {other} at {metres:.1f} m (clearance {clearance:.1f} m){where}</source>
+            <translation>{robot} pasará a {metres:.1f} m de {other} (distancia mínima {clearance:.1f} m){where}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/reported.py" />
+            <source>{robot} will pass {other} at {metres:.1f} m{where}</source>
+            <translation>{robot} pasará a {metres:.1f} m de {other}{where}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/reported.py" />
+            <source>{seen} comes within {metres:.1f} m of {robot} in {seconds:.0f} s</source>
+            <translation>{seen} estará a menos de {metres:.1f} m de {robot} en {seconds:.0f} s</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/reported.py" />
+            <source>{seen} is {metres:.1f} m from {robot}</source>
+            <translation>{seen} está a {metres:.1f} m de {robot}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/reported.py" />
+            <source>{text} (it is not heard now)</source>
+            <translation>{text} (ahora no se le oye)</translation>
+        </message>
+        <message>
             <location filename="../../plugin/desk/alarms/road_ground.py" />
             <source>layers of road surfaces cannot be read: {why}</source>
             <translation>las capas de superficies de vía no se pueden leer: {why}</translation>
@@ -877,6 +947,16 @@
         </message>
         <message>
             <location filename="../../plugin/desk/alarms/thresholds_form.py" />
+            <source>begins so long before</source>
+            <translation>empieza este tiempo antes</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/thresholds_form.py" />
+            <source>begins when less exact than</source>
+            <translation>empieza cuando es menos exacta que</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/thresholds_form.py" />
             <source>begins when two are nearer than</source>
             <translation>empieza cuando dos están más cerca de</translation>
         </message>
@@ -887,8 +967,18 @@
         </message>
         <message>
             <location filename="../../plugin/desk/alarms/thresholds_form.py" />
+            <source>ends so much below that</source>
+            <translation>termina tanto por debajo</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/thresholds_form.py" />
             <source>ends so much further apart</source>
             <translation>termina tanto más lejos</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/thresholds_form.py" />
+            <source>the gateway judges it by the published site, and says what it does</source>
+            <translation>la pasarela lo juzga según el recinto publicado y dice qué hace</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/alarms/thresholds_form.py" />
@@ -917,11 +1007,6 @@
         </message>
         <message>
             <location filename="../../plugin/desk/alarms/words.py" />
-            <source> at {x:.1f}, {y:.1f} m</source>
-            <translation> en {x:.1f}, {y:.1f} m</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/alarms/words.py" />
             <source>; last{where}</source>
             <translation>; la última vez{where}</translation>
         </message>
@@ -929,6 +1014,11 @@
             <location filename="../../plugin/desk/alarms/words.py" />
             <source>acknowledged</source>
             <translation>reconocida</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/words.py" />
+            <source>at an obstacle</source>
+            <translation>en un obstáculo</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/alarms/words.py" />
@@ -942,6 +1032,11 @@
         </message>
         <message>
             <location filename="../../plugin/desk/alarms/words.py" />
+            <source>in a keepout</source>
+            <translation>en una zona prohibida</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/words.py" />
             <source>lost</source>
             <translation>perdido</translation>
         </message>
@@ -949,6 +1044,11 @@
             <location filename="../../plugin/desk/alarms/words.py" />
             <source>low battery</source>
             <translation>batería baja</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/words.py" />
+            <source>near a robot</source>
+            <translation>cerca de un robot</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/alarms/words.py" />
@@ -982,6 +1082,21 @@
         </message>
         <message>
             <location filename="../../plugin/desk/alarms/words.py" />
+            <source>unsure of its place</source>
+            <translation>inseguro de su lugar</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/words.py" />
+            <source>will come near a robot</source>
+            <translation>se acercará a un robot</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/words.py" />
+            <source>will pass too near</source>
+            <translation>pasará demasiado cerca</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/words.py" />
             <source>{robot} and {other}</source>
             <translation>{robot} y {other}</translation>
         </message>
@@ -989,6 +1104,11 @@
             <location filename="../../plugin/desk/alarms/words.py" />
             <source>{robot} and {other} are {apart:.1f} m apart{where}</source>
             <translation>{robot} y {other} están a {apart:.1f} m uno de otro{where}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/words.py" />
+            <source>{robot} does not know its place: ± {accuracy:.1f} m{where}</source>
+            <translation>{robot} no sabe dónde está: ± {accuracy:.1f} m{where}</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/alarms/words.py" />
@@ -1061,44 +1181,9 @@
             <translation>Por qué los robots pueden volver a circular, para el registro</translation>
         </message>
         <message>
-            <location filename="../../plugin/desk/closure_dialog.py" />
+            <location filename="../../plugin/desk/closure_tool.py" />
             <source>Closed</source>
             <translation>Cerrada</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/closure_dialog.py" />
-            <source>Reason</source>
-            <translation>Motivo</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/closure_dialog.py" />
-            <source>The road is closed for every robot from this junction to the next. Robots whose way leads along it get another way; one that has no other way is stopped, unless the site's settings say otherwise.</source>
-            <translation>La vía se cierra a todos los robots desde este cruce hasta el siguiente. Los que debían pasar por ella reciben otro recorrido; el que no tiene otro se detiene, si la configuración del recinto no dice otra cosa.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/closure_dialog.py" />
-            <source>for 1 hour</source>
-            <translation>durante 1 hora</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/closure_dialog.py" />
-            <source>for 15 minutes</source>
-            <translation>durante 15 minutos</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/closure_dialog.py" />
-            <source>for 4 hours</source>
-            <translation>durante 4 horas</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/closure_dialog.py" />
-            <source>such as: tree on the road</source>
-            <translation>como: árbol en la vía</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/closure_dialog.py" />
-            <source>until it is opened</source>
-            <translation>hasta que se abra</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/closure_tool.py" />
@@ -1109,6 +1194,41 @@
             <location filename="../../plugin/desk/closure_tool.py" />
             <source>Open road</source>
             <translation>Abrir la vía</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/closure_tool.py" />
+            <source>Reason</source>
+            <translation>Motivo</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/closure_tool.py" />
+            <source>The road is closed for every robot from this junction to the next. Robots whose way leads along it get another way; one that has no other way is stopped, unless the site's settings say otherwise.</source>
+            <translation>La vía se cierra a todos los robots desde este cruce hasta el siguiente. Los que debían pasar por ella reciben otro recorrido; el que no tiene otro se detiene, si la configuración del recinto no dice otra cosa.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/closure_tool.py" />
+            <source>for 1 hour</source>
+            <translation>durante 1 hora</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/closure_tool.py" />
+            <source>for 15 minutes</source>
+            <translation>durante 15 minutos</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/closure_tool.py" />
+            <source>for 4 hours</source>
+            <translation>durante 4 horas</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/closure_tool.py" />
+            <source>such as: tree on the road</source>
+            <translation>como: árbol en la vía</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/closure_tool.py" />
+            <source>until it is opened</source>
+            <translation>hasta que se abra</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/closure_tool.py" />
@@ -1484,6 +1604,31 @@
             <translation>porque: {reason}</translation>
         </message>
         <message>
+            <location filename="../../plugin/desk/cone_checks.py" />
+            <source>Reading what cones must keep clear of</source>
+            <translation>Lectura de aquello de lo que los conos deben mantenerse lejos</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/cone_file.py" />
+            <source>The cones of the layer {layer} are not saved with the project: {problem}. Export the layer to a file before you close QGIS.</source>
+            <translation>Los conos de la capa {layer} no se han guardado con el proyecto: {problem}. Exporte la capa a un archivo antes de cerrar QGIS.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/cone_file.py" />
+            <source>the project is not a file</source>
+            <translation>el proyecto no es un archivo</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/cone_file.py" />
+            <source>{path} cannot be read again</source>
+            <translation>{path} no se puede volver a leer</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/cone_file.py" />
+            <source>{path} cannot be written ({words})</source>
+            <translation>{path} no se puede escribir ({words})</translation>
+        </message>
+        <message>
             <location filename="../../plugin/desk/cone_store.py" />
             <source>Cones</source>
             <translation>Conos</translation>
@@ -1500,8 +1645,43 @@
         </message>
         <message>
             <location filename="../../plugin/desk/conflict_panel.py" />
-            <source>and {more} more: see the layer Conflicts</source>
-            <translation>y {more} más: vea la capa Conflictos</translation>
+            <source>Choose a conflict in the list first.</source>
+            <translation>Elija primero un conflicto de la lista.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/conflict_panel.py" />
+            <source>Give way</source>
+            <translation>Ceder el paso</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/conflict_panel.py" />
+            <source>No robot is in another one's way.</source>
+            <translation>Ningún robot está en el camino de otro.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/conflict_panel.py" />
+            <source>Nobody can be sent aside: {why}</source>
+            <translation>No se puede enviar a nadie a un lado: {why}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/conflict_panel.py" />
+            <source>Send aside</source>
+            <translation>Apartar</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/conflict_panel.py" />
+            <source>Send {robot} aside</source>
+            <translation>Apartar {robot}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/conflict_panel.py" />
+            <source>Stop</source>
+            <translation>Detener</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/conflict_panel.py" />
+            <source>Stop {robot}</source>
+            <translation>Parar {robot}</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/conflict_panel.py" />
@@ -1510,8 +1690,18 @@
         </message>
         <message>
             <location filename="../../plugin/desk/conflict_panel.py" />
+            <source>the gateway is being asked</source>
+            <translation>se está preguntando a la pasarela</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/conflict_panel.py" />
             <source>{robot} gives way</source>
             <translation>{robot} cede el paso</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/conflict_panel.py" />
+            <source>{robot} is paused: it stands, and keeps what it is doing for later</source>
+            <translation>{robot} se pone en pausa: se para y guarda para más tarde lo que hace</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/conflict_panel.py" />
@@ -1522,6 +1712,16 @@
             <location filename="../../plugin/desk/conflict_panel.py" />
             <source>{robot} waits for {other}, until {time_of_day} at the earliest</source>
             <translation>{robot} espera a {other}, como mínimo hasta las {time_of_day}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/conflict_panel.py" />
+            <source>{robot} × {other}: over</source>
+            <translation>{robot} × {other}: terminado</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/conflict_panel.py" />
+            <source>{text}; the route is shown first, and sent as any other</source>
+            <translation>{text}; primero se muestra la ruta, y se envía como cualquier otra</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/connection_menu.py" />
@@ -1562,6 +1762,11 @@
             <location filename="../../plugin/desk/connection_panel.py" />
             <source>Connecting</source>
             <translation>Conectando</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/connection_panel.py" />
+            <source>Disconnect</source>
+            <translation>Desconectar</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/connection_panel.py" />
@@ -1615,6 +1820,16 @@
         </message>
         <message>
             <location filename="../../plugin/desk/desk.py" />
+            <source>Pause of {robot}</source>
+            <translation>Pausa de {robot}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/desk.py" />
+            <source>The gateway has another database than before: its robots and commands are others, and those of before are not shown any more.</source>
+            <translation>La pasarela tiene otra base de datos que antes: sus robots y órdenes son otros, y los de antes ya no se muestran.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/desk.py" />
             <source>The operator's name is empty. Write who you are: it stands in every log.</source>
             <translation>El nombre del operador está vacío. Escriba quién es: está en todos los registros.</translation>
         </message>
@@ -1645,6 +1860,11 @@
         </message>
         <message>
             <location filename="../../plugin/desk/dock.py" />
+            <source>Conflicts</source>
+            <translation>Conflictos</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/dock.py" />
             <source>Fleet</source>
             <translation>Flota</translation>
         </message>
@@ -1665,6 +1885,11 @@
         </message>
         <message>
             <location filename="../../plugin/desk/draft_panel.py" />
+            <source>{in_words} is being checked: {share:.0%}. It goes out when nothing speaks against it.</source>
+            <translation>{in_words} se está comprobando: {share:.0%}. Saldrá si nada habla en contra.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/draft_panel.py" />
             <source>{in_words}. Being checked: {share:.0%}.</source>
             <translation>{in_words}. Se está comprobando: {share:.0%}.</translation>
         </message>
@@ -1672,6 +1897,11 @@
             <location filename="../../plugin/desk/draft_panel.py" />
             <source>{in_words}. Being checked: {share:.0%}. It goes out when nothing speaks against it; Esc keeps it back.</source>
             <translation>{in_words}. Se está comprobando: {share:.0%}. Se enviará si nada lo desaconseja; Esc lo detiene.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/draft_panel.py" />
+            <source>{in_words}. It goes out when that is found and nothing speaks against it; Esc keeps it back.</source>
+            <translation>{in_words}. Se enviará cuando se haya encontrado el camino y si nada lo desaconseja; Esc lo detiene.</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/draft_panel.py" />
@@ -1712,6 +1942,36 @@
             <location filename="../../plugin/desk/draft_tool.py" />
             <source>There is nothing to take back.</source>
             <translation>No hay nada que deshacer.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/ability_check.py" />
+            <source>{robot} cannot be sent to targets.</source>
+            <translation>{robot} no se puede enviar a objetivos.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/ability_check.py" />
+            <source>{robot} cannot be told where it starts.</source>
+            <translation>A {robot} no se le puede decir dónde empieza.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/ability_check.py" />
+            <source>{robot} cannot follow routes.</source>
+            <translation>{robot} no puede seguir rutas.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/ability_check.py" />
+            <source>{robot} is only seen: it takes no commands.</source>
+            <translation>{robot} solo se ve: no acepta órdenes.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/ability_check.py" />
+            <source>{robot} places no cones.</source>
+            <translation>{robot} no coloca conos.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/ability_check.py" />
+            <source>{robot} places no cones: it only drives there.</source>
+            <translation>{robot} no coloca conos: solo va hasta allí.</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/drafting/datum_path.py" />
@@ -1779,9 +2039,19 @@
             <translation>{in_words} no se envió: {error}</translation>
         </message>
         <message>
+            <location filename="../../plugin/desk/drafting/draft_sending.py" />
+            <source>{in_words} was not sent: {robot} has moved since its way was found. It is found again from where the robot is now; send it when it is drawn.</source>
+            <translation>{in_words} no se ha enviado: {robot} se ha movido desde que se encontró su camino. Se vuelve a buscar desde donde está ahora el robot; envíelo cuando esté dibujado.</translation>
+        </message>
+        <message>
             <location filename="../../plugin/desk/drafting/keepout_check.py" />
             <source>The route</source>
             <translation>La ruta</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/keepout_check.py" />
+            <source>The way to {to}</source>
+            <translation>El camino hasta {to}</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/drafting/keepout_check.py" />
@@ -1797,11 +2067,6 @@
             <location filename="../../plugin/desk/drafting/obstacle_check.py" />
             <source>The layer {layer} cannot be placed on the site ({error}), so obstacles in it are not seen. Correct its CRS, or take its role away.</source>
             <translation>La capa {layer} no se puede situar en el recinto ({error}), así que sus obstáculos no se ven. Corrija su SRC, o quítele el papel.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/drafting/obstacle_check.py" />
-            <source>The way to {to}</source>
-            <translation>El camino hasta {to}</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/drafting/obstacle_check.py" />
@@ -1822,6 +2087,11 @@
             <location filename="../../plugin/desk/drafting/order_check.py" />
             <source>{robot} is at work for {operator} ({task}): sending this takes its place.</source>
             <translation>{robot} trabaja para {operator} ({task}): al enviarlo lo sustituye.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/order_check.py" />
+            <source>{robot} is {state}, last heard {age} ago: it is told this when it is heard again, if that is soon enough.</source>
+            <translation>{robot}: {state}, se supo de él por última vez hace {age}: recibirá esto cuando se vuelva a saber de él, si es lo bastante pronto.</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/drafting/place_text.py" />
@@ -1894,6 +2164,26 @@
             <translation>el objetivo</translation>
         </message>
         <message>
+            <location filename="../../plugin/desk/drafting/target_way.py" />
+            <source>It is not known where {robot} is, so nobody has looked at the way that it drives.</source>
+            <translation>No se sabe dónde está {robot}, así que nadie ha comprobado el camino que recorre.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/target_way.py" />
+            <source>No way along the roads leads there: {why}.</source>
+            <translation>Ningún camino por las vías lleva allí: {why}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/target_way.py" />
+            <source>The gateway does not answer which way leads there. Set the target again when the link is there.</source>
+            <translation>La pasarela no responde qué camino lleva allí. Vuelva a poner el objetivo cuando haya conexión.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/target_way.py" />
+            <source>{robot} has not declared that it asks for its path or takes cones with one: sent now it drives straight. Add to queue, with a route around what is in its way, where that is not wanted.</source>
+            <translation>{robot} no ha declarado que pida su camino ni que acepte conos con un camino: enviado ahora, va recto. Donde eso no convenga, añádalo a la cola con una ruta que evite lo que hay en medio.</translation>
+        </message>
+        <message>
             <location filename="../../plugin/desk/drafting/tasks.py" />
             <source>A start position is no task: Send tells the robot at once.</source>
             <translation>Una posición inicial no es una tarea: Enviar se lo dice al robot al instante.</translation>
@@ -1902,6 +2192,16 @@
             <location filename="../../plugin/desk/drafting/tracks.py" />
             <source>({x:.2f}, {y:.2f}) m</source>
             <translation>({x:.2f}, {y:.2f}) m</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/typed_place.py" />
+            <source>{text!r} is not on the site {name}; with its two numbers swapped it is. Write {order}: {first:.10g}, {second:.10g}.</source>
+            <translation>{text!r} no está en el recinto {name}; con los dos números intercambiados, sí. Escriba {order}: {first:.10g}, {second:.10g}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/typed_place.py" />
+            <source>{text!r} is {away:.0f} km outside the site {name}. Write {order}, and check the numbers and the CRS that they are in ({crs}).</source>
+            <translation>{text!r} está {away:.0f} km fuera del recinto {name}. Escriba {order}, y compruebe los números y su SRC ({crs}).</translation>
         </message>
         <message numerus="yes">
             <location filename="../../plugin/desk/drafts.py" />
@@ -1920,6 +2220,16 @@
             <location filename="../../plugin/desk/drafts.py" />
             <source>; along the roads {note}</source>
             <translation>; por las vías {note}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafts.py" />
+            <source>; straight</source>
+            <translation>; recto</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafts.py" />
+            <source>; the way there is being found</source>
+            <translation>; se está buscando el camino hasta allí</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/drafts.py" />
@@ -1953,6 +2263,11 @@
         </message>
         <message>
             <location filename="../../plugin/desk/drafts.py" />
+            <source>the way there is not known yet</source>
+            <translation>todavía no se sabe el camino hasta allí</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafts.py" />
             <source>{x:.2f}, {y:.2f} m</source>
             <translation>{x:.2f}, {y:.2f} m</translation>
         </message>
@@ -1960,6 +2275,11 @@
             <location filename="../../plugin/desk/emergency_banner.py" />
             <source> since {time}</source>
             <translation> desde las {time}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/emergency_banner.py" />
+            <source>Clear…</source>
+            <translation>Levantar…</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/emergency_banner.py" />
@@ -2000,14 +2320,54 @@
             </translation>
         </message>
         <message>
+            <location filename="../../plugin/desk/geofence_state.py" />
+            <source>Keepouts and obstacles are not watched: the gateway tells nothing of them. It may be older than this plugin.</source>
+            <translation>Las zonas prohibidas y los obstáculos no se vigilan: la pasarela no dice nada de ellos. Puede que sea más antigua que este complemento.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/geofence_state.py" />
+            <source>Keepouts and obstacles are not watched: {why}.</source>
+            <translation>Las zonas prohibidas y los obstáculos no se vigilan: {why}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/geofence_state.py" />
+            <source>Not judged by keepouts and obstacles, since it is not known where they are: {names}.</source>
+            <translation>No juzgados por zonas prohibidas y obstáculos, porque no se sabe dónde están: {names}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/geofence_state.py" />
+            <source>The published site has no keepouts.</source>
+            <translation>El recinto publicado no tiene zonas prohibidas.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/geofence_state.py" />
+            <source>The published site has no obstacles, so nobody is told to be at one.</source>
+            <translation>El recinto publicado no tiene obstáculos, por lo que no se avisa de nadie que esté en uno.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/geofence_state.py" />
+            <source>{more} more</source>
+            <translation>{more} más</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/geofence_state.py" />
+            <source>{more} more are in keepouts or at obstacles and not listed.</source>
+            <translation>Hay {more} más en zonas prohibidas u obstáculos, sin listar.</translation>
+        </message>
+        <message>
             <location filename="../../plugin/desk/inquiries.py" />
             <source>{words}: the gateway's answer cannot be read ({kind}). Update the gateway or the plugin, whichever is older.</source>
             <translation>{words}: la respuesta de la pasarela no se puede leer ({kind}). Actualice la pasarela o el complemento, lo que sea más antiguo.</translation>
         </message>
         <message>
+            <location filename="../../plugin/desk/last_heard.py" />
+            <source>{state}, last heard {age} ago over {link}</source>
+            <translation>{state}, último mensaje hace {age} por {link}</translation>
+        </message>
+        <message>
             <location filename="../../plugin/desk/layout_action.py" />
-            <source>Place a cone layout: it is shown under the cursor, the wheel turns it (Shift: finely), a click places it, Esc ends; by keys PgUp and PgDown turn it, Enter places it, F2 leads to its dimensions. Nothing is sent to robots</source>
-            <translation>Colocar una disposición de conos: se muestra bajo el cursor, la rueda la gira (Mayús: finamente), un clic la coloca, Esc termina; con teclas, RePág y AvPág la giran, Intro la coloca, F2 lleva a sus dimensiones. No se envía nada a los robots</translation>
+            <source>Place a cone layout: it is shown under the cursor, the wheel turns it (Shift: finely), a click places it, Ctrl+Z takes it back, Esc ends; by keys PgUp and PgDown turn it, Enter places it, F2 leads to its dimensions. Nothing is sent to robots</source>
+            <translation>Coloca una disposición de conos: se muestra bajo el cursor, la rueda la gira (Mayús: con precisión), un clic la coloca, Ctrl+Z la retira, Esc termina; con teclas, RePág y AvPág la giran, Intro la coloca, F2 lleva a sus dimensiones. No se envía nada a los robots</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/layout_action.py" />
@@ -2026,6 +2386,11 @@
         </message>
         <message>
             <location filename="../../plugin/desk/layout_dimensions.py" />
+            <source>Remove the cones that were placed last; Ctrl+Z over the map does so too</source>
+            <translation>Quita los conos colocados en último lugar; Ctrl+Z sobre el mapa también lo hace</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/layout_dimensions.py" />
             <source>Reset to the standard</source>
             <translation>Restablecer la norma</translation>
         </message>
@@ -2034,6 +2399,11 @@
             <source>Standard: {value}</source>
             <translation>Norma: {value}</translation>
         </message>
+        <message>
+            <location filename="../../plugin/desk/layout_dimensions.py" />
+            <source>Take back the last layout</source>
+            <translation>Retirar la última disposición</translation>
+        </message>
         <message numerus="yes">
             <location filename="../../plugin/desk/layout_tool.py" />
             <source>%n cones are in the layer {layer}.</source>
@@ -2041,6 +2411,11 @@
                 <numerusform>%n cono está en la capa {layer}.</numerusform>
                 <numerusform>%n conos están en la capa {layer}.</numerusform>
             </translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/layout_tool.py" />
+            <source>The layer of cones is another one now: place the layout again.</source>
+            <translation>La capa de conos ahora es otra: coloque de nuevo la disposición.</translation>
         </message>
         <message numerus="yes">
             <location filename="../../plugin/desk/layout_tool.py" />
@@ -2206,6 +2581,36 @@
             <translation>Theta (rad)</translation>
         </message>
         <message>
+            <location filename="../../plugin/desk/messages.py" />
+            <source>Link {link} is down: {reason}.</source>
+            <translation>El enlace {link} está caído: {reason}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/messages.py" />
+            <source>Link {link} is down: {reason}. Nothing reaches {robots}.</source>
+            <translation>El enlace {link} está caído: {reason}. Nada llega a {robots}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/messages.py" />
+            <source>The database account of robot {robot} is locked until {time}: its program kept all others waiting. Nothing but a stop reaches it: Abort unlocks the account. Have the program mended.</source>
+            <translation>La cuenta de base de datos del robot {robot} está bloqueada hasta las {time}: su programa hacía esperar a todos los demás. Solo le llega una parada: Abortar desbloquea la cuenta. Haga arreglar el programa.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/messages.py" />
+            <source>The program of robot {robot} keeps all others waiting at the database, and its account cannot be locked. Have an administrator run: robot-bridge database upgrade</source>
+            <translation>El programa del robot {robot} hace esperar a todos los demás en la base de datos, y su cuenta no se puede bloquear. Que un administrador ejecute: robot-bridge database upgrade</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/messages.py" />
+            <source>{names} and {count} more</source>
+            <translation>{names} y {count} más</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/nearness_state.py" />
+            <source>People near robots are not watched: {why}.</source>
+            <translation>No se vigilan las personas cerca de los robots: {why}.</translation>
+        </message>
+        <message>
             <location filename="../../plugin/desk/observations/observation_dock.py" />
             <source>All are reviewed.</source>
             <translation>Todas están revisadas.</translation>
@@ -2277,6 +2682,11 @@
         </message>
         <message>
             <location filename="../../plugin/desk/observations/observation_model.py" />
+            <source>not there any more: {what}</source>
+            <translation>ya no está: {what}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/observations/observation_model.py" />
             <source>object</source>
             <translation>objeto</translation>
         </message>
@@ -2327,6 +2737,16 @@
         </message>
         <message>
             <location filename="../../plugin/desk/observations/review_form.py" />
+            <source>It is gone: leave it out of the maps that robots get from now on</source>
+            <translation>Ya no está: no sale en los mapas que los robots reciban a partir de ahora</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/observations/review_form.py" />
+            <source>It is there: leave it on the maps</source>
+            <translation>Está ahí: queda en los mapas</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/observations/review_form.py" />
             <source>It stands there: draw it on the maps that robots get from now on</source>
             <translation>Está ahí: dibujarlo en los mapas que los robots reciban desde ahora</translation>
         </message>
@@ -2339,6 +2759,11 @@
             <location filename="../../plugin/desk/observations/review_form.py" />
             <source>Look at it: is it of use?</source>
             <translation>Mírela: ¿es útil?</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/observations/review_form.py" />
+            <source>Not there any more? {robot} looks through {what} ({source}) of its map again and again, at {x:.2f}, {y:.2f} m.</source>
+            <translation>¿Ya no está? {robot} ve una y otra vez a través de {what} ({source}) de su mapa, en {x:.2f}, {y:.2f} m.</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/observations/review_form.py" />
@@ -3376,11 +3801,6 @@
         </message>
         <message>
             <location filename="../../plugin/desk/queues/queue_edits.py" />
-            <source>Pause of {robot}</source>
-            <translation>Pausa de {robot}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/queues/queue_edits.py" />
             <source>Pausing the queue of {robot}</source>
             <translation>Pausar la cola de {robot}</translation>
         </message>
@@ -3717,11 +4137,6 @@
         </message>
         <message>
             <location filename="../../plugin/desk/replay/stretch_form.py" />
-            <source>Stop</source>
-            <translation>Detener</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/replay/stretch_form.py" />
             <source>Until when</source>
             <translation>Hasta cuándo</translation>
         </message>
@@ -3769,11 +4184,6 @@
             <location filename="../../plugin/desk/road_layers.py" />
             <source>Closed roads</source>
             <translation>Vías cerradas</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/road_layers.py" />
-            <source>Conflicts</source>
-            <translation>Conflictos</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/road_layers.py" />
@@ -3887,6 +4297,11 @@
         </message>
         <message>
             <location filename="../../plugin/desk/robots/columns.py" />
+            <source>paused</source>
+            <translation>en pausa</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/columns.py" />
             <source>route</source>
             <translation>ruta</translation>
         </message>
@@ -3941,11 +4356,6 @@
             <translation>{told}, por {operator}</translation>
         </message>
         <message>
-            <location filename="../../plugin/desk/robots/last_heard.py" />
-            <source>{state}, last heard {age} ago over {link}</source>
-            <translation>{state}, último mensaje hace {age} por {link}</translation>
-        </message>
-        <message>
             <location filename="../../plugin/desk/robots/last_image.py" />
             <source>No image: {why}</source>
             <translation>Ninguna imagen: {why}</translation>
@@ -3984,6 +4394,88 @@
             <location filename="../../plugin/desk/robots/position_crs.py" />
             <source>site frame</source>
             <translation>marco del recinto</translation>
+        </message>
+        <message numerus="yes">
+            <location filename="../../plugin/desk/robots/removal.py" />
+            <source>%n robots were not removed: {why}</source>
+            <translation>
+                <numerusform>%n robot no se ha eliminado: {why}</numerusform>
+                <numerusform>%n robots no se han eliminado: {why}</numerusform>
+            </translation>
+        </message>
+        <message numerus="yes">
+            <location filename="../../plugin/desk/robots/removal.py" />
+            <source>%n robots were removed: {names}</source>
+            <translation>
+                <numerusform>%n robot eliminado: {names}</numerusform>
+                <numerusform>%n robots eliminados: {names}</numerusform>
+            </translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/removal.py" />
+            <source>&amp;Robots</source>
+            <translation>&amp;Robots</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/removal.py" />
+            <source>No robot is lost or offline.</source>
+            <translation>Ningún robot está perdido ni fuera de línea.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/removal.py" />
+            <source>No robot was removed: {why}</source>
+            <translation>No se ha eliminado ningún robot: {why}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/removal.py" />
+            <source>None is stopped by that. One that comes back is told to abort what it still does, and is a new robot.</source>
+            <translation>Eso no detiene a ninguno. Al que vuelva se le dice que aborte lo que aún haga, y es un robot nuevo.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/removal.py" />
+            <source>Remove robots that are gone?</source>
+            <translation>¿Eliminar los robots que ya no están?</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/removal.py" />
+            <source>Remove robots…</source>
+            <translation>Eliminar robots…</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/removal.py" />
+            <source>Remove {names}</source>
+            <translation>Eliminar {names}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/removal.py" />
+            <source>Take robots that are lost or offline off every desk; takes a supervisor</source>
+            <translation>Quita de todas las consolas los robots perdidos o fuera de línea; requiere un supervisor</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/removal.py" />
+            <source>They go from every desk. What is in their queues is removed, what they were told and have not done has failed; what they did stays stored.</source>
+            <translation>Desaparecen de todas las consolas. Lo que hay en sus colas se elimina, las órdenes que no han hecho fallan; lo que hicieron sigue guardado.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/removal.py" />
+            <source>Why, for the log</source>
+            <translation>Por qué, para el registro</translation>
+        </message>
+        <message numerus="yes">
+            <location filename="../../plugin/desk/robots/removal.py" />
+            <source>all %n that are lost or offline</source>
+            <translation>
+                <numerusform>el único perdido o fuera de línea (%n)</numerusform>
+                <numerusform>los %n perdidos o fuera de línea</numerusform>
+            </translation>
+        </message>
+        <message numerus="yes">
+            <location filename="../../plugin/desk/robots/removal.py" />
+            <source>the %n selected ones</source>
+            <translation>
+                <numerusform>el seleccionado (%n)</numerusform>
+                <numerusform>los %n seleccionados</numerusform>
+            </translation>
         </message>
         <message>
             <location filename="../../plugin/desk/robots/robot_details.py" />
@@ -4267,6 +4759,11 @@
             </translation>
         </message>
         <message>
+            <location filename="../../plugin/desk/standing_cones.py" />
+            <source>Cones put down</source>
+            <translation>Conos puestos</translation>
+        </message>
+        <message>
             <location filename="../../plugin/desk/state_words.py" />
             <source>aborted</source>
             <translation>abortada</translation>
@@ -4528,8 +5025,8 @@
         </message>
         <message>
             <location filename="../../plugin/desk/tour/tour_action.py" />
-            <source>Fleet Supervisor is new here: a five-minute tour shows it.</source>
-            <translation>Fleet Supervisor es nuevo aquí: un recorrido de cinco minutos lo muestra.</translation>
+            <source>A five-minute tour shows how it works.</source>
+            <translation>Un recorrido de cinco minutos muestra cómo funciona.</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/tour/tour_action.py" />
@@ -4588,6 +5085,51 @@
         </message>
         <message>
             <location filename="../../plugin/desk/way_wishes.py" />
+            <source>Keep off roads on which other robots are sent</source>
+            <translation>Evitar las vías por las que se han enviado otros robots</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/way_wishes.py" />
+            <source>Lead ways so</source>
+            <translation>Llevar así</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/way_wishes.py" />
+            <source>Surfaces</source>
+            <translation>Superficies</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/way_wishes.py" />
+            <source>This holds for every leg that is led from now on, until QGIS is closed.</source>
+            <translation>Esto vale para cada tramo que se trace a partir de ahora, hasta que se cierre QGIS.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/way_wishes.py" />
+            <source>Way</source>
+            <translation>Recorrido</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/way_wishes.py" />
+            <source>Ways on roads</source>
+            <translation>Caminos por vías</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/way_wishes.py" />
+            <source>Width</source>
+            <translation>Anchura</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/way_wishes.py" />
+            <source>all, or such as: asphalt, concrete</source>
+            <translation>todas, o como: asphalt, concrete</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/way_wishes.py" />
+            <source>as wide as the robots are</source>
+            <translation>tan ancha como los robots</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/way_wishes.py" />
             <source>off the roads of other robots</source>
             <translation>fuera de las vías de otros robots</translation>
         </message>
@@ -4603,68 +5145,23 @@
         </message>
         <message>
             <location filename="../../plugin/desk/way_wishes.py" />
-            <source>the fastest way</source>
-            <translation>el camino más rápido</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/way_wishes_dialog.py" />
-            <source>Keep off roads on which other robots are sent</source>
-            <translation>Evitar las vías por las que se han enviado otros robots</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/way_wishes_dialog.py" />
-            <source>Lead ways so</source>
-            <translation>Llevar así</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/way_wishes_dialog.py" />
-            <source>Surfaces</source>
-            <translation>Superficies</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/way_wishes_dialog.py" />
-            <source>This holds for every leg that is led from now on, until QGIS is closed.</source>
-            <translation>Esto vale para cada tramo que se trace a partir de ahora, hasta que se cierre QGIS.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/way_wishes_dialog.py" />
-            <source>Way</source>
-            <translation>Recorrido</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/way_wishes_dialog.py" />
-            <source>Ways on roads</source>
-            <translation>Caminos por vías</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/way_wishes_dialog.py" />
-            <source>Width</source>
-            <translation>Anchura</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/way_wishes_dialog.py" />
-            <source>all, or such as: asphalt, concrete</source>
-            <translation>todas, o como: asphalt, concrete</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/way_wishes_dialog.py" />
-            <source>as wide as the robots are</source>
-            <translation>tan ancha como los robots</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/way_wishes_dialog.py" />
             <source>the fastest</source>
             <translation>el más rápido</translation>
         </message>
         <message>
-            <location filename="../../plugin/desk/way_wishes_dialog.py" />
+            <location filename="../../plugin/desk/way_wishes.py" />
+            <source>the fastest way</source>
+            <translation>el camino más rápido</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/way_wishes.py" />
             <source>the shortest</source>
             <translation>el más corto</translation>
         </message>
         <message>
-            <location filename="../../plugin/desk/window.py" />
-            <source>Disconnect</source>
-            <translation>Desconectar</translation>
+            <location filename="../../plugin/desk/ways_out.py" />
+            <source>the gateway's answer cannot be read; it may be older than this plugin</source>
+            <translation>la respuesta de la pasarela no se puede leer; puede que sea más antigua que este complemento</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/window.py" />
@@ -4675,11 +5172,6 @@
             <location filename="../../plugin/desk/window.py" />
             <source>Targets and routes</source>
             <translation>Objetivos y rutas</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/window_alarms.py" />
-            <source>Alarms ({number})</source>
-            <translation>Alarmas ({number})</translation>
         </message>
         <message>
             <location filename="../../plugin/expressions/distance_to_robot.py" />
@@ -5986,6 +6478,11 @@
         </message>
         <message>
             <location filename="../../plugin/processing/export_plan.py" />
+            <source>No obstacle layer is given, and no layer of the project has a role of obstacles. Give OBSTACLES, roles (Fleet Supervisor &gt; Layer roles), or a PROFILE.</source>
+            <translation>No se ha indicado ninguna capa de obstáculos, y ninguna capa del proyecto tiene un papel de obstáculo. Indique OBSTACLES, papeles (Fleet Supervisor &gt; Layer roles) o un PROFILE.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_plan.py" />
             <source>OUTPUT {target} is the file of the layer {layer}: choose another one.</source>
             <translation>OUTPUT {target} es el archivo de la capa {layer}: elija otro.</translation>
         </message>
@@ -5998,6 +6495,81 @@
             <location filename="../../plugin/processing/export_plan.py" />
             <source>The robot map</source>
             <translation>El mapa de robots</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_road_network.py" />
+            <source>&lt;p&gt;Writes the network of road centrelines as other robots read it.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Formats&lt;/b&gt;, several at once:&lt;/p&gt; &lt;ul&gt; &lt;li&gt;&lt;i&gt;nav2&lt;/i&gt;: graph for Nav2's route server (GeoJSON). Nav2 drives straight from node to node, so every point of a road becomes a node.&lt;/li&gt; &lt;li&gt;&lt;i&gt;lif&lt;/i&gt;: VDMA's Layout Interchange Format 1.0, for masters of VDA 5050 vehicles (JSON). Roads that are not straight have a trajectory.&lt;/li&gt; &lt;li&gt;&lt;i&gt;lanelet2&lt;/i&gt;: lanes with borders for Lanelet2 and Autoware (OSM). Traffic keeps to the right, or to the left on request.&lt;/li&gt; &lt;/ul&gt; &lt;p&gt;Roads that are driven both ways become two edges; one-way roads one. Closed roads are left out, and so are edges that lead through a polygon of the &lt;b&gt;areas that must not be driven through&lt;/b&gt;. Speeds go over as limits.&lt;/p&gt; &lt;p&gt;Coordinates are metres in the &lt;b&gt;site frame&lt;/b&gt;, as on robot maps: &lt;i&gt;ORIGIN&lt;/i&gt; and &lt;i&gt;ROTATION&lt;/i&gt;, else as the project has it. Nav2 keeps 32 bits of a coordinate: give an origin on the site, or a warning says by how much places move.&lt;/p&gt; &lt;p&gt;Existing files are replaced, each in one step, after all of them could be made. docs/navigation-maps.md says what is in each.&lt;/p&gt; &lt;pre&gt;qgis_process run fleet:exportroadnetwork -- ROADS=roads.gpkg FORMATS=nav2 FORMATS=lif ORIGIN="640420,5193480" NAME=campus OUTPUT=graphs&lt;/pre&gt;</source>
+            <translation>&lt;p&gt;Escribe la red de ejes de vía tal como la leen otros robots.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Formatos&lt;/b&gt;, varios a la vez:&lt;/p&gt; &lt;ul&gt; &lt;li&gt;&lt;i&gt;nav2&lt;/i&gt;: grafo para el servidor de rutas de Nav2 (GeoJSON). Nav2 circula recto de nodo a nodo, por eso cada punto de una vía se convierte en un nodo.&lt;/li&gt; &lt;li&gt;&lt;i&gt;lif&lt;/i&gt;: Layout Interchange Format 1.0 de la VDMA, para controles de vehículos VDA 5050 (JSON). Las vías que no son rectas tienen una trayectoria.&lt;/li&gt; &lt;li&gt;&lt;i&gt;lanelet2&lt;/i&gt;: carriles con bordes para Lanelet2 y Autoware (OSM). Se circula por la derecha, o por la izquierda si se pide.&lt;/li&gt; &lt;/ul&gt; &lt;p&gt;Las vías de dos sentidos se convierten en dos aristas; las de sentido único, en una. Las vías cerradas quedan fuera, y también las aristas que pasan por un polígono de las &lt;b&gt;áreas por donde no se debe circular&lt;/b&gt;. Las velocidades pasan como límites.&lt;/p&gt; &lt;p&gt;Las coordenadas son metros en el &lt;b&gt;marco del recinto&lt;/b&gt;, como en los mapas de robots: &lt;i&gt;ORIGIN&lt;/i&gt; y &lt;i&gt;ROTATION&lt;/i&gt;, si no el del proyecto. Nav2 conserva 32 bits de una coordenada: dé un origen en el recinto, o un aviso dirá cuánto se mueven los lugares.&lt;/p&gt; &lt;p&gt;Los archivos existentes se sustituyen, cada uno de una vez, cuando todos se han podido hacer. docs/navigation-maps.md dice qué hay en cada uno.&lt;/p&gt; &lt;pre&gt;qgis_process run fleet:exportroadnetwork -- ROADS=roads.gpkg FORMATS=nav2 FORMATS=lif ORIGIN="640420,5193480" NAME=campus OUTPUT=graphs&lt;/pre&gt;</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_road_network.py" />
+            <source>Export road network</source>
+            <translation>Exportar red de vías</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_road_network.py" />
+            <source>FORMATS is empty: choose of {known}.</source>
+            <translation>FORMATS está vacío: elija entre {known}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_road_network.py" />
+            <source>Lanelet2 map (OSM)</source>
+            <translation>Mapa Lanelet2 (OSM)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_road_network.py" />
+            <source>Name of the files</source>
+            <translation>Nombre de los archivos</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_road_network.py" />
+            <source>Nav2 route graph (GeoJSON)</source>
+            <translation>Grafo de rutas de Nav2 (GeoJSON)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_road_network.py" />
+            <source>Origin of the site frame (default: as the project has it, else 0,0)</source>
+            <translation>Origen del marco del recinto (por defecto: el del proyecto, si no 0,0)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_road_network.py" />
+            <source>Robots' name for the site frame</source>
+            <translation>Nombre del marco del recinto para los robots</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_road_network.py" />
+            <source>Rotation of the site frame, counter-clockwise from the CRS's x axis [degrees]</source>
+            <translation>Rotación del marco del recinto, en sentido antihorario desde el eje x del SRC [grados]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_road_network.py" />
+            <source>The road network</source>
+            <translation>La red de vías</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_road_network.py" />
+            <source>Traffic keeps to the left (Lanelet2)</source>
+            <translation>Se circula por la izquierda (Lanelet2)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_road_network.py" />
+            <source>Type of vehicle that drives here (LIF)</source>
+            <translation>Tipo de vehículo que circula aquí (LIF)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_road_network.py" />
+            <source>VDMA LIF, for VDA 5050 (JSON)</source>
+            <translation>VDMA LIF, para VDA 5050 (JSON)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_road_network.py" />
+            <source>Writes the road network as a Nav2 route graph, a VDMA LIF layout or a Lanelet2 map.</source>
+            <translation>Escribe la red de vías como grafo de rutas de Nav2, disposición VDMA LIF o mapa Lanelet2.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_road_network.py" />
+            <source>{name} {value!r} cannot be used: give a plain word.</source>
+            <translation>{name} {value!r} no se puede usar: dé una palabra simple.</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/export_robot_map.py" />
@@ -6031,8 +6603,8 @@
         </message>
         <message>
             <location filename="../../plugin/processing/export_robot_map.py" />
-            <source>Obstacle layers</source>
-            <translation>Capas de obstáculos</translation>
+            <source>Obstacle layers (default: those of the project with such a role)</source>
+            <translation>Capas de obstáculos (por defecto: las del proyecto con ese papel)</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/export_robot_map.py" />
@@ -6086,13 +6658,13 @@
         </message>
         <message>
             <location filename="../../plugin/processing/export_robot_map.py" />
-            <source>{size} bytes in binary, {ratio:.2f} bytes/m²</source>
-            <translation>{size} bytes en binario, {ratio:.2f} bytes/m²</translation>
+            <source>{size} bytes in binary, {ratio:.3g} bytes/m²</source>
+            <translation>{size} bytes en binario, {ratio:.3g} bytes/m²</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/export_robot_map.py" />
-            <source>{size} bytes of text, {ratio:.2f} bytes/m² (paper 1: about 3 bytes/m² as text)</source>
-            <translation>{size} bytes de texto, {ratio:.2f} bytes/m² (artículo 1: unos 3 bytes/m² como texto)</translation>
+            <source>{size} bytes of text, {ratio:.3g} bytes/m² (paper 1: about 3 bytes/m² as text)</source>
+            <translation>{size} bytes de texto, {ratio:.3g} bytes/m² (artículo 1: unos 3 bytes/m² como texto)</translation>
         </message>
         <message numerus="yes">
             <location filename="../../plugin/processing/export_robot_map_tiles.py" />
@@ -6345,8 +6917,8 @@
         </message>
         <message>
             <location filename="../../plugin/processing/import_cone_layout.py" />
-            <source>&lt;p&gt;Reads cones from a &lt;b&gt;CSV file&lt;/b&gt; with a head line, in UTF-8, or from a &lt;b&gt;layer&lt;/b&gt;. The columns are named by parameters; only those of x and y are needed, and not even those for a layer of points with a CRS, which is taken as it lies. A file or layer with several layouts gives one of them, by &lt;b&gt;LAYOUT_FIELD&lt;/b&gt; and &lt;b&gt;LAYOUT&lt;/b&gt;.&lt;/p&gt; &lt;p&gt;Metres of a table are turned by &lt;b&gt;rotation&lt;/b&gt; (degrees, counter-clockwise) and then moved to the &lt;b&gt;origin&lt;/b&gt;. A row that cannot be read is named with its column, and nothing is placed.&lt;/p&gt; &lt;p&gt;Every cone is &lt;b&gt;checked&lt;/b&gt; as those of &lt;i&gt;Cone layout&lt;/i&gt; are.&lt;/p&gt; &lt;pre&gt;qgis_process run fleet:importconelayout -- FILE=cone_layouts.csv COLOUR_FIELD=colour LAYOUT_FIELD=track LAYOUT=eufs_skidpad ORIGIN="640520,5193530 [EPSG:32633]" ROTATION=90 SITE_CRS=EPSG:32633 CONES=cones.gpkg&lt;/pre&gt;</source>
-            <translation>&lt;p&gt;Lee conos de un &lt;b&gt;archivo CSV&lt;/b&gt; con línea de cabecera, en UTF-8, o de una &lt;b&gt;capa&lt;/b&gt;. Las columnas se nombran con parámetros; solo hacen falta las de x e y, y ni siquiera esas para una capa de puntos con SRC, que se toma tal como está. Un archivo o una capa con varias disposiciones da una de ellas, con &lt;b&gt;LAYOUT_FIELD&lt;/b&gt; y &lt;b&gt;LAYOUT&lt;/b&gt;.&lt;/p&gt; &lt;p&gt;Los metros de una tabla se giran según &lt;b&gt;rotation&lt;/b&gt; (grados, en sentido antihorario) y después se mueven al &lt;b&gt;origen&lt;/b&gt;. Una fila que no se puede leer se nombra con su columna, y no se coloca nada.&lt;/p&gt; &lt;p&gt;Cada cono se &lt;b&gt;comprueba&lt;/b&gt; como los de &lt;i&gt;Disposición de conos&lt;/i&gt;.&lt;/p&gt; &lt;pre&gt;qgis_process run fleet:importconelayout -- FILE=cone_layouts.csv COLOUR_FIELD=colour LAYOUT_FIELD=track LAYOUT=eufs_skidpad ORIGIN="640520,5193530 [EPSG:32633]" ROTATION=90 SITE_CRS=EPSG:32633 CONES=cones.gpkg&lt;/pre&gt;</translation>
+            <source>&lt;p&gt;Reads cones from a &lt;b&gt;CSV file&lt;/b&gt; in UTF-8, from a &lt;b&gt;track&lt;/b&gt; of Formula Student, or from a &lt;b&gt;layer&lt;/b&gt;. Tracks are YAML with &lt;i&gt;cones_left&lt;/i&gt;, &lt;i&gt;cones_right&lt;/i&gt;, &lt;i&gt;cones_orange&lt;/i&gt; and &lt;i&gt;cones_orange_big&lt;/i&gt;, SDF with models of cones, CSV with columns such as &lt;i&gt;blue_x&lt;/i&gt; and &lt;i&gt;blue_y&lt;/i&gt; for each colour, or CSV without a head line: colour, x, y. Of other tables the columns are named by parameters; only those of x and y are needed, and not even those for a layer of points with a CRS, which is taken as it lies. A file or layer with several layouts gives one of them, by &lt;b&gt;LAYOUT_FIELD&lt;/b&gt; and &lt;b&gt;LAYOUT&lt;/b&gt;.&lt;/p&gt; &lt;p&gt;Metres of a table are turned by &lt;b&gt;rotation&lt;/b&gt; (degrees, counter-clockwise) and then moved to the &lt;b&gt;origin&lt;/b&gt;. A row that cannot be read is named with its column, and nothing is placed.&lt;/p&gt; &lt;p&gt;Every cone is &lt;b&gt;checked&lt;/b&gt; as those of &lt;i&gt;Cone layout&lt;/i&gt; are.&lt;/p&gt; &lt;pre&gt;qgis_process run fleet:importconelayout -- FILE=cone_layouts.csv COLOUR_FIELD=colour LAYOUT_FIELD=track LAYOUT=eufs_skidpad ORIGIN="640520,5193530 [EPSG:32633]" ROTATION=90 SITE_CRS=EPSG:32633 CONES=cones.gpkg&lt;/pre&gt;</source>
+            <translation>&lt;p&gt;Lee conos de un &lt;b&gt;archivo CSV&lt;/b&gt; en UTF-8, de una &lt;b&gt;pista&lt;/b&gt; de Formula Student o de una &lt;b&gt;capa&lt;/b&gt;. Las pistas son YAML con &lt;i&gt;cones_left&lt;/i&gt;, &lt;i&gt;cones_right&lt;/i&gt;, &lt;i&gt;cones_orange&lt;/i&gt; y &lt;i&gt;cones_orange_big&lt;/i&gt;, SDF con modelos de conos, CSV con columnas como &lt;i&gt;blue_x&lt;/i&gt; y &lt;i&gt;blue_y&lt;/i&gt; para cada color, o CSV sin línea de cabecera: color, x, y. De las demás tablas, las columnas se nombran con parámetros; solo hacen falta las de x e y, y ni siquiera esas para una capa de puntos con SRC, que se toma tal como está. Un archivo o una capa con varias disposiciones da una de ellas, con &lt;b&gt;LAYOUT_FIELD&lt;/b&gt; y &lt;b&gt;LAYOUT&lt;/b&gt;.&lt;/p&gt; &lt;p&gt;Los metros de una tabla se giran según &lt;b&gt;rotation&lt;/b&gt; (grados, en sentido antihorario) y después se mueven al &lt;b&gt;origen&lt;/b&gt;. Una fila que no se puede leer se nombra con su columna, y no se coloca nada.&lt;/p&gt; &lt;p&gt;Cada cono se &lt;b&gt;comprueba&lt;/b&gt; como los de &lt;i&gt;Disposición de conos&lt;/i&gt;.&lt;/p&gt; &lt;pre&gt;qgis_process run fleet:importconelayout -- FILE=cone_layouts.csv COLOUR_FIELD=colour LAYOUT_FIELD=track LAYOUT=eufs_skidpad ORIGIN="640520,5193530 [EPSG:32633]" ROTATION=90 SITE_CRS=EPSG:32633 CONES=cones.gpkg&lt;/pre&gt;</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/import_cone_layout.py" />
@@ -6355,8 +6927,8 @@
         </message>
         <message>
             <location filename="../../plugin/processing/import_cone_layout.py" />
-            <source>CSV file</source>
-            <translation>Archivo CSV</translation>
+            <source>CSV file, or track of Formula Student (YAML, SDF)</source>
+            <translation>Archivo CSV o pista de Formula Student (YAML, SDF)</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/import_cone_layout.py" />
@@ -6397,6 +6969,16 @@
             <location filename="../../plugin/processing/import_cone_layout.py" />
             <source>Column that names the layout of each row</source>
             <translation>Columna de la disposición</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/import_cone_layout.py" />
+            <source>Cone layouts ({kinds});;All files (*)</source>
+            <translation>Disposiciones de conos ({kinds});;Todos los archivos (*)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/import_cone_layout.py" />
+            <source>FILE {file} is none that is read: give one of {kinds}.</source>
+            <translation>FILE: {file} no es de ningún tipo que se lea: dé uno de {kinds}.</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/import_cone_layout.py" />
@@ -6447,6 +7029,61 @@
             <location filename="../../plugin/processing/import_cone_layout.py" />
             <source>{how} given: give a CSV file, or a layer.</source>
             <translation>{how}: dé un archivo CSV o una capa.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/import_navigation_map.py" />
+            <source>&lt;p&gt;Reads a map of Nav2: the &lt;b&gt;YAML&lt;/b&gt; and the image that it names (PGM, PNG, BMP or JPEG), in the modes &lt;i&gt;trinary&lt;/i&gt;, &lt;i&gt;scale&lt;/i&gt; and &lt;i&gt;raw&lt;/i&gt;, with its thresholds, &lt;i&gt;negate&lt;/i&gt;, and origin with yaw.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Raster&lt;/b&gt;: a value for each cell, 0 free to 100 occupied, -1 unknown. &lt;b&gt;Obstacles&lt;/b&gt;: a polygon for each patch of cells of at least &lt;i&gt;OCCUPIED_FROM&lt;/i&gt;, along the edges of the cells.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Place&lt;/b&gt;: the map's metres are those of the site frame. &lt;i&gt;SITE_CRS&lt;/i&gt;, &lt;i&gt;ORIGIN&lt;/i&gt; and &lt;i&gt;ROTATION&lt;/i&gt; say where that is; files of &lt;i&gt;Export navigation map&lt;/i&gt; say it themselves. Where neither does, the layers are in local metres, said in a warning.&lt;/p&gt; &lt;pre&gt;qgis_process run fleet:importnavigationmap -- MAP=warehouse.yaml SITE_CRS=EPSG:32633 ORIGIN="640420,5193480 [EPSG:32633]" ROTATION=0 RASTER=warehouse.tif OBSTACLES=warehouse.gpkg&lt;/pre&gt;</source>
+            <translation>&lt;p&gt;Lee un mapa de Nav2: el &lt;b&gt;YAML&lt;/b&gt; y la imagen que nombra (PGM, PNG, BMP o JPEG), en los modos &lt;i&gt;trinary&lt;/i&gt;, &lt;i&gt;scale&lt;/i&gt; y &lt;i&gt;raw&lt;/i&gt;, con sus umbrales, &lt;i&gt;negate&lt;/i&gt; y el origen con su giro.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Ráster&lt;/b&gt;: un valor para cada celda, de 0 libre a 100 ocupada, -1 desconocida. &lt;b&gt;Obstáculos&lt;/b&gt;: un polígono para cada mancha de celdas de al menos &lt;i&gt;OCCUPIED_FROM&lt;/i&gt;, a lo largo de los bordes de las celdas.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Lugar&lt;/b&gt;: los metros del mapa son los del marco del recinto. &lt;i&gt;SITE_CRS&lt;/i&gt;, &lt;i&gt;ORIGIN&lt;/i&gt; y &lt;i&gt;ROTATION&lt;/i&gt; dicen dónde está; los archivos de &lt;i&gt;Exportar mapa de navegación&lt;/i&gt; lo dicen ellos mismos. Si nadie lo dice, las capas están en metros locales y un aviso lo dice.&lt;/p&gt; &lt;pre&gt;qgis_process run fleet:importnavigationmap -- MAP=warehouse.yaml SITE_CRS=EPSG:32633 ORIGIN="640420,5193480 [EPSG:32633]" ROTATION=0 RASTER=warehouse.tif OBSTACLES=warehouse.gpkg&lt;/pre&gt;</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/import_navigation_map.py" />
+            <source>Import navigation map</source>
+            <translation>Importar mapa de navegación</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/import_navigation_map.py" />
+            <source>Nav2 map (YAML)</source>
+            <translation>Mapa de Nav2 (YAML)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/import_navigation_map.py" />
+            <source>Nav2 maps (*.yaml *.yml);;All files (*)</source>
+            <translation>Mapas de Nav2 (*.yaml *.yml);;Todos los archivos (*)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/import_navigation_map.py" />
+            <source>Occupied cells</source>
+            <translation>Celdas ocupadas</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/import_navigation_map.py" />
+            <source>Occupied from [of 100]</source>
+            <translation>Ocupada a partir de [de 100]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/import_navigation_map.py" />
+            <source>Raster</source>
+            <translation>Ráster</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/import_navigation_map.py" />
+            <source>Reads a Nav2 occupancy grid or mask as raster, and polygons of what is occupied.</source>
+            <translation>Lee una rejilla de ocupación o una máscara de Nav2 como ráster y polígonos de lo ocupado.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/import_navigation_map.py" />
+            <source>The Nav2 map {file} cannot be read: {error}</source>
+            <translation>No se puede leer el mapa de Nav2 {file}: {error}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/import_navigation_map.py" />
+            <source>There is no file {file}: choose the YAML of a Nav2 map (MAP).</source>
+            <translation>No hay ningún archivo {file}: elija el YAML de un mapa de Nav2 (MAP).</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/import_navigation_map.py" />
+            <source>Unknown cells</source>
+            <translation>Celdas desconocidas</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/job_source.py" />
@@ -6697,6 +7334,16 @@
             <translation>Perfil de mapa: qué son las capas, por su nombre (por defecto: como lo guarda cada capa)</translation>
         </message>
         <message>
+            <location filename="../../plugin/processing/map_profile.py" />
+            <source>The layer {layer} is no vector layer: take its role away.</source>
+            <translation>La capa {layer} no es vectorial: quítele el papel.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_profile.py" />
+            <source>{name} knows none of these layers. It looks for layers that are named, in their source or in the project: {sought}.</source>
+            <translation>{name} no conoce ninguna de estas capas. Busca capas que, en su origen o en el proyecto, se llamen: {sought}.</translation>
+        </message>
+        <message>
             <location filename="../../plugin/processing/map_shaping.py" />
             <source>0 is off. An outline that would cross itself stays as it is. Needs the Python package shapely 2.</source>
             <translation>0: desactivado. Un contorno que se cruzaría a sí mismo se queda como está. Necesita el paquete de Python shapely 2.</translation>
@@ -6818,18 +7465,8 @@
         </message>
         <message>
             <location filename="../../plugin/processing/map_window.py" />
-            <source>Origin of the site frame (default: as the project has it, else 0,0)</source>
-            <translation>Origen del marco del recinto (por defecto: el del proyecto, si no 0,0)</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/map_window.py" />
             <source>ROTATION {degrees} is not finite: give a number.</source>
             <translation>ROTATION {degrees} no es finito: dé un número.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/map_window.py" />
-            <source>Rotation of the site frame, counter-clockwise from the CRS's x axis [degrees]</source>
-            <translation>Rotación del marco del recinto, en sentido antihorario desde el eje x del SRC [grados]</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/map_window.py" />
@@ -6860,6 +7497,26 @@
             <location filename="../../plugin/processing/mask_areas.py" />
             <source>has no speed above 0 m/s, so it sets no limit; it is left out</source>
             <translation>no tiene velocidad superior a 0 m/s, así que no limita; se omite</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/nav2_image.py" />
+            <source>The image {file} cannot be read as PGM, PNG, BMP or JPEG: {why}</source>
+            <translation>No se puede leer la imagen {file} como PGM, PNG, BMP o JPEG: {why}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/nav2_image.py" />
+            <source>The image {file} has no bands of 8 bits: save it as grey, without a palette.</source>
+            <translation>La imagen {file} no tiene bandas de 8 bits: guárdela en gris, sin paleta.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/nav2_image.py" />
+            <source>The raster {file} cannot be written: {why}</source>
+            <translation>No se puede escribir el ráster {file}: {why}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/nav2_image.py" />
+            <source>There is no image {file}, which the map names: put it there, or correct the YAML.</source>
+            <translation>No existe la imagen {file}, que el mapa nombra: póngala ahí o corrija el YAML.</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/navigation_help.py" />
@@ -6958,11 +7615,6 @@
             <location filename="../../plugin/processing/publish_plan.py" />
             <source>SITE_ID is empty and the project has no variable {site_variable}: give the site an id of letters, digits, '_', '.' and '-', such as north_yard.</source>
             <translation>SITE_ID está vacío y el proyecto no tiene la variable {site_variable}: dé al recinto un id de letras, dígitos, '_', '.' y '-', como north_yard.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/publish_plan.py" />
-            <source>The layer {layer} is no vector layer: take its role away.</source>
-            <translation>La capa {layer} no es vectorial: quítele el papel.</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/publish_plan.py" />
@@ -7118,6 +7770,11 @@
         </message>
         <message>
             <location filename="../../plugin/processing/publish_site.py" />
+            <source>The origin of the site frame is 0,0 of {crs}, {away:.0f} km from the site: robots get positions of seven digits. Give ORIGIN, a place of the site, unless that is meant.</source>
+            <translation>El origen del marco del recinto es 0,0 de {crs}, a {away:.0f} km del recinto: los robots reciben posiciones de siete cifras. Indique ORIGIN, un punto del recinto, si no es lo que quiere.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/publish_site.py" />
             <source>There is nothing to publish: the layers hold nothing that can be read. See the warnings, or give BOUNDS to publish an empty site.</source>
             <translation>No hay nada que publicar: las capas no contienen nada legible. Vea los avisos, o dé BOUNDS para publicar un recinto vacío.</translation>
         </message>
@@ -7230,6 +7887,21 @@
             <translation>ΔN cm</translation>
         </message>
         <message>
+            <location filename="../../plugin/processing/road_network_files.py" />
+            <source>Lanelet2 needs longitudes and latitudes, and the CRS of the roads has no place on the Earth: give the layer its CRS, or leave lanelet2 out.</source>
+            <translation>Lanelet2 necesita longitudes y latitudes, y el SRC de las vías no tiene lugar en la Tierra: dé a la capa su SRC, o deje fuera lanelet2.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/road_network_files.py" />
+            <source>Lanelet2 reads lanes the wrong way round where corners are tighter than lanes are wide: {count} here, the first at ({x:.2f}, {y:.2f}). Draw the roads there smoother, or give them less width.</source>
+            <translation>Lanelet2 lee los carriles al revés donde las curvas son más cerradas que la anchura de los carriles: aquí {count}, el primero en ({x:.2f}, {y:.2f}). Dibuje allí las vías más suaves, o deles menos anchura.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/road_network_files.py" />
+            <source>Nav2 keeps 32 bits of a coordinate, which here moves nodes by up to {metres:.2f} m: give ORIGIN, a place of the site, for robots and their maps alike.</source>
+            <translation>Nav2 conserva 32 bits de una coordenada, lo que aquí mueve los nodos hasta {metres:.2f} m: dé ORIGIN, un lugar del recinto, tanto para los robots como para sus mapas.</translation>
+        </message>
+        <message>
             <location filename="../../plugin/processing/road_source.py" />
             <source>CRS in metres (default: the layer's, or the project's)</source>
             <translation>SRC en metros (por defecto: el de la capa o el del proyecto)</translation>
@@ -7249,11 +7921,6 @@
             <source>Layer {name}, feature {id}: {note}</source>
             <translation>Capa {name}, objeto espacial {id}: {note}</translation>
         </message>
-        <message>
-            <location filename="../../plugin/processing/road_source.py" />
-            <source>Layer {name}: none of its features is a road</source>
-            <translation>Capa {name}: ninguno de sus objetos es una vía</translation>
-        </message>
         <message numerus="yes">
             <location filename="../../plugin/processing/road_source.py" />
             <source>Layer {name}: the width of %n roads is not known; {width:g} m is used</source>
@@ -7271,6 +7938,16 @@
             <location filename="../../plugin/processing/road_source.py" />
             <source>ROADS {roads} cannot be opened: check the file and the layer's name.</source>
             <translation>ROADS {roads} no se puede abrir: compruebe el archivo y el nombre de la capa.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/road_source.py" />
+            <source>ROADS: no feature of the layer {name} is a road: each has to be a line with a length that the layer's filter keeps. {first}</source>
+            <translation>ROADS: ningún elemento de la capa {name} es una vía: cada uno debe ser una línea con longitud que el filtro de la capa conserve. {first}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/road_source.py" />
+            <source>ROADS: the layer {name} has no features: choose the layer of the road centrelines.</source>
+            <translation>ROADS: la capa {name} no tiene elementos: elija la capa de los ejes de vía.</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/road_source.py" />
@@ -7296,6 +7973,11 @@
             <location filename="../../plugin/processing/road_source.py" />
             <source>Surface of each road (default: the layer's role, else a field surface)</source>
             <translation>Superficie de cada vía (por defecto: el papel de la capa, si no un campo surface)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/road_source.py" />
+            <source>The filter of its role keeps none of them.</source>
+            <translation>El filtro de su papel no conserva ninguno.</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/road_source.py" />
@@ -7680,11 +8362,6 @@
             <location filename="../../plugin/roles/roles_dialog.py" />
             <source>Profile from file…</source>
             <translation>Perfil de un archivo…</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/roles/roles_dialog.py" />
-            <source>{name} knows none of these layers by name and fields.</source>
-            <translation>{name} no conoce ninguna de estas capas por nombre y campos.</translation>
         </message>
         <message numerus="yes">
             <location filename="../../plugin/roles/roles_dialog.py" />
@@ -8131,14 +8808,39 @@
             <translation>se usa la estimación</translation>
         </message>
         <message>
-            <location filename="../../plugin/sites/ground_reading.py" />
-            <source>Layer {layer}: the width of {count} of its roads is not known and taken as {width:g} m (feature {first} is the first)</source>
-            <translation>Capa {layer}: la anchura de {count} de sus vías no se conoce y se toma como {width:g} m (el objeto espacial {first} es el primero)</translation>
+            <location filename="../../plugin/sites/feature_warnings.py" />
+            <source>Layer {layer}, {features}: {note}</source>
+            <translation>Capa {layer}, {features}: {note}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/feature_warnings.py" />
+            <source>Layer {layer}, {features}; of the first: {note}</source>
+            <translation>Capa {layer}, {features}; del primero: {note}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/feature_warnings.py" />
+            <source>Layer {layer}: warnings of more kinds about {features}</source>
+            <translation>Capa {layer}: avisos de más tipos sobre {features}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/feature_warnings.py" />
+            <source>feature {shown}</source>
+            <translation>objeto espacial {shown}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/feature_warnings.py" />
+            <source>features {shown}</source>
+            <translation>objetos espaciales {shown}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/feature_warnings.py" />
+            <source>features {shown} and {more} more</source>
+            <translation>objetos espaciales {shown} y {more} más</translation>
         </message>
         <message>
             <location filename="../../plugin/sites/ground_reading.py" />
-            <source>has a coordinate that is no number; it is left out</source>
-            <translation>tiene una coordenada que no es un número; queda fuera</translation>
+            <source>Layer {layer}: the width of {count} of its roads is not known and taken as {width:g} m (feature {first} is the first)</source>
+            <translation>Capa {layer}: la anchura de {count} de sus vías no se conoce y se toma como {width:g} m (el objeto espacial {first} es el primero)</translation>
         </message>
         <message>
             <location filename="../../plugin/sites/ground_reading.py" />
@@ -8154,6 +8856,11 @@
             <location filename="../../plugin/sites/layer_rules.py" />
             <source>Layer {layer}: it has no field {missing}, which the {what} expression {text!r} reads; the default is used for all its features</source>
             <translation>Capa {layer}: no tiene el campo {missing}, que lee la expresión de {what} {text!r}; se usa el valor por defecto para todos sus objetos espaciales</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/layer_rules.py" />
+            <source>Layer {layer}: {note}</source>
+            <translation>Capa {layer}: {note}</translation>
         </message>
         <message>
             <location filename="../../plugin/sites/layer_rules.py" />
@@ -8271,6 +8978,11 @@
             <translation>{error}; se usa su anchura</translation>
         </message>
         <message>
+            <location filename="../../plugin/sites/profile.py" />
+            <source>{names} with {fields}</source>
+            <translation>{names} con {fields}</translation>
+        </message>
+        <message>
             <location filename="../../plugin/sites/profile_file.py" />
             <source>The profile {file} cannot be read: {error}.</source>
             <translation>El perfil {file} no se puede leer: {error}.</translation>
@@ -8279,6 +8991,11 @@
             <location filename="../../plugin/sites/profile_file.py" />
             <source>The profile {file} is not there: give the path of a file, or one of {shipped}.</source>
             <translation>El perfil {file} no está: dé la ruta de un archivo, o uno de {shipped}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/profile_file.py" />
+            <source>it has {count} characters, more than {most}</source>
+            <translation>tiene {count} caracteres, más de {most}</translation>
         </message>
         <message>
             <location filename="../../plugin/sites/profile_file.py" />
@@ -8425,21 +9142,6 @@
         </message>
         <message>
             <location filename="../../plugin/sites/reading.py" />
-            <source>feature {shown}</source>
-            <translation>objeto espacial {shown}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/sites/reading.py" />
-            <source>features {shown}</source>
-            <translation>objetos espaciales {shown}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/sites/reading.py" />
-            <source>features {shown} and {more} more</source>
-            <translation>objetos espaciales {shown} y {more} más</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/sites/reading.py" />
             <source>lines, one a riser</source>
             <translation>líneas, una por escalón</translation>
         </message>
@@ -8465,13 +9167,18 @@
         </message>
         <message>
             <location filename="../../plugin/sites/road_attributes.py" />
+            <source>none of its fields direction, oneway, one_way and other_tags is there to tell one-way roads; all are taken as driven both ways</source>
+            <translation>no hay ninguno de los campos direction, oneway, one_way y other_tags que diga qué vías son de sentido único; todas se toman como de doble sentido</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/road_attributes.py" />
             <source>whether it is closed, {value!r}, is neither true nor false; it is taken as closed</source>
             <translation>si está cerrada, {value!r}, no es ni verdadero ni falso; se toma como cerrada</translation>
         </message>
         <message>
             <location filename="../../plugin/sites/shapes.py" />
-            <source>has a coordinate that is no number or has no place in the site's CRS; it is left out</source>
-            <translation>tiene una coordenada que no es un número o que no tiene lugar en el SRC del recinto; queda fuera</translation>
+            <source>has a coordinate that is no number, has no place in the site's CRS or lies beyond 100 000 km; it is left out</source>
+            <translation>tiene una coordenada que no es un número, no tiene lugar en el SRC del recinto o está más allá de 100 000 km; se omite</translation>
         </message>
         <message>
             <location filename="../../plugin/sites/site_crs.py" />
@@ -8642,6 +9349,11 @@
             <translation>ningún esquema</translation>
         </message>
         <message>
+            <location filename="../../plugin/wire/addresses.py" />
+            <source>{url} is where robots connect; operators connect to {desk}. Write that instead.</source>
+            <translation>{url} es donde se conectan los robots; los operadores se conectan a {desk}. Escriba eso.</translation>
+        </message>
+        <message>
             <location filename="../../plugin/wire/client.py" />
             <source>The gateway at {url} closed the link. It is tried again.</source>
             <translation>La pasarela en {url} cerró el enlace. Se vuelve a intentar.</translation>
@@ -8775,6 +9487,11 @@
             <location filename="../../plugin/wire/failures.py" />
             <source>{url} takes no desk now: {said} It is tried again by itself.</source>
             <translation>{url} no admite ahora ninguna consola: {said} Se vuelve a intentar solo.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/wire/protocol.py" />
+            <source>No operator can connect at {url}: what answers there knows no desk, as the address of robots does not. A gateway's desk has the path /desk, as in {default_url}. Correct the URL, then press Connect.</source>
+            <translation>Ningún operador puede conectarse a {url}: lo que responde allí no conoce ninguna consola, como tampoco la dirección de los robots. La consola de una pasarela tiene la ruta /desk, como en {default_url}. Corrija la URL y pulse Conectar.</translation>
         </message>
         <message>
             <location filename="../../plugin/wire/protocol.py" />

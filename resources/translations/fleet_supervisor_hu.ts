@@ -684,11 +684,6 @@
         </message>
         <message>
             <location filename="../../plugin/desk/alarms/alarm_bar.py" />
-            <source>Acknowledge all</source>
-            <translation>Mind nyugtázása</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/alarms/alarm_bar.py" />
             <source>Show</source>
             <translation>Mutat</translation>
         </message>
@@ -726,6 +721,11 @@
             <location filename="../../plugin/desk/alarms/alarm_panel.py" />
             <source>Acknowledge</source>
             <translation>Nyugtázás</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/alarm_panel.py" />
+            <source>Acknowledge all</source>
+            <translation>Mind nyugtázása</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/alarms/alarm_panel.py" />
@@ -822,6 +822,76 @@
             </translation>
         </message>
         <message>
+            <location filename="../../plugin/desk/alarms/reported.py" />
+            <source> at {x:.1f}, {y:.1f} m</source>
+            <translation> itt: {x:.1f}, {y:.1f} m</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/reported.py" />
+            <source>it could NOT be stopped yet: {why}</source>
+            <translation>még NEM sikerült megállítani: {why}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/reported.py" />
+            <source>it is being aborted</source>
+            <translation>megszakítás folyamatban</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/reported.py" />
+            <source>it is being paused</source>
+            <translation>szüneteltetés folyamatban</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/reported.py" />
+            <source>the emergency stop holds it</source>
+            <translation>a vészleállítás tartja</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/reported.py" />
+            <source>the gateway has aborted its task</source>
+            <translation>az átjáró megszakította a feladatát</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/reported.py" />
+            <source>the gateway has paused it</source>
+            <translation>az átjáró szüneteltette</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/reported.py" />
+            <source>{robot} is at the obstacle {name}</source>
+            <translation>{robot} a(z) {name} akadálynál van</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/reported.py" />
+            <source>{robot} is in the keepout {name}</source>
+            <translation>{robot} a(z) {name} tiltott területen van</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/reported.py" />
+            <source>{robot} will pass {other} at {metres:.1f} m (clearance {clearance:.1f} m){where}</source>
+            <translation>{robot} {metres:.1f} m-re fog elhaladni {other} mellett (előírt távolság {clearance:.1f} m){where}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/reported.py" />
+            <source>{robot} will pass {other} at {metres:.1f} m{where}</source>
+            <translation>{robot} {metres:.1f} m-re fog elhaladni {other} mellett{where}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/reported.py" />
+            <source>{seen} comes within {metres:.1f} m of {robot} in {seconds:.0f} s</source>
+            <translation>{seen} {seconds:.0f} s múlva {metres:.1f} m-en belülre ér ehhez: {robot}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/reported.py" />
+            <source>{seen} is {metres:.1f} m from {robot}</source>
+            <translation>{seen} {metres:.1f} m-re van ettől: {robot}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/reported.py" />
+            <source>{text} (it is not heard now)</source>
+            <translation>{text} (most nem hallani felőle)</translation>
+        </message>
+        <message>
             <location filename="../../plugin/desk/alarms/road_ground.py" />
             <source>layers of road surfaces cannot be read: {why}</source>
             <translation>az útfelületek rétegei nem olvashatók: {why}</translation>
@@ -873,6 +943,16 @@
         </message>
         <message>
             <location filename="../../plugin/desk/alarms/thresholds_form.py" />
+            <source>begins so long before</source>
+            <translation>ennyivel előbb kezdődik</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/thresholds_form.py" />
+            <source>begins when less exact than</source>
+            <translation>kezdődik, ha ennél pontatlanabb</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/thresholds_form.py" />
             <source>begins when two are nearer than</source>
             <translation>kezdődik, ha kettő közelebb van, mint</translation>
         </message>
@@ -883,8 +963,18 @@
         </message>
         <message>
             <location filename="../../plugin/desk/alarms/thresholds_form.py" />
+            <source>ends so much below that</source>
+            <translation>ennyivel alatta ér véget</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/thresholds_form.py" />
             <source>ends so much further apart</source>
             <translation>ennyivel távolabb ér véget</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/thresholds_form.py" />
+            <source>the gateway judges it by the published site, and says what it does</source>
+            <translation>az átjáró ítéli meg a közzétett telephely alapján, és megmondja, mit tesz</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/alarms/thresholds_form.py" />
@@ -913,11 +1003,6 @@
         </message>
         <message>
             <location filename="../../plugin/desk/alarms/words.py" />
-            <source> at {x:.1f}, {y:.1f} m</source>
-            <translation> itt: {x:.1f}, {y:.1f} m</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/alarms/words.py" />
             <source>; last{where}</source>
             <translation>; utoljára{where}</translation>
         </message>
@@ -925,6 +1010,11 @@
             <location filename="../../plugin/desk/alarms/words.py" />
             <source>acknowledged</source>
             <translation>nyugtázva</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/words.py" />
+            <source>at an obstacle</source>
+            <translation>akadálynál</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/alarms/words.py" />
@@ -938,6 +1028,11 @@
         </message>
         <message>
             <location filename="../../plugin/desk/alarms/words.py" />
+            <source>in a keepout</source>
+            <translation>tiltott területen</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/words.py" />
             <source>lost</source>
             <translation>elveszett</translation>
         </message>
@@ -945,6 +1040,11 @@
             <location filename="../../plugin/desk/alarms/words.py" />
             <source>low battery</source>
             <translation>merülő akkumulátor</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/words.py" />
+            <source>near a robot</source>
+            <translation>robot közelében</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/alarms/words.py" />
@@ -978,6 +1078,21 @@
         </message>
         <message>
             <location filename="../../plugin/desk/alarms/words.py" />
+            <source>unsure of its place</source>
+            <translation>bizonytalan a helyében</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/words.py" />
+            <source>will come near a robot</source>
+            <translation>robot közelébe fog érni</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/words.py" />
+            <source>will pass too near</source>
+            <translation>túl közel fog elhaladni</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/words.py" />
             <source>{robot} and {other}</source>
             <translation>{robot} és {other}</translation>
         </message>
@@ -985,6 +1100,11 @@
             <location filename="../../plugin/desk/alarms/words.py" />
             <source>{robot} and {other} are {apart:.1f} m apart{where}</source>
             <translation>{robot} és {other} {apart:.1f} m-re vannak egymástól{where}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/words.py" />
+            <source>{robot} does not know its place: ± {accuracy:.1f} m{where}</source>
+            <translation>{robot} nem tudja, hol van: ± {accuracy:.1f} m{where}</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/alarms/words.py" />
@@ -1057,44 +1177,9 @@
             <translation>Miért indulhatnak újra a robotok, a naplóba</translation>
         </message>
         <message>
-            <location filename="../../plugin/desk/closure_dialog.py" />
+            <location filename="../../plugin/desk/closure_tool.py" />
             <source>Closed</source>
             <translation>Lezárva</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/closure_dialog.py" />
-            <source>Reason</source>
-            <translation>Ok</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/closure_dialog.py" />
-            <source>The road is closed for every robot from this junction to the next. Robots whose way leads along it get another way; one that has no other way is stopped, unless the site's settings say otherwise.</source>
-            <translation>Az út minden robot elől le lesz zárva ettől a kereszteződéstől a következőig. Azok a robotok, amelyek útja erre vezet, más utat kapnak; amelyiknek nincs más, megáll, hacsak a telephely beállításai mást nem mondanak.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/closure_dialog.py" />
-            <source>for 1 hour</source>
-            <translation>1 órára</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/closure_dialog.py" />
-            <source>for 15 minutes</source>
-            <translation>15 percre</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/closure_dialog.py" />
-            <source>for 4 hours</source>
-            <translation>4 órára</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/closure_dialog.py" />
-            <source>such as: tree on the road</source>
-            <translation>például: fa az úton</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/closure_dialog.py" />
-            <source>until it is opened</source>
-            <translation>amíg meg nem nyitják</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/closure_tool.py" />
@@ -1105,6 +1190,41 @@
             <location filename="../../plugin/desk/closure_tool.py" />
             <source>Open road</source>
             <translation>Út megnyitása</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/closure_tool.py" />
+            <source>Reason</source>
+            <translation>Ok</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/closure_tool.py" />
+            <source>The road is closed for every robot from this junction to the next. Robots whose way leads along it get another way; one that has no other way is stopped, unless the site's settings say otherwise.</source>
+            <translation>Az út minden robot elől le lesz zárva ettől a kereszteződéstől a következőig. Azok a robotok, amelyek útja erre vezet, más utat kapnak; amelyiknek nincs más, megáll, hacsak a telephely beállításai mást nem mondanak.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/closure_tool.py" />
+            <source>for 1 hour</source>
+            <translation>1 órára</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/closure_tool.py" />
+            <source>for 15 minutes</source>
+            <translation>15 percre</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/closure_tool.py" />
+            <source>for 4 hours</source>
+            <translation>4 órára</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/closure_tool.py" />
+            <source>such as: tree on the road</source>
+            <translation>például: fa az úton</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/closure_tool.py" />
+            <source>until it is opened</source>
+            <translation>amíg meg nem nyitják</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/closure_tool.py" />
@@ -1477,6 +1597,31 @@
             <translation>mert: {reason}</translation>
         </message>
         <message>
+            <location filename="../../plugin/desk/cone_checks.py" />
+            <source>Reading what cones must keep clear of</source>
+            <translation>Annak beolvasása, amitől a bójáknak távol kell maradniuk</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/cone_file.py" />
+            <source>The cones of the layer {layer} are not saved with the project: {problem}. Export the layer to a file before you close QGIS.</source>
+            <translation>A(z) {layer} réteg bójái nem mentődtek a projekttel: {problem}. Exportálja a réteget fájlba, mielőtt bezárja a QGIS-t.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/cone_file.py" />
+            <source>the project is not a file</source>
+            <translation>a projekt nem fájl</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/cone_file.py" />
+            <source>{path} cannot be read again</source>
+            <translation>{path} nem olvasható vissza</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/cone_file.py" />
+            <source>{path} cannot be written ({words})</source>
+            <translation>{path} nem írható ({words})</translation>
+        </message>
+        <message>
             <location filename="../../plugin/desk/cone_store.py" />
             <source>Cones</source>
             <translation>Bóják</translation>
@@ -1493,8 +1638,43 @@
         </message>
         <message>
             <location filename="../../plugin/desk/conflict_panel.py" />
-            <source>and {more} more: see the layer Conflicts</source>
-            <translation>és még {more}: lásd az Ütközések réteget</translation>
+            <source>Choose a conflict in the list first.</source>
+            <translation>Előbb válasszon egy ütközést a listából.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/conflict_panel.py" />
+            <source>Give way</source>
+            <translation>Elsőbbséget ad</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/conflict_panel.py" />
+            <source>No robot is in another one's way.</source>
+            <translation>Egyik robot sincs egy másik útjában.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/conflict_panel.py" />
+            <source>Nobody can be sent aside: {why}</source>
+            <translation>Senki sem küldhető félre: {why}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/conflict_panel.py" />
+            <source>Send aside</source>
+            <translation>Félreküldés</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/conflict_panel.py" />
+            <source>Send {robot} aside</source>
+            <translation>{robot} félreküldése</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/conflict_panel.py" />
+            <source>Stop</source>
+            <translation>Megállítás</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/conflict_panel.py" />
+            <source>Stop {robot}</source>
+            <translation>{robot} megállítása</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/conflict_panel.py" />
@@ -1503,8 +1683,18 @@
         </message>
         <message>
             <location filename="../../plugin/desk/conflict_panel.py" />
+            <source>the gateway is being asked</source>
+            <translation>az átjáró kérdezése folyik</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/conflict_panel.py" />
             <source>{robot} gives way</source>
             <translation>{robot} elsőbbséget ad</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/conflict_panel.py" />
+            <source>{robot} is paused: it stands, and keeps what it is doing for later</source>
+            <translation>{robot} szünetel: áll, és későbbre megtartja, amit csinál</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/conflict_panel.py" />
@@ -1515,6 +1705,16 @@
             <location filename="../../plugin/desk/conflict_panel.py" />
             <source>{robot} waits for {other}, until {time_of_day} at the earliest</source>
             <translation>{robot} vár erre: {other}, legkorábban {time_of_day}-ig</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/conflict_panel.py" />
+            <source>{robot} × {other}: over</source>
+            <translation>{robot} × {other}: vége</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/conflict_panel.py" />
+            <source>{text}; the route is shown first, and sent as any other</source>
+            <translation>{text}; az útvonal előbb megjelenik, és úgy küldhető, mint bármely más</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/connection_menu.py" />
@@ -1555,6 +1755,11 @@
             <location filename="../../plugin/desk/connection_panel.py" />
             <source>Connecting</source>
             <translation>Kapcsolódás</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/connection_panel.py" />
+            <source>Disconnect</source>
+            <translation>Bontás</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/connection_panel.py" />
@@ -1608,6 +1813,16 @@
         </message>
         <message>
             <location filename="../../plugin/desk/desk.py" />
+            <source>Pause of {robot}</source>
+            <translation>{robot} szüneteltetése</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/desk.py" />
+            <source>The gateway has another database than before: its robots and commands are others, and those of before are not shown any more.</source>
+            <translation>Az átjárónak más adatbázisa van, mint előbb: robotjai és parancsai mások, a korábbiak már nem látszanak.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/desk.py" />
             <source>The operator's name is empty. Write who you are: it stands in every log.</source>
             <translation>A kezelő neve üres. Írja be, ki Ön: minden naplóban ott áll.</translation>
         </message>
@@ -1638,6 +1853,11 @@
         </message>
         <message>
             <location filename="../../plugin/desk/dock.py" />
+            <source>Conflicts</source>
+            <translation>Ütközések</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/dock.py" />
             <source>Fleet</source>
             <translation>Flotta</translation>
         </message>
@@ -1658,6 +1878,11 @@
         </message>
         <message>
             <location filename="../../plugin/desk/draft_panel.py" />
+            <source>{in_words} is being checked: {share:.0%}. It goes out when nothing speaks against it.</source>
+            <translation>{in_words} ellenőrzése folyik: {share:.0%}. Elindul, ha semmi sem szól ellene.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/draft_panel.py" />
             <source>{in_words}. Being checked: {share:.0%}.</source>
             <translation>{in_words}. Ellenőrzés alatt: {share:.0%}.</translation>
         </message>
@@ -1665,6 +1890,11 @@
             <location filename="../../plugin/desk/draft_panel.py" />
             <source>{in_words}. Being checked: {share:.0%}. It goes out when nothing speaks against it; Esc keeps it back.</source>
             <translation>{in_words}. Ellenőrzés alatt: {share:.0%}. Elküldésre kerül, ha semmi sem szól ellene; az Esc visszatartja.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/draft_panel.py" />
+            <source>{in_words}. It goes out when that is found and nothing speaks against it; Esc keeps it back.</source>
+            <translation>{in_words}. Elküldésre kerül, ha az út megvan, és semmi sem szól ellene; az Esc visszatartja.</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/draft_panel.py" />
@@ -1705,6 +1935,36 @@
             <location filename="../../plugin/desk/draft_tool.py" />
             <source>There is nothing to take back.</source>
             <translation>Nincs mit visszavonni.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/ability_check.py" />
+            <source>{robot} cannot be sent to targets.</source>
+            <translation>A(z) {robot} nem küldhető célhoz.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/ability_check.py" />
+            <source>{robot} cannot be told where it starts.</source>
+            <translation>A(z) {robot} robotnak nem adható meg, honnan indul.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/ability_check.py" />
+            <source>{robot} cannot follow routes.</source>
+            <translation>A(z) {robot} nem tud útvonalat követni.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/ability_check.py" />
+            <source>{robot} is only seen: it takes no commands.</source>
+            <translation>A(z) {robot} csak látható: parancsot nem fogad.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/ability_check.py" />
+            <source>{robot} places no cones.</source>
+            <translation>A(z) {robot} nem rak le bóját.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/ability_check.py" />
+            <source>{robot} places no cones: it only drives there.</source>
+            <translation>A(z) {robot} nem rak le bóját: csak odamegy.</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/drafting/datum_path.py" />
@@ -1772,9 +2032,19 @@
             <translation>{in_words} nem lett elküldve: {error}</translation>
         </message>
         <message>
+            <location filename="../../plugin/desk/drafting/draft_sending.py" />
+            <source>{in_words} was not sent: {robot} has moved since its way was found. It is found again from where the robot is now; send it when it is drawn.</source>
+            <translation>{in_words} nem lett elküldve: {robot} elmozdult, mióta az útja megvan. Az út újra megkeresése onnan történik, ahol a robot most van; küldje el, amikor kirajzolódott.</translation>
+        </message>
+        <message>
             <location filename="../../plugin/desk/drafting/keepout_check.py" />
             <source>The route</source>
             <translation>Az útvonal</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/keepout_check.py" />
+            <source>The way to {to}</source>
+            <translation>Az út ide: {to}</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/drafting/keepout_check.py" />
@@ -1790,11 +2060,6 @@
             <location filename="../../plugin/desk/drafting/obstacle_check.py" />
             <source>The layer {layer} cannot be placed on the site ({error}), so obstacles in it are not seen. Correct its CRS, or take its role away.</source>
             <translation>A(z) {layer} réteg nem helyezhető a telephelyre ({error}), így az akadályai nem látszanak. Javítsa ki a vetületét, vagy vegye el a szerepét.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/drafting/obstacle_check.py" />
-            <source>The way to {to}</source>
-            <translation>Az út ide: {to}</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/drafting/obstacle_check.py" />
@@ -1815,6 +2080,11 @@
             <location filename="../../plugin/desk/drafting/order_check.py" />
             <source>{robot} is at work for {operator} ({task}): sending this takes its place.</source>
             <translation>{robot} éppen {operator} megbízásán dolgozik ({task}): az elküldés ennek a helyébe lép.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/order_check.py" />
+            <source>{robot} is {state}, last heard {age} ago: it is told this when it is heard again, if that is soon enough.</source>
+            <translation>{robot}: {state}, utoljára {age} ideje hallatszott: ezt akkor kapja meg, amikor újra hallatszik, ha az elég hamar van.</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/drafting/place_text.py" />
@@ -1887,6 +2157,26 @@
             <translation>a cél</translation>
         </message>
         <message>
+            <location filename="../../plugin/desk/drafting/target_way.py" />
+            <source>It is not known where {robot} is, so nobody has looked at the way that it drives.</source>
+            <translation>Nem tudni, hol van {robot}, ezért senki sem nézte meg, milyen úton megy.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/target_way.py" />
+            <source>No way along the roads leads there: {why}.</source>
+            <translation>Oda nem vezet út az utakon: {why}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/target_way.py" />
+            <source>The gateway does not answer which way leads there. Set the target again when the link is there.</source>
+            <translation>Az átjáró nem válaszol, hogy melyik út vezet oda. Ha a kapcsolat helyreállt, tűzze ki újra a célt.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/target_way.py" />
+            <source>{robot} has not declared that it asks for its path or takes cones with one: sent now it drives straight. Add to queue, with a route around what is in its way, where that is not wanted.</source>
+            <translation>{robot} nem jelezte, hogy elkéri az útját, vagy úttal együtt is elfogad bóját: most elküldve egyenesen megy. Ahol ez nem kívánatos, adja a sorhoz olyan útvonallal, amely kikerüli, ami az útjában van.</translation>
+        </message>
+        <message>
             <location filename="../../plugin/desk/drafting/tasks.py" />
             <source>A start position is no task: Send tells the robot at once.</source>
             <translation>A kiinduló helyzet nem feladat: a Küldés azonnal közli a robottal.</translation>
@@ -1895,6 +2185,16 @@
             <location filename="../../plugin/desk/drafting/tracks.py" />
             <source>({x:.2f}, {y:.2f}) m</source>
             <translation>({x:.2f}, {y:.2f}) m</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/typed_place.py" />
+            <source>{text!r} is not on the site {name}; with its two numbers swapped it is. Write {order}: {first:.10g}, {second:.10g}.</source>
+            <translation>{text!r} nincs a(z) {name} telephelyen; a két számot felcserélve ott van. Írja így, {order}: {first:.10g}, {second:.10g}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/typed_place.py" />
+            <source>{text!r} is {away:.0f} km outside the site {name}. Write {order}, and check the numbers and the CRS that they are in ({crs}).</source>
+            <translation>{text!r} {away:.0f} km-rel a(z) {name} telephelyen kívül van. Írja így: {order}, és ellenőrizze a számokat és a vetületüket ({crs}).</translation>
         </message>
         <message numerus="yes">
             <location filename="../../plugin/desk/drafts.py" />
@@ -1912,6 +2212,16 @@
             <location filename="../../plugin/desk/drafts.py" />
             <source>; along the roads {note}</source>
             <translation>; az utak mentén {note}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafts.py" />
+            <source>; straight</source>
+            <translation>; egyenesen</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafts.py" />
+            <source>; the way there is being found</source>
+            <translation>; az oda vezető út keresése folyik</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/drafts.py" />
@@ -1945,6 +2255,11 @@
         </message>
         <message>
             <location filename="../../plugin/desk/drafts.py" />
+            <source>the way there is not known yet</source>
+            <translation>az oda vezető út még nem ismert</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafts.py" />
             <source>{x:.2f}, {y:.2f} m</source>
             <translation>{x:.2f}, {y:.2f} m</translation>
         </message>
@@ -1952,6 +2267,11 @@
             <location filename="../../plugin/desk/emergency_banner.py" />
             <source> since {time}</source>
             <translation> {time} óta</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/emergency_banner.py" />
+            <source>Clear…</source>
+            <translation>Feloldás…</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/emergency_banner.py" />
@@ -1991,14 +2311,54 @@
             </translation>
         </message>
         <message>
+            <location filename="../../plugin/desk/geofence_state.py" />
+            <source>Keepouts and obstacles are not watched: the gateway tells nothing of them. It may be older than this plugin.</source>
+            <translation>A tiltott területeket és akadályokat senki nem figyeli: az átjáró semmit sem mond róluk. Lehet, hogy régebbi ennél a modulnál.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/geofence_state.py" />
+            <source>Keepouts and obstacles are not watched: {why}.</source>
+            <translation>A tiltott területeket és akadályokat senki nem figyeli: {why}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/geofence_state.py" />
+            <source>Not judged by keepouts and obstacles, since it is not known where they are: {names}.</source>
+            <translation>Tiltott területek és akadályok szerint nem ítélhető meg, mert nem tudni, hol van: {names}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/geofence_state.py" />
+            <source>The published site has no keepouts.</source>
+            <translation>A közzétett telephelyen nincs tiltott terület.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/geofence_state.py" />
+            <source>The published site has no obstacles, so nobody is told to be at one.</source>
+            <translation>A közzétett telephelyen nincs akadály, így akadálynál senkit sem jelez.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/geofence_state.py" />
+            <source>{more} more</source>
+            <translation>további {more}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/geofence_state.py" />
+            <source>{more} more are in keepouts or at obstacles and not listed.</source>
+            <translation>További {more} van tiltott területen vagy akadálynál, felsorolás nélkül.</translation>
+        </message>
+        <message>
             <location filename="../../plugin/desk/inquiries.py" />
             <source>{words}: the gateway's answer cannot be read ({kind}). Update the gateway or the plugin, whichever is older.</source>
             <translation>{words}: az átjáró válasza nem olvasható ({kind}). Frissítse az átjárót vagy a bővítményt, amelyik régebbi.</translation>
         </message>
         <message>
+            <location filename="../../plugin/desk/last_heard.py" />
+            <source>{state}, last heard {age} ago over {link}</source>
+            <translation>{state}, utolsó hír {age} óta, ezen: {link}</translation>
+        </message>
+        <message>
             <location filename="../../plugin/desk/layout_action.py" />
-            <source>Place a cone layout: it is shown under the cursor, the wheel turns it (Shift: finely), a click places it, Esc ends; by keys PgUp and PgDown turn it, Enter places it, F2 leads to its dimensions. Nothing is sent to robots</source>
-            <translation>Bójaelrendezés elhelyezése: a kurzor alatt látszik, a görgő forgatja (Shift: finoman), kattintásra elhelyeződik, Esc-re vége; billentyűkkel a PgUp és a PgDown forgatja, az Enter elhelyezi, az F2 a méreteihez visz. A robotoknak semmi sem megy ki</translation>
+            <source>Place a cone layout: it is shown under the cursor, the wheel turns it (Shift: finely), a click places it, Ctrl+Z takes it back, Esc ends; by keys PgUp and PgDown turn it, Enter places it, F2 leads to its dimensions. Nothing is sent to robots</source>
+            <translation>Bójaelrendezés elhelyezése: a kurzornál látszik, a görgő forgatja (Shift: finoman), egy kattintás elhelyezi, a Ctrl+Z visszavonja, az Esc befejezi; billentyűkkel a PgUp és a PgDown forgatja, az Enter elhelyezi, az F2 a méreteihez vezet. A robotoknak semmi sem megy</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/layout_action.py" />
@@ -2017,6 +2377,11 @@
         </message>
         <message>
             <location filename="../../plugin/desk/layout_dimensions.py" />
+            <source>Remove the cones that were placed last; Ctrl+Z over the map does so too</source>
+            <translation>A legutóbb elhelyezett bóják eltávolítása; a térkép fölött a Ctrl+Z is ezt teszi</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/layout_dimensions.py" />
             <source>Reset to the standard</source>
             <translation>Vissza a szabványhoz</translation>
         </message>
@@ -2025,12 +2390,22 @@
             <source>Standard: {value}</source>
             <translation>Szabvány: {value}</translation>
         </message>
+        <message>
+            <location filename="../../plugin/desk/layout_dimensions.py" />
+            <source>Take back the last layout</source>
+            <translation>Az utolsó elrendezés visszavonása</translation>
+        </message>
         <message numerus="yes">
             <location filename="../../plugin/desk/layout_tool.py" />
             <source>%n cones are in the layer {layer}.</source>
             <translation>
                 <numerusform>%n bója van a(z) {layer} rétegben.</numerusform>
             </translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/layout_tool.py" />
+            <source>The layer of cones is another one now: place the layout again.</source>
+            <translation>A bóják rétege most másik: helyezze el újra az elrendezést.</translation>
         </message>
         <message numerus="yes">
             <location filename="../../plugin/desk/layout_tool.py" />
@@ -2195,6 +2570,36 @@
             <translation>Théta (rad)</translation>
         </message>
         <message>
+            <location filename="../../plugin/desk/messages.py" />
+            <source>Link {link} is down: {reason}.</source>
+            <translation>A(z) {link} kapcsolat nem működik: {reason}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/messages.py" />
+            <source>Link {link} is down: {reason}. Nothing reaches {robots}.</source>
+            <translation>A(z) {link} kapcsolat nem működik: {reason}. Semmi sem éri el ezeket: {robots}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/messages.py" />
+            <source>The database account of robot {robot} is locked until {time}: its program kept all others waiting. Nothing but a stop reaches it: Abort unlocks the account. Have the program mended.</source>
+            <translation>A(z) {robot} robot adatbázisfiókja {time}-ig zárolva van: programja mindenki mást megvárakoztatott. A leállításon kívül semmi sem éri el: a megszakítás feloldja a fiókot. Javíttassa meg a programot.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/messages.py" />
+            <source>The program of robot {robot} keeps all others waiting at the database, and its account cannot be locked. Have an administrator run: robot-bridge database upgrade</source>
+            <translation>A(z) {robot} robot programja minden mást megvárakoztat az adatbázisnál, és a fiókja nem zárolható. Futtassa egy rendszergazda: robot-bridge database upgrade</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/messages.py" />
+            <source>{names} and {count} more</source>
+            <translation>{names} és még {count}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/nearness_state.py" />
+            <source>People near robots are not watched: {why}.</source>
+            <translation>A robotok közelében lévő embereket nem figyeli senki: {why}.</translation>
+        </message>
+        <message>
             <location filename="../../plugin/desk/observations/observation_dock.py" />
             <source>All are reviewed.</source>
             <translation>Mind el van bírálva.</translation>
@@ -2266,6 +2671,11 @@
         </message>
         <message>
             <location filename="../../plugin/desk/observations/observation_model.py" />
+            <source>not there any more: {what}</source>
+            <translation>már nincs ott: {what}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/observations/observation_model.py" />
             <source>object</source>
             <translation>tárgy</translation>
         </message>
@@ -2316,6 +2726,16 @@
         </message>
         <message>
             <location filename="../../plugin/desk/observations/review_form.py" />
+            <source>It is gone: leave it out of the maps that robots get from now on</source>
+            <translation>Eltűnt: maradjon ki azokból a térképekből, amelyeket a robotok ezután kapnak</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/observations/review_form.py" />
+            <source>It is there: leave it on the maps</source>
+            <translation>Ott van: maradjon a térképeken</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/observations/review_form.py" />
             <source>It stands there: draw it on the maps that robots get from now on</source>
             <translation>Ott áll: kerüljön rá a térképekre, amelyeket a robotok mostantól kapnak</translation>
         </message>
@@ -2328,6 +2748,11 @@
             <location filename="../../plugin/desk/observations/review_form.py" />
             <source>Look at it: is it of use?</source>
             <translation>Nézze meg: használható?</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/observations/review_form.py" />
+            <source>Not there any more? {robot} looks through {what} ({source}) of its map again and again, at {x:.2f}, {y:.2f} m.</source>
+            <translation>Már nincs ott? {robot} újra meg újra átlát a térképén szereplő {what} ({source}) helyén, itt: {x:.2f}, {y:.2f} m.</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/observations/review_form.py" />
@@ -3356,11 +3781,6 @@
         </message>
         <message>
             <location filename="../../plugin/desk/queues/queue_edits.py" />
-            <source>Pause of {robot}</source>
-            <translation>{robot} szüneteltetése</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/queues/queue_edits.py" />
             <source>Pausing the queue of {robot}</source>
             <translation>{robot} várólistájának szüneteltetése</translation>
         </message>
@@ -3695,11 +4115,6 @@
         </message>
         <message>
             <location filename="../../plugin/desk/replay/stretch_form.py" />
-            <source>Stop</source>
-            <translation>Megállítás</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/replay/stretch_form.py" />
             <source>Until when</source>
             <translation>Meddig</translation>
         </message>
@@ -3747,11 +4162,6 @@
             <location filename="../../plugin/desk/road_layers.py" />
             <source>Closed roads</source>
             <translation>Lezárt utak</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/road_layers.py" />
-            <source>Conflicts</source>
-            <translation>Ütközések</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/road_layers.py" />
@@ -3865,6 +4275,11 @@
         </message>
         <message>
             <location filename="../../plugin/desk/robots/columns.py" />
+            <source>paused</source>
+            <translation>szünetel</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/columns.py" />
             <source>route</source>
             <translation>útvonal</translation>
         </message>
@@ -3919,11 +4334,6 @@
             <translation>{told}, kérte: {operator}</translation>
         </message>
         <message>
-            <location filename="../../plugin/desk/robots/last_heard.py" />
-            <source>{state}, last heard {age} ago over {link}</source>
-            <translation>{state}, utolsó hír {age} óta, ezen: {link}</translation>
-        </message>
-        <message>
             <location filename="../../plugin/desk/robots/last_image.py" />
             <source>No image: {why}</source>
             <translation>Nincs kép: {why}</translation>
@@ -3962,6 +4372,84 @@
             <location filename="../../plugin/desk/robots/position_crs.py" />
             <source>site frame</source>
             <translation>telephelyi keret</translation>
+        </message>
+        <message numerus="yes">
+            <location filename="../../plugin/desk/robots/removal.py" />
+            <source>%n robots were not removed: {why}</source>
+            <translation>
+                <numerusform>%n robot nem lett eltávolítva: {why}</numerusform>
+            </translation>
+        </message>
+        <message numerus="yes">
+            <location filename="../../plugin/desk/robots/removal.py" />
+            <source>%n robots were removed: {names}</source>
+            <translation>
+                <numerusform>%n robot eltávolítva: {names}</numerusform>
+            </translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/removal.py" />
+            <source>&amp;Robots</source>
+            <translation>&amp;Robotok</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/removal.py" />
+            <source>No robot is lost or offline.</source>
+            <translation>Egy robot sem elveszett vagy offline.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/removal.py" />
+            <source>No robot was removed: {why}</source>
+            <translation>Egy robot sem lett eltávolítva: {why}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/removal.py" />
+            <source>None is stopped by that. One that comes back is told to abort what it still does, and is a new robot.</source>
+            <translation>Ez egyik robotot sem állítja meg. Amelyik visszatér, utasítást kap, hogy szakítsa meg, amit még csinál, és új robotnak számít.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/removal.py" />
+            <source>Remove robots that are gone?</source>
+            <translation>Eltávolítja az eltűnt robotokat?</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/removal.py" />
+            <source>Remove robots…</source>
+            <translation>Robotok eltávolítása…</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/removal.py" />
+            <source>Remove {names}</source>
+            <translation>Eltávolítás: {names}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/removal.py" />
+            <source>Take robots that are lost or offline off every desk; takes a supervisor</source>
+            <translation>Elveszett vagy offline robotok levétele minden kezelőpultról; felügyelő kell hozzá</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/removal.py" />
+            <source>They go from every desk. What is in their queues is removed, what they were told and have not done has failed; what they did stays stored.</source>
+            <translation>Minden kezelőpultról eltűnnek. A várólistájuk kiürül, az el nem végzett parancsaik meghiúsulnak; amit elvégeztek, tárolva marad.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/removal.py" />
+            <source>Why, for the log</source>
+            <translation>Miért, a naplóhoz</translation>
+        </message>
+        <message numerus="yes">
+            <location filename="../../plugin/desk/robots/removal.py" />
+            <source>all %n that are lost or offline</source>
+            <translation>
+                <numerusform>mind a(z) %n elveszett vagy offline</numerusform>
+            </translation>
+        </message>
+        <message numerus="yes">
+            <location filename="../../plugin/desk/robots/removal.py" />
+            <source>the %n selected ones</source>
+            <translation>
+                <numerusform>a kijelölt %n</numerusform>
+            </translation>
         </message>
         <message>
             <location filename="../../plugin/desk/robots/robot_details.py" />
@@ -4243,6 +4731,11 @@
             </translation>
         </message>
         <message>
+            <location filename="../../plugin/desk/standing_cones.py" />
+            <source>Cones put down</source>
+            <translation>Lerakott bóják</translation>
+        </message>
+        <message>
             <location filename="../../plugin/desk/state_words.py" />
             <source>aborted</source>
             <translation>megszakítva</translation>
@@ -4504,8 +4997,8 @@
         </message>
         <message>
             <location filename="../../plugin/desk/tour/tour_action.py" />
-            <source>Fleet Supervisor is new here: a five-minute tour shows it.</source>
-            <translation>A Fleet Supervisor itt új: egy ötperces bemutató megmutatja.</translation>
+            <source>A five-minute tour shows how it works.</source>
+            <translation>Egy ötperces bemutató megmutatja, hogyan működik.</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/tour/tour_action.py" />
@@ -4564,6 +5057,51 @@
         </message>
         <message>
             <location filename="../../plugin/desk/way_wishes.py" />
+            <source>Keep off roads on which other robots are sent</source>
+            <translation>Kerülje el az utakat, amelyeken más robotok vannak úton</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/way_wishes.py" />
+            <source>Lead ways so</source>
+            <translation>Így vezessen</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/way_wishes.py" />
+            <source>Surfaces</source>
+            <translation>Felületek</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/way_wishes.py" />
+            <source>This holds for every leg that is led from now on, until QGIS is closed.</source>
+            <translation>Ez minden ezután vezetett szakaszra érvényes, a QGIS bezárásáig.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/way_wishes.py" />
+            <source>Way</source>
+            <translation>Út</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/way_wishes.py" />
+            <source>Ways on roads</source>
+            <translation>Útvonalak utakon</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/way_wishes.py" />
+            <source>Width</source>
+            <translation>Szélesség</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/way_wishes.py" />
+            <source>all, or such as: asphalt, concrete</source>
+            <translation>mind, vagy például: asphalt, concrete</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/way_wishes.py" />
+            <source>as wide as the robots are</source>
+            <translation>amilyen szélesek a robotok</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/way_wishes.py" />
             <source>off the roads of other robots</source>
             <translation>más robotok útjait elkerülve</translation>
         </message>
@@ -4579,68 +5117,23 @@
         </message>
         <message>
             <location filename="../../plugin/desk/way_wishes.py" />
-            <source>the fastest way</source>
-            <translation>a leggyorsabb útvonal</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/way_wishes_dialog.py" />
-            <source>Keep off roads on which other robots are sent</source>
-            <translation>Kerülje el az utakat, amelyeken más robotok vannak úton</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/way_wishes_dialog.py" />
-            <source>Lead ways so</source>
-            <translation>Így vezessen</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/way_wishes_dialog.py" />
-            <source>Surfaces</source>
-            <translation>Felületek</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/way_wishes_dialog.py" />
-            <source>This holds for every leg that is led from now on, until QGIS is closed.</source>
-            <translation>Ez minden ezután vezetett szakaszra érvényes, a QGIS bezárásáig.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/way_wishes_dialog.py" />
-            <source>Way</source>
-            <translation>Út</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/way_wishes_dialog.py" />
-            <source>Ways on roads</source>
-            <translation>Útvonalak utakon</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/way_wishes_dialog.py" />
-            <source>Width</source>
-            <translation>Szélesség</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/way_wishes_dialog.py" />
-            <source>all, or such as: asphalt, concrete</source>
-            <translation>mind, vagy például: asphalt, concrete</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/way_wishes_dialog.py" />
-            <source>as wide as the robots are</source>
-            <translation>amilyen szélesek a robotok</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/way_wishes_dialog.py" />
             <source>the fastest</source>
             <translation>a leggyorsabb</translation>
         </message>
         <message>
-            <location filename="../../plugin/desk/way_wishes_dialog.py" />
+            <location filename="../../plugin/desk/way_wishes.py" />
+            <source>the fastest way</source>
+            <translation>a leggyorsabb útvonal</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/way_wishes.py" />
             <source>the shortest</source>
             <translation>a legrövidebb</translation>
         </message>
         <message>
-            <location filename="../../plugin/desk/window.py" />
-            <source>Disconnect</source>
-            <translation>Bontás</translation>
+            <location filename="../../plugin/desk/ways_out.py" />
+            <source>the gateway's answer cannot be read; it may be older than this plugin</source>
+            <translation>az átjáró válasza nem olvasható; lehet, hogy régebbi ennél a modulnál</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/window.py" />
@@ -4651,11 +5144,6 @@
             <location filename="../../plugin/desk/window.py" />
             <source>Targets and routes</source>
             <translation>Célok és útvonalak</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/window_alarms.py" />
-            <source>Alarms ({number})</source>
-            <translation>Riasztások ({number})</translation>
         </message>
         <message>
             <location filename="../../plugin/expressions/distance_to_robot.py" />
@@ -5954,6 +6442,11 @@
         </message>
         <message>
             <location filename="../../plugin/processing/export_plan.py" />
+            <source>No obstacle layer is given, and no layer of the project has a role of obstacles. Give OBSTACLES, roles (Fleet Supervisor &gt; Layer roles), or a PROFILE.</source>
+            <translation>Nincs megadva akadályréteg, és a projekt egyetlen rétegének sincs akadályszerepe. Adjon meg OBSTACLES értéket, szerepeket (Fleet Supervisor &gt; Layer roles) vagy PROFILE értéket.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_plan.py" />
             <source>OUTPUT {target} is the file of the layer {layer}: choose another one.</source>
             <translation>OUTPUT {target} a(z) {layer} réteg fájlja: válasszon másikat.</translation>
         </message>
@@ -5966,6 +6459,81 @@
             <location filename="../../plugin/processing/export_plan.py" />
             <source>The robot map</source>
             <translation>A robottérkép</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_road_network.py" />
+            <source>&lt;p&gt;Writes the network of road centrelines as other robots read it.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Formats&lt;/b&gt;, several at once:&lt;/p&gt; &lt;ul&gt; &lt;li&gt;&lt;i&gt;nav2&lt;/i&gt;: graph for Nav2's route server (GeoJSON). Nav2 drives straight from node to node, so every point of a road becomes a node.&lt;/li&gt; &lt;li&gt;&lt;i&gt;lif&lt;/i&gt;: VDMA's Layout Interchange Format 1.0, for masters of VDA 5050 vehicles (JSON). Roads that are not straight have a trajectory.&lt;/li&gt; &lt;li&gt;&lt;i&gt;lanelet2&lt;/i&gt;: lanes with borders for Lanelet2 and Autoware (OSM). Traffic keeps to the right, or to the left on request.&lt;/li&gt; &lt;/ul&gt; &lt;p&gt;Roads that are driven both ways become two edges; one-way roads one. Closed roads are left out, and so are edges that lead through a polygon of the &lt;b&gt;areas that must not be driven through&lt;/b&gt;. Speeds go over as limits.&lt;/p&gt; &lt;p&gt;Coordinates are metres in the &lt;b&gt;site frame&lt;/b&gt;, as on robot maps: &lt;i&gt;ORIGIN&lt;/i&gt; and &lt;i&gt;ROTATION&lt;/i&gt;, else as the project has it. Nav2 keeps 32 bits of a coordinate: give an origin on the site, or a warning says by how much places move.&lt;/p&gt; &lt;p&gt;Existing files are replaced, each in one step, after all of them could be made. docs/navigation-maps.md says what is in each.&lt;/p&gt; &lt;pre&gt;qgis_process run fleet:exportroadnetwork -- ROADS=roads.gpkg FORMATS=nav2 FORMATS=lif ORIGIN="640420,5193480" NAME=campus OUTPUT=graphs&lt;/pre&gt;</source>
+            <translation>&lt;p&gt;Az úttengelyek hálózatát írja ki úgy, ahogy más robotok olvassák.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Formátumok&lt;/b&gt;, egyszerre több is:&lt;/p&gt; &lt;ul&gt; &lt;li&gt;&lt;i&gt;nav2&lt;/i&gt;: gráf a Nav2 útvonalszerverének (GeoJSON). A Nav2 egyenesen hajt csomóponttól csomópontig, ezért egy út minden pontja csomópont lesz.&lt;/li&gt; &lt;li&gt;&lt;i&gt;lif&lt;/i&gt;: a VDMA Layout Interchange Format 1.0 formátuma, VDA 5050 járművek irányítóinak (JSON). A nem egyenes utaknak pályagörbéjük van.&lt;/li&gt; &lt;li&gt;&lt;i&gt;lanelet2&lt;/i&gt;: sávok széleikkel a Lanelet2-nek és az Autoware-nek (OSM). A forgalom jobbra tart, kérésre balra.&lt;/li&gt; &lt;/ul&gt; &lt;p&gt;A mindkét irányban járható utakból két él lesz, az egyirányúakból egy. A lezárt utak kimaradnak, és azok az élek is, amelyek a &lt;b&gt;területek, amelyeken nem szabad áthajtani&lt;/b&gt; egy poligonján vezetnek át. A sebességek korlátként mennek át.&lt;/p&gt; &lt;p&gt;A koordináták méterek a &lt;b&gt;telephelyi keretben&lt;/b&gt;, mint a robottérképeken: &lt;i&gt;ORIGIN&lt;/i&gt; és &lt;i&gt;ROTATION&lt;/i&gt;, különben ahogy a projekté. A Nav2 egy koordinátából 32 bitet tart meg: adjon meg kezdőpontot a telephelyen, különben figyelmeztetés mondja meg, mennyivel mozdulnak el a helyek.&lt;/p&gt; &lt;p&gt;A meglévő fájlokat lecseréli, mindegyiket egy lépésben, miután mind elkészült. Hogy mi van bennük, a docs/navigation-maps.md írja le.&lt;/p&gt; &lt;pre&gt;qgis_process run fleet:exportroadnetwork -- ROADS=roads.gpkg FORMATS=nav2 FORMATS=lif ORIGIN="640420,5193480" NAME=campus OUTPUT=graphs&lt;/pre&gt;</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_road_network.py" />
+            <source>Export road network</source>
+            <translation>Úthálózat exportálása</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_road_network.py" />
+            <source>FORMATS is empty: choose of {known}.</source>
+            <translation>A FORMATS üres: válasszon ezekből: {known}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_road_network.py" />
+            <source>Lanelet2 map (OSM)</source>
+            <translation>Lanelet2-térkép (OSM)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_road_network.py" />
+            <source>Name of the files</source>
+            <translation>A fájlok neve</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_road_network.py" />
+            <source>Nav2 route graph (GeoJSON)</source>
+            <translation>Nav2-útvonalgráf (GeoJSON)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_road_network.py" />
+            <source>Origin of the site frame (default: as the project has it, else 0,0)</source>
+            <translation>A telephelyi keret kezdőpontja (alapértelmezés: a projekté, különben 0,0)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_road_network.py" />
+            <source>Robots' name for the site frame</source>
+            <translation>A telephelyi keret neve a robotoknál</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_road_network.py" />
+            <source>Rotation of the site frame, counter-clockwise from the CRS's x axis [degrees]</source>
+            <translation>A telephelyi keret elforgatása, a vetület x tengelyétől pozitív irányban [fok]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_road_network.py" />
+            <source>The road network</source>
+            <translation>Az úthálózat</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_road_network.py" />
+            <source>Traffic keeps to the left (Lanelet2)</source>
+            <translation>A forgalom balra tart (Lanelet2)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_road_network.py" />
+            <source>Type of vehicle that drives here (LIF)</source>
+            <translation>Az itt közlekedő járművek típusa (LIF)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_road_network.py" />
+            <source>VDMA LIF, for VDA 5050 (JSON)</source>
+            <translation>VDMA LIF, VDA 5050-hez (JSON)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_road_network.py" />
+            <source>Writes the road network as a Nav2 route graph, a VDMA LIF layout or a Lanelet2 map.</source>
+            <translation>Az úthálózatot Nav2-útvonalgráfként, VDMA LIF elrendezésként vagy Lanelet2-térképként írja ki.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_road_network.py" />
+            <source>{name} {value!r} cannot be used: give a plain word.</source>
+            <translation>{name} {value!r} nem használható: adjon meg egy egyszerű szót.</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/export_robot_map.py" />
@@ -5999,8 +6567,8 @@
         </message>
         <message>
             <location filename="../../plugin/processing/export_robot_map.py" />
-            <source>Obstacle layers</source>
-            <translation>Akadályrétegek</translation>
+            <source>Obstacle layers (default: those of the project with such a role)</source>
+            <translation>Akadályrétegek (alapértelmezés: a projekt ilyen szerepű rétegei)</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/export_robot_map.py" />
@@ -6054,13 +6622,13 @@
         </message>
         <message>
             <location filename="../../plugin/processing/export_robot_map.py" />
-            <source>{size} bytes in binary, {ratio:.2f} bytes/m²</source>
-            <translation>{size} bájt binárisan, {ratio:.2f} bájt/m²</translation>
+            <source>{size} bytes in binary, {ratio:.3g} bytes/m²</source>
+            <translation>{size} bájt binárisan, {ratio:.3g} bájt/m²</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/export_robot_map.py" />
-            <source>{size} bytes of text, {ratio:.2f} bytes/m² (paper 1: about 3 bytes/m² as text)</source>
-            <translation>{size} bájt szöveg, {ratio:.2f} bájt/m² (1. cikk: szövegként mintegy 3 bájt/m²)</translation>
+            <source>{size} bytes of text, {ratio:.3g} bytes/m² (paper 1: about 3 bytes/m² as text)</source>
+            <translation>{size} bájt szöveg, {ratio:.3g} bájt/m² (1. cikk: szövegként mintegy 3 bájt/m²)</translation>
         </message>
         <message numerus="yes">
             <location filename="../../plugin/processing/export_robot_map_tiles.py" />
@@ -6310,8 +6878,8 @@
         </message>
         <message>
             <location filename="../../plugin/processing/import_cone_layout.py" />
-            <source>&lt;p&gt;Reads cones from a &lt;b&gt;CSV file&lt;/b&gt; with a head line, in UTF-8, or from a &lt;b&gt;layer&lt;/b&gt;. The columns are named by parameters; only those of x and y are needed, and not even those for a layer of points with a CRS, which is taken as it lies. A file or layer with several layouts gives one of them, by &lt;b&gt;LAYOUT_FIELD&lt;/b&gt; and &lt;b&gt;LAYOUT&lt;/b&gt;.&lt;/p&gt; &lt;p&gt;Metres of a table are turned by &lt;b&gt;rotation&lt;/b&gt; (degrees, counter-clockwise) and then moved to the &lt;b&gt;origin&lt;/b&gt;. A row that cannot be read is named with its column, and nothing is placed.&lt;/p&gt; &lt;p&gt;Every cone is &lt;b&gt;checked&lt;/b&gt; as those of &lt;i&gt;Cone layout&lt;/i&gt; are.&lt;/p&gt; &lt;pre&gt;qgis_process run fleet:importconelayout -- FILE=cone_layouts.csv COLOUR_FIELD=colour LAYOUT_FIELD=track LAYOUT=eufs_skidpad ORIGIN="640520,5193530 [EPSG:32633]" ROTATION=90 SITE_CRS=EPSG:32633 CONES=cones.gpkg&lt;/pre&gt;</source>
-            <translation>&lt;p&gt;Bójákat olvas fejléces, UTF-8 kódolású &lt;b&gt;CSV-fájlból&lt;/b&gt; vagy &lt;b&gt;rétegből&lt;/b&gt;. Az oszlopokat paraméterek nevezik meg; csak az x és az y kell, és azok sem, ha vetülettel bíró pontrétegről van szó, amely úgy marad, ahogy fekszik. Több elrendezést tartalmazó fájlból vagy rétegből egyet ad a &lt;b&gt;LAYOUT_FIELD&lt;/b&gt; és a &lt;b&gt;LAYOUT&lt;/b&gt;.&lt;/p&gt; &lt;p&gt;Egy táblázat métereit a &lt;b&gt;rotation&lt;/b&gt; (fok, az óramutatóval ellentétesen) elforgatja, majd a &lt;b&gt;kezdőpontba&lt;/b&gt; tolja. Az olvashatatlan sort oszlopával együtt megnevezi, és semmi sem helyeződik el.&lt;/p&gt; &lt;p&gt;Minden bóját &lt;b&gt;ellenőriz&lt;/b&gt;, ahogy a &lt;i&gt;Bójaelrendezés&lt;/i&gt; teszi.&lt;/p&gt; &lt;pre&gt;qgis_process run fleet:importconelayout -- FILE=cone_layouts.csv COLOUR_FIELD=colour LAYOUT_FIELD=track LAYOUT=eufs_skidpad ORIGIN="640520,5193530 [EPSG:32633]" ROTATION=90 SITE_CRS=EPSG:32633 CONES=cones.gpkg&lt;/pre&gt;</translation>
+            <source>&lt;p&gt;Reads cones from a &lt;b&gt;CSV file&lt;/b&gt; in UTF-8, from a &lt;b&gt;track&lt;/b&gt; of Formula Student, or from a &lt;b&gt;layer&lt;/b&gt;. Tracks are YAML with &lt;i&gt;cones_left&lt;/i&gt;, &lt;i&gt;cones_right&lt;/i&gt;, &lt;i&gt;cones_orange&lt;/i&gt; and &lt;i&gt;cones_orange_big&lt;/i&gt;, SDF with models of cones, CSV with columns such as &lt;i&gt;blue_x&lt;/i&gt; and &lt;i&gt;blue_y&lt;/i&gt; for each colour, or CSV without a head line: colour, x, y. Of other tables the columns are named by parameters; only those of x and y are needed, and not even those for a layer of points with a CRS, which is taken as it lies. A file or layer with several layouts gives one of them, by &lt;b&gt;LAYOUT_FIELD&lt;/b&gt; and &lt;b&gt;LAYOUT&lt;/b&gt;.&lt;/p&gt; &lt;p&gt;Metres of a table are turned by &lt;b&gt;rotation&lt;/b&gt; (degrees, counter-clockwise) and then moved to the &lt;b&gt;origin&lt;/b&gt;. A row that cannot be read is named with its column, and nothing is placed.&lt;/p&gt; &lt;p&gt;Every cone is &lt;b&gt;checked&lt;/b&gt; as those of &lt;i&gt;Cone layout&lt;/i&gt; are.&lt;/p&gt; &lt;pre&gt;qgis_process run fleet:importconelayout -- FILE=cone_layouts.csv COLOUR_FIELD=colour LAYOUT_FIELD=track LAYOUT=eufs_skidpad ORIGIN="640520,5193530 [EPSG:32633]" ROTATION=90 SITE_CRS=EPSG:32633 CONES=cones.gpkg&lt;/pre&gt;</source>
+            <translation>&lt;p&gt;Bójákat olvas UTF-8 kódolású &lt;b&gt;CSV-fájlból&lt;/b&gt;, Formula Student &lt;b&gt;pályából&lt;/b&gt; vagy &lt;b&gt;rétegből&lt;/b&gt;. A pálya YAML &lt;i&gt;cones_left&lt;/i&gt;, &lt;i&gt;cones_right&lt;/i&gt;, &lt;i&gt;cones_orange&lt;/i&gt; és &lt;i&gt;cones_orange_big&lt;/i&gt; kulcsokkal, SDF bójamodellekkel, CSV színenként két oszloppal, mint &lt;i&gt;blue_x&lt;/i&gt; és &lt;i&gt;blue_y&lt;/i&gt;, vagy fejléc nélküli CSV: szín, x, y. Más táblázatok oszlopait paraméterek nevezik meg; csak az x és az y kell, és azok sem, ha vetülettel bíró pontrétegről van szó, amely úgy marad, ahogy fekszik. Több elrendezést tartalmazó fájlból vagy rétegből egyet ad a &lt;b&gt;LAYOUT_FIELD&lt;/b&gt; és a &lt;b&gt;LAYOUT&lt;/b&gt;.&lt;/p&gt; &lt;p&gt;Egy táblázat métereit a &lt;b&gt;rotation&lt;/b&gt; (fok, az óramutatóval ellentétesen) elforgatja, majd a &lt;b&gt;kezdőpontba&lt;/b&gt; tolja. Az olvashatatlan sort oszlopával együtt megnevezi, és semmi sem helyeződik el.&lt;/p&gt; &lt;p&gt;Minden bóját &lt;b&gt;ellenőriz&lt;/b&gt;, ahogy a &lt;i&gt;Bójaelrendezés&lt;/i&gt; teszi.&lt;/p&gt; &lt;pre&gt;qgis_process run fleet:importconelayout -- FILE=cone_layouts.csv COLOUR_FIELD=colour LAYOUT_FIELD=track LAYOUT=eufs_skidpad ORIGIN="640520,5193530 [EPSG:32633]" ROTATION=90 SITE_CRS=EPSG:32633 CONES=cones.gpkg&lt;/pre&gt;</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/import_cone_layout.py" />
@@ -6320,8 +6888,8 @@
         </message>
         <message>
             <location filename="../../plugin/processing/import_cone_layout.py" />
-            <source>CSV file</source>
-            <translation>CSV-fájl</translation>
+            <source>CSV file, or track of Formula Student (YAML, SDF)</source>
+            <translation>CSV-fájl vagy Formula Student pálya (YAML, SDF)</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/import_cone_layout.py" />
@@ -6362,6 +6930,16 @@
             <location filename="../../plugin/processing/import_cone_layout.py" />
             <source>Column that names the layout of each row</source>
             <translation>A sorok elrendezésének oszlopa</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/import_cone_layout.py" />
+            <source>Cone layouts ({kinds});;All files (*)</source>
+            <translation>Bójaelrendezések ({kinds});;Minden fájl (*)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/import_cone_layout.py" />
+            <source>FILE {file} is none that is read: give one of {kinds}.</source>
+            <translation>FILE: a(z) {file} fájlfajta nem olvasható: adjon meg ilyet: {kinds}.</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/import_cone_layout.py" />
@@ -6412,6 +6990,61 @@
             <location filename="../../plugin/processing/import_cone_layout.py" />
             <source>{how} given: give a CSV file, or a layer.</source>
             <translation>{how}: adjon meg egy CSV-fájlt vagy egy réteget.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/import_navigation_map.py" />
+            <source>&lt;p&gt;Reads a map of Nav2: the &lt;b&gt;YAML&lt;/b&gt; and the image that it names (PGM, PNG, BMP or JPEG), in the modes &lt;i&gt;trinary&lt;/i&gt;, &lt;i&gt;scale&lt;/i&gt; and &lt;i&gt;raw&lt;/i&gt;, with its thresholds, &lt;i&gt;negate&lt;/i&gt;, and origin with yaw.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Raster&lt;/b&gt;: a value for each cell, 0 free to 100 occupied, -1 unknown. &lt;b&gt;Obstacles&lt;/b&gt;: a polygon for each patch of cells of at least &lt;i&gt;OCCUPIED_FROM&lt;/i&gt;, along the edges of the cells.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Place&lt;/b&gt;: the map's metres are those of the site frame. &lt;i&gt;SITE_CRS&lt;/i&gt;, &lt;i&gt;ORIGIN&lt;/i&gt; and &lt;i&gt;ROTATION&lt;/i&gt; say where that is; files of &lt;i&gt;Export navigation map&lt;/i&gt; say it themselves. Where neither does, the layers are in local metres, said in a warning.&lt;/p&gt; &lt;pre&gt;qgis_process run fleet:importnavigationmap -- MAP=warehouse.yaml SITE_CRS=EPSG:32633 ORIGIN="640420,5193480 [EPSG:32633]" ROTATION=0 RASTER=warehouse.tif OBSTACLES=warehouse.gpkg&lt;/pre&gt;</source>
+            <translation>&lt;p&gt;Nav2-térképet olvas be: a &lt;b&gt;YAML&lt;/b&gt;-fájlt és a benne megnevezett képet (PGM, PNG, BMP vagy JPEG), &lt;i&gt;trinary&lt;/i&gt;, &lt;i&gt;scale&lt;/i&gt; és &lt;i&gt;raw&lt;/i&gt; módban, a küszöbökkel, a &lt;i&gt;negate&lt;/i&gt; kapcsolóval és az elforgatott kezdőponttal.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Raszter&lt;/b&gt;: minden cellának egy értéke van, 0 szabad, 100 foglalt, -1 ismeretlen. &lt;b&gt;Akadályok&lt;/b&gt;: a legalább &lt;i&gt;OCCUPIED_FROM&lt;/i&gt; értékű cellák minden foltjának egy poligonja, a cellák szélei mentén.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Hely&lt;/b&gt;: a térkép méterei a telephelyi keret méterei. Hogy az hol van, a &lt;i&gt;SITE_CRS&lt;/i&gt;, az &lt;i&gt;ORIGIN&lt;/i&gt; és a &lt;i&gt;ROTATION&lt;/i&gt; mondja meg; a &lt;i&gt;Navigációs térkép exportálása&lt;/i&gt; fájljai maguk is megmondják. Ahol egyik sem, ott a rétegek helyi méterekben vannak, amit figyelmeztetés jelez.&lt;/p&gt; &lt;pre&gt;qgis_process run fleet:importnavigationmap -- MAP=warehouse.yaml SITE_CRS=EPSG:32633 ORIGIN="640420,5193480 [EPSG:32633]" ROTATION=0 RASTER=warehouse.tif OBSTACLES=warehouse.gpkg&lt;/pre&gt;</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/import_navigation_map.py" />
+            <source>Import navigation map</source>
+            <translation>Navigációs térkép importálása</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/import_navigation_map.py" />
+            <source>Nav2 map (YAML)</source>
+            <translation>Nav2-térkép (YAML)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/import_navigation_map.py" />
+            <source>Nav2 maps (*.yaml *.yml);;All files (*)</source>
+            <translation>Nav2-térképek (*.yaml *.yml);;Minden fájl (*)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/import_navigation_map.py" />
+            <source>Occupied cells</source>
+            <translation>Foglalt cellák</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/import_navigation_map.py" />
+            <source>Occupied from [of 100]</source>
+            <translation>Foglalt ettől [100-ból]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/import_navigation_map.py" />
+            <source>Raster</source>
+            <translation>Raszter</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/import_navigation_map.py" />
+            <source>Reads a Nav2 occupancy grid or mask as raster, and polygons of what is occupied.</source>
+            <translation>Nav2 foglaltsági rácsot vagy maszkot olvas be raszterként és a foglalt helyek poligonjaiként.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/import_navigation_map.py" />
+            <source>The Nav2 map {file} cannot be read: {error}</source>
+            <translation>A(z) {file} Nav2-térkép nem olvasható: {error}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/import_navigation_map.py" />
+            <source>There is no file {file}: choose the YAML of a Nav2 map (MAP).</source>
+            <translation>Nincs {file} fájl: válassza ki egy Nav2-térkép YAML-fájlját (MAP).</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/import_navigation_map.py" />
+            <source>Unknown cells</source>
+            <translation>Ismeretlen cellák</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/job_source.py" />
@@ -6661,6 +7294,16 @@
             <translation>Térképprofil: mik a rétegek a nevük szerint (alapértelmezés: ahogy az egyes rétegek tárolják)</translation>
         </message>
         <message>
+            <location filename="../../plugin/processing/map_profile.py" />
+            <source>The layer {layer} is no vector layer: take its role away.</source>
+            <translation>A(z) {layer} réteg nem vektorréteg: vegye el a szerepét.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_profile.py" />
+            <source>{name} knows none of these layers. It looks for layers that are named, in their source or in the project: {sought}.</source>
+            <translation>A(z) {name} e rétegek egyikét sem ismeri. Olyan rétegeket keres, amelyek neve a forrásukban vagy a projektben: {sought}.</translation>
+        </message>
+        <message>
             <location filename="../../plugin/processing/map_shaping.py" />
             <source>0 is off. An outline that would cross itself stays as it is. Needs the Python package shapely 2.</source>
             <translation>0: kikapcsolva. Amelyik körvonal önmagát metszené, az marad, ahogy van. A shapely 2 Python-csomag kell hozzá.</translation>
@@ -6782,18 +7425,8 @@
         </message>
         <message>
             <location filename="../../plugin/processing/map_window.py" />
-            <source>Origin of the site frame (default: as the project has it, else 0,0)</source>
-            <translation>A telephelyi keret kezdőpontja (alapértelmezés: a projekté, különben 0,0)</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/map_window.py" />
             <source>ROTATION {degrees} is not finite: give a number.</source>
             <translation>ROTATION {degrees} nem véges: adjon meg számot.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/map_window.py" />
-            <source>Rotation of the site frame, counter-clockwise from the CRS's x axis [degrees]</source>
-            <translation>A telephelyi keret elforgatása, a vetület x tengelyétől pozitív irányban [fok]</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/map_window.py" />
@@ -6824,6 +7457,26 @@
             <location filename="../../plugin/processing/mask_areas.py" />
             <source>has no speed above 0 m/s, so it sets no limit; it is left out</source>
             <translation>nincs 0 m/s feletti sebessége, így nem korlátoz; kimarad</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/nav2_image.py" />
+            <source>The image {file} cannot be read as PGM, PNG, BMP or JPEG: {why}</source>
+            <translation>A(z) {file} kép nem olvasható PGM, PNG, BMP vagy JPEG képként: {why}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/nav2_image.py" />
+            <source>The image {file} has no bands of 8 bits: save it as grey, without a palette.</source>
+            <translation>A(z) {file} képnek nem 8 bites sávjai vannak: mentse szürkeként, paletta nélkül.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/nav2_image.py" />
+            <source>The raster {file} cannot be written: {why}</source>
+            <translation>A(z) {file} raszter nem írható: {why}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/nav2_image.py" />
+            <source>There is no image {file}, which the map names: put it there, or correct the YAML.</source>
+            <translation>Nincs {file} kép, amelyet a térkép megnevez: tegye oda, vagy javítsa a YAML-fájlt.</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/navigation_help.py" />
@@ -6921,11 +7574,6 @@
             <location filename="../../plugin/processing/publish_plan.py" />
             <source>SITE_ID is empty and the project has no variable {site_variable}: give the site an id of letters, digits, '_', '.' and '-', such as north_yard.</source>
             <translation>SITE_ID üres, és a projektnek nincs {site_variable} változója: adjon a telephelynek betűkből, számjegyekből és '_', '.', '-' jelekből álló azonosítót, például north_yard.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/publish_plan.py" />
-            <source>The layer {layer} is no vector layer: take its role away.</source>
-            <translation>A(z) {layer} réteg nem vektorréteg: vegye el a szerepét.</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/publish_plan.py" />
@@ -7077,6 +7725,11 @@
         </message>
         <message>
             <location filename="../../plugin/processing/publish_site.py" />
+            <source>The origin of the site frame is 0,0 of {crs}, {away:.0f} km from the site: robots get positions of seven digits. Give ORIGIN, a place of the site, unless that is meant.</source>
+            <translation>A telephelyi keret origója a(z) {crs} 0,0 pontja, {away:.0f} km-re a telephelytől: a robotok hétjegyű helyzeteket kapnak. Adjon meg ORIGIN értéket, a telephely egy pontját, ha ez nem szándékos.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/publish_site.py" />
             <source>There is nothing to publish: the layers hold nothing that can be read. See the warnings, or give BOUNDS to publish an empty site.</source>
             <translation>Nincs mit közzétenni: a rétegekben nincs semmi olvasható. Nézze meg a figyelmeztetéseket, vagy adjon BOUNDS értéket üres telephely közzétételéhez.</translation>
         </message>
@@ -7188,6 +7841,21 @@
             <translation>ΔÉ cm</translation>
         </message>
         <message>
+            <location filename="../../plugin/processing/road_network_files.py" />
+            <source>Lanelet2 needs longitudes and latitudes, and the CRS of the roads has no place on the Earth: give the layer its CRS, or leave lanelet2 out.</source>
+            <translation>A Lanelet2-höz hosszúságok és szélességek kellenek, és az utak vetületének nincs helye a Földön: adja meg a réteg vetületét, vagy hagyja el a lanelet2-t.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/road_network_files.py" />
+            <source>Lanelet2 reads lanes the wrong way round where corners are tighter than lanes are wide: {count} here, the first at ({x:.2f}, {y:.2f}). Draw the roads there smoother, or give them less width.</source>
+            <translation>A Lanelet2 fordítva olvassa a sávokat, ahol a kanyarok szűkebbek, mint amilyen szélesek a sávok: itt {count} ilyen van, az első itt: ({x:.2f}, {y:.2f}). Rajzolja ott simábbra az utakat, vagy adjon nekik kisebb szélességet.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/road_network_files.py" />
+            <source>Nav2 keeps 32 bits of a coordinate, which here moves nodes by up to {metres:.2f} m: give ORIGIN, a place of the site, for robots and their maps alike.</source>
+            <translation>A Nav2 egy koordinátából 32 bitet tart meg, ami itt legfeljebb {metres:.2f} m-rel mozdítja el a csomópontokat: adja meg az ORIGIN-t, egy helyet a telephelyen, a robotoknak és térképeiknek egyaránt.</translation>
+        </message>
+        <message>
             <location filename="../../plugin/processing/road_source.py" />
             <source>CRS in metres (default: the layer's, or the project's)</source>
             <translation>Méteres vetület (alapértelmezés: a rétegé vagy a projekté)</translation>
@@ -7207,11 +7875,6 @@
             <source>Layer {name}, feature {id}: {note}</source>
             <translation>{name} réteg, {id}. elem: {note}</translation>
         </message>
-        <message>
-            <location filename="../../plugin/processing/road_source.py" />
-            <source>Layer {name}: none of its features is a road</source>
-            <translation>{name} réteg: egyik eleme sem út</translation>
-        </message>
         <message numerus="yes">
             <location filename="../../plugin/processing/road_source.py" />
             <source>Layer {name}: the width of %n roads is not known; {width:g} m is used</source>
@@ -7228,6 +7891,16 @@
             <location filename="../../plugin/processing/road_source.py" />
             <source>ROADS {roads} cannot be opened: check the file and the layer's name.</source>
             <translation>ROADS {roads} nem nyitható meg: ellenőrizze a fájlt és a réteg nevét.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/road_source.py" />
+            <source>ROADS: no feature of the layer {name} is a road: each has to be a line with a length that the layer's filter keeps. {first}</source>
+            <translation>ROADS: a(z) {name} réteg egyik eleme sem út: mindegyiknek hosszal rendelkező vonalnak kell lennie, amelyet a réteg szűrője megtart. {first}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/road_source.py" />
+            <source>ROADS: the layer {name} has no features: choose the layer of the road centrelines.</source>
+            <translation>ROADS: a(z) {name} rétegnek nincsenek elemei: válassza az úttengelyek rétegét.</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/road_source.py" />
@@ -7253,6 +7926,11 @@
             <location filename="../../plugin/processing/road_source.py" />
             <source>Surface of each road (default: the layer's role, else a field surface)</source>
             <translation>Az egyes utak felülete (alapértelmezés: a réteg szerepe, különben egy surface mező)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/road_source.py" />
+            <source>The filter of its role keeps none of them.</source>
+            <translation>A szerepének szűrője egyiket sem tartja meg.</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/road_source.py" />
@@ -7629,11 +8307,6 @@
             <location filename="../../plugin/roles/roles_dialog.py" />
             <source>Profile from file…</source>
             <translation>Profil fájlból…</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/roles/roles_dialog.py" />
-            <source>{name} knows none of these layers by name and fields.</source>
-            <translation>{name} egyiket sem ismeri ezek közül a rétegek közül név és mezők szerint.</translation>
         </message>
         <message numerus="yes">
             <location filename="../../plugin/roles/roles_dialog.py" />
@@ -8077,14 +8750,39 @@
             <translation>a becslés érvényes</translation>
         </message>
         <message>
-            <location filename="../../plugin/sites/ground_reading.py" />
-            <source>Layer {layer}: the width of {count} of its roads is not known and taken as {width:g} m (feature {first} is the first)</source>
-            <translation>{layer} réteg: {count} útjának szélessége nem ismert, {width:g} m-nek vesszük (az első a(z) {first}. elem)</translation>
+            <location filename="../../plugin/sites/feature_warnings.py" />
+            <source>Layer {layer}, {features}: {note}</source>
+            <translation>{layer} réteg, {features}: {note}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/feature_warnings.py" />
+            <source>Layer {layer}, {features}; of the first: {note}</source>
+            <translation>{layer} réteg, {features}; az elsőé: {note}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/feature_warnings.py" />
+            <source>Layer {layer}: warnings of more kinds about {features}</source>
+            <translation>{layer} réteg: további fajta figyelmeztetések: {features}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/feature_warnings.py" />
+            <source>feature {shown}</source>
+            <translation>{shown}. elem</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/feature_warnings.py" />
+            <source>features {shown}</source>
+            <translation>{shown}. elem</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/feature_warnings.py" />
+            <source>features {shown} and {more} more</source>
+            <translation>{shown}. elem és még {more}</translation>
         </message>
         <message>
             <location filename="../../plugin/sites/ground_reading.py" />
-            <source>has a coordinate that is no number; it is left out</source>
-            <translation>egyik koordinátája nem szám; kimarad</translation>
+            <source>Layer {layer}: the width of {count} of its roads is not known and taken as {width:g} m (feature {first} is the first)</source>
+            <translation>{layer} réteg: {count} útjának szélessége nem ismert, {width:g} m-nek vesszük (az első a(z) {first}. elem)</translation>
         </message>
         <message>
             <location filename="../../plugin/sites/ground_reading.py" />
@@ -8100,6 +8798,11 @@
             <location filename="../../plugin/sites/layer_rules.py" />
             <source>Layer {layer}: it has no field {missing}, which the {what} expression {text!r} reads; the default is used for all its features</source>
             <translation>{layer} réteg: nincs {missing} mezője, amelyet a(z) {what} kifejezés ({text!r}) olvas; minden eleménél az alapérték érvényes</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/layer_rules.py" />
+            <source>Layer {layer}: {note}</source>
+            <translation>{layer} réteg: {note}</translation>
         </message>
         <message>
             <location filename="../../plugin/sites/layer_rules.py" />
@@ -8217,6 +8920,11 @@
             <translation>{error}; a szélessége érvényes</translation>
         </message>
         <message>
+            <location filename="../../plugin/sites/profile.py" />
+            <source>{names} with {fields}</source>
+            <translation>{names} ezekkel: {fields}</translation>
+        </message>
+        <message>
             <location filename="../../plugin/sites/profile_file.py" />
             <source>The profile {file} cannot be read: {error}.</source>
             <translation>A(z) {file} profil nem olvasható: {error}.</translation>
@@ -8225,6 +8933,11 @@
             <location filename="../../plugin/sites/profile_file.py" />
             <source>The profile {file} is not there: give the path of a file, or one of {shipped}.</source>
             <translation>A(z) {file} profil nincs meg: adja meg egy fájl útvonalát, vagy ezek egyikét: {shipped}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/profile_file.py" />
+            <source>it has {count} characters, more than {most}</source>
+            <translation>{count} karakterből áll, több mint {most}</translation>
         </message>
         <message>
             <location filename="../../plugin/sites/profile_file.py" />
@@ -8370,21 +9083,6 @@
         </message>
         <message>
             <location filename="../../plugin/sites/reading.py" />
-            <source>feature {shown}</source>
-            <translation>{shown}. elem</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/sites/reading.py" />
-            <source>features {shown}</source>
-            <translation>{shown}. elem</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/sites/reading.py" />
-            <source>features {shown} and {more} more</source>
-            <translation>{shown}. elem és még {more}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/sites/reading.py" />
             <source>lines, one a riser</source>
             <translation>vonal, lépcsőfokonként egy</translation>
         </message>
@@ -8410,13 +9108,18 @@
         </message>
         <message>
             <location filename="../../plugin/sites/road_attributes.py" />
+            <source>none of its fields direction, oneway, one_way and other_tags is there to tell one-way roads; all are taken as driven both ways</source>
+            <translation>a direction, oneway, one_way és other_tags mezők egyike sincs meg, amely az egyirányú utakat megadná; mindegyik kétirányúnak számít</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/road_attributes.py" />
             <source>whether it is closed, {value!r}, is neither true nor false; it is taken as closed</source>
             <translation>hogy le van-e zárva: {value!r}, ami se nem igaz, se nem hamis; lezártnak vesszük</translation>
         </message>
         <message>
             <location filename="../../plugin/sites/shapes.py" />
-            <source>has a coordinate that is no number or has no place in the site's CRS; it is left out</source>
-            <translation>egyik koordinátája nem szám, vagy nincs helye a telephely vetületében; kimarad</translation>
+            <source>has a coordinate that is no number, has no place in the site's CRS or lies beyond 100 000 km; it is left out</source>
+            <translation>van olyan koordinátája, amely nem szám, nincs helye a telephely vetületében, vagy 100 000 km-en túl van; kimarad</translation>
         </message>
         <message>
             <location filename="../../plugin/sites/site_crs.py" />
@@ -8586,6 +9289,11 @@
             <translation>nincs séma</translation>
         </message>
         <message>
+            <location filename="../../plugin/wire/addresses.py" />
+            <source>{url} is where robots connect; operators connect to {desk}. Write that instead.</source>
+            <translation>A(z) {url} címen a robotok kapcsolódnak; a kezelők ide: {desk}. Ezt írja helyette.</translation>
+        </message>
+        <message>
             <location filename="../../plugin/wire/client.py" />
             <source>The gateway at {url} closed the link. It is tried again.</source>
             <translation>A(z) {url} átjáró bontotta a kapcsolatot. Újrapróbálkozás folyik.</translation>
@@ -8719,6 +9427,11 @@
             <location filename="../../plugin/wire/failures.py" />
             <source>{url} takes no desk now: {said} It is tried again by itself.</source>
             <translation>{url} most nem fogad kezelőpultot: {said} Magától újrapróbálkozik.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/wire/protocol.py" />
+            <source>No operator can connect at {url}: what answers there knows no desk, as the address of robots does not. A gateway's desk has the path /desk, as in {default_url}. Correct the URL, then press Connect.</source>
+            <translation>A(z) {url} címen kezelő nem kapcsolódhat: ami ott válaszol, nem ismer kezelőpultot, ahogy a robotok címe sem. Az átjáró kezelőpultjának útvonala /desk, mint itt: {default_url}. Javítsa az URL-t, majd nyomja meg a Kapcsolódás gombot.</translation>
         </message>
         <message>
             <location filename="../../plugin/wire/protocol.py" />

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from sqlalchemy import Connection, func, insert, select, update
 
 from ..messages import Role, check_robot_name
-from ..store.schema import operators, tokens
+from ..store.schema import links, operators, tokens
 from .errors import AccessError
 from .tokens import TokenKind, digest, new_id, new_token
 
@@ -20,7 +20,10 @@ LONGEST_NAME = 128
 
 @dataclass(frozen=True)
 class Grant:
-    """A token as the database knows it, and what it opens; ``role`` is None for a robot's."""
+    """A token as the database knows it, and what it opens; ``role`` is that of an operator.
+
+    ``robots`` are the patterns of the names that a link speaks for.
+    """
 
     token: str
     hash: str
@@ -31,6 +34,7 @@ class Grant:
     expires_at: float | None = None
     revoked_at: float | None = None
     used_at: float | None = None
+    robots: tuple[str, ...] = ()
 
     def fault(self, now: float) -> str | None:
         """Return why the token opens nothing at ``now``, or None when it does."""
@@ -66,19 +70,19 @@ def add_operator(
                 "'robot-bridge operators role' another role"
             )
     connection.execute(insert(operators).values(name=name, role=role.value, created_at=now))
-    return _issue(connection, TokenKind.OPERATOR, name, now, expires_at)
+    return issue(connection, TokenKind.OPERATOR, name, now, expires_at)
 
 
 def rotate_operator(connection: Connection, name: str, now: float, expires_at: float | None = None) -> str:
     """Return a new token in place of every token the operator had; raises AccessError when unknown."""
     name = _known_operator(connection, name)
-    _revoke(connection, TokenKind.OPERATOR, name, now)
-    return _issue(connection, TokenKind.OPERATOR, name, now, expires_at)
+    revoke(connection, TokenKind.OPERATOR, name, now)
+    return issue(connection, TokenKind.OPERATOR, name, now, expires_at)
 
 
 def revoke_operator(connection: Connection, name: str, now: float) -> int:
     """Revoke every token of an operator and return how many; raises AccessError when unknown."""
-    return _revoke(connection, TokenKind.OPERATOR, _known_operator(connection, name), now)
+    return revoke(connection, TokenKind.OPERATOR, _known_operator(connection, name), now)
 
 
 def set_role(connection: Connection, name: str, role: Role) -> None:
@@ -123,13 +127,13 @@ def check_operator_name(name: str) -> str:
 
 def issue_robot_token(connection: Connection, robot: str, now: float, expires_at: float | None = None) -> str:
     """Return a new token for a robot's WebSocket, in place of the one it had; raises MessageError."""
-    _revoke(connection, TokenKind.ROBOT, check_robot_name(robot), now)
-    return _issue(connection, TokenKind.ROBOT, robot, now, expires_at)
+    revoke(connection, TokenKind.ROBOT, check_robot_name(robot), now)
+    return issue(connection, TokenKind.ROBOT, robot, now, expires_at)
 
 
 def revoke_robot_token(connection: Connection, robot: str, now: float) -> int:
     """Revoke a robot's token; raises AccessError when it has none."""
-    revoked = _revoke(connection, TokenKind.ROBOT, robot, now)
+    revoked = revoke(connection, TokenKind.ROBOT, robot, now)
     if not revoked:
         raise AccessError(f"robot {robot!r} has no token to revoke; 'robot-bridge robots tokens' lists them")
     return revoked
@@ -149,6 +153,10 @@ def grants(connection: Connection) -> list[Grant]:
     roles = {
         name: Role(role) for name, role in connection.execute(select(operators.c.name, operators.c.role))
     }
+    spoken_for = {
+        name: tuple(robots.split())
+        for name, robots in connection.execute(select(links.c.name, links.c.robots))
+    }
     rows = connection.execute(select(tokens).order_by(tokens.c.created_at, tokens.c.id)).mappings()
     return [
         Grant(
@@ -161,13 +169,14 @@ def grants(connection: Connection) -> list[Grant]:
             expires_at=row["expires_at"],
             revoked_at=row["revoked_at"],
             used_at=row["used_at"],
+            robots=spoken_for.get(row["owner"], ()) if row["kind"] == TokenKind.LINK.value else (),
         )
         for row in rows
     ]
 
 
 def fingerprint(connection: Connection) -> tuple[object, ...]:
-    """Return what differs whenever a token was made, revoked or forgotten, or a role was changed."""
+    """Return what differs whenever a token was made, revoked or forgotten, a role or a link changed."""
     counts = select(
         func.count(),
         func.max(tokens.c.created_at),
@@ -175,7 +184,9 @@ def fingerprint(connection: Connection) -> tuple[object, ...]:
         func.max(tokens.c.revoked_at),
     ).select_from(tokens)
     roles = select(operators.c.name, operators.c.role).order_by(operators.c.name)
-    return (*connection.execute(counts).one(), *map(tuple, connection.execute(roles)))
+    spoken_for = select(links.c.name, links.c.robots).order_by(links.c.name)
+    found = (*connection.execute(roles), *connection.execute(spoken_for))
+    return (*connection.execute(counts).one(), *map(tuple, found))
 
 
 def note_use(connection: Connection, used: Sequence[tuple[str, float]]) -> None:
@@ -194,7 +205,8 @@ def _known_operator(connection: Connection, name: str) -> str:
     return name.strip()
 
 
-def _issue(connection: Connection, kind: TokenKind, owner: str, now: float, expires_at: float | None) -> str:
+def issue(connection: Connection, kind: TokenKind, owner: str, now: float, expires_at: float | None) -> str:
+    """Return a new token of ``owner``, which is kept nowhere."""
     token = new_token(kind)
     connection.execute(
         insert(tokens).values(
@@ -209,7 +221,8 @@ def _issue(connection: Connection, kind: TokenKind, owner: str, now: float, expi
     return token
 
 
-def _revoke(connection: Connection, kind: TokenKind, owner: str, now: float) -> int:
+def revoke(connection: Connection, kind: TokenKind, owner: str, now: float) -> int:
+    """Revoke every token of ``owner``; return how many held."""
     done = connection.execute(
         update(tokens)
         .where(tokens.c.kind == kind.value, tokens.c.owner == owner, tokens.c.revoked_at.is_(None))

@@ -108,6 +108,15 @@ def valid_until(file: Path) -> datetime.datetime:
     return until or certificate.not_valid_after.replace(tzinfo=datetime.timezone.utc)
 
 
+def names_of(file: Path) -> tuple[str, ...]:
+    """Return the DNS names in the certificate in ``file``; raises AccessError when it cannot be read."""
+    try:
+        found = _read_certificate(file).extensions.get_extension_for_class(x509.SubjectAlternativeName).value
+    except x509.ExtensionNotFound:
+        return ()
+    return tuple(found.get_values_for_type(x509.DNSName))
+
+
 def _subjects(names: Sequence[str], addresses: Sequence[str]) -> list[x509.GeneralName]:
     if not names and not addresses:
         raise AccessError("a certificate needs a name; give --name HOST, or --ip ADDRESS")

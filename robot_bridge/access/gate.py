@@ -17,10 +17,11 @@ from ..store.database import Database
 from . import session_rows
 from .account_book import AccountBook
 from .buckets import Bucket
+from .errors import AccessError
 from .guests import Guests
 from .journal import Journal
 from .session_rows import SessionRow
-from .tokens import TokenKind, bearer, new_id
+from .tokens import TokenKind, new_id, token_in
 from .visitor import Identity, Visitor
 
 log = logging.getLogger(__name__)
@@ -34,8 +35,14 @@ REVOKED = 4003
 ENDED = 4004
 """Close code of a session that somebody ended."""
 MOST_ADDRESSES = 10_000
-PATHS = {TokenKind.ROBOT: "/robot", TokenKind.OPERATOR: "/desk"}
-OWNERS = {TokenKind.ROBOT: "a robot's", TokenKind.OPERATOR: "an operator's"}
+PATHS = {TokenKind.ROBOT: "/robot", TokenKind.OPERATOR: "/desk", TokenKind.LINK: "/link"}
+OWNERS = {
+    TokenKind.ROBOT: "a robot's",
+    TokenKind.OPERATOR: "an operator's",
+    TokenKind.LINK: "a link's",
+}
+ANY_LINK, ANY_ROBOT = "link", ("*",)
+"""What a link without a token is called, and the robots that it speaks for."""
 
 
 class Gate:
@@ -109,9 +116,9 @@ class Gate:
 
     # --- connections come and go ----------------------------------------------------------------------
 
-    def arrived(self, visitor: Visitor) -> bool:
-        """Count a connection that has not said yet what it wants; false when it is one too many."""
-        return self._guests.arrived(visitor)
+    def arrived(self, visitor: Visitor) -> None:
+        """Count a connection that has not said yet what it wants; it may end an older one."""
+        self._guests.arrived(visitor)
 
     def left(self, visitor: Visitor) -> None:
         """Count a connection that is gone."""
@@ -133,6 +140,14 @@ class Gate:
             return Role.SUPERVISOR
         grant = self.book.grant(visitor.identity.token)
         return (grant.role if grant is not None else None) or Role.VIEWER
+
+    def spoken_for(self, visitor: Visitor) -> tuple[str, ...]:
+        """Return the patterns of the robots that a link may speak for now."""
+        assert visitor.identity is not None
+        if visitor.identity.token is None:
+            return ANY_ROBOT
+        grant = self.book.grant(visitor.identity.token)
+        return grant.robots if grant is not None else ()
 
     # --- who is let in --------------------------------------------------------------------------------
 
@@ -157,13 +172,16 @@ class Gate:
         found = await self._identify(visitor, request, kind)
         if isinstance(found, Response):
             return found
-        if kind is TokenKind.ROBOT:
+        if kind is not TokenKind.OPERATOR:
             if found.name is None:
                 found = Identity(kind, name, None, found.session)
             elif name not in (None, found.name):
-                self._note_refusal(visitor, found.name, f"/robot: asked to be robot {name}")
-                text = f"This token is robot {found.name}'s, not {name}'s; give each robot its own.\n"
+                what = kind.value
+                self._note_refusal(visitor, found.name, f"{PATHS[kind]}: asked to be {what} {name}")
+                text = f"This token is {what} {found.name}'s, not {name}'s; give each {what} its own.\n"
                 return visitor.respond(http.HTTPStatus.FORBIDDEN, text)
+        if visitor.is_gone:
+            return _later(visitor, http.HTTPStatus.SERVICE_UNAVAILABLE, "The connection has ended.", 5)
         if (text := self._guests.crowded(visitor, found) or "") != "":
             return _later(visitor, http.HTTPStatus.SERVICE_UNAVAILABLE, text, 5)
         self._guests.enter(visitor, found, largest_message)
@@ -171,11 +189,11 @@ class Gate:
         return None
 
     async def _identify(self, visitor: Visitor, request: Request, kind: TokenKind) -> Identity | Response:
-        headers = request.headers.get_all("Authorization")
-        if len(headers) > 1:
-            text = "The request has several Authorization headers; send one.\n"
-            return visitor.respond(http.HTTPStatus.BAD_REQUEST, text)
-        token = bearer(headers[0]) if headers else None
+        headers = request.headers
+        try:
+            token = token_in(headers.get_all("Authorization"), headers.get_all("Sec-WebSocket-Protocol"))
+        except AccessError as error:
+            return visitor.respond(http.HTTPStatus.BAD_REQUEST, f"{error}\n")
         try:
             if token is not None and self.book.find(token) is None:
                 await self._read_again()
@@ -222,6 +240,10 @@ class Gate:
         if identity.kind is TokenKind.ROBOT:
             # A robot at the edge of the radio's reach comes back a thousand times a day.
             return
+        if identity.kind is TokenKind.LINK:
+            name = identity.name or ANY_LINK
+            self.journal.note(f"link {name}", "login", address=visitor.address, subject=identity.session)
+            return
         role, address, session = self.role(visitor).value, visitor.address, identity.session
         who = identity.name or f"desk {address}"
         if identity.token is not None:
@@ -251,7 +273,9 @@ class Gate:
         return self._failures.setdefault(address, Bucket(a_minute / 60, a_minute))
 
     def _is_open(self, kind: TokenKind) -> bool:
-        return self._may_be_open and self.book.is_open(kind)
+        # A link speaks for robots: where those need tokens, so does it.
+        kinds = (kind, TokenKind.ROBOT) if kind is TokenKind.LINK else (kind,)
+        return self._may_be_open and all(self.book.is_open(one) for one in kinds)
 
 
 def _later(visitor: Visitor, status: http.HTTPStatus, text: str, seconds: float) -> Response:

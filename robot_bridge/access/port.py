@@ -19,6 +19,7 @@ from ..errors import BridgeError
 from ..monitoring.unforeseen import note_unforeseen
 from ..sites.limit_settings import LimitSettings
 from .gate import Gate
+from .tokens import chosen_protocol
 from .visitor import Visitor
 
 log = logging.getLogger(__name__)
@@ -29,6 +30,8 @@ WRITE_LIMIT = 65_536
 
 SPARE_FILES = 512
 """Files and connections to the database."""
+ONE_ADDRESS = 65_536
+"""Connections that one address can have open with this port: silent ones are not to take the last file."""
 
 BACKLOG = 1024
 """Connections that wait to be taken: a whole fleet comes back in one moment when the gateway was away."""
@@ -51,6 +54,7 @@ async def listen(
             host,
             port,
             ssl=context,
+            select_subprotocol=cast("Any", lambda _visitor, offered: chosen_protocol(offered)),
             process_request=cast("Any", partial(_ask, doorman)),
             create_connection=cast("type[ServerConnection]", partial(Visitor, gate)),
             backlog=BACKLOG,
@@ -71,7 +75,8 @@ async def listen(
 def _allow_connections(limits: LimitSettings) -> None:
     """Let this process hold so many connections beside its files, as far as the system allows."""
     soft, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
-    needed = wanted = limits.robots + limits.desks + limits.pending_per_address + SPARE_FILES
+    needed = limits.robots + limits.desks + limits.pending_per_address + SPARE_FILES
+    wanted = needed + ONE_ADDRESS
     if hard != resource.RLIM_INFINITY:
         wanted = min(wanted, hard)
     if soft < wanted:

@@ -13,7 +13,6 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from ..counting import counted
-from .certificates import valid_until
 from .errors import AccessError
 
 log = logging.getLogger(__name__)
@@ -51,7 +50,8 @@ class ServerTls:
         self._files = files
         self._seen = _stamps(files)
         self.context = _server_context(files)
-        self._until = valid_until(files.certificate)
+        self._until, self.names = _validity(files.certificate)
+        """The names of this computer that the certificate holds for."""
         self._warn_of_expiry()
 
     def reload(self) -> bool:
@@ -62,7 +62,7 @@ class ServerTls:
         try:
             _server_context(self._files)
             self.context.load_cert_chain(self._files.certificate, self._files.key)
-            self._until = valid_until(self._files.certificate)
+            self._until, self.names = _validity(self._files.certificate)
         except (AccessError, OSError) as error:
             log.error("%s; the certificate in use stays", error)
             return False
@@ -120,6 +120,14 @@ def _server_context(files: ServerFiles) -> ssl.SSLContext:
 
 def _no_password() -> str:
     raise AccessError("the key is encrypted; give one that is not, readable to the gateway's account alone")
+
+
+def _validity(certificate: Path) -> tuple[datetime.datetime, tuple[str, ...]]:
+    """Return until when a certificate holds, and for which names."""
+    # A gateway without TLS starts without cryptography, which takes a tenth of the start to import.
+    from .certificates import names_of, valid_until
+
+    return valid_until(certificate), names_of(certificate)
 
 
 def _stamps(files: ServerFiles) -> tuple[object, ...]:

@@ -50,8 +50,8 @@ class Door(Protocol):
     def limits(self) -> LimitSettings:
         """The limits that hold now."""
 
-    def arrived(self, visitor: Visitor) -> bool:
-        """Count a new connection; false when it is one too many."""
+    def arrived(self, visitor: Visitor) -> None:
+        """Count a new connection."""
 
     def left(self, visitor: Visitor) -> None:
         """Count a connection that is gone."""
@@ -68,6 +68,8 @@ class Visitor(ServerConnection):
         self._silence: asyncio.TimerHandle | None = None
         self._heard_at = 0.0
         self._expelled = False
+        self.is_gone = False
+        """Whether the connection has ended; nobody gets a place after that."""
         self._control = Bucket(CONTROL_FRAMES_PER_S, CONTROL_BURST)
         self._messages = self._patience = Bucket(1.0, 1.0)
         self.short_cut = ShortCut()
@@ -79,12 +81,11 @@ class Visitor(ServerConnection):
     # --- the connection's life ------------------------------------------------------------------------
 
     def connection_made(self, transport: asyncio.BaseTransport) -> None:
-        """Take a new connection, unless it is one too many."""
+        """Take a new connection."""
         peer = transport.get_extra_info("peername") or ("",)
         self.address = str(peer[0])
         super().connection_made(transport)
-        if not self._door.arrived(self):
-            self.transport.abort()
+        self._door.arrived(self)
 
     def connection_lost(self, exc: Exception | None) -> None:
         """Note that the connection is gone."""
@@ -92,16 +93,19 @@ class Visitor(ServerConnection):
             if timer is not None:
                 timer.cancel()
         super().connection_lost(exc)
+        self.is_gone = True
         self._door.left(self)
 
     def let_in(self, identity: Identity, largest_message: int) -> None:
         """Hold the connection from now on to the limits of its kind."""
         self.identity = identity
         limits = self._limits
-        robot = identity.kind is TokenKind.ROBOT
-        rate = limits.robot_messages_per_s if robot else limits.desk_messages_per_s
-        burst = float(limits.robot_burst if robot else limits.desk_burst)
-        self._messages, self._patience = Bucket(rate, burst), Bucket(rate / 10, burst)
+        rate, burst = {
+            TokenKind.ROBOT: (limits.robot_messages_per_s, limits.robot_burst),
+            TokenKind.OPERATOR: (limits.desk_messages_per_s, limits.desk_burst),
+            TokenKind.LINK: (limits.link_messages_per_s, limits.link_burst),
+        }[identity.kind]
+        self._messages, self._patience = Bucket(rate, float(burst)), Bucket(rate / 10, float(burst))
         self.protocol.max_message_size = largest_message
         # What waits in the system for a slow client is old when it arrives.
         own = self.transport.get_extra_info("socket")
@@ -178,6 +182,11 @@ class Visitor(ServerConnection):
         super().process_event(event)
 
     @property
+    def has_spoken(self) -> bool:
+        """Whether a message has come since the connection was let in."""
+        return self._heard_at > 0
+
+    @property
     def who(self) -> str:
         """The connection's owner, for the log."""
         if self.identity is None:
@@ -193,7 +202,7 @@ class Visitor(ServerConnection):
         if isinstance(message, jsonrpc.Call):
             if message.method == NEVER_REFUSED:
                 return False
-            text = f"too many messages; wait {self._messages.wait():.2f} s and send fewer a second"
+            text = f"too many messages; wait {max(self._messages.wait(), 0.01):.2f} s and send fewer a second"
             if message.id is not None:
                 await self.send(jsonrpc.error(message.id, jsonrpc.TOO_MANY, text))
         return True

@@ -10,6 +10,7 @@ import math
 from dataclasses import fields
 from typing import Any, TypeVar
 
+from ..core.decoding import DOCUMENT, DecodingError, decode_json
 from .errors import PlanFileError
 from .job import Robot, Store, Target
 from .plan import LeftOut, Path, Plan, PlannedTrip, RobotPlan, Stop
@@ -31,8 +32,8 @@ def from_json(text: str | bytes) -> Plan:
     :raises PlanFileError: naming what is wrong and where in the document.
     """
     try:
-        document = json.loads(text)
-    except (ValueError, RecursionError) as error:
+        document = decode_json(text, DOCUMENT)
+    except DecodingError as error:
         raise PlanFileError(f"This is no JSON document ({error}): choose the file of a plan.") from error
     if not isinstance(document, dict) or document.get("format") != FORMAT:
         raise PlanFileError(f"This is no plan: its format is not {FORMAT!r}. Choose the file of a plan.")

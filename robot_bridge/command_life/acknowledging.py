@@ -14,7 +14,7 @@ ABORTED = "the robot acknowledged the Abort"
 
 
 class StartedAnew(NamedTuple):
-    """The commands of a robot that are to be sent ``again``, and those that have ``ended`` instead."""
+    """The commands of a robot whose messages are written ``again``, and those that have ``ended`` instead."""
 
     again: list[OpenCommand]
     ended: list[OpenCommand]
@@ -53,14 +53,13 @@ def started_anew(
     now: float,
     expire_after: float,
     seen: Callable[[str], SendPos | None],
-) -> StartedAnew | None:
-    """Return what becomes of the commands of a robot that starts anew, None where it has forgotten none.
+) -> StartedAnew:
+    """Return what becomes of the commands of a robot that starts anew.
 
-    What is older than ``expire_after`` seconds is not sent again. ``seen`` tells where a robot was seen last.
+    What was never fetched is written again too, behind the map; but for an Abort that nothing waits before,
+    which needs none. What is older than ``expire_after`` seconds is not sent again. ``seen`` tells where a
+    robot was seen last.
     """
-    forgotten = [command for command in mine if command.report.state is not CommandState.QUEUED]
-    if not forgotten:
-        return None
     ended = [end for command in mine for end in ended_by(command, mine, now, "the robot started anew")]
     ended += [
         command.step(CommandState.EXPIRED, now, GATEWAY, "the robot started anew, and it was too old then")
@@ -69,8 +68,9 @@ def started_anew(
     ]
     # Of two ends of one command the first counts.
     ends = {command.report.command: command for command in reversed(ended)}
-    first = min(command.sa_id for command in forgotten)
-    left = [command for command in mine if command.report.command not in ends and command.sa_id >= first]
+    moved = [c.sa_id for c in mine if c.report.state is not CommandState.QUEUED or not c.is_abort]
+    first = min(moved, default=0)
+    left = [c for c in mine if moved and c.report.command not in ends and c.sa_id >= first]
     return StartedAnew([_anew(command, reason, now, seen) for command in left], list(ends.values()))
 
 

@@ -46,6 +46,11 @@ class Order:
     instead_of: str | None = None
     fenced: bool = False
 
+    @property
+    def is_emergency(self) -> bool:
+        """Whether it is the Abort of an emergency stop."""
+        return isinstance(self.message, Abort) and self.message.emergency
+
 
 @dataclass
 class OpenCommand:

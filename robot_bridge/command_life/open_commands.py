@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, KeysView, Mapping
 
 from ..messages import CommandState
 from .open_command import OpenCommand
@@ -26,6 +26,11 @@ class OpenCommands:
     def get(self, command: str) -> OpenCommand | None:
         """Return a command by its id."""
         return self._by_id.get(command)
+
+    @property
+    def robots(self) -> KeysView[str]:
+        """The robots that have open commands."""
+        return self._by_robot.keys()
 
     def of(self, robot: str) -> list[OpenCommand]:
         """Return the commands of a robot, the oldest first."""

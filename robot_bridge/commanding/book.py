@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import contextlib
 import dataclasses
+import logging
 from collections.abc import Callable, Coroutine, Iterable, Sequence
 from typing import Any
 
@@ -20,15 +22,17 @@ from ..command_life.open_command import (
 )
 from ..command_life.open_commands import OpenCommands
 from ..command_life.states import is_open
-from ..errors import DataRefusedError, StoreError
-from ..messages import CommandReport, CommandState, OpAck, SendPos, SetPath
-from ..robots import Robots
+from ..errors import DataRefusedError, RefusedError, StoreError
+from ..messages import Answer, CommandReport, CommandState, OpAck, SendPos, SetPath
+from ..monitoring.unforeseen import going_on
+from ..robots import RobotPose, Robots
 from ..store import commands
 from ..store.commands import StoredCommand
 from ..store.database import Database, to_its_end
 from .drafting import Drafting, Rules
-from .holding import HeldRobots
+from .holding import HeldRobots, RobotLocks
 from .reader import CommandReader
+from .unstored_aborts import UnstoredAborts
 from .writing import (
     Also,
     opened,
@@ -41,11 +45,13 @@ from .writing import (
     write_recalls,
 )
 
+log = logging.getLogger(__name__)
+
 __all__ = ["GATEWAY", "CommandBook", "OpenCommand", "Order"]
 
 DRIVEN_STEP = 0.5
 """metres along a path between two that are stored."""
-NOWHERE = SendPos(x=1e9, y=1e9, theta=0.0, v=0.0)
+NOWHERE = SendPos(x=1e8, y=1e8, theta=0.0, v=0.0)
 """Where a robot was of which that was not stored: far from wherever it is now."""
 ABORTED_TOO_LATE = "it stood at its end when it was heard again, and the Abort came too late"
 MOST_LATE = 1000
@@ -79,7 +85,9 @@ class CommandBook(CommandReader):
         self._changed = changed
         self._outbox_changed = outbox_changed
         self._held = HeldRobots(database, self._look_up)
+        self._turns = RobotLocks()
         self._late: set[tuple[str, int]] = set()
+        self._unstored = UnstoredAborts()
 
     async def restore(self) -> None:
         """Take up the commands that an earlier gateway left open."""
@@ -89,7 +97,8 @@ class CommandBook(CommandReader):
     async def issue(self, orders: list[Order], also: Also | None = None) -> list[CommandReport]:
         """Store new commands with their messages, all or none, and ``also`` more; return them as stored.
 
-        A command whose id is known already is returned as it stands and changes nothing.
+        A command whose id is known already is returned as it stands and changes nothing. An Abort that the
+        database does not take is kept, and stored before anything else that its robot is told.
         """
         return await to_its_end(self._issue(orders, also))
 
@@ -139,6 +148,10 @@ class CommandBook(CommandReader):
         ]
         return to_its_end(self._all_done(done)) if done else None
 
+    def with_open_commands(self, poses: Iterable[RobotPose]) -> list[RobotPose]:
+        """Return the poses of robots that have open commands."""
+        return [told for told in poses if told[0] in self._open.robots]
+
     def await_again(self, robot: str, sa_id: int) -> None:
         """Judge the command with this message only by positions that come after its acknowledgement.
 
@@ -166,9 +179,21 @@ class CommandBook(CommandReader):
         ]
         return to_its_end(self._all_done(done)) if done else None
 
-    async def deliver_again(self, robot: str, reason: str, expire_after: float) -> None:
-        """Send once more what a robot that started anew may have forgotten, unless it is too old."""
-        await to_its_end(self._deliver_again(robot, reason, expire_after))
+    async def deliver_again(
+        self,
+        robot: str,
+        reason: str,
+        expire_after: float,
+        welcome: Sequence[Answer],
+        note_run: Callable[[Connection], bool],
+    ) -> None:
+        """Send once more what a robot that started anew may have forgotten, unless it is too old.
+
+        All that waits for it, too, comes behind ``welcome``: it must not drive before it has its map.
+        ``note_run`` notes in the same transaction that it has started anew, and returns false where that is
+        noted: then all is sent.
+        """
+        await to_its_end(self._deliver_again(robot, reason, expire_after, welcome, note_run))
 
     async def expire(self, expire_after: float) -> None:
         """End the commands that were not fetched in time: ``expire_after`` seconds, or as they say."""
@@ -189,10 +214,16 @@ class CommandBook(CommandReader):
                 return
 
     async def save_progress(self) -> None:
-        """Store how far robots have come along their paths, and acknowledgements that came too late."""
+        """Store kept Aborts, how far robots have come along their paths, and late acknowledgements."""
         await self.look_up()
+        for robot in self._unstored.robots():
+            await to_its_end(self._issue_unstored(robot))
         for robot, sa_id in list(self._late):
-            await self.acknowledged(robot, OpAck(id=sa_id))
+            # One that is refused, or goes wrong otherwise, is forgotten: the others have their turn.
+            what = f"a late acknowledgement of robot {robot!r}"
+            with going_on(log, what, except_for=StoreError), contextlib.suppress(DataRefusedError):
+                await self.acknowledged(robot, OpAck(id=sa_id))
+            self._late.discard((robot, sa_id))
         driven = self._open.progress(DRIVEN_STEP)
         if driven:
             await self._database.run(write_driven, driven)
@@ -201,28 +232,58 @@ class CommandBook(CommandReader):
     # --- what has to be done to its end, with the robots' locks held --------------------------------------
 
     async def _issue(self, orders: list[Order], also: Also | None) -> list[CommandReport]:
-        async with self._held.of(order.robot for order in orders):
-            # What takes long first: nothing may come between the checks and the transaction.
+        robots = {order.robot for order in orders}
+        async with self._turns.of(() if all(order.is_emergency for order in orders) else robots):
+            # What takes long first: nothing may come between the checks and the transaction. And before the
+            # robots are held: while a long path is looked at for one, an emergency stop is stored for all.
             found = await self.drafting.consider(orders)
-            now = self._clock()
-            drafts = [
-                self.drafting.draft(order, fault, now) for order, fault in zip(orders, found, strict=True)
-            ]
-            issued, changed = await self._held.run(write_drafts, drafts, also)
-            for command in changed:
+            try:
+                async with self._held.of(robots):
+                    if not all(order.is_emergency for order in orders):
+                        await self._store_unstored(robots)
+                    return await self._store(orders, found, also)
+            except DataRefusedError:
+                raise
+            except StoreError:
+                self._unstored.keep(orders)
+                raise
+
+    async def _issue_unstored(self, robot: str) -> None:
+        async with self._turns.of([robot]), self._held.of([robot]):
+            await self._store_unstored([robot])
+
+    async def _store_unstored(self, robots: Iterable[str]) -> None:
+        """Store the Aborts of robots that the database did not take; one that it refuses is forgotten."""
+        for order in self._unstored.of(robots):
+            with going_on(log, f"storing Abort {order.command}", except_for=StoreError):
+                try:
+                    await self._store([order], [None], None)
+                except (DataRefusedError, RefusedError) as error:
+                    log.warning("Abort %s of robot %r: %s", order.command, order.robot, error)
+            self._unstored.discard(order)
+
+    async def _store(
+        self, orders: list[Order], found: Sequence[RefusedError | None], also: Also | None
+    ) -> list[CommandReport]:
+        now = self._clock()
+        drafts = [self.drafting.draft(order, fault, now) for order, fault in zip(orders, found, strict=True)]
+        issued, changed = await self._held.run(write_drafts, drafts, also)
+        for command in changed:
+            self._apply(command)
+        for command in issued:
+            id = command.report.command
+            if command.report.state is CommandState.QUEUED and self._open.get(id) is None:
                 self._apply(command)
-            for command in issued:
-                id = command.report.command
-                if command.report.state is CommandState.QUEUED and self._open.get(id) is None:
-                    self._apply(command)
-                    self._outbox_changed(command.report.robot)
-            return [command.report for command in issued]
+                self._outbox_changed(command.report.robot)
+        return [command.report for command in issued]
 
     async def _lead(self, robot: str, task: str, path: SetPath, write: Callable[[Connection], None]) -> None:
-        async with self._held.of([robot]):
-            await self.drafting.check_way(robot, task, path)
-            await self._held.run(write)
-            self._outbox_changed(robot)
+        async with self._turns.of([robot]):
+            await self.drafting.consider_way(path)
+            async with self._held.of([robot]):
+                self.drafting.check_way(robot, task, path)
+                await self._held.run(write)
+                self._outbox_changed(robot)
 
     async def _delivered(self, sa_ids: list[int]) -> None:
         # By now some may be further on.
@@ -280,12 +341,18 @@ class CommandBook(CommandReader):
             elif abort is not None:
                 await self._save(ended_by(abort, [command], abort.acknowledged_at, ABORTED))
 
-    async def _deliver_again(self, robot: str, reason: str, expire_after: float) -> None:
+    async def _deliver_again(
+        self,
+        robot: str,
+        reason: str,
+        expire_after: float,
+        welcome: Sequence[Answer],
+        note_run: Callable[[Connection], bool],
+    ) -> None:
         async with self._held.of([robot]):
             anew = started_anew(self._open.of(robot), reason, self._clock(), expire_after, self._robots.pose)
-            if anew is None:
-                return
-            for command in await self._held.run(write_again, anew.again, anew.ended):
+            again = anew.again, anew.ended
+            for command in await self._held.run(write_again, robot, welcome, *again, note_run):
                 self._apply(command)
             self._outbox_changed(robot)
 
@@ -332,7 +399,8 @@ class CommandBook(CommandReader):
             self._open.put(command)
         else:
             self._open.remove(command.report.command)
-        self._changed(command.report)
+        with going_on(log, f"telling of command {command.report.command}"):
+            self._changed(command.report)
 
     async def _look_up(self) -> None:
         """Take over what the database holds, after a transaction that may have been done or not."""

@@ -9,10 +9,13 @@ from dataclasses import dataclass
 from ..command_life.open_command import NOTHING, Order, drafted, recalled, superseded
 from ..command_life.open_commands import OpenCommands
 from ..errors import RefusedError
-from ..messages import Command
+from ..messages import Ability, Abort, Command
 from ..robots import Robots
 from .reader import CommandReader
 from .writing import Draft
+
+_NEEDED: dict[str, Ability] = {"SetPosEnd": "targets", "SetPath": "paths", "SetPosIni": "start"}
+"""What a robot has to be able to do for each message."""
 
 
 @dataclass(frozen=True)
@@ -20,12 +23,12 @@ class Rules:
     """Whether a message may be sent to a robot now.
 
     ``check`` raises RefusedError where it must not; ``consider`` is awaited before, for what of that takes
-    long. ``fence`` tells of messages of orders that are fenced why each must not be sent, None where it may.
+    long. ``fence`` tells of orders that are fenced why each must not be sent, None where it may.
     """
 
     check: Callable[[Command], None]
     consider: Callable[[Command], Awaitable[None]]
-    fence: Callable[[Sequence[Command]], Awaitable[Sequence[RefusedError | None]]]
+    fence: Callable[[Sequence[Order]], Awaitable[Sequence[RefusedError | None]]]
 
 
 class Drafting(CommandReader):
@@ -42,13 +45,14 @@ class Drafting(CommandReader):
         """Find out what takes long about orders; return why each must not be sent, None where it may be."""
         for order in orders:
             await self._rules.consider(order.message)
-        refusals = iter(await self._rules.fence([order.message for order in orders if order.fenced]))
+        refusals = iter(await self._rules.fence([order for order in orders if order.fenced]))
         return [next(refusals) if order.fenced else None for order in orders]
 
     def draft(self, order: Order, refusal: RefusedError | None, now: float) -> Draft:
         """Return the draft of an order, refused by ``refusal`` or by what holds now."""
         try:
             self._rules.check(order.message)
+            self._check_ability(order)
             self._check_task(order)
         except RefusedError as error:
             refusal = refusal or error
@@ -57,12 +61,12 @@ class Drafting(CommandReader):
         ended, recalls = superseded(order, mine, now), recalled(order, mine, now)
         return Draft(order, command, ended, recalls, refusal, self.waits(order.robot))
 
-    async def check_way(self, robot: str, task: str, way: Command) -> None:
-        """Raise RefusedError where a robot must not be told the ``way`` to its ``task``, or has another one.
-
-        That holds for as long as nothing else is awaited.
-        """
+    async def consider_way(self, way: Command) -> None:
+        """Find out what takes long about a way that a robot is to be told."""
         await self._rules.consider(way)
+
+    def check_way(self, robot: str, task: str, way: Command) -> None:
+        """Raise RefusedError where a robot must not be told the ``way`` to its ``task``, or has another."""
         self._rules.check(way)
         if not self.is_carrying_out(robot, task):
             raise _told_otherwise(robot)
@@ -75,6 +79,23 @@ class Drafting(CommandReader):
                 f"command {order.aborts} is no longer what robot {order.robot!r} is doing; look at the log, "
                 "and abort the robot if it is to stop all the same"
             )
+
+    def _check_ability(self, order: Order) -> None:
+        """Raise RefusedError for what the robot said in Ready that it cannot do."""
+        name, message = order.robot, order.message
+        if name not in self._robots or isinstance(message, Abort):
+            return
+        robot = self._robots.get(name)
+        if self._robots.is_only_seen(name):
+            raise RefusedError(f"robot {name!r} is only seen: its link {robot.link} takes no commands for it")
+        needed = _NEEDED[type(message).__name__]
+        if not robot.can(needed):
+            raise RefusedError(
+                f"robot {name!r} does not take {type(message).__name__}, only what it said in Ready: "
+                f"{robot.abilities}"
+            )
+        if (getattr(message, "cone", None) or getattr(message, "collect", None)) and not robot.can("cones"):
+            raise RefusedError(f"robot {name!r} places and collects no cones; send it there without one")
 
     def _is_open_to(self, robot: str, task: str) -> bool:
         if task == NOTHING:

@@ -13,6 +13,21 @@ from ..store.database import Database
 T = TypeVar("T")
 
 
+class RobotLocks:
+    """A lock for each robot, by name."""
+
+    def __init__(self) -> None:
+        self._locks: dict[str, asyncio.Lock] = {}
+
+    @contextlib.asynccontextmanager
+    async def of(self, names: Iterable[str]) -> AsyncIterator[None]:
+        """Hold some robots, in the one order in which everybody does."""
+        async with contextlib.AsyncExitStack() as stack:
+            for name in sorted(set(names)):
+                await stack.enter_async_context(self._locks.setdefault(name, asyncio.Lock()))
+            yield
+
+
 class HeldRobots:
     """Robots by name, each held by one at a time: what concerns one waits only for what concerns the same.
 
@@ -23,7 +38,7 @@ class HeldRobots:
     def __init__(self, database: Database, look_up: Callable[[], Awaitable[None]]) -> None:
         self._database = database
         self._look_up = look_up
-        self._locks: dict[str, asyncio.Lock] = {}
+        self._locks = RobotLocks()
         self._doubts = self._settled = 0
 
     @property
@@ -34,9 +49,7 @@ class HeldRobots:
     @contextlib.asynccontextmanager
     async def of(self, names: Iterable[str]) -> AsyncIterator[None]:
         """Hold some robots, in the one order in which everybody does; none only looks up what is in doubt."""
-        async with contextlib.AsyncExitStack() as stack:
-            for name in sorted(set(names)):
-                await stack.enter_async_context(self._locks.setdefault(name, asyncio.Lock()))
+        async with self._locks.of(names):
             if self.are_in_doubt:
                 before = self._doubts
                 await self._look_up()

@@ -71,6 +71,10 @@ class CommandReader:
         """Tell whether an Abort that is no emergency stop's is on its way to the robot."""
         return any(c.is_abort and not c.is_emergency and c.is_on_its_way for c in self._open.of(robot))
 
+    def awaits_any_abort(self, robot: str) -> bool:
+        """Tell whether an Abort is on its way to the robot, an emergency stop's or another."""
+        return self.awaits_abort(robot) or self.awaits_stop(robot)
+
     def awaits_stop(self, robot: str) -> bool:
         """Tell whether the Abort of an emergency stop is on its way to the robot."""
         return any(c.is_emergency and c.is_on_its_way for c in self._open.of(robot))

@@ -14,7 +14,7 @@ from sqlalchemy import Connection
 from ..command_life.open_command import OpenCommand, Order, Recall, because
 from ..command_life.states import is_open, note
 from ..errors import RefusedError
-from ..messages import Abort, Command, CommandReport, SetPosIni
+from ..messages import Abort, Answer, Command, CommandReport, SetPosIni
 from ..store import answers, closures, commands, queues, requests
 from ..store.commands import StoredCommand
 from ..store.queues import Hold
@@ -44,6 +44,8 @@ class Written(NamedTuple):
     changed: list[OpenCommand]
 
 
+FORGOTTEN = ("Start", "OpAck", "SetMap")
+"""What waits for a robot that starts anew, and is void."""
 Also = Callable[[Connection], None]
 """More to be written in the same transaction."""
 AlsoOf = Callable[[str], Also]
@@ -97,8 +99,8 @@ def write_recalls(connection: Connection, recalls: Sequence[Recall]) -> list[Ope
 
 def _acknowledged(connection: Connection, recalls: Sequence[Recall]) -> set[int]:
     """Return the messages of ``recalls`` whose OpAcks stand in RR; looked for when the messages are gone."""
-    by_robot = {(recall.queued.report.robot, recall.queued.sa_id) for recall in recalls}
-    return {sa_id for _, sa_id in by_robot.intersection(requests.acknowledgements(connection))}
+    by_robot = requests.acknowledged(connection, sorted({recall.queued.report.robot for recall in recalls}))
+    return {r.queued.sa_id for r in recalls if r.queued.sa_id in by_robot[r.queued.report.robot]}
 
 
 def write_acknowledged(
@@ -126,12 +128,27 @@ def write_late(connection: Connection, robot: str, sa_id: int, at: float) -> Com
 
 
 def write_again(
-    connection: Connection, again: Sequence[OpenCommand], ended: Sequence[OpenCommand]
+    connection: Connection,
+    robot: str,
+    welcome: Sequence[Answer],
+    again: Sequence[OpenCommand],
+    ended: Sequence[OpenCommand],
+    note_run: Callable[[Connection], bool],
 ) -> list[OpenCommand]:
-    """Write the messages of commands anew, in the order in which they stood; return all as they now stand."""
+    """Write ``welcome`` for a robot that starts anew, then the messages of its commands; return those.
+
+    All that is done once for each run of a robot: ``note_run`` notes that, and returns false where it was
+    noted before, by a transaction of which nobody heard that it was done. The messages keep the order in
+    which they stood. Nothing else that sets a robot in motion stays: it answers questions that the robot has
+    forgotten.
+    """
+    if not note_run(connection):
+        return []
     write_all(connection, ended)
     again = sorted(again, key=lambda command: command.sa_id)
     answers.remove(connection, [command.sa_id for command in again])
+    answers.remove_kinds(connection, robot, [*FORGOTTEN, *answers.ORDERS])
+    answers.add_all(connection, [(robot, message) for message in welcome])
     ids = answers.add_numbered(connection, [(c.report.robot, c.message) for c in again])
     renewed = [dataclasses.replace(command, sa_id=id) for command, id in zip(again, ids, strict=True)]
     commands.save_all(connection, [_stored(command) for command in renewed])

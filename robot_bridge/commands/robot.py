@@ -4,8 +4,13 @@ from __future__ import annotations
 
 import asyncio
 import signal
+from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import contextmanager
+from dataclasses import replace
+from enum import Enum
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -13,6 +18,16 @@ from ..errors import BridgeError
 from ..messages import SetObject
 from ..robot.sightings import Thing
 from .database_option import PasswordFileOption, database_address
+
+if TYPE_CHECKING:
+    from ..robot.body import BodyLimits, Vehicle
+
+
+class Localisation(str, Enum):
+    """How the simulated robot knows where it is."""
+
+    EXACT = "exact"
+    FILTER = "filter"
 
 
 def robot(
@@ -25,6 +40,9 @@ def robot(
     pose: Annotated[str, typer.Option(help="Where it starts: X,Y,THETA in metres and radians.")] = "0,0,0",
     speed: Annotated[float, typer.Option(help="Largest speed, m/s.", min=0.05, max=20)] = 1.5,
     turn_rate: Annotated[float, typer.Option(help="Largest turn rate, rad/s.", min=0.05, max=10)] = 1.2,
+    acceleration: Annotated[
+        float, typer.Option(help="Largest acceleration, m/s²; it turns in proportion.", min=0.1, max=20)
+    ] = 1.5,
     rate: Annotated[float, typer.Option(help="Positions a second.", min=0.1, max=50)] = 5.0,
     noise: Annotated[float, typer.Option(help="Noise of the reported position, metres.", min=0)] = 0.01,
     seed: Annotated[int, typer.Option(help="Seed of the noise.")] = 1,
@@ -32,7 +50,12 @@ def robot(
         list[str] | None, typer.Option(help="X,Y,ID of a thing that it tells of once it is within 10 m.")
     ] = None,
     image: Annotated[Path | None, typer.Option(help="Image (JPEG, PNG, WebP) that it sends of each.")] = None,
-    ask_path: Annotated[bool, typer.Option(help="Ask for a path to every target.")] = False,
+    ask_path: Annotated[
+        bool, typer.Option(help="Ask for the path to every target, and stand until it is known.")
+    ] = True,
+    path_cones: Annotated[
+        bool, typer.Option(help="Declare that it places and collects cones at the ends of paths.")
+    ] = True,
     ask_surface: Annotated[
         bool, typer.Option(help="Ask for the road surfaces of a task and say them as status.")
     ] = False,
@@ -40,6 +63,23 @@ def robot(
         Path | None,
         typer.Option(help="File in which it remembers where it is, its task and what it has done."),
     ] = None,
+    localisation: Annotated[
+        Localisation,
+        typer.Option(help="Whether it always knows its place, or finds it on its map by a particle filter."),
+    ] = Localisation.EXACT,
+    world: Annotated[
+        Path | None,
+        typer.Option(
+            help="Folder of the published site that its world is made of, with --localisation filter."
+        ),
+    ] = None,
+    robot_settings: Annotated[
+        Path | None, typer.Option(help="TOML file with what its sensors, filter and world are set to.")
+    ] = None,
+    knows_pose: Annotated[
+        bool, typer.Option(help="Whether it knows at first where it stands, or looks for that on its map.")
+    ] = True,
+    gps: Annotated[bool, typer.Option("--gps", help="It has a GPS receiver, too.")] = False,
 ) -> None:
     """Run the reference robot: a simulated body that speaks the protocol."""
     from ..access.credentials import Credentials
@@ -48,12 +88,15 @@ def robot(
 
     if (url is None) == (database is None):
         raise BridgeError("a robot has one link: give either --url or --database")
+    where, limits = _pose(pose), BodyLimits.of(speed, turn_rate, acceleration)
+    if (localisation is Localisation.FILTER) != (world is not None):
+        raise BridgeError("--world is the site in which a robot with --localisation filter drives: give both")
     settings = RobotSettings(
         name=name,
         url=url,
         database=None if database is None else database_address(database, database_password_file),
-        pose=_pose(pose),
-        limits=BodyLimits(speed=speed, turn_rate=turn_rate),
+        pose=where,
+        limits=limits,
         rate=rate,
         noise=noise,
         seed=seed,
@@ -61,14 +104,44 @@ def robot(
         things=tuple(_thing(text) for text in see or ()),
         image=None if image is None else _bytes(image),
         asks_path=ask_path,
+        path_cones=path_cones,
         asks_surface=ask_surface,
         memory=memory,
     )
 
-    async def work() -> None:
+    async def work(settings: RobotSettings) -> None:
         await run(settings, _stop_event())
 
-    asyncio.run(work())
+    if world is None:
+        asyncio.run(work(settings))
+        return
+    from ..reference_robot.simulation import MAP_MARGIN
+
+    with _localised(world, robot_settings, limits, where, knows_pose, gps, seed) as body:
+        asyncio.run(work(replace(settings, body=body, map_margin=MAP_MARGIN)))
+
+
+@contextmanager
+def _localised(
+    world: Path,
+    file: Path | None,
+    limits: BodyLimits,
+    pose: tuple[float, float, float],
+    knows_pose: bool,
+    gps: bool,
+    seed: int,
+) -> Iterator[Vehicle]:
+    """Give a body that finds itself, with a thread of its own for the filter."""
+    from ..reference_robot.settings import RobotSettings as SensorSettings
+    from ..reference_robot.simulation import localised_robot, read_robot_settings
+    from ..sites.publication import read_site
+
+    settings = SensorSettings() if file is None else read_robot_settings(file)
+    robot_map = read_site(world).whole_map()
+    with ThreadPoolExecutor(1, "localisation") as executor:
+        yield localised_robot(
+            robot_map, settings, limits, pose, executor, knows_pose=knows_pose, gps=gps, seed=seed
+        )
 
 
 def _pose(text: str) -> tuple[float, float, float]:

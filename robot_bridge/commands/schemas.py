@@ -13,7 +13,7 @@ from ..errors import BridgeError
 def schemas(
     folder: Annotated[Path, typer.Argument(help="Where to write them; made if it is not there.")],
 ) -> None:
-    """Write the JSON Schema of every message, and the AsyncAPI document of both endpoints."""
+    """Write the JSON Schema of every message, and the AsyncAPI document of all endpoints."""
     from ..schemas.documents import documents
 
     for path, text in documents().items():

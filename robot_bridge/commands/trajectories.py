@@ -18,8 +18,12 @@ from ..trajectories.exporting import export as write
 from ..trajectories.geopackage import TrajectoryFile
 from .database_option import DEFAULT, DatabaseOption, PasswordFileOption, database_address
 from .times import span_of
+from .trajectory_import import import_recording
 
 app = typer.Typer(help="Where robots have been.", no_args_is_help=True)
+
+
+app.command("import")(import_recording)
 
 
 @app.callback()

@@ -16,10 +16,13 @@ import time
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
+from typing import Any
 
 from sqlalchemy import URL
 
+from ..core.decoding import DecodingError, decode_json
 from ..errors import BridgeError
+from ..messages import MessageError, check_command_id
 from ..store.emergency_stops import StopRow
 from ..store.engines.sqlite import file_of
 
@@ -67,23 +70,37 @@ class StopJournal:
     def read(self) -> list[StopRow]:
         """Return what an earlier gateway left, oldest first.
 
-        What is there and cannot be understood was a stop all the same. Raises BridgeError when the file
-        cannot be read.
+        What is there and cannot be read or understood was a stop all the same: one in force that nobody
+        needed costs a supervisor's word, one that is forgotten may cost more.
         """
         try:
-            text = self._file.read_text(encoding="utf-8", errors="replace")
+            content = self._file.read_bytes()
         except FileNotFoundError:
             return []
         except OSError as error:
-            raise BridgeError(
-                f"{self._file} cannot be read: {error.strerror}; an emergency stop is noted there: give this "
-                "account the right to read and write it"
-            ) from error
+            log.error(
+                "%s cannot be read: %s; an emergency stop is noted there: give this account the right to "
+                "read and write it",
+                self._file,
+                error.strerror,
+            )
+            return [self._unknown(f"could not be read ({error.strerror})")]
         try:
-            return [_stop(**stop) for stop in json.loads(text)]
-        except (ValueError, TypeError, AttributeError):
-            reason = f"{self._file} could not be understood; look at every robot before this is cleared"
-            return [StopRow(f"damaged-{time.time_ns()}", time.time(), "gateway", reason)]
+            # As far as it goes: a damaged byte of a reason hides no stop.
+            noted = decode_json(content.decode("utf-8", errors="replace"))
+        except DecodingError as error:
+            log.error("%s could not be understood: %s", self._file, error)
+            noted = None
+        if not isinstance(noted, list):
+            return [self._unknown("could not be understood")]
+        stops = [_stop(one) for one in noted]
+        understood = [stop for stop in stops if stop is not None]
+        return [*understood, *([self._unknown("could not be understood")] if None in stops else [])]
+
+    def _unknown(self, what: str) -> StopRow:
+        """Return the stop that stands for one of which nothing is known."""
+        reason = f"{self._file} {what}; look at every robot before this is cleared"
+        return StopRow(f"damaged-{time.time_ns()}", time.time(), "gateway", reason)
 
     def _write(self, stops: list[StopRow]) -> None:
         try:
@@ -91,8 +108,8 @@ class StopJournal:
                 self._replace(json.dumps([_plain(stop) for stop in stops]))
             else:
                 self._file.unlink(missing_ok=True)
-        except OSError as error:
-            why = error.strerror or error
+        except Exception as error:
+            why = (error.strerror if isinstance(error, OSError) else None) or error
             log.error("emergency stops cannot be noted in %s: %s; they go out all the same", self._file, why)
 
     def _replace(self, text: str) -> None:
@@ -118,7 +135,15 @@ def _plain(stop: StopRow) -> dict[str, object]:
     return {"id": stop.id, "at": stop.at, "by": stop.by, "reason": stop.reason}
 
 
-def _stop(id: str, at: float, by: str, reason: str | None) -> StopRow:
+def _stop(noted: Any) -> StopRow | None:
+    """Return the stop that was noted; None for what is none, or could be stored in no database."""
+    if not isinstance(noted, dict):
+        return None
+    id, at, by, reason = (noted.get(name) for name in ("id", "at", "by", "reason"))
     if not (isinstance(id, str) and isinstance(at, float) and isinstance(by, str)):
-        raise TypeError
+        return None
+    try:
+        check_command_id(id)
+    except MessageError:
+        return None
     return StopRow(id, at, by, reason if isinstance(reason, str) else None)

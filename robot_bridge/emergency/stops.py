@@ -14,7 +14,6 @@ import logging
 import time
 import uuid
 from collections.abc import Callable
-from functools import partial
 from typing import Any
 
 from sqlalchemy import Connection
@@ -28,15 +27,18 @@ from ..messages import (
     CommandReport,
     EmergencyReport,
     EmergencyStop,
-    SetPath,
-    SetPosEnd,
     to_json,
 )
-from ..store import answers, commands, emergency_stops
+from ..messages.bounds import LONGEST_OPERATOR, one_line
+from ..monitoring.unforeseen import going_on
+from ..store import commands, emergency_stops
 from ..store.database import Database
 from ..store.emergency_stops import StopRow
 from .journal import StopJournal
+from .storing import HELD_BACK, MOTIONS, StopWriter
 from .tally import Tally
+
+__all__ = ["HELD_BACK", "EmergencyStops"]
 
 log = logging.getLogger(__name__)
 
@@ -46,8 +48,6 @@ NOTED_WITHIN = 0.1
 """seconds for which robots wait until their stop is noted: a disk that hangs must not keep them going."""
 NAME_PREFIX = "emergency-"
 """Begins the id of the call that tells a robot of a stop directly: a text, unlike the ids of SA."""
-MOTIONS = (SetPosEnd, SetPath)
-HELD_BACK = tuple(cls.__name__ for cls in MOTIONS)
 
 
 class EmergencyStops:
@@ -75,6 +75,9 @@ class EmergencyStops:
         self._links: list[Callable[[str], None]] = []
         self._stop: StopRow | None = None
         self._unstored: list[StopRow] = []
+        self._unlisted: list[StopRow] = []
+        """what the database refuses as data: noted on the disk alone, and stored no more."""
+        self._writer = StopWriter(book, database)
         self._seen: set[str] = set()
         self._tally = Tally()
         self._writing = asyncio.Lock()
@@ -114,19 +117,23 @@ class EmergencyStops:
     async def restore(self) -> None:
         """Take up the stop that an earlier gateway left in force, stored or not, and what robots said to it.
 
-        Raises BridgeError when it cannot be known whether there is one.
+        Raises StoreError when it cannot be known whether there is one.
         """
         self._stop, self._seen, aborts = await self._database.run(_load)
         self._tally.begin(self._robots())
         for report in aborts:
-            self._tally.take(report)
+            self._tally.note_step(report)
+        if self._stop is not None and self.in_force:
+            # That gateway may have died before all of them were stored.
+            reached = {report.robot for report in aborts}
+            self._writer.owe(self._stop, [robot for robot in self._robots() if robot not in reached])
         noted = await asyncio.to_thread(self._journal.read) if self._journal else []
         for stop in noted:
             if stop.id not in self._seen:
                 log.warning("emergency stop by %s%s, from before the restart", stop.by, _because(stop.reason))
                 self._put_in_force(stop)
+        await self._store_and_log()
         if noted:
-            await self._store_and_log()
             self._note()
 
     def check(self, message: object) -> None:
@@ -146,7 +153,7 @@ class EmergencyStops:
         """
         if request.command not in self._seen:
             begun = asyncio.ensure_future(
-                self._begin(StopRow(request.command, self._clock(), operator, request.line))
+                self._begin(StopRow(request.command, self._clock(), _name(operator), request.line))
             )
             # Goes on to its end when the operator's connection does not.
             await asyncio.shield(begun)
@@ -170,17 +177,20 @@ class EmergencyStops:
                     "look at that one first, then clear it"
                 )
             await self._store()
-            at, reason = self._clock(), request.reason or None
+            at, supervisor, reason = self._clock(), _name(supervisor), request.reason or None
             await self._database.run(emergency_stops.clear, at, supervisor, reason)
             if self._stop is stop:
                 self._stop = stop._replace(cleared_at=at, cleared_by=supervisor, clear_reason=reason)
+                self._writer.clear()
+                self._unlisted.clear()
+                self._note()
                 log.warning("emergency stop of %s cleared by %s%s", stop.by, supervisor, _because(reason))
         self._announce()
         return self.report()
 
     async def store(self) -> None:
-        """Store the stops that are not stored yet; raises StoreError when the database cannot be written."""
-        if self._unstored:
+        """Store the stops and Aborts that are not stored yet; raises StoreError when the database is away."""
+        if self._unstored or self._writer.is_owing:
             async with self._writing:
                 await self._store()
 
@@ -202,12 +212,13 @@ class EmergencyStops:
 
     def forget(self, robot: str) -> None:
         """Wait for a robot no more: it was removed."""
+        self._writer.forget(robot)
         if self._tally.forget(robot) and self.in_force:
             self._announce()
 
-    def take(self, report: CommandReport) -> None:
+    def note_step(self, report: CommandReport) -> None:
         """Note what became of the Abort that a robot was sent."""
-        if self.in_force and self._tally.take(report):
+        if self.in_force and self._tally.note_step(report):
             self._announce()
 
     def _put_in_force(self, stop: StopRow) -> None:
@@ -218,37 +229,44 @@ class EmergencyStops:
 
     async def _begin(self, stop: StopRow) -> None:
         self._put_in_force(stop)
-        if (noting := self._note()) is not None:
-            await asyncio.wait({noting}, timeout=NOTED_WITHIN)
+        # Whatever goes wrong in one of these, what comes after it is done.
+        with going_on(log, "noting an emergency stop"):
+            if (noting := self._note()) is not None:
+                await asyncio.wait({noting}, timeout=NOTED_WITHIN)
         for link in self._links:
-            link(f"{NAME_PREFIX}{stop.id}")
+            with going_on(log, "sending an emergency stop over open connections"):
+                link(f"{NAME_PREFIX}{stop.id}")
         log.warning("emergency stop by %s%s", stop.by, _because(stop.reason))
         self._announce()
 
     def _note(self) -> asyncio.Future[None] | None:
         """Have what is not stored noted on the disk."""
-        return None if self._journal is None else self._journal.write(self._unstored)
+        if self._journal is None:
+            return None
+        return self._journal.write([*self._unlisted, *self._unstored])
 
     async def _store_and_log(self) -> None:
         try:
             await self.store()
         except StoreError as error:
             log.error("the emergency stop is in force and not stored yet: %s", error)
+        except Exception:
+            log.exception("the emergency stop is in force and not stored yet")
 
     async def _store(self) -> None:
         while self._unstored:
             stop = self._unstored[0]
-            orders = [
-                Order(_abort_id(stop, robot), robot, Abort(emergency=True), stop.by, stop.reason)
-                for robot in self._robots()
-            ]
-            await self._book.issue(orders, partial(_write_stop, stop))
+            if not await self._writer.write(stop, self._robots()):
+                self._unlisted.append(stop)
             self._unstored.remove(stop)
-            self._note()
+            with going_on(log, "noting that an emergency stop is stored"):
+                self._note()
             self._announce()
+        await self._writer.write_owed()
 
     def _announce(self) -> None:
-        self._tell_operators("emergency", "emergency", to_json(self.report()))
+        with going_on(log, "announcing an emergency stop"):
+            self._tell_operators("emergency", "emergency", to_json(self.report()))
 
 
 def _load(connection: Connection) -> tuple[StopRow | None, set[str], list[CommandReport]]:
@@ -257,14 +275,9 @@ def _load(connection: Connection) -> tuple[StopRow | None, set[str], list[Comman
     return stop, emergency_stops.ids(connection), aborts
 
 
-def _write_stop(stop: StopRow, connection: Connection) -> None:
-    emergency_stops.add(connection, stop)
-    # Some are no commands' messages, but answers to GetPath.
-    answers.remove_everywhere(connection, HELD_BACK)
-
-
-def _abort_id(stop: StopRow, robot: str) -> str:
-    return str(uuid.uuid5(uuid.NAMESPACE_OID, f"{stop.id} {robot}"))
+def _name(operator: str) -> str:
+    """Return the name of an operator as it is stored: it must be refused by no database."""
+    return one_line(operator, LONGEST_OPERATOR).strip() or "an operator"
 
 
 def _clock(at: float) -> str:

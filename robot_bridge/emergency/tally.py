@@ -49,7 +49,7 @@ class Tally:
         """Take in what a robot said."""
         return self._raise(robot, Answer.REFUSED if refused else Answer.ACKNOWLEDGED)
 
-    def take(self, report: CommandReport) -> bool:
+    def note_step(self, report: CommandReport) -> bool:
         """Take in what became of a command, if it is the Abort of an emergency stop."""
         if report.op != Abort.__name__ or not report.params.get("emergency"):
             return False

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import csv
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -13,6 +13,9 @@ from ..compass import theta_of
 from ..known_names import told
 from .cone import ORANGE, Cone
 from .errors import TableError
+
+_MOST_COLUMNS, _MOST_ROWS = 1000, 100_000
+"""More than any table of cones has; what a file costs to read goes by its length up to there."""
 
 
 @dataclass(frozen=True)
@@ -41,20 +44,31 @@ def read_csv(file: Path) -> tuple[list[str], list[dict[str, str]]]:
     """
     try:
         with file.open(encoding="utf-8-sig", newline="") as text:
-            reader = csv.DictReader(text)
-            rows = list(reader)
-            head = list(reader.fieldnames or [])
+            reader = csv.reader(text)
+            head = next(reader, [])
+            if len(head) > _MOST_COLUMNS:
+                raise TableError(
+                    f"{file.name} has {len(head)} columns, more than {_MOST_COLUMNS}: give a table of cones."
+                )
+            rows = list(_rows(reader, head, file.name))
     except (OSError, UnicodeDecodeError, csv.Error) as error:
         reason = getattr(error, "strerror", None) or error
         raise TableError(
             f"{file} cannot be read ({reason}): give a CSV file in UTF-8 with a head line."
         ) from error
-    for number, row in enumerate(rows, 2):
-        if None in row or None in row.values():
-            raise TableError(
-                f"{file.name}, row {number}: it has not as many columns as the head line ({len(head)})."
-            )
     return head, rows
+
+
+def _rows(lines: Iterable[list[str]], head: list[str], name: str) -> Iterator[dict[str, str]]:
+    """Yield the rows by column; the first that does not fit ends it, before the others are read."""
+    for number, values in enumerate(filter(None, lines), 2):
+        if len(values) != len(head):
+            raise TableError(
+                f"{name}, row {number}: it has not as many columns as the head line ({len(head)})."
+            )
+        if number > _MOST_ROWS + 1:
+            raise TableError(f"{name} has more than {_MOST_ROWS} rows: part it into layouts.")
+        yield dict(zip(head, values, strict=True))
 
 
 def cones_of(

@@ -1,1 +1,1 @@
-"""How robots connect: each link turns its wire into requests for the fleet, and the outbox into its wire."""
+"""Adapters for robots that speak something else than this project's protocol, each a process of its own."""

@@ -19,11 +19,13 @@ from .accounts import (
     SetRole,
     TokenState,
 )
+from .bounds import LONGEST_OPERATOR, one_line
 from .checks import (
     LARGEST_NUMBER,
     ROBOT_NAME,
     MessageError,
     check_command_id,
+    check_crs,
     check_finite,
     check_robot_name,
     check_stored_number,
@@ -47,6 +49,9 @@ from .desk import (
     Subscribe,
     TargetPosition,
 )
+from .geofence import FenceAlarm, Geofence, geofence_report
+from .known_fields import refuse_unknown_keys, unknown_keys
+from .nearness import Nearness, NearnessAlarm, nearness_report
 from .observations import (
     GetImage,
     GetObservations,
@@ -66,15 +71,26 @@ from .plain import (
     task_report,
     to_json,
 )
-from .plain_roads import closures_report, conflicts_report, replanned_robot, route_report
-from .plain_supervision import new_token, open_session, operators_report, sites_report
+from .plain_roads import (
+    closures_report,
+    conflicts_report,
+    replanned_robot,
+    route_report,
+    ways_out_report,
+)
+from .plain_supervision import (
+    links_report,
+    new_token,
+    open_session,
+    operators_report,
+    sites_report,
+    suspensions_report,
+)
 from .position_columns import (
     POSITION_ALWAYS,
     POSITION_FLAGS,
-    POSITION_HEAD,
     POSITION_NUMBERS,
     POSITION_TEXTS,
-    POSITION_VALUE,
     PositionColumns,
     PositionForm,
 )
@@ -100,6 +116,7 @@ from .queues import (
     TaskReport,
     TaskState,
 )
+from .removal import KeptRobot, RemoveRobots, RobotsRemoved
 from .roads import (
     CloseRoad,
     ClosureReport,
@@ -110,6 +127,7 @@ from .roads import (
     GetClosures,
     GetConflicts,
     GetRoute,
+    GetWaysOut,
     HoldReport,
     OpenRoad,
     ReplannedRobot,
@@ -117,8 +135,10 @@ from .roads import (
     RoadClosed,
     RouteReport,
     SurfaceMetres,
+    WayOut,
+    WaysOut,
 )
-from .robot_state import RobotState
+from .robot_state import Ability, PathDeclaration, RobotState
 from .robots import (
     ANSWERS,
     COMMANDS,
@@ -148,9 +168,10 @@ from .robots import (
     SetPosIni,
     Start,
     Stopped,
+    path_to_end,
 )
 from .roles import Role
-from .service import Stopping
+from .service import LinkReport, Links, Stopping, Suspension, Suspensions
 from .sites import ChooseSite, GetSites, SiteOffer, Sites
 from .stopping import (
     AbortTask,
@@ -167,18 +188,18 @@ __all__ = [
     "COMMANDS",
     "DESK_REQUESTS",
     "LARGEST_NUMBER",
+    "LONGEST_OPERATOR",
     "LONGEST_PATH",
     "LONGEST_QUEUE",
     "PAYLOADS",
     "POSITION_ALWAYS",
     "POSITION_FLAGS",
-    "POSITION_HEAD",
     "POSITION_NUMBERS",
     "POSITION_TEXTS",
-    "POSITION_VALUE",
     "PROTOCOL_VERSION",
     "REQUESTS",
     "ROBOT_NAME",
+    "Ability",
     "Abort",
     "AbortAll",
     "AbortTask",
@@ -205,6 +226,8 @@ __all__ = [
     "EmergencyReport",
     "EmergencyStop",
     "EndSession",
+    "FenceAlarm",
+    "Geofence",
     "GetAudit",
     "GetClosures",
     "GetCommands",
@@ -225,11 +248,17 @@ __all__ = [
     "GetSurface",
     "GetSurfaces",
     "GetTrajectory",
+    "GetWaysOut",
     "Hello",
     "HoldReport",
+    "KeptRobot",
+    "LinkReport",
+    "Links",
     "MakeCurrent",
     "MessageError",
     "MoveTask",
+    "Nearness",
+    "NearnessAlarm",
     "NewToken",
     "ObservationReport",
     "ObservationState",
@@ -238,6 +267,7 @@ __all__ = [
     "OpenRoad",
     "OperatorReport",
     "Operators",
+    "PathDeclaration",
     "PauseQueue",
     "PauseRobot",
     "PlacementReport",
@@ -250,6 +280,7 @@ __all__ = [
     "QueueState",
     "QueueTask",
     "Ready",
+    "RemoveRobots",
     "RemoveTask",
     "ReplannedRobot",
     "Request",
@@ -260,6 +291,7 @@ __all__ = [
     "RoadClosed",
     "RobotReport",
     "RobotState",
+    "RobotsRemoved",
     "Role",
     "RotateToken",
     "RouteReport",
@@ -290,6 +322,8 @@ __all__ = [
     "SurfaceAt",
     "SurfaceMetres",
     "Surfaces",
+    "Suspension",
+    "Suspensions",
     "TakeOver",
     "TargetPosition",
     "TaskKind",
@@ -298,7 +332,10 @@ __all__ = [
     "TokenState",
     "Trajectory",
     "TrajectoryPlace",
+    "WayOut",
+    "WaysOut",
     "check_command_id",
+    "check_crs",
     "check_finite",
     "check_robot_name",
     "check_stored_number",
@@ -306,17 +343,26 @@ __all__ = [
     "command_report",
     "conflicts_report",
     "emergency_report",
+    "geofence_report",
+    "links_report",
+    "nearness_report",
     "new_token",
     "observation_report",
+    "one_line",
     "open_session",
     "operators_report",
+    "path_to_end",
     "placement_report",
     "queue_report",
+    "refuse_unknown_keys",
     "replanned_robot",
     "robot_report",
     "route_report",
     "site_report",
     "sites_report",
+    "suspensions_report",
     "task_report",
     "to_json",
+    "unknown_keys",
+    "ways_out_report",
 ]

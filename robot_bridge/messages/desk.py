@@ -7,7 +7,15 @@ from enum import Enum
 from typing import Any, ClassVar, get_args
 
 from .accounts import AddOperator, GetOperators, RevokeToken, RotateToken, SetRole
-from .checks import MessageError, check_command_id, check_expires_in, check_finite, check_robot_name
+from .bounds import LONGEST_OPERATOR
+from .checks import (
+    MessageError,
+    check_command_id,
+    check_crs,
+    check_expires_in,
+    check_finite,
+    check_robot_name,
+)
 from .observations import GetImage, GetObservations, ReviewObservation
 from .placements import CollectLayout, GetPlacements
 from .position_columns import PositionForm
@@ -23,8 +31,9 @@ from .queues import (
     SetQueue,
     TakeOver,
 )
-from .roads import CloseRoad, GetClosures, GetConflicts, GetRoute, OpenRoad, ResolveConflict
-from .robot_state import RobotState
+from .removal import RemoveRobots
+from .roads import CloseRoad, GetClosures, GetConflicts, GetRoute, GetWaysOut, OpenRoad, ResolveConflict
+from .robot_state import PathDeclaration, RobotState
 from .sites import ChooseSite, GetSites
 from .stopping import AbortTask, ClearEmergencyStop, EmergencyStop, check_override, check_reason
 from .supervision import EndSession, GetAudit, GetSessions
@@ -56,6 +65,9 @@ class RobotReport:
     A robot that has said Ready and not yet where it is has no pose: x, y, theta, v are None. ``device_time``
     and ``fix_time`` are the robot's own clocks, ``pose_age`` is seconds since its pose came in, by the
     gateway's. ``latency`` is the seconds that the robot's link took there and back when last measured.
+    ``paths`` is what the robot declared in Ready about its paths, None of one that declared nothing: it
+    drives straight to a target, and places no cone at the end of a path. ``abilities`` are what it can do,
+    with spaces between them: empty of one that is only seen, None of one that can do everything.
     """
 
     robot: str
@@ -77,6 +89,8 @@ class RobotReport:
     accuracy: float | None = None
     altitude: float | None = None
     theta_from: str | None = None
+    paths: PathDeclaration | None = None
+    abilities: str | None = None
 
 
 @dataclass(frozen=True)
@@ -111,7 +125,8 @@ class CommandReport:
 class SiteReport:
     """The site that a gateway serves: its frame (CRS, origin, rotation in radians) and its bounds.
 
-    ``bounds`` is x_min, y_min, x_max, y_max in the site frame.
+    ``bounds`` is x_min, y_min, x_max, y_max in the site frame. ``roads`` says that the gateway finds ways
+    along roads on it.
     """
 
     id: str
@@ -124,15 +139,26 @@ class SiteReport:
     reached_tolerance: float
     stale_after: float
     lost_after: float
+    roads: bool = False
 
 
 @dataclass(frozen=True)
 class Hello:
-    """An operator's first message; answered with a SiteReport under ``site`` and the protocol's version."""
+    """An operator's first message; answered with a SiteReport under ``site`` and the protocol's version.
+
+    ``operator`` is a name on one line, of at most 128 printable characters.
+    """
 
     method: ClassVar[str] = "hello"
     operator: str
     protocol: int = PROTOCOL_VERSION
+
+    def __post_init__(self) -> None:
+        if not (len(self.operator) <= LONGEST_OPERATOR and self.operator.strip().isprintable()):
+            raise MessageError(
+                f"operator has {len(self.operator)} characters and begins {self.operator[:40]!r}; give a "
+                f"name of at most {LONGEST_OPERATOR} printable characters on one line"
+            )
 
 
 @dataclass(frozen=True)
@@ -161,15 +187,23 @@ class GetPositions:
 
 @dataclass(frozen=True)
 class TargetPosition:
-    """One robot's target in SetPositions."""
+    """One robot's target in SetPositions: metres in the site frame, or coordinates in the CRS ``crs``.
+
+    ``cone``: place one there; not unless it is asked for, as with SetPosEnd.
+
+    In a CRS such as ``EPSG:4326`` x (longitude, easting) comes before y whatever the CRS; ``theta`` is
+    counted from the x axis of the site frame all the same.
+    """
 
     robot: str
     x: float
     y: float
     theta: float | None = None
-    cone: bool = True
+    cone: bool = False
+    crs: str | None = None
 
     def __post_init__(self) -> None:
+        check_crs(self.crs)
         check_finite(x=self.x, y=self.y, theta=self.theta)
 
 
@@ -184,6 +218,9 @@ class SetPositions:
 @dataclass(frozen=True)
 class Send:
     """Ask for one command. ``command`` is an id that the operator's side invents: sent twice, done once.
+
+    ``params`` are those of ``op``, with places in metres in the site frame, or with ``crs`` among them in
+    that CRS, such as ``EPSG:4326``: x (longitude, easting) before y. ``theta`` is the site frame's always.
 
     It is given up when the robot has not fetched it within ``expires_in`` seconds, if that is given, else
     within the time that the site's settings say. ``override`` says what speaks against it, and why it is
@@ -214,6 +251,7 @@ class AbortAll:
     """
 
     method: ClassVar[str] = "abort_all"
+    stops: ClassVar[bool] = True
     command: str | None = None
     reason: str | None = None
 
@@ -291,7 +329,9 @@ DeskRequest = (
     | OpenRoad
     | GetClosures
     | GetConflicts
+    | GetWaysOut
     | ResolveConflict
+    | RemoveRobots
 )
 
 DESK_REQUESTS: dict[str, type[DeskRequest]] = {cls.method: cls for cls in get_args(DeskRequest)}

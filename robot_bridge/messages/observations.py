@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from enum import Enum
 from typing import ClassVar
 
+from .bounds import LONGEST_LABEL
 from .checks import MessageError, Ranges, Texts, check_ranges, check_stored_number, check_texts
-from .robots import LONGEST_LABEL
 
 LONGEST_REASON = 1000
 """characters."""
@@ -26,7 +26,8 @@ class ObservationReport:
     """One observation: what the robot told by ``op`` (SetObject or SendImage), and its review.
 
     ``height`` and ``radius`` (metres) are the robot's until an operator gives others; ``label`` is the
-    robot's word for the object and ``semantics`` the map's. ``seen_at`` is by the robot's clock.
+    robot's word for the object and ``semantics`` the map's. ``seen_at`` is by the robot's clock. With
+    ``doubts`` it is no new object: the robot looks through what the map has under that ``src``.
     """
 
     observation: int
@@ -47,6 +48,7 @@ class ObservationReport:
     reason: str | None = None
     reviewed_at: float | None = None
     reviewed_by: str | None = None
+    doubts: str | None = None
 
 
 @dataclass(frozen=True)

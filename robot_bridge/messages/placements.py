@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import ClassVar
 
+from .bounds import LONGEST_LABEL
 from .checks import MessageError, Texts, check_finite, check_robot_name, check_stored_number, check_texts
 from .queues import QueueTask
-from .robots import LONGEST_LABEL
 
 MOST_PLACEMENTS = 5000
 

@@ -15,6 +15,8 @@ from .roads import (
     ReplannedRobot,
     RouteReport,
     SurfaceMetres,
+    WayOut,
+    WaysOut,
 )
 
 T = TypeVar("T")
@@ -37,6 +39,12 @@ def conflicts_report(values: dict[str, Any]) -> Conflicts:
         [_made(ConflictReport, one) for one in values.get("conflicts", [])],
         [_made(HoldReport, one) for one in values.get("waiting", [])],
     )
+
+
+def ways_out_report(values: dict[str, Any]) -> WaysOut:
+    """Return what two robots in each other's way can do."""
+    ways = [_made(WayOut, {**one, "points": _points(one.get("points", []))}) for one in values["ways"]]
+    return WaysOut(float(values["t"]), str(values["robot"]), str(values["other"]), ways)
 
 
 def replanned_robot(values: dict[str, Any]) -> ReplannedRobot:

@@ -7,6 +7,7 @@ from typing import Any
 from .accounts import NewToken, OperatorReport, Operators, TokenState
 from .known_fields import known_fields
 from .roles import Role
+from .service import LinkReport, Links, Suspension, Suspensions
 from .sites import SiteOffer, Sites
 from .supervision import SessionReport
 
@@ -29,6 +30,16 @@ def new_token(values: dict[str, Any]) -> NewToken:
 def open_session(values: dict[str, Any]) -> SessionReport:
     """Return one connection of an operator, as a gateway sent it as JSON."""
     return SessionReport(**known_fields(SessionReport, values))
+
+
+def suspensions_report(values: dict[str, Any]) -> Suspensions:
+    """Return which robots' accounts are locked, as a gateway sent it as JSON."""
+    return Suspensions([Suspension(**known_fields(Suspension, one)) for one in values["robots"]])
+
+
+def links_report(values: dict[str, Any]) -> Links:
+    """Return how each link is, as a gateway sent it as JSON."""
+    return Links([LinkReport(**known_fields(LinkReport, one)) for one in values["links"]])
 
 
 def sites_report(values: dict[str, Any]) -> Sites:

@@ -1,9 +1,9 @@
 """Positions as a table of numbers: what a desk asks for that shows thousands of robots.
 
-A binary frame, everything little-endian: the length of the head as an unsigned 32-bit integer; the head, a
-JSON-RPC notification ``positions`` whose params are :class:`PositionColumns`, filled up with spaces so that
-what follows begins at a multiple of 8 bytes; then each of its columns, one 64-bit float for each robot. What
-is not known of a robot is NaN. A column of :data:`POSITION_TEXTS` holds places in ``words``.
+A binary frame (:mod:`..core.position_frame`): a JSON-RPC notification ``positions`` whose params are
+:class:`PositionColumns`, and behind it each of its columns, one 64-bit float for each robot. What is not
+known of a robot is NaN. A column of :data:`POSITION_TEXTS` holds places in ``words``. A link tells the
+gateway of its robots in the same form.
 """
 
 from __future__ import annotations
@@ -17,12 +17,9 @@ POSITION_NUMBERS = (
 )  # fmt: skip
 POSITION_FLAGS = ("stopped",)
 """1 for true, 0 for false."""
-POSITION_TEXTS = ("state", "link", "status", "command", "theta_from")
+POSITION_TEXTS = ("state", "link", "status", "command", "theta_from", "paths", "abilities")
 POSITION_ALWAYS = ("age", "stopped", "state", "link")
 """What is known of every robot."""
-POSITION_HEAD = 4
-ALIGNMENT = 8
-POSITION_VALUE = "<f8"
 
 
 class PositionForm(str, Enum):
@@ -38,9 +35,9 @@ class PositionColumns:
 
     ``columns`` are names of RobotReport's fields, in the order in which they follow, 64-bit little-endian
     floats, one for each of ``robots``; NaN is what is not known, and what is known of no robot is left out.
-    In columns ``state``, ``link``, ``status``, ``command`` and ``theta_from`` a number is a place in
-    ``words``, counted from 0. With ``everything`` they are all robots that there are; otherwise ``removed``
-    are gone for good.
+    In columns ``state``, ``link``, ``status``, ``command``, ``theta_from``, ``paths`` and ``abilities`` a
+    number is a place in ``words``, counted from 0. With ``everything`` they are all robots that there are;
+    otherwise ``removed`` are gone for good.
     """
 
     t: float

@@ -11,9 +11,17 @@ from dataclasses import dataclass, field
 from enum import Enum
 from typing import ClassVar
 
-from .checks import MessageError, Texts, check_finite, check_robot_name, check_stored_number, check_texts
+from .bounds import LONGEST_LABEL
+from .checks import (
+    MessageError,
+    Texts,
+    check_crs,
+    check_finite,
+    check_robot_name,
+    check_stored_number,
+    check_texts,
+)
 from .robot_state import RobotState
-from .robots import LONGEST_LABEL
 from .stopping import check_override, check_reason
 
 LONGEST_QUEUE = 1000
@@ -62,7 +70,8 @@ class QueueTask:
     id that the operator's side invents: given twice, done once. ``placement`` says which placed cone is
     collected. ``cone``, ``label``, ``layout`` and ``plan`` are the operator's own names, kept with what is
     measured. ``after`` names tasks, of any robot's queue, that must be done before this one is sent: its
-    queue waits until they are, with those too that are only given later.
+    queue waits until they are, with those too that are only given later. In the CRS ``crs``, if given, are
+    ``x``, ``y`` and ``path``, x (longitude, easting) before y; the gateway keeps metres in the site frame.
     """
 
     task: str
@@ -77,11 +86,13 @@ class QueueTask:
     plan: str | None = None
     placement: int | None = None
     after: list[str] | None = None
+    crs: str | None = None
     texts: ClassVar[Texts] = dict.fromkeys(("cone", "label", "layout", "plan"), LONGEST_LABEL)
 
     def __post_init__(self) -> None:
         check_task_id(self.task)
         check_finite(x=self.x, y=self.y, theta=self.theta)
+        check_crs(self.crs)
         check_texts(self)
         check_stored_number(placement=self.placement)
         if self.placement is not None and self.kind is not TaskKind.COLLECT:
@@ -238,6 +249,7 @@ class PauseQueue:
     """
 
     method: ClassVar[str] = "pause_queue"
+    stops: ClassVar[bool] = True
     robot: str
     reason: str | None = None
 
@@ -256,6 +268,7 @@ class PauseRobot:
     """
 
     method: ClassVar[str] = "pause_robot"
+    stops: ClassVar[bool] = True
     robot: str
     reason: str | None = None
 

@@ -14,13 +14,18 @@ from .supervision import AuditReport, SessionReport
 
 @dataclass(frozen=True)
 class HelloResult:
-    """The answer to ``hello``: which protocol is spoken here, the site, and who you are to the gateway."""
+    """The answer to ``hello``: which protocol is spoken here, the site, and who you are to the gateway.
+
+    ``database`` tells the gateway's database from every other: with another one, robots and commands of the
+    same names are others.
+    """
 
     protocol: int
     site: SiteReport
     operator: str
     role: Role
     emergency: EmergencyReport
+    database: str = ""
 
 
 @dataclass(frozen=True)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import ClassVar, Literal
 
-from .checks import MessageError, check_finite, check_robot_name
+from .checks import MessageError, check_crs, check_finite, check_robot_name
 from .stopping import check_reason
 
 LONGEST_ID = 64
@@ -18,7 +18,8 @@ class GetRoute:
     """Ask for the way along the roads from where ``robot`` is, or from ``start``, to (``x``, ``y``).
 
     ``surfaces`` names those that may be used (None: all), ``least_width`` metres that a road must have at
-    least. With ``avoid_reserved`` roads on which other robots' tasks lead are left out.
+    least. With ``avoid_reserved`` roads on which other robots' tasks lead are left out. Places are metres in
+    the site frame, or in the CRS ``crs``, such as ``EPSG:4326``: x (longitude, easting) before y.
     """
 
     method: ClassVar[str] = "get_route"
@@ -30,8 +31,10 @@ class GetRoute:
     surfaces: list[str] | None = None
     least_width: float = 0.0
     avoid_reserved: bool = False
+    crs: str | None = None
 
     def __post_init__(self) -> None:
+        check_crs(self.crs)
         check_finite(x=self.x, y=self.y, least_width=self.least_width)
         if (self.robot is None) == (self.start is None):
             raise MessageError("get_route: give one of robot and start: whose way it is, or from where")
@@ -53,9 +56,11 @@ class SurfaceMetres:
 class RouteReport:
     """A way that a robot can be sent by SetPath: ``points`` are those that it drives.
 
-    ``seconds`` are at the speeds of the roads. ``tight`` holds the corners that are tighter than the turning
-    radius of the site's settings; ``note`` says what is not as one would expect, such as that the way is no
-    road but a straight line. ``engine`` is what found it, ``off_goal`` metres from the goal to its road.
+    ``seconds`` are those of the robot: at ``speed_ms`` of the site's settings or the speed that it shows,
+    whichever is more, and nowhere faster than the road. ``tight`` holds the corners that are tighter than the
+    turning radius of the site's settings; ``note`` says what is not as one would expect, such as that the way
+    is no road but a straight line. ``engine`` is what found it, ``off_goal`` metres from the goal to its
+    road.
     """
 
     points: list[tuple[float, float]]
@@ -177,7 +182,8 @@ class ConflictReport:
 
     ``kind`` is ``head-on``, ``crossing``, ``following`` or ``standing``: ``other`` does not move then. From
     ``begins`` to ``ends`` (None: for good), seconds since 1970; nearest at ``nearest_at``, with ``metres``
-    between their middles, at (``x``, ``y``).
+    between their middles, at (``x``, ``y``). ``clearance`` is the least metres that should be between their
+    middles; None from an older gateway.
     """
 
     robot: str
@@ -189,6 +195,7 @@ class ConflictReport:
     x: float
     y: float
     ends: float | None = None
+    clearance: float | None = None
 
 
 @dataclass(frozen=True)
@@ -214,6 +221,46 @@ class HoldReport:
     until: float
     by: str
     command: str
+
+
+@dataclass(frozen=True)
+class GetWaysOut:
+    """Ask what two robots in each other's way can do about it; nothing is done."""
+
+    method: ClassVar[str] = "get_ways_out"
+    robot: str
+    other: str
+
+    def __post_init__(self) -> None:
+        check_robot_name(self.robot)
+        check_robot_name(self.other)
+        if self.robot == self.other:
+            raise MessageError(f"get_ways_out: robot and other are both {self.robot!r}; give two robots")
+
+
+@dataclass(frozen=True)
+class WayOut:
+    """What ``robot`` can do, and whether that works now: ``text`` says what would happen, or why not.
+
+    It gives way (resolve_conflict), or goes ``aside``: then ``points`` are the way to the nearest free place,
+    metres in the site frame, to be sent as any route.
+    """
+
+    robot: str
+    how: Literal["give way", "aside"]
+    possible: bool
+    text: str
+    points: list[tuple[float, float]] = field(default_factory=list)
+
+
+@dataclass(frozen=True)
+class WaysOut:
+    """What ``robot`` and ``other`` can do, reckoned at the gateway's time ``t``."""
+
+    t: float
+    robot: str
+    other: str
+    ways: list[WayOut] = field(default_factory=list)
 
 
 @dataclass(frozen=True)

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import uuid
 from dataclasses import dataclass, field
 from typing import ClassVar
 
+from .bounds import one_line
 from .checks import MessageError, check_command_id, check_robot_name
 
 LONGEST_REASON = 500
@@ -41,6 +43,7 @@ class AbortTask:
     """
 
     method: ClassVar[str] = "abort"
+    stops: ClassVar[bool] = True
     command: str
     robot: str | None = None
     aborts: str | None = None
@@ -64,17 +67,34 @@ class EmergencyStop:
     """
 
     method: ClassVar[str] = "emergency_stop"
+    stops: ClassVar[bool] = True
     command: str
     reason: str | None = None
 
     def __post_init__(self) -> None:
         check_command_id(self.command)
 
+    @classmethod
+    def understood(cls, params: object) -> dict[str, object]:
+        """Return parameters of which a stop can be made, whatever somebody sent: to stop is never refused.
+
+        In place of an id that is none comes one that is the same for the same, so that it is done once.
+        """
+        given = dict(params) if isinstance(params, dict) else {}
+        sent = given.get("command")
+        try:
+            check_command_id(sent if isinstance(sent, str) else "")
+        except MessageError:
+            id = uuid.uuid4() if sent is None else uuid.uuid5(uuid.NAMESPACE_OID, repr(sent))
+            given["command"] = str(id)
+        if not isinstance(given.get("reason"), str):
+            given.pop("reason", None)
+        return given
+
     @property
     def line(self) -> str | None:
         """The reason as one line of the log."""
-        text = (self.reason or "")[:LONGEST_REASON]
-        return "".join(c if c.isprintable() else " " for c in text).strip() or None
+        return one_line((self.reason or "")[:LONGEST_REASON], LONGEST_REASON).strip() or None
 
 
 @dataclass(frozen=True)

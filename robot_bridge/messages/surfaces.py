@@ -5,19 +5,17 @@ The paper's tables have no such operation: GetSurface and SetSurface are this pr
 
 from __future__ import annotations
 
-import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import ClassVar, Literal
 
-from .checks import MessageError, Texts, check_finite, check_texts
+from .checks import MessageError, Texts, check_crs, check_finite, check_texts
 
 MOST_OF_A_ROBOT = 1000
 MOST_OF_A_DESK = 10_000
 """Places in one question."""
 LONGEST_SOURCE = 128
 """characters."""
-_CRS = re.compile(r"EPSG:\d{4,6}")
 
 
 @dataclass(frozen=True)
@@ -31,6 +29,7 @@ class GetSurface:
     points: list[tuple[float, float]]
     crs: str | None = None
     source: str | None = None
+    magic: int | None = None
     acknowledged: ClassVar[bool] = True
     texts: ClassVar[Texts] = {"source": LONGEST_SOURCE}
 
@@ -86,5 +85,4 @@ def _check(points: Sequence[tuple[float, float]], crs: str | None, most: int) ->
         raise MessageError(f"points holds {len(points)} points; give 1 to {most}, more in further questions")
     for number, (x, y) in enumerate(points):
         check_finite(**{f"points[{number}].x": x, f"points[{number}].y": y})
-    if crs is not None and _CRS.fullmatch(crs) is None:
-        raise MessageError(f"crs is {crs[:40]!r}; give a code such as 'EPSG:4326', or none: the site frame")
+    check_crs(crs)

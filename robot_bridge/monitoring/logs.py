@@ -16,7 +16,7 @@ _SECRETS = (
     (re.compile(r"(?i)\b(bearer\s+)[\w.~+/=-]+"), r"\1***"),
     (re.compile(r"(?i)\b(\w+(?:\+\w+)?://[^\s/:@]*):[^\s/]*@"), r"\1:***@"),
     (re.compile(r"(?i)\b(password|passwd|token|secret)(\s*=\s*)(\"[^\"]*\"|'[^']*'|[^\s,;&]+)"), r"\1\2***"),
-    (re.compile(r"\b(fleet_(?:op|robot)_)[\w-]+"), r"\1***"),
+    (re.compile(r"\b(fleet_(?:op|robot|link)_)[\w-]+"), r"\1***"),
 )
 
 
@@ -30,15 +30,28 @@ def without_secrets(text: str) -> str:
     return text
 
 
+def printable(text: str) -> str:
+    """Return ``text`` with an escape for whatever is no printable character.
+
+    A name, a status or an error comes from outside: with a line break in it, it would forge lines of the log,
+    and with others it would do to the terminal what it likes.
+    """
+    if text.isprintable():
+        return text
+    return "".join(c if c.isprintable() else c.encode("unicode_escape").decode("ascii") for c in text)
+
+
 class PlainLines(logging.Formatter):
     """Lines for people: time, level, text."""
 
-    def __init__(self) -> None:
-        super().__init__("%(asctime)s %(levelname)s %(message)s")
-
     def format(self, record: logging.LogRecord) -> str:
-        """Return the line of ``record``, with a traceback behind it where there is one."""
-        return without_secrets(super().format(record))
+        """Return the line of ``record``, with an indented traceback behind it where there is one."""
+        text = printable(without_secrets(record.getMessage()))
+        lines = [f"{self.formatTime(record)} {record.levelname} {text}"]
+        if record.exc_info:
+            traceback = without_secrets(self.formatException(record.exc_info))
+            lines += [f"    {printable(line)}" for line in traceback.splitlines()]
+        return "\n".join(lines)
 
 
 class JsonLines(logging.Formatter):
@@ -54,7 +67,12 @@ class JsonLines(logging.Formatter):
         }
         if record.exc_info:
             entry["exception"] = without_secrets(self.formatException(record.exc_info))
-        return json.dumps(entry, ensure_ascii=False)
+        text = json.dumps(entry, ensure_ascii=False)
+        return text if text.isprintable() else "".join(map(_in_json, text))
+
+
+def _in_json(character: str) -> str:
+    return character if character.isprintable() else json.dumps(character)[1:-1]
 
 
 def set_up_log(form: LogFormat = "text", level: LogLevel = "warning", stream: TextIO | None = None) -> None:

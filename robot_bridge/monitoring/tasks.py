@@ -95,6 +95,45 @@ class Trouble:
             self._told = (str(error), now)
 
 
+class Steps:
+    """The steps of one work: each is done whatever becomes of the others."""
+
+    def __init__(self, name: str) -> None:
+        self._name = name
+        self._told: dict[str, tuple[str, float]] = {}
+
+    async def run(self, steps: Mapping[str, Work]) -> None:
+        """Do every step in its order; the log is told of each that fails, once a minute while it does.
+
+        What nobody foresaw stays with its step: what a robot or a row has brought about there would end the
+        gateway, and the next one too.
+
+        :raises BridgeError: the first one of any step, after the last step.
+        """
+        failed: list[BridgeError] = []
+        for step, work in steps.items():
+            try:
+                await work()
+                self._told.pop(step, None)
+            except BridgeError as error:
+                failed.append(error)
+                if self._is_news(step, error):
+                    log.error("%s, %s: %s; trying again until it works", self._name, step, error)
+            except Exception as error:
+                if self._is_news(step, error):
+                    log.exception("%s, %s: unexpected %s", self._name, step, type(error).__name__)
+        if failed:
+            raise failed[0]
+
+    def _is_news(self, step: str, error: Exception) -> bool:
+        text, now = f"{type(error).__name__} {error}", time.monotonic()
+        told, at = self._told.get(step, ("", 0.0))
+        if text == told and now - at <= SAY_AGAIN_AFTER:
+            return False
+        self._told[step] = text, now
+        return True
+
+
 async def every(seconds: float, work: Work, name: str, tally: Tally) -> None:
     """Run ``work`` every so many seconds for ever, each success noted as a beat of ``name``."""
     while True:

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from ..commanding.book import CommandBook
+from ..planning import Planner, StraightPlanner
 from ..robots import Robots
 from ..served_site import ServedSite
 from ..store.database import Database
@@ -14,7 +15,10 @@ from .book import QueueBook
 
 @dataclass(frozen=True)
 class QueueContext:
-    """The queues in their ``book``, and what they depend on: site, robots, commands, database, clock (s)."""
+    """The queues in their ``book``, and what they depend on: site, robots, commands, database, clock (s).
+
+    ``planner`` finds the ways to tasks without a path.
+    """
 
     site: ServedSite
     robots: Robots
@@ -22,3 +26,4 @@ class QueueContext:
     book: QueueBook
     database: Database
     clock: Callable[[], float]
+    planner: Planner = field(default_factory=StraightPlanner)

@@ -29,6 +29,8 @@ from ..messages import (
     TaskKind,
 )
 from ..messages.queues import check_path
+from ..monitoring.unforeseen import note_unforeseen
+from ..places import crossing
 from ..queues import life
 from ..queues.legs import legs, path_left, to_the_end
 from ..queues.life import Path
@@ -57,6 +59,7 @@ class QueueDriving:
         self._book = context.book
         self._settling = QueueSettling(context)
         self._precedence = Precedence(context.book, context.database)
+        self._planner = context.planner
         self._database = context.database
         self._clock = context.clock
         self._due: set[str] = set()
@@ -85,7 +88,7 @@ class QueueDriving:
         self._due.add(robot)
         self._event.set()
 
-    def take(self, report: CommandReport) -> None:
+    def note_step(self, report: CommandReport) -> None:
         """Note what became of a command; called with each step of every one."""
         queue = self._book.get(report.robot)
         head = queue.head
@@ -183,6 +186,9 @@ class QueueDriving:
             self.look(robot)
         except StoreError as error:
             log.error("queue of %s: %s; it is looked at again", robot, error)
+        except Exception:
+            # The queues of all other robots go on.
+            note_unforeseen(log, f"queue of {robot}; it is looked at again")
 
     def _is_back(self, robot: str, away: float) -> None:
         queue = self._book.get(robot)
@@ -243,7 +249,10 @@ class QueueDriving:
         other = self.waits_for(robot, head.id)
         if other is not None:
             return f"waits for {other}"
-        if head.task.path is not None and not self._robots.get(robot).located:
+        known = self._robots.get(robot)
+        finds_way = self._planner.has_roads and not known.asks_path
+        if not known.located and (head.task.path is not None or finds_way):
+            # Where it is now its path begins.
             return "waits for the robot to say where it is"
         # What was begun is not given up because of what another robot does.
         return None if head.is_current else await self._precedence.waits_for(robot, head.task)
@@ -260,13 +269,35 @@ class QueueDriving:
     async def _message(self, queue: Queue, head: QueuedTask) -> SetPath | SetPosEnd:
         message = legs(head.task, self._site.settings.cones.offset)[head.leg]
         if not isinstance(message, SetPath):
-            return message
+            return await self._with_way(queue.robot, head, message)
         pose = self._robots.get(queue.robot).pose
         assert pose is not None
         before = None if head.command is None else await self._stored(head.command)
         driven = 0.0 if before is None else before.driven or 0.0
         join = before is not None or head.task.kind is not TaskKind.DRIVE
         return path_left(message, (pose.x, pose.y), driven, join=join)
+
+    async def _with_way(self, robot: str, head: QueuedTask, target: SetPosEnd) -> SetPath | SetPosEnd:
+        """Return what sends a robot to a target without a path: along the roads from where it is now.
+
+        It is the bare target for a robot that asks for its path, at the end of a task's path, and where no
+        roads are near. A robot that does not take cones with a path drives straight to them.
+
+        :raises RefusedError: when no way leads there, or the straight one leads through a keepout.
+        """
+        start = self._robots.straight_from(robot, target)
+        if start is None or head.leg > 0:
+            return target
+        carries = target.cone or target.collect
+        if self._planner.has_roads and (not carries or self._robots.get(robot).places_on_paths):
+            planned = await asyncio.to_thread(self._planner.path, start, (target.x, target.y))
+            if planned.along_roads:
+                return SetPath(list(planned.points), target.theta, target.cone or None, target.collect)
+        straight = [start, (target.x, target.y)]
+        crossed = await asyncio.to_thread(self._site.keepouts_crossed, [straight])
+        if crossed:
+            raise RefusedError(f"{crossing(straight, crossed[0])}; give the task a path around it")
+        return target
 
     async def _send(
         self,

@@ -5,10 +5,12 @@ from __future__ import annotations
 import contextlib
 import uuid
 from collections.abc import AsyncIterator
+from dataclasses import replace
 from functools import partial
 
 from ..command_life.open_command import Order, because
 from ..errors import OutdatedError, RefusedError
+from ..foreign_places import tasks_in_site_frame
 from ..messages import (
     Abort,
     AddTasks,
@@ -55,6 +57,7 @@ class QueueOrders:
 
     async def set(self, request: SetQueue, operator: str) -> QueueReport:
         """Replace what is not begun."""
+        request = replace(request, tasks=await tasks_in_site_frame(self._site, request.tasks))
         async with self._editing(request.robot, request.revision) as queue:
             known = await self._checked(request, queue)
             after = edits.replaced(queue, request.tasks, known, operator, self._clock())
@@ -62,6 +65,7 @@ class QueueOrders:
 
     async def add(self, request: AddTasks, operator: str) -> QueueReport:
         """Put tasks into a queue."""
+        request = replace(request, tasks=await tasks_in_site_frame(self._site, request.tasks))
         async with self._editing(request.robot, request.revision) as queue:
             known = await self._checked(request, queue)
             now = self._clock()
@@ -134,6 +138,13 @@ class QueueOrders:
             else:
                 await self._book.stored(names, self._database.run(write))
             return [self._book.accept(after[name]) for name in names]
+
+    async def end(self, robot: str, operator: str, reason: str) -> None:
+        """End every task of a robot's queue, begun or not: nobody is left to do it."""
+        async with self._book.holding([robot]):
+            queue = self._book.get(robot)
+            if robot in self._robots and queue.tasks:
+                await self._edit(queue, queue.with_tasks((), edited=True), operator, reason)
 
     async def read(self, request: GetQueue) -> list[QueueReport]:
         """Return queues as they are."""

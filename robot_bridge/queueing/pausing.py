@@ -80,7 +80,8 @@ class RobotPauses:
             kept.append(task_of(doing, self._site.settings.cones.offset, here))
         # A target that is waited on the way to, or a task of the queue, is kept as a whole already.
         if row is not None and row.task is None and not (doing and isinstance(doing.message, SetPosEnd)):
-            kept.append(task_of_rest(SetPath(**row.rest), row.command, row.by, self._clock()))
+            rest, offset = SetPath(**row.rest), self._site.settings.cones.offset
+            kept.append(task_of_rest(rest, offset, row.command, row.by, self._clock()))
         return kept
 
 

@@ -26,7 +26,7 @@ def task_of(command: OpenCommand, offset: Offset, here: Place | None) -> QueuedT
     if isinstance(message, SetPosEnd):
         task = _to_target(id, message, offset)
     else:
-        task = _along(id, message if command.driven else _with_way_to_it(message, here))
+        task = _along(id, message if command.driven else _with_way_to_it(message, here), offset)
     return QueuedTask(
         task,
         report.operator,
@@ -38,9 +38,9 @@ def task_of(command: OpenCommand, offset: Offset, here: Place | None) -> QueuedT
     )
 
 
-def task_of_rest(rest: SetPath, command: str, by: str, at: float) -> QueuedTask:
+def task_of_rest(rest: SetPath, offset: Offset, command: str, by: str, at: float) -> QueuedTask:
     """Return the task of a robot that was to be sent along ``rest`` from where ``command`` leads it."""
-    return QueuedTask(_along(_id("rest", command), rest), by, at)
+    return QueuedTask(_along(_id("rest", command), rest, offset), by, at)
 
 
 def halted(queue: Queue, kept: Sequence[QueuedTask], reason: str, by: str, at: float) -> Queue:
@@ -57,21 +57,31 @@ def _id(what: str, command: str) -> str:
 
 
 def _to_target(id: str, target: SetPosEnd, offset: Offset) -> QueueTask:
-    kind, x, y = TaskKind.DRIVE, target.x, target.y
-    if target.cone or target.collect:
-        kind = TaskKind.PLACE if target.cone else TaskKind.COLLECT
-        if target.theta is not None:
-            x, y = cone_place((x, y, target.theta), offset)
+    kind, x, y = _kind(target), target.x, target.y
+    if kind is not TaskKind.DRIVE and target.theta is not None:
+        x, y = cone_place((x, y, target.theta), offset)
     return QueueTask(id, x, y, target.theta, kind)
 
 
-def _along(id: str, path: SetPath) -> QueueTask:
+def _along(id: str, path: SetPath, offset: Offset) -> QueueTask:
+    """Return the task of a path; where a cone of it stands off its robot, the path leads up to the cone."""
     x, y = path.points[-1]
-    return QueueTask(id, x, y, path.theta, path=path.points)
+    kind = _kind(path)
+    if kind is TaskKind.DRIVE or offset == (0.0, 0.0) or path.theta is None:
+        return QueueTask(id, x, y, path.theta, kind, path=path.points)
+    x, y = cone_place((x, y, path.theta), offset)
+    return QueueTask(id, x, y, path.theta, kind, path=[*path.points, (x, y)])
+
+
+def _kind(end: SetPath | SetPosEnd) -> TaskKind:
+    """Return what a robot does at the end of what it was sent."""
+    if end.cone:
+        return TaskKind.PLACE
+    return TaskKind.COLLECT if end.collect else TaskKind.DRIVE
 
 
 def _with_way_to_it(path: SetPath, here: Place | None) -> SetPath:
     """Return a path with the straight way to its beginning, for a robot that has not come to any of it."""
     if here is None or Polyline(path.points).feet(*here)[1].min() <= CORRIDOR:
         return path
-    return SetPath([here, *path.points], path.theta)
+    return dataclasses.replace(path, points=[here, *path.points])

@@ -87,8 +87,11 @@ def to_the_end(task: QueueTask, offset: Offset, left: list[Place]) -> list[Place
     A cone's path was sent without its last metres.
     """
     short_by = 0.0 if task.kind is TaskKind.DRIVE else math.hypot(*offset)
-    if task.path is None or short_by == 0:
+    if short_by == 0:
         return left
+    if task.path is None:
+        # It was found by the gateway, to where the robot stands for the cone.
+        return [*left, (task.x, task.y)]
     line = Polyline(task.path)
     tail = [point for point, at in zip(task.path, line.stations, strict=True) if at > line.length - short_by]
     return [*left, *(tail or [line.end])]

@@ -24,6 +24,7 @@ from ..messages import (
     ReplannedRobot,
     SetPath,
     SetPosEnd,
+    path_to_end,
 )
 from ..planning import Point
 from ..store import answers
@@ -160,7 +161,7 @@ class Detours:
             points, none = await asyncio.to_thread(self._other_way, way)
             if points is None:
                 return await self._without_way(way, f"{why}; {none}", operator)
-            path = SetPath(points, way.task.theta)
+            path = path_to_end(way.task, points)
             command = await self.send(way, path, operator, why[:500])
             text = f"{way.robot} was sent another way: {why}"
             return ReplannedRobot(way.robot, "another way", text, command)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import threading
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from contextlib import contextmanager
@@ -25,13 +26,19 @@ from .site_roads import SiteRoads, Stretch
 
 
 class Wanted(NamedTuple):
-    """What a way is to be like, beside open: :class:`.Restrictions`, and paths whose roads it is to avoid."""
+    """Requirements of a way beside open roads: :class:`.Restrictions`, and paths whose roads it avoids.
+
+    ``speed`` is the robot's in m/s; where it is less than the site's setting, that counts.
+    """
 
     restrictions: Restrictions = Restrictions()
     avoid: Sequence[Sequence[Point]] = ()
+    speed: float = 0.0
 
 
 ANY = Restrictions()
+BESIDE_M = 3.0
+"""Metres to a place that are driven straight: a robot stands off the end of a path by 2 m at most."""
 
 
 class NoWayError(RefusedError):
@@ -55,6 +62,11 @@ class RoadPlanner:
         with refusals():
             self._roads = SiteRoads.of(site())
         self._closed = self._roads.closed_roads()
+
+    @property
+    def has_roads(self) -> bool:
+        """Whether the site has any roads."""
+        return self._roads.router is not None
 
     def path(self, start: Point, goal: Point) -> Planned:
         """Return the path, a straight line with a note where the site has no roads near both places.
@@ -93,11 +105,12 @@ class RoadPlanner:
             except NoWayError as error:
                 more = " Roads on which other robots' tasks lead were left out." if avoid else ""
                 raise RefusedError(f"{error}{more}") from error
+        speed = max(wanted.speed, self._site().settings.routes.speed_ms)
         if isinstance(found, str):
             why = f" and not along roads: {found}" if found else "; the site has no roads"
-            return _straight(start, goal, f"the way is a straight line{why}")
+            return _straight(start, goal, speed, f"the way is a straight line{why}")
         # Long ways take long to make dense, and need nobody to wait for the roads meanwhile.
-        return self._reported(found, start, goal)
+        return self._reported(found, start, goal, speed)
 
     def stretch(self, place: Point, reach: float) -> Stretch:
         """Return the road nearest to ``place``, from junction to junction.
@@ -161,7 +174,10 @@ class RoadPlanner:
         if roads.router is None:
             return ""
         roads.check_open(start, goal)
-        width = max(wanted.least_width, self._how().robot_width)
+        robot_width = self._how().robot_width
+        if _is_beside(roads.site, start, goal, robot_width / 2):
+            return f"the place is {math.dist(start, goal):.1f} m away"
+        width = max(wanted.least_width, robot_width)
         try:
             return roads.router.route(start, goal, replace(wanted, least_width=width), avoid=avoid)
         except OffNetworkError as error:
@@ -175,9 +191,9 @@ class RoadPlanner:
         if isinstance(found, str):
             note = f"the path is a straight line and not along roads: {found}" if found else ""
             return Planned([start, goal], note)
-        return Planned(_rounded(self._dense(found, start, goal).points, start, goal))
+        return Planned(_rounded(self._dense(found, start, goal).points, start, goal), along_roads=True)
 
-    def _reported(self, route: Route, start: Point, goal: Point) -> RouteReport:
+    def _reported(self, route: Route, start: Point, goal: Point, speed: float) -> RouteReport:
         dense = self._dense(route, start, goal)
         metres: dict[str, float] = {}
         for surface, length in zip(route.surfaces, route.lengths.tolist(), strict=True):
@@ -185,7 +201,7 @@ class RoadPlanner:
         return RouteReport(
             points=_rounded(dense.points, start, goal),
             metres=round(float(np.hypot(*np.diff(dense.points, axis=0).T).sum()), 2),
-            seconds=round(route.seconds, 1),
+            seconds=round(route.seconds_at(speed), 1),
             surfaces=[SurfaceMetres(surface, round(length, 2)) for surface, length in metres.items()],
             tight=[(round(x, 2), round(y, 2)) for x, y in dense.tight.tolist()],
             off_goal=round(route.off_goal, 2),
@@ -227,21 +243,31 @@ def refusals() -> Iterator[None]:
         ) from error
 
 
+def _is_beside(site: Site, start: Point, goal: Point, clearance: float) -> bool:
+    """Tell whether a robot at ``start`` is so near to ``goal`` that roads would only lead it round.
+
+    As at the end of the path of a cone's task: cones stand around it, and the path kept off them. Neither a
+    keepout nor, within ``clearance`` metres, an obstacle of the site is in between.
+    """
+    if math.dist(start, goal) > BESIDE_M or site.keepout_between([start, goal]) is not None:
+        return False
+    return not site.fences.obstacles.are_between(start, goal, clearance)
+
+
 def _check_keepouts(site: Site, planned: Planned) -> None:
     """Raise RefusedError for a keepout between the ends: roads lead around them, straight lines do not."""
-    number = site.keepout_index.between_ends(planned.points) if site.keepouts else None
-    if number is not None:
+    keepout = site.keepout_between(planned.points)
+    if keepout is not None:
         x, y = planned.points[-1]
-        keepout = site.keepouts[number].label
         why = f": {planned.note}" if planned.note else ""
         raise RefusedError(
             f"GetPath: the way to ({x:.2f}, {y:.2f}) leads through the keepout {keepout!r}{why}"
         )
 
 
-def _straight(start: Point, goal: Point, note: str) -> RouteReport:
+def _straight(start: Point, goal: Point, speed: float, note: str) -> RouteReport:
     metres = float(np.hypot(goal[0] - start[0], goal[1] - start[1]))
-    return RouteReport([start, goal], round(metres, 2), round(metres, 1), note=note)
+    return RouteReport([start, goal], round(metres, 2), round(metres / speed, 1), note=note)
 
 
 def _rounded(points: Floats, start: Point, goal: Point) -> list[Point]:

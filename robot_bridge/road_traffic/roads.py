@@ -8,6 +8,7 @@ from typing import Any
 from ..commanding.book import CommandBook
 from ..commanding.orders import Orders
 from ..messages import CommandReport
+from ..monitoring.tasks import Steps
 from ..robots import Robots
 from ..served_site import ServedSite
 from ..store.database import Database
@@ -38,6 +39,7 @@ class Roads:
         announce: Callable[[str, str, dict[str, Any]], None],
     ) -> None:
         self.planner = planner
+        self._steps = Steps("roads")
         self.ways = Ways(robots, commands)
         detours = Detours(
             self.ways, planner, orders, queues, commands, lambda: site.settings.routes.no_way == "stop"
@@ -51,7 +53,7 @@ class Roads:
             planner,
             detours,
             self.waiting,
-            lambda: site.settings.routes,
+            lambda: site.site,
             announce,
         )
 
@@ -60,15 +62,19 @@ class Roads:
         await self.closures.restore()
         await self.waiting.restore()
 
-    def take(self, command: CommandReport) -> None:
+    def note_step(self, command: CommandReport) -> None:
         """Note a step of a command; called with each."""
-        self.waiting.take(command)
+        self.waiting.note_step(command)
 
     async def watch(self, *, listened_to: bool) -> None:
         """Open roads that were closed until now; see to robots on closed ones, and in each other's way.
 
         Conflicts are looked for only while operators are ``listened_to`` be told of them.
         """
-        await self.closures.expire()
-        await self.closures.catch_up()
-        await self.traffic.watch(listened_to=listened_to)
+        await self._steps.run(
+            {
+                "closed roads": self.closures.expire,
+                "detours": self.closures.catch_up,
+                "traffic": lambda: self.traffic.watch(listened_to=listened_to),
+            }
+        )

@@ -5,7 +5,7 @@ from __future__ import annotations
 import logging
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -13,15 +13,21 @@ from numpy.typing import NDArray
 
 from ..errors import RefusedError
 from ..roads.along import edges_along
-from ..roads.centrelines import Floats
+from ..roads.centrelines import Floats, Ints
 from ..roads.closures import edges_of_closure
-from ..roads.network import build_network
+from ..roads.network import Network, build_network
 from ..roads.routes import REACH, Router
+from ..roads.surfaces.index import NOWHERE, SurfaceIndex
 from ..sites.road_lines import road_lines
 from ..sites.site import Site
 from .closed_roads import ClosedRoads, Place
 
 log = logging.getLogger(__name__)
+
+_APART_M = 2.0
+"""Metres between the places of an edge that are looked at."""
+_MOST_PLACES = 50
+"""Places of one edge that are looked at."""
 
 
 class Stretch(NamedTuple):
@@ -46,6 +52,8 @@ class SiteRoads:
         if not site.centrelines:
             return cls(site, None, np.zeros(0, bool))
         network = build_network(road_lines(site.centrelines))
+        if (network.edges.surface == "").any():
+            network = _with_surfaces(network, site.surface_index)
         router = Router(network)
         closed = site.keepout_index.edges_through(network)
         router.close(closed.tolist())
@@ -143,3 +151,33 @@ class SiteRoads:
             self.router.open(sorted(opened))
         if closed:
             self.router.close(sorted(closed))
+
+
+def _with_surfaces(network: Network, index: SurfaceIndex) -> Network:
+    """Return ``network`` with a surface for each edge that has none and lies on one by more than half.
+
+    Roads name their surface themselves where it is known; published ones often say it by their areas alone.
+    """
+    edges = network.edges
+    unknown = np.flatnonzero(edges.surface == "")
+    if not len(unknown) or not index.surfaces:
+        return network
+    surface = edges.surface.copy()
+    for edge in unknown.tolist():
+        found = index.at_many(_places_along(edges.line(edge), float(network.lengths[edge])))
+        surface[edge] = _most_common(found, index)
+    return replace(network, edges=replace(edges, surface=surface))
+
+
+def _places_along(line: Floats, metres: float) -> Floats:
+    """Return the middles of equal steps along ``line``, (k, 2)."""
+    count = int(np.clip(np.ceil(metres / _APART_M), 1, _MOST_PLACES))
+    stations = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(line, axis=0).T))])
+    at = (np.arange(count) + 0.5) * (stations[-1] / count)
+    return np.column_stack([np.interp(at, stations, line[:, k]) for k in (0, 1)])
+
+
+def _most_common(found: Ints, index: SurfaceIndex) -> str:
+    names = [index.surfaces[number].label for number in found.tolist() if number != NOWHERE]
+    best = max(sorted(set(names)), key=names.count, default="")
+    return best if 2 * names.count(best) > len(found) else ""

@@ -5,17 +5,27 @@ from __future__ import annotations
 import asyncio
 import math
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from typing import Any, NamedTuple
 
 from ..errors import RefusedError
-from ..messages import ConflictResolved, Conflicts, ResolveConflict, SetPath, to_json
+from ..messages import (
+    ConflictResolved,
+    Conflicts,
+    GetWaysOut,
+    ResolveConflict,
+    WayOut,
+    WaysOut,
+    path_to_end,
+    to_json,
+)
 from ..planning import Point
 from ..robots import Robots
-from ..sites.settings import RouteSettings
+from ..sites.site import Site
 from ..traffic.conflicts import conflicts_with, find_conflicts
 from ..traffic.giving_way import give_way
 from ..traffic.movement import Movement, driving
+from .aside import REACH, way_aside
 from .detours import Detours
 from .road_planning import RoadPlanner, Wanted
 from .traffic_picture import Seen, conflict_report, cut
@@ -54,7 +64,7 @@ class TrafficControl:
         roads: RoadPlanner | None,
         detours: Detours,
         waiting: WaitingRobots,
-        settings: Callable[[], RouteSettings],
+        site: Callable[[], Site],
         announce: Callable[[str, str, dict[str, Any]], None],
     ) -> None:
         self._clock = clock
@@ -63,7 +73,7 @@ class TrafficControl:
         self._roads = roads
         self._detours = detours
         self._waiting = waiting
-        self._settings = settings
+        self._site = site
         self._announce = announce
         self._lock = asyncio.Lock()
         self._told = False
@@ -71,7 +81,7 @@ class TrafficControl:
 
     async def conflicts(self) -> Conflicts:
         """Return the conflicts of all robots as they are on their ways now."""
-        seen = self._look()
+        seen = self.situation()
         found = await asyncio.to_thread(_found, seen)
         return Conflicts(seen.now, found, self._waiting.report())
 
@@ -80,10 +90,10 @@ class TrafficControl:
         async with self._lock:
             await self._waiting.catch_up()
             if self._waiting:
-                await self._waiting.see_to(self._look())
+                await self._waiting.see_to(self.situation())
         if not listened_to or time.monotonic() < self._next:
             return
-        seen, began = self._look(), time.monotonic()
+        seen, began = self.situation(), time.monotonic()
         found = await asyncio.to_thread(_found, seen) if seen.underway else []
         self._next = time.monotonic() + (time.monotonic() - began) / SHARE
         report = Conflicts(seen.now, found, self._waiting.report())
@@ -92,26 +102,52 @@ class TrafficControl:
             self._announce("conflicts", "conflicts", to_json(report))
         self._told = something
 
+    async def ways_out(self, request: GetWaysOut) -> WaysOut:
+        """Return what each of two robots in each other's way can do; nothing is done, nobody is told."""
+        return await asyncio.to_thread(self._ways_out, self.situation(), request, self._site())
+
     async def resolve(self, request: ResolveConflict, operator: str) -> ConflictResolved:
         """Let ``robot`` wait for ``other``, or send it another way.
 
         :raises RefusedError: when there is no such conflict, or it cannot be resolved so; nothing is changed.
         """
         async with self._lock:
-            plan = await asyncio.to_thread(self._plan, self._look(), request)
+            plan = await asyncio.to_thread(self._plan, self.situation(), request)
             if plan.until is None:
                 return await self._send_round(request, plan, operator)
             return await self._let_wait(request, plan, operator)
 
-    def _look(self) -> Seen:
-        settings, places = self._settings(), {}
-        for name in self._robots.names():
+    def situation(self, names: Iterable[str] | None = None) -> Seen:
+        """Return what is known now of the robots called ``names``, without them of all that take commands.
+
+        Of what is only seen nobody knows the way: :mod:`..nearness` tells of that.
+        """
+        settings, places = self._site().settings.routes, {}
+        for name in self._robots.commanded() if names is None else names:
             pose = self._robots.get(name).pose
             if pose is not None:
                 usual = abs(pose.v) >= SLOWEST * settings.speed_ms
                 places[name] = (pose.x, pose.y), abs(pose.v) if usual else settings.speed_ms
         placed = frozenset(name for name in places if self._robots.is_placed(name))
         return Seen(self._clock(), settings, self._ways.all(), places, self._waiting.rows(), placed)
+
+    def _ways_out(self, seen: Seen, request: GetWaysOut, site: Site) -> WaysOut:
+        pairs = (request.robot, request.other), (request.other, request.robot)
+        ways = [self._giving_way(seen, *pair) for pair in pairs]
+        ways += [_aside(seen, site, *pair) for pair in pairs]
+        return WaysOut(seen.now, request.robot, request.other, ways)
+
+    def _giving_way(self, seen: Seen, robot: str, other: str) -> WayOut:
+        try:
+            plan = self._plan(seen, ResolveConflict(robot, other))
+        except RefusedError as error:
+            return WayOut(robot, "give way", False, str(error))
+        if plan.until is None:
+            text = f"{robot} takes another way and arrives about {plan.later:.0f} s later"
+            return WayOut(robot, "give way", True, text)
+        x, y = cut(plan.points, plan.station)[0][-1]
+        text = f"{robot} waits at ({x:.1f}, {y:.1f}) for {other}, about {plan.later:.0f} s"
+        return WayOut(robot, "give way", True, text)
 
     def _plan(self, seen: Seen, request: ResolveConflict) -> Plan:
         """Return how the robot is out of the way soonest; raises RefusedError where it cannot be."""
@@ -133,7 +169,7 @@ class TrafficControl:
         if underway is None or request.robot in seen.holds:
             raise RefusedError(
                 f"{request.robot} has no task or waits already, so it cannot give way; "
-                f"let {request.other} do it"
+                f"let {request.other} do it, or send {request.robot} aside"
             )
         way = underway.way()
         plans = []
@@ -143,7 +179,8 @@ class TrafficControl:
             plans.append(self._round(way, movements, seen))
         good = [plan for plan in plans if plan is not None]
         if not good:
-            raise RefusedError(_unresolved(request))
+            moves = any(one.robot == request.other for one in seen.underway)
+            raise RefusedError(_unresolved(request, moves))
         return min(good, key=lambda plan: plan.later)
 
     def _round(self, way: Way, movements: dict[str, Movement], seen: Seen) -> Plan | None:
@@ -167,7 +204,7 @@ class TrafficControl:
 
     async def _send_round(self, request: ResolveConflict, plan: Plan, operator: str) -> ConflictResolved:
         robot, reason = plan.way.robot, f"out of the way of {request.other}"
-        path = SetPath(plan.points, plan.way.task.theta)
+        path = path_to_end(plan.way.task, plan.points)
         command = await self._detours.send(plan.way, path, operator, reason)
         text = f"{robot} was sent another way, {reason}, and arrives about {plan.later:.0f} s later"
         return ConflictResolved(robot, "another way", text, command, round(plan.later, 1))
@@ -183,8 +220,33 @@ class TrafficControl:
 
 
 def _found(seen: Seen) -> list[Any]:
-    movements = list(seen.movements().values())
-    return [conflict_report(one) for one in find_conflicts(movements, seen.settings.margin_m, seen.now)]
+    movements, settings = list(seen.movements().values()), seen.settings
+    clearance = 2 * settings.radius_m + settings.margin_m
+    return [conflict_report(one, clearance) for one in find_conflicts(movements, settings.margin_m, seen.now)]
+
+
+def _aside(seen: Seen, site: Site, robot: str, other: str) -> WayOut:
+    """Return where a robot that stands goes so that it is in nobody's way, or why it cannot."""
+    movements = seen.movements()
+    why = ""
+    if robot not in seen.placed:
+        why = f"it is not known where {robot} is now"
+    elif any(one.robot == robot for one in seen.underway) or robot in seen.holds:
+        why = f"{robot} has a task or waits; let it give way, or stop it"
+    elif other not in movements:
+        why = f"it is not known where {other} is"
+    if why:
+        return WayOut(robot, "aside", False, f"{robot} cannot go aside: {why}")
+    others = [movement for name, movement in movements.items() if name != robot]
+    points = way_aside(
+        movements[robot], others, site, seen.places[robot][1], seen.settings.margin_m, seen.now
+    )
+    if points is None:
+        why = f"no free place within {REACH:g} m that it could reach before others come; stop {other}"
+        return WayOut(robot, "aside", False, f"{robot} cannot go aside: {why}")
+    x, y = points[-1]
+    text = f"{robot} goes {math.dist(*points):.1f} m aside, to ({x:.1f}, {y:.1f})"
+    return WayOut(robot, "aside", True, text, points)
 
 
 def _waiting(way: Way, movements: dict[str, Movement], seen: Seen) -> Plan | None:
@@ -198,13 +260,15 @@ def _waiting(way: Way, movements: dict[str, Movement], seen: Seen) -> Plan | Non
     return Plan(way, way.points, wait.seconds, wait.station, until)
 
 
-def _unresolved(request: ResolveConflict) -> str:
+def _unresolved(request: ResolveConflict, other_moves: bool) -> str:
+    """Return why a robot cannot give way, and what can be done: a robot that stands can only go aside."""
     how = {
         "waiting": "waiting does not resolve it, or it is too late for that",
         "route": "no other way on the roads meets nobody",
         "either": "neither waiting nor another way resolves it",
     }[request.by]
+    other = f"Let {request.other} give way" if other_moves else f"Send {request.other} aside"
     return (
-        f"{request.robot} cannot give way to {request.other}: {how}. Let {request.other} give way, "
-        "abort one of the two, or draw a route"
+        f"{request.robot} cannot give way to {request.other}: {how}. {other}, stop {request.robot}, "
+        "or draw a route"
     )

@@ -29,6 +29,11 @@ class Seen(NamedTuple):
     holds: dict[str, HoldRow]
     placed: frozenset[str]
 
+    @property
+    def on_the_way(self) -> set[str]:
+        """The robots that have a task or wait on the way of one: the others move as they please."""
+        return {one.robot for one in self.underway} | set(self.holds)
+
     def movements(self) -> dict[str, Movement]:
         """Return how every robot moves that has said where it is, if all goes on as it is planned."""
         ways = {one.robot: one.points() for one in self.underway}
@@ -60,8 +65,8 @@ def cut(points: list[Point], station: float) -> tuple[list[Point], list[Point]]:
     return [*before, (x, y)], [(x, y), *after]
 
 
-def conflict_report(conflict: Conflict) -> ConflictReport:
-    """Return a conflict as operators are told it."""
+def conflict_report(conflict: Conflict, clearance: float) -> ConflictReport:
+    """Return a conflict as operators are told it; ``clearance`` is metres between two robots' middles."""
     return ConflictReport(
         robot=conflict.robot,
         other=conflict.other,
@@ -72,6 +77,7 @@ def conflict_report(conflict: Conflict) -> ConflictReport:
         metres=round(conflict.metres, 2),
         x=round(conflict.place[0], 2),
         y=round(conflict.place[1], 2),
+        clearance=round(clearance, 2),
     )
 
 

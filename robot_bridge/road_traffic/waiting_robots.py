@@ -11,7 +11,8 @@ from ..command_life.open_command import NOTHING
 from ..commanding.book import CommandBook
 from ..commanding.writing import Also, AlsoOf
 from ..errors import BridgeError, RefusedError, UncertainError
-from ..messages import CommandReport, CommandState, HoldReport, SetPath, to_json
+from ..messages import CommandReport, CommandState, HoldReport, SetPath, path_to_end, to_json
+from ..monitoring.unforeseen import note_unforeseen
 from ..planning import Point
 from ..store import closures as stored
 from ..store.closures import HoldRow
@@ -78,7 +79,7 @@ class WaitingRobots:
         task, queues = self._detours.queued(way), self._detours.queues
         if task is not None:
             rest = queues.to_the_end(task, rest)
-        after = to_json(SetPath(rest, way.task.theta))
+        after = to_json(path_to_end(way.task, rest))
         row = HoldRow(way.robot, other, "", after, until, operator, None if task is None else task.task)
 
         def also(command: str) -> Also:
@@ -107,10 +108,12 @@ class WaitingRobots:
         row = self._rows.get(robot)
         return None if row is None or row.task != task else row.other
 
-    def take(self, report: CommandReport) -> None:
+    def note_step(self, report: CommandReport) -> None:
         """Note a command: whoever is told anything else waits no longer, and is sent on by nobody."""
+        row = self._rows.get(report.robot)
         ends = report.state is CommandState.QUEUED and report.op in ENDING
-        if ends and self._rows.get(report.robot) is not None:
+        # What leads it to where it waits may be written for it once more.
+        if ends and row is not None and row.command != report.command:
             del self._rows[report.robot]
             log.warning("robot %s was told %s, and waits no longer", report.robot, report.op)
 
@@ -132,6 +135,8 @@ class WaitingRobots:
                 await self._see_to(row, seen)
             except BridgeError as error:
                 log.warning("robot %s, which waits for %s, is not sent on: %s", row.robot, row.other, error)
+            except Exception:
+                note_unforeseen(log, f"robot {row.robot}, which waits for {row.other}")
 
     async def _see_to(self, row: HoldRow, seen: Seen) -> None:
         task = self._book.busy_with(row.robot)
@@ -152,7 +157,7 @@ class WaitingRobots:
         target = given[0] if given is not None else rest
         points = _from_here(seen, row.robot, rest)
         way = Way(row.robot, task or NOTHING, target, points, True)
-        path = SetPath(points, rest.theta)
+        path = path_to_end(rest, points)
 
         def also(_command: str) -> Also:
             return partial(stored.release, robot=row.robot)

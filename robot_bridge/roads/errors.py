@@ -25,3 +25,7 @@ class CancelledError(RoadsError):
 
 class MissingEngineError(RoadsError):
     """An engine was asked for by name whose package this Python does not have."""
+
+
+class RoadExportError(RoadsError):
+    """A road network that another format cannot hold."""

@@ -41,7 +41,11 @@ class Route:
     @property
     def seconds(self) -> float:
         """Seconds at the speeds of the roads."""
-        return float((self.lengths / self.network.edges.speed[self.edges]).sum())
+        return self.seconds_at(np.inf)
+
+    def seconds_at(self, speed: float) -> float:
+        """Return the seconds of one that drives at most ``speed`` m/s, and nowhere faster than the road."""
+        return float((self.lengths / np.minimum(self.network.edges.speed[self.edges], speed)).sum())
 
     @property
     def surfaces(self) -> tuple[str, ...]:

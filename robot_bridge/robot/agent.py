@@ -11,6 +11,7 @@ from ..messages import (
     Abort,
     Alive,
     Answer,
+    GetMap,
     GetPath,
     GetSurface,
     OpAck,
@@ -25,11 +26,12 @@ from ..messages import (
     Start,
     Stopped,
 )
-from ..robotmap.binary import decode
+from ..robotmap.binary import LARGEST_TEXT, decode
 from ..robotmap.errors import RobotMapError
 from ..robotmap.model import RobotMap
-from .body import Body, BodyLimits, Pose
+from .body import Body, BodyLimits, Pose, Vehicle
 from .driver import Driver
+from .map_border import before_border
 from .memory import Memory, Remembered
 from .sightings import Sightings, Thing
 
@@ -45,6 +47,20 @@ REMEMBER_EVERY = 1.0
 """seconds of driving between two notes of how far the robot has come."""
 GREET_AGAIN = 1.0
 """seconds after which a robot that was refused says Ready once more."""
+ASK_AGAIN = 3.0
+"""seconds after which a robot that stands without a path asks for it once more."""
+NEAR_BORDER = 0.25
+"""of the shorter side of a map of a part of the site: so near to its border a robot asks for the next."""
+SAME_MAP = 5.0
+"""metres from where it was sent its map: nearer than that it would be sent the same one again."""
+LEAST_KNOWN = 1e5
+"""metres: a larger accuracy says no more."""
+FIRST_AREA = 10_000.0
+"""m² of the map that a robot asks for around itself when the first one was no use to it."""
+OFF_PATH = 1.0
+"""metres from its path at which a robot that has found itself again asks for another one."""
+ASK_ROUND = 10.0
+"""seconds for which something may be in its way until it asks for another path, and then again."""
 
 
 @dataclass(frozen=True)
@@ -52,8 +68,10 @@ class AgentSettings:
     """``magic`` names this run of the robot, ``noise`` is metres on reported positions.
 
     ``things`` are seen on the way, with ``image`` as the picture of each; with ``asks_path`` the robot asks
-    for a path to every target; with ``asks_surface`` it asks what ground it is on and is to go to, and says
-    so as its status. With a ``memory`` in which something is, the robot goes on from there.
+    for a path to every target, and stands until it has one; with ``asks_surface`` it asks what ground it is
+    on and is to go to, and says so as its status. With a ``memory`` in which something is, the robot goes on
+    from there. It asks for the next map when the border of its own is nearer than ``map_margin`` metres, too.
+    ``body`` is driven instead of one at ``pose`` that always knows its place.
     """
 
     magic: int
@@ -65,8 +83,19 @@ class AgentSettings:
     things: tuple[Thing, ...] = ()
     image: bytes | None = None
     asks_path: bool = False
+    path_cones: bool = True
     asks_surface: bool = False
     memory: Memory | None = None
+    map_margin: float = 0.0
+    body: Vehicle | None = None
+
+
+@dataclass(frozen=True)
+class Awaited:
+    """A target (x, y) in metres, and the heading to end in, to which a path was asked for."""
+
+    place: tuple[float, float]
+    theta: float | None
 
 
 class Agent:
@@ -80,7 +109,7 @@ class Agent:
         self._settings = settings
         self._say = say
         self._random = random.Random(settings.seed)
-        self._body = Body(settings.pose, settings.limits)
+        self._body: Vehicle = settings.body or Body(settings.pose, settings.limits)
         self._driver: Driver | None = None
         self._sightings = Sightings(settings.things, settings.image, say)
         self._done: dict[int, None] = {}
@@ -90,10 +119,20 @@ class Agent:
         self._greet_in = math.inf
         self._since_pose = math.inf
         self._moving = False
-        self._wants_path = False
+        self._awaited: Awaited | None = None
+        """The target to which it was not told the path yet."""
+        self._ask_in = math.inf
+        self._no_path: str | None = None
+        """Why it was not told it."""
         self._ground: str | None = None
+        self._hindered = False
+        self._ask_round_in = 0.0
         self._since_kept = 0.0
         self.map: RobotMap | None = None
+        self._map_from = (0.0, 0.0)
+        """Where it was when it was sent its map."""
+        self._ask_map_in = 0.0
+        self._map_refused = False
         self._magic = settings.magic
         remembered = settings.memory.recall() if settings.memory else None
         if remembered is not None:
@@ -102,13 +141,14 @@ class Agent:
 
     @property
     def pose(self) -> Pose:
-        """Where the robot really is."""
+        """Where the robot takes itself to be."""
         return self._body.pose
 
     def greet(self) -> None:
         """Say Ready; done again whenever the link is made anew."""
         self._greet_in = math.inf
-        self._say(Ready(magic=self._magic))
+        asks, cones = self._settings.asks_path or None, self._settings.path_cones or None
+        self._say(Ready(magic=self._magic, asks_path=asks, path_cones=cones))
 
     def receive(self, answer: Answer, id: int | None) -> OpAck | None:
         """Take in message ``id`` of the server; return what to acknowledge it with."""
@@ -154,6 +194,17 @@ class Agent:
                 self.greet()
             return
         self._sightings.look(self._body.pose)
+        for observed in self._body.observations():
+            self._say(observed)
+        self._ask_in -= dt
+        if self._ask_in <= 0:
+            self._ask_path()
+        self._ask_round_in -= dt
+        if self._body.blocked_for >= ASK_ROUND and self._ask_round_in <= 0:
+            self._ask_way_round()
+        self._ask_map_in -= dt
+        if self._ask_map_in <= 0:
+            self._ask_map()
         self._since_pose += dt
         if self._since_pose >= 1 / self._settings.rate - dt / 2:
             self._since_pose = 0.0
@@ -161,13 +212,26 @@ class Agent:
         self._notice_stop()
 
     def _move(self, dt: float) -> None:
-        if self._driver is not None:
-            motion = self._driver.steer(self._body.pose)
-            if motion is None:
-                self._driver = None
-                self._keep()
-            self._body.drive(*(motion or (0.0, 0.0)))
+        if self._body.hindrance is not None:
+            # It is not steered by a pose that is wrong, nor does it come to the end of its task by one.
+            self._hindered = True
+            self._body.drive(0.0, 0.0)
+        elif self._driver is not None:
+            self._steer(self._driver)
         self._body.step(dt)
+
+    def _steer(self, driver: Driver) -> None:
+        if self._hindered and driver.off(self._body.pose) > OFF_PATH:
+            self._halt()
+            self._await_path(Awaited(driver.left[-1], driver.theta))
+            self._ask_path()
+            return
+        self._hindered = False
+        motion = driver.steer(self._body.pose)
+        if motion is None:
+            self._driver = None
+            self._keep()
+        self._body.drive(*(motion or (0.0, 0.0)))
 
     def stop(self) -> None:
         """Say that the robot stands and does nothing; what it remembers of its task stays."""
@@ -185,7 +249,9 @@ class Agent:
         self._magic, self._database = remembered.magic, remembered.database
         self._done = dict.fromkeys(remembered.done)
         self._body.place(remembered.pose)
-        if remembered.way:
+        if remembered.way and remembered.awaits_path:
+            self._awaited = Awaited(remembered.way[-1], remembered.theta)
+        elif remembered.way:
             self._driver = Driver(remembered.way, remembered.theta, self._settings.limits)
         self._moving = True
 
@@ -194,10 +260,16 @@ class Agent:
         if self._settings.memory is None:
             return
         way, theta = ([], None) if self._driver is None else (self._driver.left, self._driver.theta)
-        done = list(self._done)
-        self._settings.memory.keep(Remembered(self._magic, self._database, done, self._body.pose, way, theta))
+        if self._awaited is not None:
+            way, theta = [self._awaited.place], self._awaited.theta
+        done, awaits = list(self._done), self._awaited is not None
+        self._settings.memory.keep(
+            Remembered(self._magic, self._database, done, self._body.pose, way, theta, awaits)
+        )
 
     def _take_acknowledgement(self, ack: OpAck) -> None:
+        if self._awaited is not None and not ack.ok and (ack.reason or "").startswith(GetPath.__name__):
+            self._no_path = ack.reason
         if ack.magic != self._magic:
             return
         self._admitted = ack.ok
@@ -225,13 +297,11 @@ class Agent:
         if isinstance(answer, SetMap):
             return self._take_map(answer)
         if isinstance(answer, SetPosEnd):
-            self._driver = Driver([(answer.x, answer.y)], answer.theta, limits)
-            self._wants_path = self._settings.asks_path
-            self._ask_path()
+            self._take_target(answer)
             self._ask_surface((answer.x, answer.y))
         elif isinstance(answer, SetPath):
             self._driver = Driver(answer.points, answer.theta, limits)
-            self._wants_path = False
+            self._await_path(None)
             self._ask_surface(answer.points[-1])
         elif isinstance(answer, SetSurface):
             names = ["no road" if name is None else name or "an unknown surface" for name in answer.surfaces]
@@ -239,16 +309,45 @@ class Agent:
         elif isinstance(answer, SetPosIni):
             return self._take_place(answer)
         elif isinstance(answer, Abort):
-            self._driver = None
-            self._wants_path = False
-            self._body.drive(0.0, 0.0)
+            self._halt()
         self._moving = self._moving or self._driver is not None
         return None
 
+    def _take_target(self, target: SetPosEnd) -> None:
+        """Drive straight to a target, or stand until its path is known."""
+        place = target.x, target.y
+        if not self._settings.asks_path:
+            self._driver = Driver([place], target.theta, self._settings.limits)
+            return
+        self._halt()
+        self._await_path(Awaited(place, target.theta))
+        self._ask_path()
+
+    def _halt(self) -> None:
+        self._driver = None
+        self._await_path(None)
+        self._body.drive(0.0, 0.0)
+
+    def _await_path(self, awaited: Awaited | None) -> None:
+        self._awaited, self._no_path, self._ask_in = awaited, None, math.inf
+
     def _ask_path(self) -> None:
-        """Ask for the path that is wanted, again after each Ready: a gateway that died answers no more."""
-        if self._wants_path and self._driver is not None:
-            # The path is to begin where the robot is now.
+        """Ask for the path that is wanted, again after each Ready: a gateway that died answers no more.
+
+        Also from time to time: roads are opened again.
+        """
+        if self._awaited is None:
+            self._ask_in = math.inf
+            return
+        self._ask_in = ASK_AGAIN
+        # The path is to begin where the robot is now.
+        self._say(self._position())
+        self._say(GetPath())
+
+    def _ask_way_round(self) -> None:
+        """Ask for another path where something stays in the way; what it has is driven until one comes."""
+        if self._driver is not None and self._settings.asks_path:
+            self._ask_round_in = ASK_ROUND
             self._say(self._position())
             self._say(GetPath())
 
@@ -258,30 +357,63 @@ class Agent:
 
     def _take_map(self, answer: SetMap) -> str | None:
         try:
-            self.map = decode(answer.map)
+            robot_map = decode(answer.map, LARGEST_TEXT)
         except RobotMapError as error:
             return f"the map cannot be read: {error}"
-        return None
+        refusal = self._body.use_map(robot_map)
+        self._map_refused = refusal is not None
+        if refusal is None:
+            self.map, self._map_from = robot_map, self._body.pose[:2]
+        return refusal
+
+    def _ask_map(self) -> None:
+        """Ask for the map around the robot where it is about to leave the one of a part that it has."""
+        x, y, _ = self.pose
+        if self.map is None:
+            if self._map_refused:
+                self._ask_map_in = ASK_AGAIN
+                self._say(GetMap(round(x, 2), round(y, 2), FIRST_AREA))
+            return
+        border = self.map.border
+        inside = before_border(self.map, x, y)
+        width, height = border.x_max - border.x_min, border.y_max - border.y_min
+        driven = math.dist((x, y), self._map_from)
+        near = max(NEAR_BORDER * min(width, height), self._settings.map_margin)
+        if inside < near and (driven > SAME_MAP or inside < SAME_MAP):
+            self._ask_map_in = ASK_AGAIN
+            self._say(GetMap(round(x, 2), round(y, 2), round(max(width, height) ** 2, 2)))
 
     def _take_place(self, begin: SetPosIni) -> str | None:
-        if self._driver is not None or abs(self._body.v) >= STANDING:
+        drives = self._driver is not None and self._body.hindrance is None
+        if drives or abs(self._body.v) >= STANDING:
             return "it drives, and knows where; abort its task first"
         self._body.place((begin.x, begin.y, self._body.pose[2] if begin.theta is None else begin.theta))
         return None
 
     def _position(self) -> SendPos:
         x, y, theta = self._body.pose
-        noise = self._settings.noise
+        accuracy = self._body.accuracy
+        noise = self._settings.noise if accuracy is None else 0.0
         return SendPos(
             x=round(x + self._random.gauss(0, noise), 3),
             y=round(y + self._random.gauss(0, noise), 3),
             theta=round(theta, 4),
             v=round(self._body.v, 3),
             battery=round(max(0.0, 1 - self._body.driven / RANGE), 3),
-            status=self._ground,
+            status=self._status(),
+            accuracy=None if accuracy is None else round(min(accuracy, LEAST_KNOWN), 3),
         )
 
+    def _status(self) -> str | None:
+        if self._body.hindrance is not None:
+            return f"stands: {self._body.hindrance}"
+        if self._no_path is not None:
+            return f"stands without a path: {self._no_path}"
+        return self._body.remark or self._ground
+
     def _notice_stop(self) -> None:
+        if self._awaited is not None:
+            return
         if self._moving and self._driver is None and abs(self._body.v) < STANDING:
             self._moving = False
             self._keep()

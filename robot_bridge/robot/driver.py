@@ -46,7 +46,7 @@ class Driver:
         self.theta = theta
         self._limits = limits
         self._braking = 2 * BRAKING * limits.acceleration
-        self._stations, self._squares = self._corners()
+        self._stations, self._speeds, self._squares = self._corners()
         self._driven = 0.0
         self._at_end = False
 
@@ -55,6 +55,14 @@ class Driver:
         """The points that are still ahead, the last one at least."""
         ahead = [p for p, at in zip(self._points, self._line.stations, strict=True) if at > self._driven]
         return ahead or [self._points[-1]]
+
+    def off(self, pose: Pose) -> float:
+        """Return how far ``pose`` is from what is left of its path, metres; 0 without a path."""
+        if len(self._points) < 2:
+            return 0.0
+        station, off = self._line.feet(*pose[:2])
+        ahead = (station >= self._driven) & (station <= self._driven + WINDOW)
+        return float(off[ahead].min(initial=math.inf))
 
     def steer(self, pose: Pose) -> Motion | None:
         """Return the motion to ask the body for at ``pose``, or None when the task is done."""
@@ -78,8 +86,8 @@ class Driver:
         speed = min(self._limits.speed, math.sqrt(self._braking * to_go), self._before_corners())
         return speed * math.cos(bearing), turn
 
-    def _corners(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Return stations and, for each, the least of v² + 2as of the corners from there on.
+    def _corners(self) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+        """Return stations, the speed through each, and the least of v² + 2as of the corners from there on.
 
         Who drives with v at a station s can then still brake by a for each of them, where 2as less is left.
         """
@@ -88,15 +96,17 @@ class Driver:
         speeds = np.minimum(np.maximum(fastest, LEAST_SPEED), self._limits.speed)
         stations = np.array(self._line.stations)
         squares = speeds**2 + self._braking * stations
-        return stations, np.minimum.accumulate(squares[::-1])[::-1]
+        return stations, speeds, np.minimum.accumulate(squares[::-1])[::-1]
 
     def _before_corners(self) -> float:
         """Return the speed with which the robot can still be slow enough in each corner ahead."""
-        # One that lies just behind is still being driven round.
-        begin = np.searchsorted(self._stations, self._driven - CORNER)
-        if begin == len(self._squares):
-            return math.inf
-        return math.sqrt(max(float(self._squares[begin]) - self._braking * self._driven, LEAST_SPEED**2))
+        # One that lies just behind is still being driven round, and no longer braked for.
+        begin, ahead = np.searchsorted(self._stations, [self._driven - CORNER, self._driven])
+        fastest = float(self._speeds[begin:ahead].min(initial=math.inf))
+        if ahead < len(self._squares):
+            left = float(self._squares[ahead]) - self._braking * self._driven
+            fastest = min(fastest, math.sqrt(max(left, LEAST_SPEED**2)))
+        return fastest
 
     def _on_last_metres(self) -> bool:
         return bool(self._driven >= self._line.length - LOOK_AHEAD)

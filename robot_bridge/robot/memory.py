@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
 
+from ..core.decoding import decode_json
 from ..errors import BridgeError
 from .body import Pose
 
@@ -19,7 +20,8 @@ class Remembered:
     """The run of a robot: its ``magic`` number, and the ids of the messages of ``database`` that it has done.
 
     ``pose`` is where it was, ``way`` the points that are left of its task (none when it has nothing to do),
-    and ``theta`` the heading to end in; metres and radians in the site frame.
+    and ``theta`` the heading to end in; metres and radians in the site frame. With ``awaits_path`` it was not
+    told the path to the end of ``way`` yet, and stands.
     """
 
     magic: int
@@ -28,6 +30,7 @@ class Remembered:
     pose: Pose = (0.0, 0.0, 0.0)
     way: Sequence[Point] = field(default_factory=list)
     theta: float | None = None
+    awaits_path: bool = False
 
 
 class Memory:
@@ -39,7 +42,7 @@ class Memory:
     def recall(self) -> Remembered | None:
         """Return what an earlier run kept, None where there was none; raises BridgeError."""
         try:
-            kept = json.loads(self._file.read_text(encoding="utf-8"))
+            kept = decode_json(self._file.read_bytes())
             x, y, theta = kept["pose"]
             way = [(float(to_x), float(to_y)) for to_x, to_y in kept["way"]]
             return Remembered(**{**kept, "pose": (float(x), float(y), float(theta)), "way": way})

@@ -6,18 +6,18 @@ import asyncio
 import secrets
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Protocol
-
-from sqlalchemy import URL
+from typing import TYPE_CHECKING, Protocol
 
 from ..access.credentials import Credentials
 from ..messages import Request, check_robot_name
 from .agent import STEER_EVERY, Agent, AgentSettings
-from .body import BodyLimits, Pose
+from .body import BodyLimits, Pose, Vehicle
 from .memory import Memory
 from .sightings import Thing
-from .sql_link import SqlLink
 from .websocket_link import WebSocketLink
+
+if TYPE_CHECKING:
+    from sqlalchemy import URL
 
 ALIVE_INTERVAL = 1.0
 
@@ -37,9 +37,12 @@ class RobotSettings:
     credentials: Credentials = field(default_factory=Credentials)
     things: tuple[Thing, ...] = ()
     image: bytes | None = None
-    asks_path: bool = False
+    asks_path: bool = True
+    path_cones: bool = True
     asks_surface: bool = False
     memory: Path | None = None
+    map_margin: float = 0.0
+    body: Vehicle | None = None
 
 
 class Link(Protocol):
@@ -66,8 +69,11 @@ async def run(settings: RobotSettings, stop: asyncio.Event) -> None:
             things=settings.things,
             image=settings.image,
             asks_path=settings.asks_path,
+            path_cones=settings.path_cones,
             asks_surface=settings.asks_surface,
             memory=None if settings.memory is None else Memory(settings.memory),
+            map_margin=settings.map_margin,
+            body=settings.body,
         ),
         link.say,
     )
@@ -89,6 +95,9 @@ def _link(settings: RobotSettings) -> Link:
     if settings.url is not None:
         return WebSocketLink(settings.url, name, settings.credentials)
     assert settings.database is not None
+    # SQLAlchemy takes as long to load as all the rest, and robots on WebSocket need none.
+    from .sql_link import SqlLink
+
     return SqlLink(settings.database, name)
 
 

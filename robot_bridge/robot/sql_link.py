@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from sqlalchemy import URL, Connection
 
 from ..errors import StoreError
-from ..messages import Alive, MessageError, OpAck, Request, SendPos, to_json
+from ..messages import Alive, MessageError, OpAck, Ready, Request, SendPos, to_json
 from ..store import answers, requests
 from ..store.answers import AnswerRow
 from ..store.database import Database
@@ -32,9 +32,13 @@ class SqlLink:
         self._database = Database(database)
         self._robot = robot
         self._outgoing: list[Request] = []
+        self._magic: int | None = None
+        """The number of this run, once it has said Ready."""
 
     def say(self, request: Request) -> None:
         """Write a request at the next turn."""
+        if isinstance(request, Ready):
+            self._magic = request.magic
         self._outgoing.append(request)
 
     async def run(self, agent: Agent) -> None:
@@ -74,14 +78,18 @@ class SqlLink:
 
     async def _turn(self, agent: Agent) -> bool:
         rows = await self._database.read(answers.read, self._robot)
-        read = []
+        read, is_behind = [], False
         for row in rows:
             own, ack = self._receive(agent, row)
             if own:
                 read.append(row.id)
+            is_behind |= not own
             if ack is not None:
                 # Behind what the agent said about the message.
                 self._outgoing.append(ack)
+            if own and is_behind and row.op == OpAck.__name__:
+                # It may have let the robot in: what stands before it, such as an Abort, is done first.
+                break
         await self._flush(read)
         return bool(read)
 
@@ -102,7 +110,7 @@ class SqlLink:
         if not (outgoing or read):
             return
         try:
-            await self._database.jot(_exchange, self._robot, read, outgoing)
+            await self._database.jot(_exchange, self._robot, self._magic, read, outgoing)
         except StoreError:
             self._outgoing = [*_still_to_say(outgoing), *self._outgoing]
             raise
@@ -123,10 +131,14 @@ def _still_to_say(requests: Sequence[Request]) -> list[Request]:
     return kept
 
 
-def _exchange(connection: Connection, robot: str, read: list[int], outgoing: list[Request]) -> None:
+def _exchange(
+    connection: Connection, robot: str, magic: int | None, read: list[int], outgoing: list[Request]
+) -> None:
     answers.remove(connection, read)
-    requests.add_all(connection, [_row(robot, request) for request in outgoing])
+    requests.add_all(connection, [_row(robot, magic, request) for request in outgoing])
 
 
-def _row(robot: str, request: Request) -> tuple[str, str, str, bytes | None]:
-    return robot, type(request).__name__, json.dumps(to_json(request)), payload_of(request)
+def _row(robot: str, magic: int | None, request: Request) -> tuple[str, str, str, bytes | None]:
+    """Return the row of a request, with the number of the run that says it."""
+    params = {**to_json(request), "magic": magic} if magic is not None else to_json(request)
+    return robot, type(request).__name__, json.dumps(params), payload_of(request)

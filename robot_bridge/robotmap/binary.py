@@ -15,22 +15,31 @@ from __future__ import annotations
 
 import hashlib
 import struct
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from itertools import zip_longest
 from typing import NamedTuple
 
 from .columnar import pack_map, unpack_map
-from .compression import by_lzma, by_zstd, from_lzma, from_zstd
+from .compression import by_lzma, by_zstd, by_zstd_in_pieces, check_zstd, from_lzma, from_zstd
 from .errors import BinaryError, RobotMapError
 from .model import RobotMap
+from .reading_limits import LARGEST_TEXT, ReadingLimits
 from .text import read_text, write_text
+
+__all__ = [
+    "CODEC_COLUMNS",
+    "CODEC_TEXT",
+    "LARGEST_TEXT",
+    "MAGIC",
+    "decode",
+    "decode_text",
+    "encode",
+    "encode_pieces",
+]
 
 MAGIC = b"RMAP"
 VERSION = 1
 CODEC_TEXT, CODEC_COLUMNS = 1, 2
-LARGEST_TEXT = 256 << 20
-"""bytes of text that a reader accepts unless told otherwise."""
-
 _ENVELOPE = struct.Struct("<4sBBBBQ32s")
 _SPARE = 4096
 """bytes that the columns may have more than the text: an empty map is mostly their heads."""
@@ -60,49 +69,66 @@ def encode(content: RobotMap | str, codec: int = CODEC_TEXT) -> bytes:
     if codec not in _CODECS:
         raise BinaryError(f"codec check: codec {codec!r} is not known, 1 and 2 are")
     text = content if isinstance(content, str) else write_text(content)
-    raw = _utf_8(text)
-    if len(raw) > LARGEST_TEXT:
-        raise BinaryError(
-            f"size check: the text has {len(raw)} bytes, a reader accepts {LARGEST_TEXT}; "
-            "choose a smaller window"
-        )
-    body = raw
+    raw = body = _utf_8(text)
+    head = _envelope(codec, len(raw), hashlib.sha256(raw).digest())
     if codec == CODEC_COLUMNS:
         body = _columns(read_text(content) if isinstance(content, str) else content, text, len(raw))
-    head = _ENVELOPE.pack(
-        MAGIC, VERSION, codec, _CODECS[codec].version, 0, len(raw), hashlib.sha256(raw).digest()
-    )
     return head + _CODECS[codec].compress(body)
 
 
-def decode(content: bytes, limit: int = LARGEST_TEXT) -> RobotMap:
-    """Return the map in ``content``; raises BinaryError, MissingCodecError, or TextError for its text."""
-    codec, length, digest = _check_envelope(content, limit)
+def encode_pieces(pieces: Callable[[], Iterable[str]]) -> bytes:
+    """Return the map whose text is all of ``pieces`` in codec 1; they are asked for twice, and not kept.
+
+    Raises BinaryError and MissingCodecError as :func:`encode`.
+    """
+    check_zstd()
+    length, digest = 0, hashlib.sha256()
+    for piece in pieces():
+        raw = _utf_8(piece)
+        length += len(raw)
+        digest.update(raw)
+    head = _envelope(CODEC_TEXT, length, digest.digest())
+    return head + by_zstd_in_pieces(map(_utf_8, pieces()), length)
+
+
+def decode(content: bytes, limit: int | None = None) -> RobotMap:
+    """Return the map in ``content``.
+
+    Without ``limit`` what it may unpack to goes by its own size, so that a stranger's file of 1 MB costs at
+    most some 1 s and 200 MB. A ``limit`` in bytes of text is for maps of a gateway that is believed.
+
+    Raises BinaryError naming the check that failed, MissingCodecError, or TextError for its text.
+    """
+    codec, length, digest, limits = _check_envelope(content, limit)
     if codec == CODEC_TEXT:
-        return read_text(_text(content, length, digest))
-    return _unpacked(content, length, digest)[0]
+        return read_text(_text(content, length, digest, limits))
+    return _unpacked(content, length, digest, limits)[0]
 
 
-def decode_text(content: bytes, limit: int = LARGEST_TEXT) -> str:
-    """Return the text in ``content``, at most ``limit`` bytes of it; raises BinaryError naming the check."""
-    codec, length, digest = _check_envelope(content, limit)
-    return _text(content, length, digest) if codec == CODEC_TEXT else _unpacked(content, length, digest)[1]
+def decode_text(content: bytes, limit: int | None = None) -> str:
+    """Return the text in ``content``; ``limit`` and errors as in :func:`decode`, but for TextError."""
+    codec, length, digest, limits = _check_envelope(content, limit)
+    if codec == CODEC_TEXT:
+        return _text(content, length, digest, limits)
+    return _unpacked(content, length, digest, limits)[1]
 
 
-def _text(content: bytes, length: int, digest: bytes) -> str:
+def _text(content: bytes, length: int, digest: bytes, limits: ReadingLimits) -> str:
     raw = from_zstd(content[_ENVELOPE.size :], length)
     _check_text(raw, length, digest)
     try:
-        return raw.decode()
+        text = raw.decode()
     except UnicodeDecodeError as error:
         raise BinaryError(f"text check: the body is not UTF-8 ({error}); write the map anew") from None
+    limits.check_text(text)
+    return text
 
 
-def _unpacked(content: bytes, length: int, digest: bytes) -> tuple[RobotMap, str]:
+def _unpacked(content: bytes, length: int, digest: bytes, limits: ReadingLimits) -> tuple[RobotMap, str]:
     body = from_lzma(content[_ENVELOPE.size :], length + _SPARE)
     if len(body) > length + _SPARE:
         raise BinaryError(f"size check: the body unpacks to more than its text of {length} bytes")
-    robot_map = unpack_map(body, length)
+    robot_map = unpack_map(body, limits._replace(text=length))
     try:
         text = write_text(robot_map)
     except RobotMapError as error:
@@ -117,7 +143,7 @@ def _columns(robot_map: RobotMap, text: str, length: int) -> bytes:
     body = pack_map(robot_map)
     if len(body) > length + _SPARE:
         raise BinaryError("size check: the columns are larger than the text; use codec 1")
-    back = write_text(unpack_map(body, length))
+    back = write_text(unpack_map(body, ReadingLimits.of_text(length)))
     if back != text:
         pairs = enumerate(zip_longest(text.split("\n"), back.split("\n"), fillvalue="the end"), start=1)
         line, was, becomes = next((n, was, becomes) for n, (was, becomes) in pairs if was != becomes)
@@ -139,6 +165,16 @@ def _check_text(raw: bytes, length: int, digest: bytes) -> None:
         raise BinaryError("SHA-256 check: the text is not the one that was written; get the map once more")
 
 
+def _envelope(codec: int, length: int, digest: bytes) -> bytes:
+    """Return what stands before the body of a text of ``length`` bytes, having seen that it may be read."""
+    if length > LARGEST_TEXT:
+        raise BinaryError(
+            f"size check: the text has {length} bytes, a reader accepts {LARGEST_TEXT}; "
+            "choose a smaller window"
+        )
+    return _ENVELOPE.pack(MAGIC, VERSION, codec, _CODECS[codec].version, 0, length, digest)
+
+
 def _utf_8(text: str) -> bytes:
     try:
         return text.encode()
@@ -146,8 +182,8 @@ def _utf_8(text: str) -> bytes:
         raise BinaryError(f"text check: half a character cannot be written ({error}); correct it") from None
 
 
-def _check_envelope(content: bytes, limit: int) -> tuple[int, int, bytes]:
-    """Return codec, length and SHA-256 of the text."""
+def _check_envelope(content: bytes, limit: int | None) -> tuple[int, int, bytes, ReadingLimits]:
+    """Return codec, length and SHA-256 of the text, and what it may cost to read."""
     if not content.startswith(MAGIC):
         raise BinaryError(f"magic check: the bytes begin with {content[:4]!r}, a robot map with {MAGIC!r}")
     if len(content) < _ENVELOPE.size:
@@ -165,6 +201,10 @@ def _check_envelope(content: bytes, limit: int) -> tuple[int, int, bytes]:
             f"version check: version {layout} of codec {codec} is not known, {_CODECS[codec].version} is; "
             "export the map once more"
         )
-    if length > limit:
-        raise BinaryError(f"size check: {length} bytes of text are declared, the limit is {limit}")
-    return codec, length, digest
+    limits = ReadingLimits.of_file(len(content)) if limit is None else ReadingLimits.of_text(limit)
+    if length > limits.text:
+        raise BinaryError(
+            f"size check: {length} bytes of text are declared, the limit for these {len(content)} bytes is "
+            f"{limits.text}; export the map as text, or in tiles"
+        )
+    return codec, length, digest, limits

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
@@ -34,9 +35,10 @@ def build_map(
 
     An outline that the window cuts becomes open chains, each an obstacle, marked by the extra ``cut`` where
     it was a ring. Obstacles are grouped by the first word of their semantics; the id of an outline is its
-    row plus one in every window, further chains of it get ids after the last row. ``ext`` names the source.
-    Outlines that are no obstacle (fewer than two different points, a ring that encloses nothing, coordinates
-    that are not finite) are left out and rings that do not close are closed, each with a warning if it lies
+    row plus one in every window, each further chain of it has the number of outlines more, so that no id
+    means another outline in another window. ``ext`` names the source. Outlines that are
+    no obstacle (fewer than two different points, a ring that encloses nothing, coordinates that are not
+    finite) are left out and rings that do not close are closed, each with a warning if it lies
     in the window or nowhere at all. Raises WindowError when there is neither a window nor an outline.
     """
     found = inspected(outlines)
@@ -59,7 +61,7 @@ def map_of(
     segments = without_vanished(segments)
     obstacles = sorted(
         _numbered(_chains(segments, outlines), len(outlines)),
-        key=lambda item: (_group(outlines, item[2]), item[2], item[0]),
+        key=lambda item: (group_of(outlines, item[2]), item[2], item[0]),
     )
     heights, outdoor = np.round(segments.height, 2), outlines.outdoor[segments.outline]
     return RobotMap(
@@ -105,7 +107,8 @@ def _chains(segments: Segments, outlines: Outlines) -> Iterator[tuple[int, Rows,
             continue
         if meets[k]:
             # The last run of a ring goes on in the first.
-            round_corner = np.r_[own[-1], own[0]]
+            both = (own[-1], own[0])
+            round_corner = np.concatenate([np.arange(some.start, some.stop) for some in both])
             yield outline[k], round_corner, False
             own = own[1:-1]
         for run in own:
@@ -130,19 +133,15 @@ def _meet_where_they_begin(
 
 
 def _numbered(chains: Iterable[tuple[int, Rows, bool]], rows: int) -> Iterator[tuple[int, Rows, int, bool]]:
-    """Yield id, segments, outline and whether closed, for each chain."""
-    seen: set[int] = set()
-    extra = rows
+    """Yield id, segments, outline and whether closed, for each chain; ``rows`` outlines there are."""
+    count: Counter[int] = Counter()
     for outline, indices, closed in chains:
-        if outline in seen:
-            extra += 1
-            yield extra, indices, outline, closed
-        else:
-            seen.add(outline)
-            yield outline + 1, indices, outline, closed
+        yield outline + 1 + count[outline] * rows, indices, outline, closed
+        count[outline] += 1
 
 
-def _group(outlines: Outlines, outline: int) -> str:
+def group_of(outlines: Outlines, outline: int) -> str:
+    """Return the word by which the obstacles of ``outline`` are grouped."""
     return outlines.semantics[outline].partition(",")[0]
 
 
@@ -171,6 +170,10 @@ def _obstacle(
 
 
 def _ext(outlines: Outlines, outline: int, cut: bool) -> dict[str, str]:
-    source = {"src": outlines.source[outline]} if outlines.source[outline] else {}
-    more = {} if outlines.ext is None else outlines.ext[outline]
-    return {**source, **more, **({CUT: "1"} if cut else {})}
+    source = outlines.source[outline]
+    extras = {"src": source} if source else {}
+    if outlines.ext is not None:
+        extras.update(outlines.ext[outline])
+    if cut:
+        extras[CUT] = "1"
+    return extras

@@ -15,6 +15,8 @@ _ON_BORDER = 1e-5
 
 _HEIGHT, _OUTLINE, _NUMBER = 4, 5, 6
 """Columns of a table of segments, after the two ends."""
+_HELD = ((np.int32, 2.0**31 - 1), (np.int64, 2.0**53))
+"""Types of whole numbers, and up to where each holds all of them."""
 _WHOLE = np.array([[0.0], [1.0]])
 """Where a segment that is not cut begins and ends, of its length."""
 _INWARDS = np.array([[0, 0], [1, -1], [_ON_BORDER, -_ON_BORDER]]).reshape(3, 2, 1, 1)
@@ -28,6 +30,32 @@ def table_of(segments: Segments) -> NDArray[Any]:
     """
     ends = np.rint(np.column_stack([segments.a, segments.b]) * 100)
     return np.column_stack([ends, segments.height, segments.outline, segments.number])
+
+
+def rows_of(segments: Segments, heights: NDArray[Any], first: tuple[int, float] = (0, 0)) -> NDArray[Any]:
+    """Return ``segments`` as whole numbers in as few bytes as hold them, (n, 7).
+
+    As :func:`table_of`, but for the height: 1 for that of the outline, which ``heights`` has, 0 for none.
+    ``first`` is added to outlines and numbers: how many outlines, and the last number, come before these.
+    """
+    table = table_of(segments)
+    table[:, _HEIGHT] = segments.height == heights[segments.outline]
+    table[:, _OUTLINE:] += first
+    largest = np.abs(table).max(initial=0.0)
+    return table.astype(next((kind for kind, most in _HELD if largest <= most), np.float64))
+
+
+def corners_of_rows(rows: NDArray[Any]) -> tuple[NDArray[Any], NDArray[Any]]:
+    """Return the lower and upper corners, (n, 2) metres each, of the segments in ``rows``."""
+    a, b = rows[:, 0:2].astype(np.float64) / 100, rows[:, 2:4].astype(np.float64) / 100
+    return np.minimum(a, b), np.maximum(a, b)
+
+
+def table_of_rows(rows: NDArray[Any], heights: NDArray[Any]) -> NDArray[Any]:
+    """Return what :func:`table_of` said of the segments in ``rows``, made by :func:`rows_of`."""
+    table = rows.astype(np.float64)
+    table[:, _HEIGHT] *= heights[rows[:, _OUTLINE].astype(np.int64)]
+    return table
 
 
 def clip(segments: Segments, border: Border) -> Segments:

@@ -19,6 +19,7 @@ from .labels import escape, read_ext, unescape, write_ext
 from .model import Border, Obstacle, RobotMap, ShapeType
 from .paths import LOOSE, Paths, paths_of, segments_of, step_counts
 from .plain_cbor import dumps, loads
+from .reading_limits import ReadingLimits
 
 _SHORTEST_OBSTACLE = len("obstacle;\n0;1;0;;\n#\n")
 _SHORTEST_SEGMENT = len("0;0;\n0;0;\n0;0;;\n#\n")
@@ -120,13 +121,13 @@ def _bodies(
     }
 
 
-def unpack_map(content: bytes, text_length: int) -> RobotMap:
-    """Return the map in ``content``, whose text has ``text_length`` bytes.
+def unpack_map(content: bytes, limits: ReadingLimits) -> RobotMap:
+    """Return the map in ``content``, whose text has ``limits.text`` bytes.
 
-    Raises BinaryError naming the check that failed, before anything larger than that text is made, and
-    MissingCodecError without cbor2.
+    Raises BinaryError naming the check that failed, before anything larger than that text or of more than
+    ``limits.parts`` is made, and MissingCodecError without cbor2.
     """
-    columns = _checked(loads(content, len(_Columns._fields)), text_length)
+    columns = _checked(loads(content, len(_Columns._fields)), limits)
     bodies = _Bodies.of(columns)
     body, counts = bodies.body, bodies.counts[bodies.body]
     _require(counts.sum() == columns.segments, "counts do not add up")
@@ -138,7 +139,7 @@ def unpack_map(content: bytes, text_length: int) -> RobotMap:
     a, b = segments_of(Paths(forms[body], starts, steps), counts)
     _require(max(_largest(a), _largest(b), _largest(height)) <= _FARTHEST, "a number is too large")
     tails = columns.tails.split("\n")
-    lines = _lines(columns, counts, (tails, tail), text_length)
+    lines = _lines(columns, counts, (tails, tail), limits)
     ids = np.cumsum(unpack(columns.ids, len(body), "ids") + 1)
     parts = _Parts(a / 100, b / 100, height / 100, tail, [_tail_read(line) for line in tails])
     border = Border(*(value / 100 for value in columns[1:5]))
@@ -177,12 +178,12 @@ class _Bodies(NamedTuple):
 
 
 def _lines(
-    columns: _Columns, counts: NDArray[Any], tails: tuple[list[str], NDArray[Any]], text_length: int
+    columns: _Columns, counts: NDArray[Any], tails: tuple[list[str], NDArray[Any]], limits: ReadingLimits
 ) -> list[str]:
     """Return what follows the counts of each obstacle, having seen that all labels have room in the text."""
     table = columns.heads.split("\n")
     head = np.cumsum(unpack(columns.head, columns.obstacles, "head"))
-    _check_text_size(((table, head), tails), text_length)
+    _check_labels(((table, head), tails), columns, limits)
     marked = [table[place] for place in head.tolist()]
     numbers, others = marks_in(marked)
     heads = Heads(
@@ -241,30 +242,43 @@ def _largest(values: NDArray[Any]) -> int:
     return max(int(values.max()), -int(values.min())) if values.size else 0
 
 
-def _checked(items: list[int | str | bytes], text_length: int) -> _Columns:
+def _checked(items: list[int | str | bytes], limits: ReadingLimits) -> _Columns:
     columns = _Columns(*items)  # type: ignore[arg-type]
     for name, value, kind in zip(_Columns._fields, items, _KINDS, strict=True):
         _require(type(value) is kind, f"{name} is not of type {kind.__name__}")
     _require(min(columns.obstacles, columns.segments, columns.bodies) >= 0, "a count is negative")
     _require(max(abs(value) for value in columns[1:5]) <= _FARTHEST, "the border is too large")
     _require(columns.x_min < columns.x_max and columns.y_min < columns.y_max, "the border has no inside")
-    if columns.obstacles * _SHORTEST_OBSTACLE + columns.segments * _SHORTEST_SEGMENT > text_length:
+    if columns.obstacles * _SHORTEST_OBSTACLE + columns.segments * _SHORTEST_SEGMENT > limits.text:
         raise BinaryError(
             f"size check: {columns.obstacles} obstacles and {columns.segments} segments are declared, more "
-            f"than a text of {text_length} bytes holds; get the map once more"
+            f"than a text of {limits.text} bytes holds; get the map once more"
         )
+    # Before anything is taken apart: a table has no line that nobody needs, and its lines are read once.
+    _require(columns.heads.count("\n") < max(columns.obstacles, 1), "heads has more lines than obstacles")
+    _require(columns.tails.count("\n") < max(columns.segments, 1), "tails has more lines than segments")
+    limits.check_counts(
+        columns.obstacles, columns.segments, _parts_in(columns.tails) + columns.meta.count("\n")
+    )
     return columns
 
 
-def _check_text_size(tables: Sequence[tuple[list[str], NDArray[Any]]], text_length: int) -> None:
-    """Tell by the tables that the text would be too long, before a label is repeated a million times."""
-    size = 0
+def _check_labels(
+    tables: Sequence[tuple[list[str], NDArray[Any]]], columns: _Columns, limits: ReadingLimits
+) -> None:
+    """Raise BinaryError by the tables alone, before a label is repeated a million times."""
+    size = extras = 0
     for lines, places in tables:
         _require(((places >= 0) & (places < len(lines))).all(), "a place is in no table")
-        lengths = np.array([len(line) for line in lines], dtype=np.int64)
-        size += int(lengths[places].sum())
-    if size > text_length:
-        raise BinaryError(f"size check: the labels alone have more than {text_length} bytes")
+        lengths = np.array([(len(line), _parts_in(line)) for line in lines], dtype=np.int64)
+        size, extras = np.array([size, extras]) + lengths[places].sum(axis=0)
+    if size > limits.text:
+        raise BinaryError(f"size check: the labels alone have more than {limits.text} bytes")
+    limits.check_counts(columns.obstacles, columns.segments, int(extras))
+
+
+def _parts_in(labels: str) -> int:
+    return labels.count("=") + labels.count(",")
 
 
 def _require(fine: bool | np.bool_, problem: str) -> None:

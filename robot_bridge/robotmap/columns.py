@@ -79,14 +79,19 @@ def _variable(unsigned: NDArray[Any]) -> bytes:
 
 
 def _from_variable(numbers: NDArray[Any], count: int) -> NDArray[Any] | None:
+    # What follows takes many times the room of a column, whose length must have been seen to fit before.
+    if not count <= len(numbers) <= _MOST_BYTES * count:
+        return None
     ends = np.flatnonzero(numbers < 128)
     if len(ends) != count or not count or ends[-1] != len(numbers) - 1:
         return None
     starts = np.concatenate([[0], ends[:-1] + 1])
     lengths = ends - starts + 1
-    if lengths.max() > _MOST_BYTES:
+    longest = int(lengths.max())
+    if longest > _MOST_BYTES:
         return None
-    shifts = 7 * (np.arange(len(numbers)) - np.repeat(starts, lengths))
-    parts = (numbers & 127).astype(np.uint64) << shifts.astype(np.uint64)
-    unsigned: NDArray[Any] = np.add.reduceat(parts, starts)
+    unsigned = np.zeros(count, dtype=np.uint64)
+    for place in range(longest):
+        own = np.flatnonzero(lengths > place) if place else slice(None)
+        unsigned[own] |= (numbers[starts[own] + place] & 127).astype(np.uint64) << np.uint64(7 * place)
     return unsigned

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..missing_packages import installation
 from .chaining import LINES
 from .errors import MissingGeometryError
 from .model import ShapeType
@@ -84,7 +85,7 @@ def shapely_module() -> Any:
     except ImportError:
         raise MissingGeometryError(
             "dissolving and simplifying outlines need the Python package shapely 2, which is not installed "
-            "here; install it (python3 -m pip install shapely), or leave them off"
+            f"here; install it {installation('shapely')}, or leave them off"
         ) from None
     return shapely
 

@@ -33,3 +33,7 @@ class CancelledError(RobotMapError):
 
 class MissingGeometryError(RobotMapError):
     """Reducing outlines needs a package that this Python does not have."""
+
+
+class NavigationMapError(RobotMapError):
+    """A map of Nav2 that cannot be read; the text names the key, its value and what is right."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
+from itertools import zip_longest
 
 # The C1 controls and the line and paragraph separators end a line for some readers; lone surrogates are no
 # UTF-8; blanks at either end are taken for indentation.
@@ -43,17 +44,15 @@ def write_ext(ext: Mapping[str, str]) -> str:
 
 def read_ext(text: str) -> dict[str, str]:
     """Return the extras in ``text``, which is without its semicolon; raises ValueError if it has no key."""
-    pairs: list[tuple[str, str]] = []
-    for piece in text.split(","):
-        key, equals, value = piece.partition("=")
-        if equals:
-            pairs.append((key, value))
-        elif pairs:
-            # A value may hold commas, as the normal n=nx,ny,nz does.
-            pairs[-1] = (pairs[-1][0], f"{pairs[-1][1]},{piece}")
-        elif text:
-            raise ValueError(text)
-    return {unescape(key): unescape(value) for key, value in pairs}
+    if not text:
+        return {}
+    pieces = text.split(",")
+    # A value may hold commas, as the normal n=nx,ny,nz does: a piece without "=" belongs to the one before.
+    begins = [place for place, piece in enumerate(pieces) if "=" in piece]
+    if not begins or begins[0]:
+        raise ValueError(text)
+    pairs = (",".join(pieces[begin:end]).partition("=") for begin, end in zip_longest(begins, begins[1:]))
+    return {unescape(key): unescape(value) for key, _, value in pairs}
 
 
 def _code(match: re.Match[str]) -> str:

@@ -11,6 +11,9 @@ from numpy.typing import NDArray
 CUT = "cut"
 """The extra, of value ``1``, of a part of a ring that the border cut; its inside is on the left."""
 
+PART_OF = "part_of"
+"""The leading line of a map that does not cover all of its site: x_min, y_min, x_max, y_max of the site."""
+
 
 class ShapeType(IntEnum):
     """How an obstacle is represented: the integer ST of the paper, in the order of its text."""
@@ -41,10 +44,27 @@ class Border(NamedTuple):
         """The corner that the format names second."""
         return self.x_max, self.y_min
 
+    def contains(self, other: Border) -> bool:
+        """Tell whether no part of ``other`` is outside."""
+        lower = self.x_min <= other.x_min and self.y_min <= other.y_min
+        return lower and self.x_max >= other.x_max and self.y_max >= other.y_max
+
+    def holds(self, x: float, y: float) -> bool:
+        """Tell whether (x, y) is not outside."""
+        return self.x_min <= x <= self.x_max and self.y_min <= y <= self.y_max
+
     @property
     def area(self) -> float:
         """Square metres."""
         return (self.x_max - self.x_min) * (self.y_max - self.y_min)
+
+
+class EncodedMap(NamedTuple):
+    """A map in the binary format, what it covers, and whether that is the whole site."""
+
+    content: bytes
+    border: Border
+    is_whole: bool
 
 
 @dataclass(frozen=True, eq=False)

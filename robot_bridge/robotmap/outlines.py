@@ -66,10 +66,67 @@ class Outlines:
             ext=[row.ext for row in rows] if any(row.ext for row in rows) else None,
         )
 
+    @classmethod
+    def joined(cls, parts: Sequence[Outlines]) -> Outlines:
+        """Return the outlines of ``parts`` one after the other."""
+        if len(parts) == 1:
+            return parts[0]
+        if not parts:
+            return cls.from_rows([])
+        starts = np.cumsum([0, *(len(part.coordinates) for part in parts)])
+        based = any(part.base is not None for part in parts)
+        extended = any(part.ext is not None for part in parts)
+        return cls(
+            coordinates=np.concatenate([part.coordinates for part in parts]),
+            offsets=np.concatenate(
+                [
+                    *(part.offsets[:-1] + start for part, start in zip(parts, starts, strict=False)),
+                    starts[-1:],
+                ]
+            ),
+            shape_type=np.concatenate([part.shape_type for part in parts]),
+            courtyard=np.concatenate([part.courtyard for part in parts]),
+            height=np.concatenate([part.height for part in parts]),
+            outdoor=np.concatenate([part.outdoor for part in parts]),
+            semantics=[one for part in parts for one in part.semantics],
+            source=[one for part in parts for one in part.source],
+            base=np.concatenate([part.bases for part in parts]) if based else None,
+            ext=[one for part in parts for one in part.extras] if extended else None,
+        )
+
+    @property
+    def bases(self) -> NDArray[Any]:
+        """(K,) float64, ``base`` of each outline."""
+        return self.base if self.base is not None else np.zeros(len(self))
+
+    @property
+    def extras(self) -> Sequence[Mapping[str, str]]:
+        """K mappings, ``ext`` of each outline."""
+        return self.ext if self.ext is not None else [{}] * len(self)
+
     def points(self, k: int) -> NDArray[Any]:
         """Return the points of outline ``k``, (n, 2)."""
         points: NDArray[Any] = self.coordinates[self.offsets[k] : self.offsets[k + 1]]
         return points
+
+    def chosen(self, rows: NDArray[Any]) -> Outlines:
+        """Return the outlines ``rows``, (n,) int64, in that order."""
+        starts, places = self.offsets[rows], rows.tolist()
+        lengths = self.offsets[rows + 1] - starts
+        offsets = np.concatenate([np.zeros(1, dtype=np.int64), np.cumsum(lengths)])
+        point = np.repeat(starts - offsets[:-1], lengths) + np.arange(offsets[-1])
+        return Outlines(
+            coordinates=self.coordinates[point],
+            offsets=offsets,
+            shape_type=self.shape_type[rows],
+            courtyard=self.courtyard[rows],
+            height=self.height[rows],
+            outdoor=self.outdoor[rows],
+            semantics=[self.semantics[k] for k in places],
+            source=[self.source[k] for k in places],
+            base=None if self.base is None else self.base[rows],
+            ext=None if self.ext is None else [self.ext[k] for k in places],
+        )
 
     def row(self, k: int) -> OutlineRow:
         """Return outline ``k`` by itself."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
+from ..missing_packages import installation
 from .errors import BinaryError, MissingCodecError
 
 _UNSIGNED, _NEGATIVE, _BYTES, _TEXT, _ARRAY = 0, 1, 2, 3, 4
@@ -67,6 +68,6 @@ def _cbor2() -> Any:
     except ImportError:
         raise MissingCodecError(
             "codec 2 of the binary format needs the Python package cbor2, which is not installed here; "
-            "install it (python3 -m pip install cbor2), or use codec 1"
+            f"install it {installation('cbor2')}, or use codec 1"
         ) from None
     return cbor2

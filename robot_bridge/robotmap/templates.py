@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from functools import lru_cache
 from types import MappingProxyType
 from typing import Any
 
@@ -52,6 +53,7 @@ class Template:
         return points
 
 
+@lru_cache(maxsize=1024)
 def template(text: str) -> Template:
     """Return what ``text`` names, such as ``bench``, ``circle 0.6``, ``circle 3 16`` or ``rectangle 2 0.5``.
 

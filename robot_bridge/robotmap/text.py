@@ -4,16 +4,26 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
+from itertools import islice, zip_longest
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from .errors import RobotMapError
 from .labels import escape, write_ext
 from .model import Obstacle, RobotMap
 from .text_reader import read_text
 
-__all__ = ["read_text", "write_text"]
+__all__ = ["read_text", "write_obstacles", "write_text"]
+
+_OBSTACLES = 256
+"""obstacles whose segments are turned into texts together."""
+_BLOCK = 4096
+"""segments that are turned into Python's numbers at once, which take five times their room."""
+_PLAIN_FROM, _PLAIN_BELOW = 1e-4, 1e16
+"""Between these Python writes a number without an exponent."""
 
 
 def write_text(robot_map: RobotMap, *, strict: bool = False) -> str:
@@ -24,13 +34,17 @@ def write_text(robot_map: RobotMap, *, strict: bool = False) -> str:
     for a leading line whose key is not one word.
     """
     parts = ["".join(_head(robot_map, strict)) if strict or robot_map.head is None else robot_map.head]
-    for obstacle in robot_map.obstacles:
+    for text in _texts(robot_map.obstacles, strict):
         # A text may end without a line break, and an obstacle read there may come to stand elsewhere.
         if not parts[-1].endswith("\n"):
             parts.append("\n")
-        as_read = None if strict else obstacle.text
-        parts.append("".join(_obstacle(obstacle, strict)) if as_read is None else as_read)
+        parts.append(text)
     return "".join(parts) + ("" if strict else robot_map.tail)
+
+
+def write_obstacles(obstacles: Sequence[Obstacle]) -> str:
+    """Return what :func:`write_text` writes of obstacles that were built and not read."""
+    return "".join(_texts(obstacles, strict=False))
 
 
 def format_number(value: float) -> str:
@@ -59,18 +73,52 @@ def _head(robot_map: RobotMap, strict: bool) -> Iterator[str]:
     yield "#\n"
 
 
-def _obstacle(obstacle: Obstacle, strict: bool) -> Iterator[str]:
+def _texts(obstacles: Sequence[Obstacle], strict: bool) -> Iterator[str]:
+    """Yield each obstacle as it was read, or as it is written."""
+    for begin in range(0, len(obstacles), _OBSTACLES):
+        some = obstacles[begin : begin + _OBSTACLES]
+        numbers = _numbers([one for one in some if strict or one.text is None])
+        for obstacle in some:
+            as_read = None if strict else obstacle.text
+            yield "".join(_obstacle(obstacle, numbers, strict)) if as_read is None else as_read
+
+
+def _obstacle(obstacle: Obstacle, numbers: Iterator[str], strict: bool) -> Iterator[str]:
+    """Yield an obstacle's lines; ``numbers`` gives what stands before the labels of each of its segments."""
     ext = write_ext({} if strict else obstacle.ext)
     count = len(obstacle.a)
     yield "obstacle;\n"
     yield f"{obstacle.id};{int(obstacle.shape_type)};{count};{escape(obstacle.semantics)};{ext}\n#\n"
-    for row in range(count):
-        yield _point(*obstacle.a[row])
-        yield _point(*obstacle.b[row])
-        flag = "1" if obstacle.outdoor[row] else "0"
-        label = escape(obstacle.segment_semantics[row])
-        extras = {} if strict or not obstacle.segment_ext else obstacle.segment_ext[row]
-        yield f"{format_number(obstacle.height[row])};{flag};{label};{write_ext(extras)}\n#\n"
+    extras = () if strict else obstacle.segment_ext
+    if not extras and not any(obstacle.segment_semantics):
+        for number, outdoor in zip(islice(numbers, count), obstacle.outdoor.tolist(), strict=True):
+            yield f"{number}{'01'[outdoor]};;\n#\n"
+        return
+    rows = zip(islice(numbers, count), obstacle.outdoor.tolist(), obstacle.segment_semantics, strict=True)
+    for (number, outdoor, semantics), ext_ in zip_longest(rows, extras):
+        yield f"{number}{'01'[outdoor]};{escape(semantics)};{write_ext(ext_ or {})}\n#\n"
+
+
+def _numbers(obstacles: Sequence[Obstacle]) -> Iterator[str]:
+    """Yield the two ends and the height of each segment of ``obstacles``, as they are written."""
+    if not obstacles:
+        return
+    ends = [np.concatenate(side) for side in zip(*((one.a, one.b) for one in obstacles), strict=True)]
+    values = np.column_stack([*ends, np.concatenate([one.height for one in obstacles])])
+    for begin in range(0, len(values), _BLOCK):
+        yield from _number_lines(values[begin : begin + _BLOCK])
+
+
+def _number_lines(values: NDArray[Any]) -> Iterator[str]:
+    """Yield a text for each row of ``values``, (n, 5)."""
+    size = np.abs(values)
+    if not ((size < _PLAIN_BELOW) & ((size >= _PLAIN_FROM) | (size == 0))).all():
+        for ax, ay, bx, by, height in values.tolist():
+            yield f"{_point(ax, ay)}{_point(bx, by)}{format_number(height)};"
+        return
+    # A sum with zero has no sign of its own, as -0.0 has.
+    for ax, ay, bx, by, height in (values + 0.0).tolist():
+        yield f"{ax};{ay};\n{bx};{by};\n{height};".replace(".0;", ";")
 
 
 def _point(x: float, y: float) -> str:

@@ -14,7 +14,15 @@ from .errors import TextError
 from .labels import read_ext, unescape
 from .model import Border, Obstacle, RobotMap, ShapeType
 
-_NUMBER = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?", re.ASCII)
+# A digit can be matched in one way only: with two, a number of n digits that ends wrongly costs n² steps.
+_DECIMAL = r"[+-]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][+-]?\d+)?"
+_NUMBER = re.compile(_DECIMAL, re.ASCII)
+_SEGMENT = re.compile(
+    rf"({_DECIMAL});({_DECIMAL});\n({_DECIMAL});({_DECIMAL});\n({_DECIMAL});([01]);([^;%\n]*);\n#\n", re.ASCII
+)
+"""The four lines of a segment without blanks, comments and extras, as writers make them."""
+_MOST_FIELDS = 5
+"""of a line; what has more is refused without being taken apart further."""
 _INTEGER = re.compile(r"[+-]?\d{1,18}", re.ASCII)
 _META = re.compile(r"%\s*(\S+)(?:\s+(.*))?")
 _BLANKS = " \t\r\n"
@@ -81,9 +89,7 @@ class _Reader:
         self._place = f"obstacle {id}"
         line_number = self._next
         self._separator()
-        segments = []
-        while not self._at_obstacle_or_end():
-            segments.append(self._segment())
+        segments = self._segments()
         if declared and not segments and self._skip_comments() >= len(self._lines):
             self._line(f"the first of {declared} segments")
         if len(segments) != declared:
@@ -110,6 +116,23 @@ class _Reader:
             return read_ext(text)
         except ValueError:
             self._fail_at(number, "'key=value,...;' after the semantics", text)
+
+    def _segments(self) -> list[Segment]:
+        segments = []
+        while (segment := self._plain_segment()) or not self._at_obstacle_or_end():
+            segments.append(segment or self._segment())
+        return segments
+
+    def _plain_segment(self) -> Segment | None:
+        """Return the next segment if it stands in four lines as writers make them, read in one step."""
+        match = _SEGMENT.fullmatch("".join(self._lines[self._next : self._next + 4]))
+        if match is None:
+            return None
+        ax, ay, bx, by, height = map(float, match.group(1, 2, 3, 4, 5))
+        if not math.isfinite(ax + ay + bx + by + height):
+            return None
+        self._next += 4
+        return (ax, ay), (bx, by), height, match[6] == "1", unescape(match[7].strip(_BLANKS)), {}
 
     def _segment(self) -> Segment:
         a, b = self._point(), self._point()
@@ -138,8 +161,8 @@ class _Reader:
     def _fields(self, expected: str) -> tuple[int, list[str]]:
         """Return the next line's number and what stands before each of its semicolons."""
         number, content = self._line(expected)
-        fields = [value.strip(_BLANKS) for value in content.split(";")]
-        if fields.pop():
+        fields = [value.strip(_BLANKS) for value in content.split(";", _MOST_FIELDS + 1)]
+        if fields.pop() and len(fields) <= _MOST_FIELDS:
             self._fail_at(number, f"{expected}, closed by ';'", self._lines[number].strip())
         return number, fields
 
@@ -200,9 +223,27 @@ def _column(values: list[Any], dtype: type) -> NDArray[Any]:
     return column
 
 
+_NO_POINTS = _column([], float).reshape(-1, 2)
+_NO_NUMBERS = _column([], float)
+_NO_FLAGS = _column([], bool)
+"""Columns of all obstacles without segments: five arrays of each one's own are half a kilobyte."""
+
+
 def _obstacle(
     id: int, shape_type: ShapeType, semantics: str, ext: dict[str, str], segments: list[Segment]
 ) -> Obstacle:
+    if not segments:
+        return Obstacle(
+            id,
+            shape_type,
+            semantics,
+            _NO_POINTS,
+            _NO_POINTS,
+            _NO_NUMBERS,
+            _NO_FLAGS,
+            segment_semantics=(),
+            ext=ext,
+        )
     return Obstacle(
         id=id,
         shape_type=shape_type,

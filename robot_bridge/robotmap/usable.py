@@ -21,7 +21,8 @@ class Inspection:
     """K outlines whose rings close, which of them can be obstacles, and what is said of them.
 
     ``low`` and ``high``, (K, 2), are the corners of their bounding boxes. Note k is about outline
-    ``note_row[k]``; ``note_everywhere`` marks those of outlines that have no place.
+    ``note_row[k]``; ``note_everywhere`` marks those of outlines that have no place. Notes stand by what is
+    wrong: the first ``note_counts[0]`` are of the first kind, and so on.
     """
 
     outlines: Outlines
@@ -31,6 +32,7 @@ class Inspection:
     notes: tuple[str, ...]
     note_row: NDArray[Any]
     note_everywhere: NDArray[Any]
+    note_counts: tuple[int, ...]
 
     def near(self, border: Border) -> NDArray[Any]:
         """Tell which outlines' bounding boxes touch the border's rectangle, (K,) bool."""
@@ -69,7 +71,7 @@ def inspected(outlines: Outlines) -> Inspection:
     note_row = np.concatenate(rows)
     everywhere = (~finite | (lengths == 0))[note_row]
     everywhere[: len(closed)] = False
-    return Inspection(outlines, usable, low, high, tuple(notes), note_row, everywhere)
+    return Inspection(outlines, usable, low, high, tuple(notes), note_row, everywhere, tuple(map(len, rows)))
 
 
 def touching(low: NDArray[Any], high: NDArray[Any], border: Border) -> NDArray[Any]:

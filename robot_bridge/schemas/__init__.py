@@ -1,1 +1,1 @@
-"""JSON Schemas of every message and an AsyncAPI document of both endpoints, made from the messages."""
+"""JSON Schemas of every message and an AsyncAPI document of all endpoints, made from the messages."""

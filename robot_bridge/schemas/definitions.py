@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import inspect
 import re
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from typing import Any
 
 import msgspec
@@ -13,23 +13,28 @@ from ..messages import PAYLOADS
 
 Schema = dict[str, Any]
 
+JSON_SCHEMA = "$schema"
+"""The key under which a document names the draft that it follows."""
 
-def definitions(classes: Sequence[type], template: str) -> dict[str, Schema]:
+
+def definitions(classes: Sequence[type], template: str, closed: Sequence[type] = ()) -> dict[str, Schema]:
     """Return the schemas of ``classes`` and of what they hold, by class name.
 
-    ``template`` is how they refer to each other, such as ``#/$defs/{name}``.
+    ``template`` is how they refer to each other, such as ``#/$defs/{name}``. Those in ``closed``, and what
+    they hold, take no properties that they do not name; but for what stops robots, which is never refused.
     """
     _, found = msgspec.json.schema_components(classes, ref_template=template)
     holders = {cls.__name__: cls for cls in classes}
-    return {name: _refined(schema, holders.get(name)) for name, schema in found.items()}
+    shut = _names_in(closed) - {cls.__name__ for cls in classes if getattr(cls, "stops", False)}
+    return {name: _refined(schema, holders.get(name), shut) for name, schema in found.items()}
 
 
-def schema_of(cls: type) -> Schema:
-    """Return the schema of one message by itself."""
-    found = definitions([cls], "#/$defs/{name}")
+def schema_of(cls: type, *, closed: bool = False) -> Schema:
+    """Return the schema of one message by itself; a ``closed`` one takes no other properties."""
+    found = definitions([cls], "#/$defs/{name}", [cls] if closed else [])
     schema = found.pop(cls.__name__)
     inner = {"$defs": found} if found else {}
-    return {"$schema": "https://json-schema.org/draft/2020-12/schema", **schema, **inner}
+    return {JSON_SCHEMA: "https://json-schema.org/draft/2020-12/schema", **schema, **inner}
 
 
 def plain_text(text: str) -> str:
@@ -38,8 +43,15 @@ def plain_text(text: str) -> str:
     return re.sub(r"(?<!\n)\n(?!\n)", " ", text)
 
 
-def _refined(schema: Schema, cls: type | None) -> Schema:
+def _names_in(classes: Sequence[type]) -> set[str]:
+    """Return the names of ``classes`` and of all that they hold."""
+    return set(msgspec.json.schema_components(classes)[1]) if classes else set()
+
+
+def _refined(schema: Schema, cls: type | None, closed: Collection[str]) -> Schema:
     refined = dict(schema)
+    if refined.get("type") == "object" and refined.get("title") in closed:
+        refined["additionalProperties"] = False
     if "description" in refined:
         refined["description"] = plain_text(refined["description"])
     properties = {name: dict(value) for name, value in schema.get("properties", {}).items()}

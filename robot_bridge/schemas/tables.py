@@ -8,6 +8,7 @@ from ..messages import (
     DeskRequest,
     GetSurfaces,
     GetTrajectory,
+    Links,
     ObservationReport,
     PlacementReport,
     Placements,
@@ -38,6 +39,8 @@ from ..messages.desk import (
     SetPositions,
     Subscribe,
 )
+from ..messages.geofence import Geofence
+from ..messages.nearness import Nearness
 from ..messages.observations import GetImage, GetObservations, ReviewObservation
 from ..messages.placements import CollectLayout, GetPlacements
 from ..messages.queues import (
@@ -52,6 +55,7 @@ from ..messages.queues import (
     SetQueue,
     TakeOver,
 )
+from ..messages.removal import RemoveRobots, RobotsRemoved
 from ..messages.results import (
     Audit,
     Commands,
@@ -72,12 +76,15 @@ from ..messages.roads import (
     GetClosures,
     GetConflicts,
     GetRoute,
+    GetWaysOut,
     OpenRoad,
     ReplannedRobot,
     ResolveConflict,
     RoadClosed,
     RouteReport,
+    WaysOut,
 )
+from ..messages.service import Suspensions
 from ..messages.sites import ChooseSite, GetSites, Sites
 from ..messages.stopping import AbortTask, ClearEmergencyStop, EmergencyReport, EmergencyStop
 from ..messages.supervision import EndSession, GetAudit, GetSessions, SessionReport
@@ -126,7 +133,9 @@ RESULTS: dict[type[DeskRequest], type] = {
     OpenRoad: ClosureReport,
     GetClosures: Closures,
     GetConflicts: Conflicts,
+    GetWaysOut: WaysOut,
     ResolveConflict: ConflictResolved,
+    RemoveRobots: RobotsRemoved,
 }
 """What each request of an operator is answered with."""
 
@@ -137,9 +146,13 @@ NOTIFICATIONS: dict[str, type] = {
     "emergency": EmergencyReport,
     "site": SiteReport,
     "stopping": Stopping,
+    "suspensions": Suspensions,
+    "links": Links,
     "closures": Closures,
     "replanned": ReplannedRobot,
     "conflicts": Conflicts,
+    "geofence": Geofence,
+    "nearness": Nearness,
     "queue": QueueReport,
     "placement": PlacementReport,
 }

@@ -17,3 +17,7 @@ class LayerError(SiteError):
 
 class CrsError(SiteError):
     """A CRS cannot carry a site: unknown, geographic, not in metres, or EPSG:3857."""
+
+
+class CacheError(SiteError):
+    """``site.cache`` is damaged, or belongs to another publication; the site can be read without it."""

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..robotmap.model import ShapeType
 from ..robotmap.outlines import OutlineRow, Outlines
+from ..robotmap.segments import is_closed
 from .errors import LayerError
 from .extras import extras_of, extras_text
 from .frame import Points, SiteFrame
@@ -28,7 +31,7 @@ def obstacle_layer(outlines: Outlines, frame: SiteFrame) -> Layer:
     """
     geometries: list[Any] = []
     columns: dict[str, list[Any]] = {name: [] for name in OBSTACLES.fields}
-    for first, last in _groups(outlines):
+    for first, last in outline_groups(outlines):
         geometries.append(_geometry(outlines, first, last, frame))
         for name, value in obstacle_values(outlines.row(first)).items():
             columns[name].append(value)
@@ -81,13 +84,61 @@ def outlines_of(layer: Layer, frame: SiteFrame, place: str) -> Outlines:
     return Outlines.from_rows(rows)
 
 
-def _groups(outlines: Outlines) -> Iterator[tuple[int, int]]:
+def outline_groups(outlines: Outlines) -> Iterator[tuple[int, int]]:
     """Yield (first, last + 1) of each outline with the courtyards that follow it."""
-    first = 0
-    for k in range(1, len(outlines) + 1):
-        if k == len(outlines) or not (outlines.courtyard[k] and outlines.source[k] == outlines.source[first]):
-            yield first, k
-            first = k
+    first = np.flatnonzero(~_joined(outlines))
+    yield from zip(first.tolist(), [*first[1:].tolist(), len(outlines)], strict=bool(len(first)))
+
+
+def row_spans(outlines: Outlines, obstacles: int) -> Iterator[tuple[int, int]]:
+    """Yield (first, last + 1) of so many obstacles at a time, each with its courtyards."""
+    first = np.flatnonzero(~_joined(outlines))[::obstacles].tolist()
+    yield from pairwise([*first, len(outlines)])
+
+
+def as_read_back(outlines: Outlines, frame: SiteFrame) -> Outlines | None:
+    """Return ``outlines`` as :func:`outlines_of` reads them from their own layer.
+
+    None where a ring does not close or a number is not finite, which only the layer tells what becomes of.
+    """
+    joined, closed = _joined(outlines), is_closed(outlines.shape_type)
+    group = np.cumsum(~joined) - 1
+    of = np.flatnonzero(~joined)[group] if len(outlines) else group
+    # What is no ring has no holes.
+    kept = np.flatnonzero(~joined | closed[of])
+    lengths = np.diff(outlines.offsets)[kept]
+    if not (np.isfinite(outlines.coordinates).all() and np.isfinite(outlines.height).all() and lengths.all()):
+        return None
+    offsets = np.concatenate([[0], np.cumsum(lengths)]).astype(np.int64)
+    point = np.repeat(outlines.offsets[kept] - offsets[:-1], lengths) + np.arange(offsets[-1])
+    coordinates = frame.to_site(frame.to_crs(outlines.coordinates[point]))
+    first, last = offsets[:-1][closed[of[kept]]], offsets[1:][closed[of[kept]]] - 1
+    if not np.array_equal(outlines.coordinates[point[first]], outlines.coordinates[point[last]]):
+        return None
+    coordinates[last] = coordinates[first]
+    rows = of[kept].tolist()
+    based = outlines.base is not None and bool(outlines.base[of[kept]].any())
+    extras = None if outlines.ext is None else [outlines.ext[k] for k in rows]
+    return Outlines(
+        coordinates=coordinates,
+        offsets=offsets,
+        shape_type=outlines.shape_type[of[kept]].astype(np.int8),
+        courtyard=joined[kept],
+        height=outlines.height[of[kept]].astype(np.float64),
+        outdoor=outlines.outdoor[of[kept]].astype(bool),
+        semantics=[outlines.semantics[k] for k in rows],
+        source=[outlines.source[k] for k in rows],
+        base=outlines.base[of[kept]].astype(np.float64) if outlines.base is not None and based else None,
+        ext=extras if extras is not None and any(extras) else None,
+    )
+
+
+def _joined(outlines: Outlines) -> NDArray[np.bool_]:
+    """Tell which outlines are holes of the one before them, (K,) bool."""
+    joined = np.zeros(len(outlines), dtype=bool)
+    for k in np.flatnonzero(outlines.courtyard).tolist():
+        joined[k] = k > 0 and outlines.source[k] == outlines.source[k - 1]
+    return joined
 
 
 def _geometry(outlines: Outlines, first: int, last: int, frame: SiteFrame) -> Any:

@@ -17,8 +17,13 @@ from .settings_tables import (
     AuditSettings,
     CommandSettings,
     ConeSettings,
+    FenceAction,
     GatewayOptions,
+    GeofenceSettings,
+    LinkOptions,
     LivenessLimits,
+    MapSettings,
+    NearnessSettings,
     ObservationSettings,
     QueueSettings,
     RouteSettings,
@@ -26,6 +31,7 @@ from .settings_tables import (
     out_of_range,
 )
 from .settings_toml import changed_text, value_text
+from .toml_reading import toml_tables
 
 __all__ = [
     "SETTINGS_FILE",
@@ -33,9 +39,13 @@ __all__ = [
     "Bounds",
     "CommandSettings",
     "ConeSettings",
+    "FenceAction",
     "GatewayOptions",
+    "GeofenceSettings",
     "LimitSettings",
     "LivenessLimits",
+    "MapSettings",
+    "NearnessSettings",
     "ObservationSettings",
     "QueueSettings",
     "RouteSettings",
@@ -85,11 +95,15 @@ class SiteSettings:
     trajectories: TrajectorySettings = field(default_factory=TrajectorySettings)
     observations: ObservationSettings = field(default_factory=ObservationSettings)
     audit: AuditSettings = field(default_factory=AuditSettings)
+    maps: MapSettings = field(default_factory=MapSettings)
     routes: RouteSettings = field(default_factory=RouteSettings)
     queues: QueueSettings = field(default_factory=QueueSettings)
     cones: ConeSettings = field(default_factory=ConeSettings)
+    geofence: GeofenceSettings = field(default_factory=GeofenceSettings)
+    nearness: NearnessSettings = field(default_factory=NearnessSettings)
     gateway: GatewayOptions = field(default_factory=GatewayOptions)
     limits: LimitSettings = field(default_factory=LimitSettings)
+    links: LinkOptions = field(default_factory=LinkOptions)
 
     @property
     def stamp(self) -> str:
@@ -165,11 +179,15 @@ TABLES: dict[str, type[Any]] = {
     "trajectories": TrajectorySettings,
     "observations": ObservationSettings,
     "audit": AuditSettings,
+    "maps": MapSettings,
     "routes": RouteSettings,
     "queues": QueueSettings,
     "cones": ConeSettings,
+    "geofence": GeofenceSettings,
+    "nearness": NearnessSettings,
     "gateway": GatewayOptions,
     "limits": LimitSettings,
+    "links": LinkOptions,
 }
 """The tables beside ``[site]``, by name."""
 SITE_KEYS = {f.name for f in fields(SiteSettings)} - set(TABLES)
@@ -242,11 +260,9 @@ def _broken_rules(settings: SiteSettings) -> list[str]:
 
 def _tables(file: Path) -> Mapping[str, Any]:
     try:
-        import tomllib
+        return toml_tables(file.read_text(encoding="utf-8"))
     except ImportError as error:
         raise SettingsError(f"{file} cannot be read: this needs Python 3.11 or newer (tomllib).") from error
-    try:
-        return tomllib.loads(file.read_text(encoding="utf-8"))
     except FileNotFoundError as error:
         raise SettingsError(
             f"{file} is missing: a published site is a folder with {SETTINGS_FILE} and site.gpkg. "
@@ -254,7 +270,7 @@ def _tables(file: Path) -> Mapping[str, Any]:
         ) from error
     except (OSError, UnicodeDecodeError) as error:
         raise SettingsError(f"{file} cannot be read: {error}") from error
-    except tomllib.TOMLDecodeError as error:
+    except ValueError as error:
         raise SettingsError(f"{file} is not valid TOML: {error}. Correct that line.") from error
 
 

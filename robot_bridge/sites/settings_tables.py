@@ -10,6 +10,8 @@ from typing import Any, Literal
 _LONGEST_DAYS = 36500.0
 _LARGEST_IMAGE = 8_000_000
 """bytes; as text of a statement up to twice that, and a MariaDB as it is installed takes 16 MiB."""
+_LARGEST_MAP = 48_000_000
+"""bytes; as base64 in one frame 64 MB, which the reference robot takes."""
 
 
 def _number(default: Any, *, least: float = 0.0, above: bool = False, most: float = math.inf) -> Any:
@@ -80,6 +82,18 @@ class AuditSettings:
 
 
 @dataclass(frozen=True)
+class MapSettings:
+    """What maps robots are sent without asking: after Ready, and when the site was published anew.
+
+    The map of the whole site where it has at most ``largest_whole_bytes`` in the binary format; else that of
+    a square of ``window_m`` metres around the robot, or less where much stands there.
+    """
+
+    largest_whole_bytes: int = _number(8_000_000, most=_LARGEST_MAP)
+    window_m: float = _number(300.0, least=10.0, most=10_000.0)
+
+
+@dataclass(frozen=True)
 class RouteSettings:
     """How robots drive along roads, and what is reckoned with where several do.
 
@@ -123,6 +137,36 @@ class ConeSettings:
         return self.offset_ahead_m, self.offset_left_m
 
 
+FenceAction = Literal["none", "pause", "abort"]
+
+
+@dataclass(frozen=True)
+class GeofenceSettings:
+    """What the gateway does by itself when a robot comes into a keepout, or too near to an obstacle.
+
+    Operators are told of it in any case; ``pause`` and ``abort`` stop the robot as an operator's do, once
+    each time that it comes in. Distances are from a robot's middle: ``keepout_clearance_m`` beyond the edge
+    of a keepout, ``obstacle_clearance_m`` from an obstacle, None for the robot's radius after ``[routes]``.
+    """
+
+    in_keepout: FenceAction = "none"
+    at_obstacle: FenceAction = "none"
+    keepout_clearance_m: float = _number(0.0, most=100.0)
+    obstacle_clearance_m: float | None = _number(None, most=100.0)
+
+
+@dataclass(frozen=True)
+class NearnessSettings:
+    """From where on operators are told of people and vehicles, that are only seen, near robots.
+
+    ``metres`` are between the middles of two; 0 switches it off. They are told, too, of who will be so near
+    within ``within_s`` seconds if both go on as they do.
+    """
+
+    metres: float = _number(5.0, most=1000.0)
+    within_s: float = _number(10.0, most=600.0)
+
+
 @dataclass(frozen=True)
 class GatewayOptions:
     """What ``robot-bridge serve`` takes where its command line does not say it; None for its own default.
@@ -135,6 +179,21 @@ class GatewayOptions:
     database: str | None = None
     certificate: str | None = None
     key: str | None = None
+
+
+@dataclass(frozen=True)
+class LinkOptions:
+    """Links that the gateway starts and keeps going: files of settings in the site's folder, by kind."""
+
+    tracker: tuple[str, ...] = ()
+    vda5050: tuple[str, ...] = ()
+    ros2: tuple[str, ...] = ()
+    rosbridge: tuple[str, ...] = ()
+    replay: tuple[str, ...] = ()
+
+    def files(self) -> list[tuple[str, str]]:
+        """Return the kind and the file of each."""
+        return [(kind.name, file) for kind in fields(self) for file in getattr(self, kind.name)]
 
 
 def out_of_range(table: str, values: object) -> Iterator[str]:

@@ -12,7 +12,9 @@ from typing import Any
 
 _HEADER = re.compile(r"""^[ \t]*\[{1,2}[ \t]*(["'\w.\- \t]+?)[ \t]*\]{1,2}[ \t]*(?:#.*)?$""")
 _KEY = re.compile(r"""^[ \t]*(["']?)([\w-]+)\1[ \t]*=[ \t]*(.*)$""")
-_QUOTED = re.compile(r'"(?:[^"\\]|\\.)*"|\'[^\']*\'|#.*')
+# An unclosed text ends with its line: to look for its end from each of its quotes takes n² steps.
+_QUOTED = re.compile(r'"(?:[^"\\]|\\.)*"?|\'[^\']*\'|#.*')
+_LONGEST_HEADER = 200
 
 
 def toml_value(value: Any) -> str:
@@ -67,7 +69,9 @@ def _with_table(lines: list[str], table: str, values: Mapping[str, Any]) -> list
 def _table(lines: list[str], table: str) -> tuple[int, int] | None:
     """Return the lines [start, end) between the header of ``table`` and the next header."""
     headers = [
-        (number, match[1].strip("\"'")) for number, line in enumerate(lines) if (match := _HEADER.match(line))
+        (number, match[1].strip("\"'"))
+        for number, line in enumerate(lines)
+        if (match := _HEADER.match(line[:_LONGEST_HEADER]))
     ]
     for position, (number, name) in enumerate(headers):
         if name == table:

@@ -6,11 +6,14 @@ import json
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from sqlalchemy import Connection, and_, bindparam, delete, insert, or_, select
+from sqlalchemy import Connection, and_, bindparam, delete, func, insert, or_, select
 
-from ..messages import Abort, Answer, SetMap, to_json
-from .rows import Row, add_messages, delete_messages
+from ..messages import COMMANDS, Abort, Answer, SetMap, to_json
+from .rows import TOGETHER, Row, add_messages, delete_messages
 from .schema import sa
+
+ORDERS = tuple(op for op in COMMANDS if op != Abort.__name__)
+"""What sets a robot in motion, or tells it where it is: it has to know the map before."""
 
 # Built once: SQLAlchemy takes longer to build a statement than the database to do it.
 _LATER = or_(
@@ -28,6 +31,12 @@ _REMOVE_ONE = delete(sa).where(sa.c.id == bindparam("one"))
 _WAITING = select(sa.c.id).where(sa.c.id.in_(bindparam("ids", expanding=True)))
 # Found first, and then deleted by their ids: a deletion that looks for its rows waits at those of others.
 _KINDS = select(sa.c.id).where(sa.c.op.in_(bindparam("ops", expanding=True)))
+_LAST_ORDER = select(func.max(sa.c.id)).where(sa.c.robot == bindparam("of"), sa.c.op.in_(ORDERS))
+_MAPS_BEHIND_ORDERS = select(sa.c.id).where(
+    sa.c.robot == bindparam("of"),
+    sa.c.op == SetMap.__name__,
+    sa.c.id > func.coalesce(_LAST_ORDER.scalar_subquery(), 0),
+)
 
 
 class AnswerRow(NamedTuple):
@@ -102,6 +111,19 @@ def take_back(connection: Connection, ids: Sequence[int]) -> set[int]:
 def remove_kinds(connection: Connection, robot: str, ops: Sequence[str]) -> None:
     """Delete the robot's answers of the kinds ``ops``."""
     remove(connection, list(connection.scalars(_KINDS.where(sa.c.robot == robot), {"ops": ops})))
+
+
+def remove_maps(connection: Connection, robot: str) -> None:
+    """Delete the robot's maps, but for those that something waits behind which needs a map first."""
+    remove(connection, list(connection.scalars(_MAPS_BEHIND_ORDERS, {"of": robot})))
+
+
+def remove_unlocked(connection: Connection, robots: Sequence[str], ops: Sequence[str]) -> None:
+    """Delete the answers of the kinds ``ops`` for ``robots`` but for those that a robot is just reading."""
+    for begin in range(0, len(robots), TOGETHER):
+        some = sa.c.robot.in_(robots[begin : begin + TOGETHER])
+        found = connection.scalars(_KINDS.where(some).with_for_update(skip_locked=True), {"ops": ops})
+        remove(connection, list(found))
 
 
 def remove_everywhere(connection: Connection, ops: Sequence[str]) -> None:

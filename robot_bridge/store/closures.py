@@ -7,7 +7,10 @@ from typing import Any, NamedTuple
 
 from sqlalchemy import Connection, delete, insert, select, update
 
+from ..core.decoding import decode_json
+from ..messages import SetPath, to_json
 from .ageing import delete_oldest
+from .rows import readable
 from .schema import closures, holds
 
 
@@ -55,7 +58,7 @@ def find(connection: Connection, id: str) -> ClosureRow | None:
 def in_force(connection: Connection) -> list[ClosureRow]:
     """Return the closures that are in force, oldest first."""
     query = select(*_COLUMNS).where(closures.c.opened_at.is_(None)).order_by(closures.c.closed_at)
-    return [_row(row) for row in connection.execute(query)]
+    return list(readable(connection.execute(query), _row, lambda row: f"closed road {row.id}"))
 
 
 def end(connection: Connection, id: str, at: float, by: str) -> None:
@@ -83,8 +86,16 @@ def release(connection: Connection, robot: str) -> None:
 def held(connection: Connection) -> list[HoldRow]:
     """Return who waits."""
     query = select(*(holds.c[name] for name in HoldRow._fields)).order_by(holds.c.robot)
-    rows = [HoldRow(*row) for row in connection.execute(query)]
-    return [row._replace(rest=json.loads(row.rest)) for row in rows]  # type: ignore[arg-type]
+    return list(readable(connection.execute(query), _hold, lambda row: f"how robot {row.robot} waits"))
+
+
+def _hold(found: Any) -> HoldRow:
+    row = HoldRow(*found)
+    rest = decode_json(found.rest)
+    # Understood now, since it is sent when nobody is there to be told that it is none.
+    return row._replace(
+        rest=to_json(SetPath([(float(x), float(y)) for x, y in rest["points"]], rest.get("theta")))
+    )
 
 
 _COLUMNS: list[Any] = [closures.c[name] for name in ClosureRow._fields]
@@ -92,4 +103,4 @@ _COLUMNS: list[Any] = [closures.c[name] for name in ClosureRow._fields]
 
 def _row(found: Any) -> ClosureRow:
     row = ClosureRow(*found)
-    return row._replace(line=[(float(x), float(y)) for x, y in json.loads(found.line)])
+    return row._replace(line=[(float(x), float(y)) for x, y in decode_json(found.line)])

@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping, Sequence
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from sqlalchemy import Connection, Select, bindparam, delete, insert, select, update
 
 from ..command_life.states import is_open
+from ..core.decoding import decode_json
 from ..messages import CommandReport, CommandState, CommandStep
 from .ageing import beside_the_time, delete_oldest
+from .rows import readable
 from .schema import command_steps, commands
 
 
@@ -144,29 +146,42 @@ def _load(connection: Connection, query: Select[tuple[object, ...]]) -> list[Sto
     rows = connection.execute(query).mappings().all()
     steps: dict[str, list[CommandStep]] = {row["id"]: [] for row in rows}
     wanted = select(command_steps).where(command_steps.c.command.in_(steps)).order_by(command_steps.c.id)
-    for step in connection.execute(wanted).mappings() if rows else ():
-        steps[step["command"]].append(
-            CommandStep(CommandState(step["state"]), step["at"], step["by"], step["reason"])
-        )
-    return [
-        StoredCommand(
-            CommandReport(
-                command=row["id"],
-                robot=row["robot"],
-                op=row["op"],
-                params=json.loads(row["params"]),
-                operator=row["operator"],
-                state=CommandState(row["state"]),
-                steps=steps[row["id"]],
-                deviation=row["deviation"],
-                stood=_stood(row["stood_x"], row["stood_y"], row["stood_theta"]),
-            ),
-            sa_id=row["sa_id"],
-            driven=row["driven"],
-            expires_at=row["expires_at"],
-        )
-        for row in rows
-    ]
+    found = connection.execute(wanted).mappings() if rows else ()
+    for command, step in readable(found, _step, lambda row: f"a step of command {row['command']}"):
+        steps[command].append(step)
+    return list(
+        readable(rows, lambda row: _stored(row, steps[row["id"]]), lambda row: f"command {row['id']}")
+    )
+
+
+def _stored(row: Mapping[Any, Any], steps: list[CommandStep]) -> StoredCommand:
+    return StoredCommand(
+        CommandReport(
+            command=row["id"],
+            robot=row["robot"],
+            op=row["op"],
+            params=_params(row["params"]),
+            operator=row["operator"],
+            state=CommandState(row["state"]),
+            steps=steps,
+            deviation=row["deviation"],
+            stood=_stood(row["stood_x"], row["stood_y"], row["stood_theta"]),
+        ),
+        sa_id=row["sa_id"],
+        driven=row["driven"],
+        expires_at=row["expires_at"],
+    )
+
+
+def _step(row: Mapping[Any, Any]) -> tuple[str, CommandStep]:
+    return row["command"], CommandStep(CommandState(row["state"]), row["at"], row["by"], row["reason"])
+
+
+def _params(text: str) -> dict[str, Any]:
+    params = decode_json(text)
+    if not isinstance(params, dict):
+        raise TypeError(f"params is {type(params).__name__}")
+    return params
 
 
 def _stood(x: float | None, y: float | None, theta: float | None) -> tuple[float, float, float] | None:

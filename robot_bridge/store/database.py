@@ -11,6 +11,7 @@ from typing import Any, TypeVar
 from sqlalchemy import URL, Connection
 
 from . import revisions
+from .accounts.offences import Offences
 from .accounts.stuck import end_stuck
 from .address import open_engine, read_address, shown
 from .engines.dialect import PATIENCE_S, Mode
@@ -34,7 +35,9 @@ class Database:
     def __init__(self, address: str | URL, patience: float | None = PATIENCE_S) -> None:
         self.url = read_address(address) if isinstance(address, str) else address
         self._engine, self.dialect = open_engine(self.url, patience)
-        self._worker = Worker(self._engine, self.dialect, shown(self.url), patience)
+        self.offences = Offences()
+        """What robots' accounts do to others."""
+        self._worker = Worker(self._engine, self.dialect, shown(self.url), patience, self.offences)
         self._watch: asyncio.Task[None] | None = None
         self.observe: Callable[[float], None] = _pass_over
         """Called with the seconds that each piece of work took, waiting included."""
@@ -77,6 +80,11 @@ class Database:
         result: int | None = await self._submit(self.dialect.version, (), Mode.READ, alone=True)
         return result
 
+    async def run_alone(self, work: Callable[..., T], *arguments: Any) -> T:
+        """Run ``work`` outside of any transaction: it begins and ends its own; raises StoreError."""
+        result: T = await self._submit(work, arguments, Mode.READ, alone=True)
+        return result
+
     async def end_stuck(self) -> None:
         """End robots' transactions that take too long; raises StoreError."""
         await self._submit(_end_stuck, (), Mode.READ, alone=True)
@@ -85,7 +93,7 @@ class Database:
         """Return what tells when it is time to look for new rows; ``channel`` is one of the triggers'."""
         if not self.dialect.listens:
             return Polling()
-        listening = Listening(self._engine, channel, lambda: self._worker.backend)
+        listening = Listening(self._engine, channel, lambda: self._worker.backend, self.offences)
         if channel != GATEWAY_CHANNEL:
             return listening
         return Dozing(listening, lambda: self.read(self.dialect.doze), lambda: self.read(self.dialect.rouse))

@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import Any, NamedTuple
 
 from sqlalchemy import ColumnElement, Connection, func, insert, select, update
 
+from ..core.decoding import decode_json
 from ..counting import counted
 from ..errors import RefusedError
 from ..messages import GetObservations, ObservationReport, ObservationState, SendImage, SetObject
 from .ageing import beside_the_time, delete_oldest
+from .rows import readable
 from .schema import observations as table
 
 _REPORTED = [
@@ -78,14 +80,14 @@ def newest(
         query = query.where(table.c.object == wanted.object)
     if wanted.before is not None:
         query = query.where(table.c.id < wanted.before)
-    return [_report(row) for row in connection.execute(query).mappings()]
+    return _reports(connection.execute(query).mappings())
 
 
 def on_map(connection: Connection) -> list[ObservationReport]:
     """Return the accepted objects, oldest first."""
     accepted = table.c.state == ObservationState.ACCEPTED.value
     query = select(*_REPORTED).where(accepted, table.c.kind == SetObject.__name__).order_by(table.c.id)
-    return [_report(row) for row in connection.execute(query).mappings()]
+    return _reports(connection.execute(query).mappings())
 
 
 def image(connection: Connection, id: int) -> tuple[bytes, str] | None:
@@ -146,9 +148,13 @@ def _one(connection: Connection, id: int) -> ObservationReport:
     return found
 
 
+def _reports(rows: Iterable[Mapping[Any, Any]]) -> list[ObservationReport]:
+    return list(readable(rows, _report, lambda row: f"observation {row['id']}"))
+
+
 def _report(row: Mapping[Any, Any]) -> ObservationReport:
-    told = json.loads(row["details"]) if row["details"] else {}
-    review = json.loads(row["review"]) if row["review"] else {}
+    told = decode_json(row["details"]) if row["details"] else {}
+    review = decode_json(row["review"]) if row["review"] else {}
     return ObservationReport(
         observation=row["id"],
         robot=row["robot"],
@@ -168,4 +174,5 @@ def _report(row: Mapping[Any, Any]) -> ObservationReport:
         reason=review.get("reason"),
         reviewed_at=row["reviewed_at"],
         reviewed_by=row["reviewed_by"],
+        doubts=told.get("doubts"),
     )

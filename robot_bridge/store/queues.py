@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, NamedTuple
 
 import msgspec
 from sqlalchemy import Connection, Select, bindparam, exists, insert, or_, select, update
 
+from ..core.decoding import decode_json
 from ..errors import RefusedError
 from ..messages import QueueState, QueueTask, TaskState, to_json
 from ..queues.edits import Whereabouts
 from ..queues.queue import ENDS, Queue, QueuedTask
 from .ageing import beside_the_time, delete_oldest
+from .rows import readable
 from .schema import queue_tasks, queues
 
 _ENDED = [state.value for state in ENDS]
@@ -41,20 +43,24 @@ def load(connection: Connection, robots: Sequence[str] | None = None) -> dict[st
         wanted = wanted.where(queues.c.robot.in_(robots))
         open_tasks = open_tasks.where(queue_tasks.c.robot.in_(robots))
     tasks: dict[str, list[QueuedTask]] = {}
-    for row in connection.execute(open_tasks.order_by(queue_tasks.c.place)).mappings():
-        tasks.setdefault(row["robot"], []).append(_task(row))
-    return {
-        row["robot"]: Queue(
-            robot=row["robot"],
-            revision=row["revision"],
-            state=QueueState(row["state"]),
-            tasks=tuple(tasks.get(row["robot"], ())),
-            reason=row["reason"],
-            by=row["by"],
-            at=row["at"],
-        )
-        for row in connection.execute(wanted).mappings()
-    }
+    rows = connection.execute(open_tasks.order_by(queue_tasks.c.place)).mappings()
+    for robot, task in readable(rows, lambda row: (row["robot"], _task(row)), _name_of_task):
+        tasks.setdefault(robot, []).append(task)
+    found = connection.execute(wanted).mappings()
+    read = readable(found, lambda row: _queue(row, tasks), lambda row: f"the queue of robot {row['robot']}")
+    return {queue.robot: queue for queue in read}
+
+
+def _queue(row: Any, tasks: Mapping[str, Sequence[QueuedTask]]) -> Queue:
+    return Queue(
+        robot=row["robot"],
+        revision=row["revision"],
+        state=QueueState(row["state"]),
+        tasks=tuple(tasks.get(row["robot"], ())),
+        reason=row["reason"],
+        by=row["by"],
+        at=row["at"],
+    )
 
 
 def newest_ended(connection: Connection, robot: str, limit: int) -> list[QueuedTask]:
@@ -194,12 +200,16 @@ def _row(task: QueuedTask) -> dict[str, Any]:
 
 
 def _tasks(connection: Connection, query: Select[Any]) -> list[QueuedTask]:
-    return [_task(row) for row in connection.execute(query).mappings()]
+    return list(readable(connection.execute(query).mappings(), _task, _name_of_task))
+
+
+def _name_of_task(row: Any) -> str:
+    return f"task {row['id']} of the queue of robot {row['robot']}"
 
 
 def _task(row: Any) -> QueuedTask:
     return QueuedTask(
-        task=msgspec.json.decode(row["content"], type=QueueTask),
+        task=msgspec.convert(decode_json(row["content"]), QueueTask),
         added_by=row["added_by"],
         added_at=row["added_at"],
         state=TaskState(row["state"]),

@@ -2,22 +2,45 @@
 
 from __future__ import annotations
 
-import json
+from collections import Counter
 from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
-from sqlalchemy import Connection, LargeBinary, Text, cast, func, select
+from sqlalchemy import Connection, LargeBinary, Text, bindparam, case, cast, func, select
 
+from ..core.decoding import SHORT, DecodingError, decode_json
+from ..messages.bounds import LARGEST_MESSAGE
 from .rows import add_messages, delete_messages
 from .schema import rr
 
 AT_ONCE = 500
+LONGEST_ACK = SHORT.length
+"""characters; of what is longer no stop is to wait until it is decoded."""
+MOST_ACKS = 1000
+"""OpAcks of one robot that are looked at for a stop; a robot that works has a few."""
+_LONGEST_NAME = 64
+"""characters of a robot's name and of an operation that are read; every right one is shorter."""
 
 # SQLite keeps bytes in a text column as bytes, and one row of them must not hold up the others.
-_ROW = (rr.c.id, *(cast(column, Text) for column in (rr.c.robot, rr.c.op, rr.c.params)))
+# SQLite holds no column to its length: what is longer than may be is cut, or left out, before it is fetched.
+_PARAMS = cast(rr.c.params, Text)
+_SIZE = func.length(_PARAMS)
+_ROW = (
+    rr.c.id,
+    func.substr(cast(rr.c.robot, Text), 1, _LONGEST_NAME),
+    func.substr(cast(rr.c.op, Text), 1, _LONGEST_NAME),
+    case((_SIZE <= LARGEST_MESSAGE, _PARAMS)),
+    _SIZE,
+)
 # Built once: SQLAlchemy takes longer to build a statement than the database to do it.
 _READ = select(*_ROW).order_by(rr.c.id).limit(AT_ONCE)
-_ACKS = select(cast(rr.c.robot, Text), cast(rr.c.params, Text)).where(rr.c.op == "OpAck")
+_ACKS = select(cast(rr.c.robot, Text), _PARAMS).where(
+    rr.c.robot.in_(bindparam("robots", expanding=True)),
+    rr.c.op == "OpAck",
+    rr.c.id <= bindparam("newest"),
+    _SIZE <= LONGEST_ACK,
+)
+_ANY = 2**63 - 1
 
 
 class RequestRow(NamedTuple):
@@ -27,6 +50,8 @@ class RequestRow(NamedTuple):
     robot: str
     op: str
     params: str | None
+    size: int | None = None
+    """characters of ``params``, which is None where they are too many."""
 
 
 def read(connection: Connection) -> list[RequestRow]:
@@ -34,28 +59,40 @@ def read(connection: Connection) -> list[RequestRow]:
     return [RequestRow(*row) for row in connection.execute(_READ)]
 
 
-def backlog(connection: Connection) -> tuple[int, list[tuple[str, int]]]:
-    """Return the id of the newest request, 0 without one, and which messages are acknowledged by which robot.
-
-    Of acknowledgements those that cannot be understood are left out.
-    """
+def backlog(connection: Connection, robots: Sequence[str]) -> tuple[int, dict[str, set[int]]]:
+    """Return the id of the newest request, 0 without one, and :func:`acknowledged` of ``robots`` up to it."""
     newest = connection.scalar(select(func.max(rr.c.id))) or 0
-    return newest, acknowledgements(connection, newest)
+    return newest, acknowledged(connection, robots, newest)
 
 
-def acknowledgements(connection: Connection, newest: int | None = None) -> list[tuple[str, int]]:
-    """Return robots with the messages whose OpAcks wait to be read, up to request ``newest`` if given."""
-    wanted = _ACKS if newest is None else _ACKS.where(rr.c.id <= newest)
-    waiting = connection.execute(wanted)
-    return [(robot, id) for robot, params in waiting if (id := _acknowledged(params)) is not None]
+def acknowledged(connection: Connection, robots: Sequence[str], newest: int = _ANY) -> dict[str, set[int]]:
+    """Return of each of ``robots`` the messages whose OpAcks wait to be read, up to request ``newest``.
+
+    Nothing is read of any other robot. An OpAck that cannot be understood, or is so long that it is none, is
+    left out, and so is what a robot has beyond :data:`MOST_ACKS`: emergency stops wait for this.
+    """
+    found: dict[str, set[int]] = {robot: set() for robot in robots}
+    seen: Counter[str] = Counter()
+    for begin in range(0, len(robots), AT_ONCE):
+        some = {"robots": robots[begin : begin + AT_ONCE], "newest": newest}
+        for robot, params in connection.execute(_ACKS, some):
+            # MariaDB takes names for the same that differ in capitals.
+            if robot not in found or seen[robot] >= MOST_ACKS:
+                continue
+            seen[robot] += 1
+            if (id := _message_id(params)) is not None:
+                found[robot].add(id)
+    return found
 
 
-def _acknowledged(params: str | None) -> int | None:
+def _message_id(params: str | None) -> int | None:
     try:
-        id = json.loads(params or "{}").get("id")
-    except (ValueError, AttributeError):
+        acknowledgement = decode_json(params or "{}", SHORT)
+    except DecodingError:
         return None
-    return id if isinstance(id, int) else None
+    id = acknowledgement.get("id") if isinstance(acknowledgement, dict) else None
+    # For Python true is a whole number as well, and would be message 1.
+    return id if type(id) is int else None
 
 
 def payload(connection: Connection, id: int, check_size: Callable[[int], None]) -> bytes | None:

@@ -4,11 +4,15 @@ from __future__ import annotations
 
 import itertools
 import json
-from collections.abc import Iterator, Sequence
+import logging
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from functools import lru_cache
 from typing import Any, TypeVar
 
+from msgspec import ValidationError
 from sqlalchemy import Connection, Table
+
+log = logging.getLogger(__name__)
 
 TOGETHER = 100
 """rows in one statement: what the driver and the interpreter do for each is then done for all of them."""
@@ -20,6 +24,19 @@ _DELETE_BY_KEY = (
 
 Row = tuple[Any, ...]
 T = TypeVar("T")
+R = TypeVar("R")
+
+
+def readable(rows: Iterable[R], read: Callable[[R], T], name: Callable[[R], str]) -> Iterator[T]:
+    """Yield what ``read`` makes of each row; one that it cannot read is logged by its ``name`` and left out.
+
+    A row that somebody damaged must not keep the gateway from all others, nor from its start.
+    """
+    for row in rows:
+        try:
+            yield read(row)
+        except (ValueError, TypeError, LookupError, ArithmeticError, ValidationError) as error:
+            log.error("%s cannot be read in the database and is left out: %s", name(row), error)
 
 
 def add_rows(connection: Connection, table: Table, names: Sequence[str], rows: Sequence[Row]) -> None:

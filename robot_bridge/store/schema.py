@@ -82,6 +82,8 @@ robots = Table(
     Column("ended_in_order", Integer, nullable=False, default=0),
     Column("pose", Text, nullable=True),
     Column("pose_at", Double, nullable=True),
+    Column("paths", String(16), nullable=True),
+    Column("abilities", String(128), nullable=True),
 )
 
 commands = Table(
@@ -261,7 +263,16 @@ operators = Table(
     Column("created_at", Double, nullable=False),
 )
 
-# ``kind`` is operator or robot, ``owner`` the account's name, ``hash`` the SHA-256 of the token.
+# ``robots`` are the patterns of the names that a link may speak for, with spaces between them.
+links = Table(
+    "links",
+    metadata,
+    Column("name", String(16), primary_key=True),
+    Column("robots", Text, nullable=False),
+    Column("created_at", Double, nullable=False),
+)
+
+# ``kind`` is operator, robot or link, ``owner`` the account's name, ``hash`` the SHA-256 of the token.
 tokens = Table(
     "tokens",
     metadata,

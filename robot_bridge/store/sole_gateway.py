@@ -22,6 +22,7 @@ from typing import Any, Protocol
 from sqlalchemy import URL, Connection, Engine, insert, inspect, select, text, update
 from sqlalchemy.exc import DBAPIError, SQLAlchemyError
 
+from ..core.decoding import SHORT, DecodingError, decode_json
 from ..errors import BridgeError, HopelessError, StoreError
 from .address import open_engine, shown
 from .engines.dialect import Dialect
@@ -296,8 +297,8 @@ def _explained(url: URL, dialect: Dialect) -> Any:
 
 def _run_in(text: str | None) -> dict[str, Any]:
     try:
-        run = json.loads(text or "{}")
-    except ValueError:
+        run = decode_json(text or "{}", SHORT)
+    except DecodingError:
         return {}
     return run if isinstance(run, dict) else {}
 
@@ -322,5 +323,7 @@ def _taken(does: str, other: dict[str, Any]) -> str:
 def _named(run: dict[str, Any]) -> str:
     if not {"host", "process", "since"} <= run.keys():
         return ""
-    since = time.strftime("%Y-%m-%d %H:%M:%S UTC", time.gmtime(run["since"]))
-    return f": process {run['process']} on {run['host']}, since {since}"
+    with contextlib.suppress(ValueError, TypeError, OverflowError):
+        since = time.strftime("%Y-%m-%d %H:%M:%S UTC", time.gmtime(run["since"]))
+        return f": process {run['process']} on {run['host']}, since {since}"
+    return ""

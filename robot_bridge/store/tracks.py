@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 from sqlalchemy import Connection, select
 
+from ..core.decoding import decode_json
 from ..messages import CommandState
 from .schema import commands
 
@@ -29,4 +29,4 @@ def last_given(connection: Connection, robot: str, ops: Sequence[str]) -> Given 
         .limit(1)
     )
     row = connection.execute(query).one_or_none()
-    return None if row is None else Given(row[0], json.loads(row[1]), CommandState(row[2]))
+    return None if row is None else Given(row[0], decode_json(row[1]), CommandState(row[2]))

@@ -5,10 +5,13 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import logging
+from collections import Counter
 from collections.abc import Awaitable, Callable
 from typing import TYPE_CHECKING, Any, Protocol
 
 from sqlalchemy import Engine
+
+from .accounts.offences import Offences
 
 if TYPE_CHECKING:
     from psycopg import Connection
@@ -23,6 +26,12 @@ LONGEST_S = 0.02
 FALLBACK_S = 1.0
 """How long a reader that is told of new rows trusts that it would have been."""
 RETRY_AFTER_S = 1.0
+FLOOD, FLOOD_WITHIN_S = 300, 1.0
+"""Notifications of one backend in so many seconds: a robot sends one each time the gateway dozes."""
+FLOOD_PAUSE_S = 10.0
+"""How long nobody listens after a flood: the server keeps its notifications to itself, the reader looks."""
+FIRST_PACE_S = 0.001
+"""Seconds that the reader waits after a notification if there was nothing behind the last one."""
 
 
 def robot_channel(robot: str) -> str:
@@ -68,13 +77,19 @@ class Polling:
 class Listening:
     """LISTEN on a channel of PostgreSQL. What a notification carries is never looked at: anyone may send one.
 
-    Those of the backend ``own`` are passed over: what this program wrote itself is no news to it.
+    Those of the backend ``own`` are passed over: what this program wrote itself is no news to it. A backend
+    that sends a flood of them is noted in ``offences``, and for a while nobody listens: the reader looks.
     """
 
-    def __init__(self, engine: Engine, channel: str, own: Callable[[], int | None]) -> None:
+    def __init__(
+        self, engine: Engine, channel: str, own: Callable[[], int | None], offences: Offences
+    ) -> None:
         self._engine = engine
         self._channel = channel
         self._own = own
+        self._offences = offences
+        self.is_flooded = False
+        """Whether nobody listens because of a flood."""
         self._news = asyncio.Event()
         self._task: asyncio.Task[None] | None = None
 
@@ -86,6 +101,9 @@ class Listening:
         """Return when something was written, or after a second."""
         if self._task is None:
             self._task = asyncio.create_task(self._listen())
+        if self.is_flooded:
+            await asyncio.sleep(LONGEST_S)
+            return
         with contextlib.suppress(TimeoutError):
             await asyncio.wait_for(self._news.wait(), FALLBACK_S)
         self._news.clear()
@@ -105,6 +123,14 @@ class Listening:
                     # Something may have been written while nobody listened.
                     self._news.set()
                     await self._hear(connection)
+            except FloodError as flood:
+                log.warning("%s; nobody listens for %g s", flood, FLOOD_PAUSE_S)
+                self._offences.add_flood(flood.backend)
+                self.is_flooded = True
+                self._news.set()
+                await asyncio.sleep(FLOOD_PAUSE_S)
+                self.is_flooded = False
+                continue
             except (psycopg.Error, OSError) as error:
                 reason = " ".join(str(error).split())
                 log.warning("notifications are lost, looking once a second meanwhile: %s", reason)
@@ -126,13 +152,15 @@ class Listening:
         """Take in notifications until the connection is lost, which raises psycopg.Error."""
         loop = asyncio.get_running_loop()
         lost: asyncio.Future[None] = loop.create_future()
+        own, rate = self._own, NotificationRate()
 
         def take_in() -> None:
             try:
                 connection.pgconn.consume_input()
                 while notice := connection.pgconn.notifies():
-                    if notice.be_pid != self._own():
+                    if notice.be_pid != own():
                         self._news.set()
+                        rate.count(notice.be_pid, loop.time())
             except Exception as error:
                 if not lost.done():
                     lost.set_exception(error)
@@ -145,6 +173,31 @@ class Listening:
         finally:
             # A lost connection no longer knows its number, and the next one may be given the same.
             loop.remove_reader(number)
+
+
+class FloodError(Exception):
+    """One backend sends notifications without end."""
+
+    def __init__(self, backend: int) -> None:
+        super().__init__(f"backend {backend} sends more than {FLOOD} notifications in {FLOOD_WITHIN_S:g} s")
+        self.backend = backend
+
+
+class NotificationRate:
+    """How many notifications came from each backend of late."""
+
+    def __init__(self) -> None:
+        self._since = 0.0
+        self._counts: Counter[int] = Counter()
+
+    def count(self, backend: int, now: float) -> None:
+        """Count one at ``now``, in seconds; raises FloodError when it is one too many."""
+        if now - self._since > FLOOD_WITHIN_S:
+            self._since = now
+            self._counts.clear()
+        self._counts[backend] += 1
+        if self._counts[backend] > FLOOD:
+            raise FloodError(backend)
 
 
 class Dozing:
@@ -166,19 +219,27 @@ class Dozing:
         self._doze = doze
         self._rouse = rouse
         self._dozes = False
+        self._pace = 0.0
+        """Seconds to wait after a notification, as long as there was nothing behind the last ones."""
 
     async def doze(self) -> bool:
         """Begin to doze; false while somebody writes who thinks that the reader is awake."""
-        self._dozes = await self._doze()
+        # While nobody listens it would sleep until the second is over.
+        self._dozes = not self._listening.is_flooded and await self._doze()
         return self._dozes
 
     async def wait(self, *, found: bool) -> None:
         """Return when something was written, or after a second; while awake, after a pause."""
+        if found:
+            self._pace = 0.0
         if not self._dozes:
             await self._polling.wait(found=found)
             return
         if not found:
             await self._listening.wait(found=False)
+            # However many come, each look at the tables answers all of them.
+            await asyncio.sleep(self._pace)
+            self._pace = min(max(2 * self._pace, FIRST_PACE_S), LONGEST_S)
         self._dozes = False
         await self._rouse()
 

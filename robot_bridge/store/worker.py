@@ -15,7 +15,9 @@ from sqlalchemy import Connection, Engine
 from sqlalchemy.exc import DBAPIError, SQLAlchemyError
 
 from ..errors import DataRefusedError, StoreError, UncertainError
+from .accounts.offences import Offences
 from .accounts.stuck import BLOCKING_S, end_stuck
+from .accounts.suspension import blocking_robots
 from .engines.dialect import Dialect, Mode
 
 log = logging.getLogger(__name__)
@@ -47,11 +49,14 @@ class Worker:
     done again: work changes nothing but the database.
     """
 
-    def __init__(self, engine: Engine, dialect: Dialect, where: str, patience: float | None) -> None:
+    def __init__(
+        self, engine: Engine, dialect: Dialect, where: str, patience: float | None, offences: Offences
+    ) -> None:
         self._engine = engine
         self._dialect = dialect
         self._where = where
         self._patience = patience
+        self._offences = offences
         self._jobs: SimpleQueue[Job | None] = SimpleQueue()
         self._connection: Connection | None = None
         self._since: float | None = None
@@ -132,6 +137,9 @@ class Worker:
             began = time.monotonic()
             try:
                 return self._attempt(jobs)
+            except (UnicodeEncodeError, OverflowError) as error:
+                # What a driver raises for a text or a number that it cannot even send.
+                raise DataRefusedError(f"database {self._where} refuses a value: {error}") from error
             except SQLAlchemyError as error:
                 if not self._worth_repeating(error, attempt, fresh, time.monotonic() - began):
                     raise self._explain(error) from error
@@ -152,6 +160,7 @@ class Worker:
         """End robots' transactions that may hold what the gateway waits for; tell whether that was done."""
         try:
             with self._connected().begin():
+                self._offences.add_blocking(blocking_robots(self._connected(), BLOCKING_S))
                 end_stuck(self._connected(), BLOCKING_S)
         except SQLAlchemyError as error:
             log.warning("database %s: %s", self._where, self._dialect.cause(error))

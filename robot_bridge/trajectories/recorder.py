@@ -38,11 +38,12 @@ class Recorder:
         """Return how many positions wait to be stored."""
         return len(self._waiting)
 
-    def observe(self, fix: Fix) -> None:
-        """Take in where a robot is."""
+    def observe(self, fixes: Sequence[Fix]) -> None:
+        """Take in where robots are."""
         settings = self._settings()
-        if self._thinning.keeps(fix, settings):
-            self._waiting.append(pack(fix))
+        kept = [pack(fix) for fix in fixes if self._thinning.keeps(fix, settings)]
+        if kept:
+            self._waiting.extend(kept)
             if len(self._waiting) > settings.largest_backlog:
                 self._give_up_the_oldest()
 

@@ -3,19 +3,29 @@
 from __future__ import annotations
 
 import asyncio
+import logging
 from collections.abc import Callable, Iterable, Sequence, Set
-from typing import Any
+from typing import Any, NamedTuple
 
 from sqlalchemy import Connection
 
-from ..messages import SendPos
-from ..robots import Robots
+from ..errors import DataRefusedError
+from ..robots import RobotPose, Robots
 from ..store import robots as stored_robots
 from ..store import trajectories
 from ..store.database import Database, to_its_end
 from ..store.rows import Row
 from ..store.trajectories import Fix, PackedFix
 from .recorder import Recorder
+
+log = logging.getLogger(__name__)
+
+
+class Written(NamedTuple):
+    """What came of storing robots: which somebody has removed, and which the database refused."""
+
+    removed: set[str]
+    refused: set[str]
 
 
 class Saving:
@@ -38,6 +48,8 @@ class Saving:
         self._removed: set[str] = set()
         self._jotted: list[tuple[int, list[PackedFix]]] = []
         """what a server may still forget, with the session in which it was written."""
+        self._complained: set[str] = set()
+        """robots of which the log was told that something cannot be stored."""
         self._writing = asyncio.Lock()
 
     def begin(self, robots: Iterable[str]) -> None:
@@ -49,10 +61,10 @@ class Saving:
         removed, self._removed = self._removed, set()
         return removed
 
-    def observe(self, robot: str, now: float, pose: SendPos) -> None:
-        """Have the place of a robot stored."""
-        self._unsaved.add(robot)
-        self._recorder.observe(Fix(robot, now, pose))
+    def observe(self, now: float, poses: Sequence[RobotPose]) -> None:
+        """Have the places of robots stored."""
+        self._unsaved.update([robot for robot, _ in poses])
+        self._recorder.observe([Fix(robot, now, pose) for robot, pose in poses])
 
     def touch(self, robot: str) -> None:
         """Have what is known of a robot stored anew."""
@@ -78,6 +90,11 @@ class Saving:
             fixes, session = self._recorder.take(self._clock()), self._database.session
             try:
                 await self._database.jot(work, *arguments, fixes)
+            except DataRefusedError:
+                # One of the positions is refused, or something of the work: each is stored by itself.
+                await self._write_or_give_back(fixes)
+                fixes = []
+                await self._database.jot(work, *arguments, fixes)
             except Exception:
                 self._recorder.give_back(fixes)
                 raise
@@ -100,19 +117,41 @@ class Saving:
                     known = [
                         stored_robots.row(self._robots.get(name)) for name in unsaved if name in self._robots
                     ]
-                    removed = await self._database.run(_write, known, fixes, self._stored)
+                    written = await self._write(known, fixes)
                 except Exception:
                     self._recorder.give_back(fixes)
                     self._unsaved |= unsaved
                     raise
-                self._removed |= removed
-                self._stored.update(row[0] for row in known)
-                self._stored -= removed
+                self._removed |= written.removed
+                self._stored.update(row[0] for row in known if row[0] not in written.refused)
+                self._stored -= written.removed
                 taken_back = self._take_back()
                 # Now that this is stored for good, so is what was jotted down before in the same session.
                 self._jotted.clear()
                 if last and not taken_back:
                     return
+
+    async def _write(self, known: Sequence[Row], fixes: Sequence[PackedFix]) -> Written:
+        """Store robots and positions; of what the database refuses as data only that is left out."""
+        try:
+            return Written(await self._database.run(_write, known, fixes, self._stored), set())
+        except DataRefusedError as error:
+            halves = _halves(known, fixes)
+            if halves is None:
+                robot = str((known or fixes)[0][0])
+                if robot not in self._complained:
+                    log.error("what is to be stored of robot %s is left out: %s", robot, error)
+                self._complained.add(robot)
+                return Written(set(), {row[0] for row in known})
+        first, second = [await self._write(*half) for half in halves]
+        return Written(first.removed | second.removed, first.refused | second.refused)
+
+    async def _write_or_give_back(self, fixes: Sequence[PackedFix]) -> None:
+        try:
+            await self._write([], fixes)
+        except Exception:
+            self._recorder.give_back(fixes)
+            raise
 
     def _take_back(self) -> bool:
         """Have that stored again which was jotted down in a session that has ended; tell whether any was.
@@ -125,6 +164,21 @@ class Saving:
         for fixes in reversed(forgotten):
             self._recorder.give_back(fixes)
         return bool(forgotten)
+
+
+def _halves(
+    known: Sequence[Row], fixes: Sequence[PackedFix]
+) -> list[tuple[Sequence[Row], Sequence[PackedFix]]] | None:
+    """Return robots and positions in two parts; None for what cannot be parted."""
+    if known and fixes:
+        return [(known, []), ([], fixes)]
+    if len(known) > 1:
+        half = len(known) // 2
+        return [(known[:half], []), (known[half:], [])]
+    if len(fixes) > 1:
+        half = len(fixes) // 2
+        return [([], fixes[:half]), ([], fixes[half:])]
+    return None
 
 
 def _write(

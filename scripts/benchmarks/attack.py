@@ -1,11 +1,9 @@
-"""The part on the attack surface: 10 000 pieces of nonsense for a real gateway, and what it made of them."""
+"""The part on the attack surface: 20 000 pieces of nonsense from every account, and what came of them."""
 
 from __future__ import annotations
 
 import contextlib
-import json
 import shutil
-import sqlite3
 import subprocess
 import sys
 import tempfile
@@ -15,34 +13,39 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from hypothesis import HealthCheck, Phase, given, settings
 from plugin_files import ROOT
-from stage.fuzzing import Conversation, desk_frames, handshakes, knock, robot_frames, rr_rows
+from stage.fuzzing import handshakes, knock, try_cases
+from stage.hostile_values import DEPTHS
+from stage.mariadb import MariaDb
+from stage.postgresql import PostgreSql
 from stage.processes import Processes
-from websockets.sync.client import connect
+from stage.siege import GENEROUS, WORST_ROWS, Siege, cases, unread_rows
 
-from .page import Part
+from .page import Part, goal
 
-CASES = {"robot": 3500, "desk": 3500, "handshake": 1500, "sql": 1500}
-LIMITS = """
-[limits]
-robot_messages_per_s = 1e5
-robot_burst = 100000
-desk_messages_per_s = 1e5
-desk_burst = 100000
-"""
+HANDSHAKES = 2000
+BATCHES, SAID, WAITING, BESIDE = 10, 500, 80, 20
+"""On each database: so often, so many cases said, so many waiting at the start, so many beside a stop."""
+SERVERS = {"sqlite": None, "postgresql": PostgreSql, "mariadb": MariaDb}
 
+HEADS = ["database", "cases", "wrong", "restarts", "checks that failed", "slowest stop to the last robot"]
+HEADS += ["gateway alive", "tracebacks", "memory grown in the first run by"]
 TEXT = """\
-Frames from nearly right to nonsense on two connections of each endpoint at once, requests to the port from
-nearly right to binary (with accounts in use, none with a right token), and rows of table `rr`; after each, a
-right question on the same connection has to be answered, to whoever asked it and without anything of the
-gateway's inside.
+Every account of a gateway speaks: robots over WebSocket and over SQL, each under an account of its own
+where the database has any, viewers, operators and supervisors. Calls nearly right, with values that are
+deep, of {brackets} brackets, long, of another kind, NULs, lone surrogates and numbers of hundreds of
+digits; nonsense; emergency stops and everything else that an operator may ask for. After each a right
+question on the same connection has to be answered, to whoever asked it and without anything of the
+gateway's inside. After every {said} an emergency stop is made beside {beside} unread rows, and the gateway
+is killed and started again with {waiting} rows waiting. Each time a well-behaved robot over SQL and one
+over WebSocket must get a command, and the stop within {within:g} s.
 
-| what | cases | wrong |
-| --- | --- | --- |
-{rows}
+{table}
 
-The gateway ran on throughout: {alive}. Tracebacks in its log: {tracebacks}. Its memory grew by {grown} MB.
+Of the cases, the checks and the requests {faults} went wrong ({all_well}). The slowest stop was at the last
+robot after {slowest:.2f} s ({in_time}).
+
+Requests to the port from nearly right to binary, none with a right token: {knocked}, wrong {unlocked}.
 """
 
 
@@ -53,116 +56,147 @@ class Tally:
     tried: int = 0
     wrong: int = 0
 
+    def of(self, attempt: Callable[[Any], None]) -> Callable[[Any], None]:
+        """Return ``attempt``, counted; what it raises is printed."""
+
+        def counted(case: Any) -> None:
+            self.tried += 1
+            try:
+                attempt(case)
+            except Exception as error:
+                self.wrong += 1
+                print(f"{case!r:.500}: {type(error).__name__}: {error}"[:1500], file=sys.stderr)
+
+        return counted
+
+
+@dataclass
+class Result:
+    """What came of one database."""
+
+    cases: Tally
+    checks: Tally
+    restarts: int = 0
+    slowest_stop: float = 0.0
+    alive: bool = False
+    tracebacks: int = 0
+    grown: int = 0
+
+    @property
+    def failed(self) -> bool:
+        """Whether anything was not as it must be."""
+        late = self.slowest_stop > WITHIN
+        return bool(self.cases.wrong or self.checks.wrong or self.tracebacks or late) or not self.alive
+
+
+WITHIN = 1.0
+
 
 def measure(_data: Path) -> Part:
     """Try everything and return the part."""
-    with tempfile.TemporaryDirectory() as folder, Processes(Path(folder) / "logs") as processes:
-        gateway = _Gateway(processes, Path(folder))
-        before = gateway.memory()
-        tallies = {name: _tally(CASES[name], *attack) for name, *attack in gateway.attacks()}
-        alive = gateway.process.poll() is None
-        grown = gateway.memory() - before if alive else 0
-        tracebacks = processes.log("gateway").read_text(encoding="utf-8", errors="replace").count("Traceback")
-    rows = "\n".join(f"| {name} | {tally.tried} | {tally.wrong} |" for name, tally in tallies.items())
-    text = TEXT.format(rows=rows, alive="yes" if alive else "NO", tracebacks=tracebacks, grown=grown)
-    failed = not alive or tracebacks > 0 or any(tally.wrong for tally in tallies.values())
+    results = {kind: _besiege(kind) for kind in SERVERS}
+    knocks = _knocks()
+    heads = [f"| {' | '.join(HEADS)} |", f"|{' --- |' * len(HEADS)}"]
+    table = "\n".join([*heads, *(_row(kind, result) for kind, result in results.items())])
+    failed = bool(knocks.wrong) or any(result.failed for result in results.values())
+    slowest = max(result.slowest_stop for result in results.values())
+    faults = knocks.wrong + sum(result.cases.wrong + result.checks.wrong for result in results.values())
+    text = TEXT.format(
+        brackets=max(DEPTHS),
+        said=SAID,
+        waiting=WAITING,
+        beside=BESIDE,
+        within=WITHIN,
+        table=table,
+        faults=faults,
+        all_well=goal("none", faults == 0),
+        slowest=slowest,
+        in_time=goal(f"at most {WITHIN:g} s", slowest <= WITHIN),
+        knocked=knocks.tried,
+        unlocked=knocks.wrong,
+    )
     return Part("Attack surface", text, failed)
 
 
-def _tally(count: int, strategy: Any, attempt: Callable[[Any], None]) -> Tally:
-    tally = Tally()
-
-    @settings(
-        max_examples=count,
-        deadline=None,
-        database=None,
-        phases=[Phase.generate],
-        suppress_health_check=list(HealthCheck),
-    )
-    @given(strategy)
-    def run(case: Any) -> None:
-        tally.tried += 1
-        try:
-            attempt(case)
-        except Exception as error:
-            tally.wrong += 1
-            print(f"{case!r}: {type(error).__name__}: {error}"[:500], file=sys.stderr)
-
-    run()
-    return tally
+def _row(kind: str, result: Result) -> str:
+    cells = [kind, result.cases.tried, result.cases.wrong, result.restarts, result.checks.wrong]
+    cells += [f"{result.slowest_stop:.2f} s", "yes" if result.alive else "NO", result.tracebacks]
+    return f"| {' | '.join(map(str, cells))} | {result.grown} MB |"
 
 
-class _Gateway:
-    """A gateway on the sample site with accounts, whose rates are no limit."""
+def _besiege(kind: str) -> Result:
+    cases_tally, checks = Tally(), Tally()
+    result = Result(cases_tally, checks)
+    with _siege(kind) as siege:
+        memory = _memory(siege.process.pid)
+        for number in range(BATCHES):
+            try_cases(SAID, cases(kind), cases_tally.of(siege.say))
+            if number == 0:
+                result.grown = _memory(siege.process.pid) - memory
+            beside: list[Any] = [("sql", row) for row in WORST_ROWS]
+            try_cases(BESIDE, unread_rows, cases_tally.of(beside.append))
+            checks.of(siege.check)(beside)
+            siege.kill()
+            try_cases(WAITING, unread_rows, cases_tally.of(lambda case: siege.say(case, unread=True)))
+            checks.of(lambda _: siege.start())("start")
+            checks.of(siege.check)(())
+            result.restarts += 1
+        result.alive = siege.process.poll() is None
+        result.slowest_stop = siege.slowest_stop
+        result.tracebacks = siege.log().count("Traceback")
+    return result
 
-    def __init__(self, processes: Processes, folder: Path) -> None:
-        shutil.copytree(ROOT / "resources" / "sample_site", folder / "site")
-        with (folder / "site" / "site.toml").open("a", encoding="utf-8") as settings_file:
-            settings_file.write(LIMITS)
-        self._file = folder / "fleet.db"
-        self._operators = self._run("operators", "add", "Ada", "--role", "supervisor")
-        self._robots = [self._run("robots", "token", name) for name in ("fuzzed-1", "fuzzed-2")]
-        serve = ["serve", "--site", folder / "site", "--port", "0", "--database", f"sqlite:///{self._file}"]
-        self.process = processes.start("gateway", [sys.executable, "-m", "robot_bridge", *serve])
-        found = processes.wait_for_line("gateway", r"listening on ws://127\.0\.0\.1:(\d+)", 20)
-        self._port = int(found.group(1))
 
-    def _run(self, *words: str) -> str:
-        command = [sys.executable, "-m", "robot_bridge", *words, "--database", f"sqlite:///{self._file}"]
-        return subprocess.run(command, capture_output=True, text=True, check=True).stdout.strip()
+@contextlib.contextmanager
+def _siege(kind: str) -> Iterator[Siege]:
+    with contextlib.ExitStack() as stack:
+        folder = Path(stack.enter_context(tempfile.TemporaryDirectory()))
+        processes = stack.enter_context(Processes(folder / "logs"))
+        url, admin = f"sqlite:///{folder}/fleet.db", None
+        if (server_class := SERVERS[kind]) is not None:
+            server = stack.enter_context(server_class())
+            url = server.new_database()
+            admin = server.admin_url(url)
+        siege = Siege(processes, _site(folder), url, admin)
+        stack.callback(siege.close)
+        yield siege
 
-    def attacks(self) -> Iterator[tuple[str, Any, Callable[[Any], None]]]:
-        """Yield for each way in its name, what to send, and how.
 
-        A connection is made when its turn comes: one that nobody reads for minutes is cut, and rightly so.
-        """
-        robots = [self._robot(number, token) for number, token in enumerate(self._robots, 1)]
-        yield "robot", robot_frames, lambda frame: [robot.say(frame) for robot in robots]
-        desks = [self._desk(number) for number in (1, 2)]
-        yield "desk", desk_frames, lambda frame: [desk.say(frame) for desk in desks]
-        yield "handshake", handshakes, self._knock
-        yield "sql", rr_rows, self._write
+def _site(folder: Path) -> Path:
+    shutil.copytree(ROOT / "resources" / "sample_site", folder / "site")
+    with (folder / "site" / "site.toml").open("a", encoding="utf-8") as settings:
+        settings.write(GENEROUS)
+    return folder / "site"
 
-    def _robot(self, number: int, token: str) -> Conversation:
-        wire = self._connect("/robot", token)
-        name = f"fuzzed-{number}"
-        conversation = Conversation(wire, name, "SendPos", {"x": 1, "y": 2, "theta": 0, "v": 0})
-        wire.send('{"jsonrpc": "2.0", "id": 0, "method": "Ready", "params": {"magic": 1}}')
-        while json.loads(wire.recv(10)).get("id") != 0:
-            continue
-        return conversation
 
-    def _desk(self, number: int) -> Conversation:
-        wire = self._connect("/desk", self._operators)
-        wire.send('{"jsonrpc": "2.0", "id": null, "method": "hello", "params": {"operator": "Ada"}}')
-        return Conversation(wire, f"desk-{number}", "get_commands", {"limit": 1})
-
-    def _connect(self, path: str, token: str) -> Any:
-        headers = {"Authorization": f"Bearer {token}"}
-        url = f"ws://127.0.0.1:{self._port}{path}"
-        return connect(url, additional_headers=headers, max_size=None, compression=None)
-
-    def _knock(self, request: bytes) -> None:
-        answer = knock("127.0.0.1", self._port, request)
-        assert not answer.startswith((b"HTTP/1.1 101", b"HTTP/1.1 500")), answer[:200]
-
-    def _write(self, row: tuple[Any, ...]) -> None:
-        with self._database() as connection:
-            try:
-                connection.execute("insert into rr (robot, op, params, payload) values (?, ?, ?, ?)", row)
-            except UnicodeEncodeError:
-                return
-            until = time.monotonic() + 10
-            while connection.execute("select id from rr").fetchone():
-                assert time.monotonic() < until, "a row of rr is not dealt with"
-                time.sleep(0.005)
-
-    @contextlib.contextmanager
-    def _database(self) -> Iterator[sqlite3.Connection]:
-        with contextlib.closing(sqlite3.connect(self._file, timeout=5, isolation_level=None)) as connection:
-            yield connection
-
-    def memory(self) -> int:
-        """Return the gateway's resident memory in MB."""
-        status = Path(f"/proc/{self.process.pid}/status").read_text(encoding="ascii")
+def _memory(pid: int) -> int:
+    """Return the resident memory of a process in MB, 0 where it has ended."""
+    with contextlib.suppress(FileNotFoundError, StopIteration):
+        status = Path(f"/proc/{pid}/status").read_text(encoding="ascii")
         return int(next(line.split()[1] for line in status.splitlines() if line.startswith("VmRSS"))) // 1024
+    return 0
+
+
+def _knocks() -> Tally:
+    """Knock at a gateway whose tokens nobody here knows."""
+    tally = Tally()
+    with tempfile.TemporaryDirectory() as name, Processes(Path(name) / "logs") as processes:
+        folder = Path(name)
+        database = ["--database", f"sqlite:///{folder}/fleet.db"]
+        for words in (["operators", "add", "Ada", "--role", "supervisor"], ["robots", "token", "r1"]):
+            command = [sys.executable, "-m", "robot_bridge", *words, *database]
+            subprocess.run(command, capture_output=True, check=True)
+        serve = ["serve", "--site", str(_site(folder)), "--port", "0", *database]
+        gateway = processes.start("gateway", [sys.executable, "-m", "robot_bridge", *serve])
+        found = processes.wait_for_line("gateway", r"listening on ws://127\.0\.0\.1:(\d+)", 20)
+        time.sleep(1.5)  # accounts hold within a second
+
+        def attempt(request: bytes) -> None:
+            answer = knock("127.0.0.1", int(found.group(1)), request)
+            assert not answer.startswith((b"HTTP/1.1 101", b"HTTP/1.1 500")), answer[:200]
+
+        try_cases(HANDSHAKES, handshakes, tally.of(attempt))
+        log = processes.log("gateway").read_text(encoding="utf-8", errors="replace")
+        if gateway.poll() is not None or "Traceback" in log:
+            tally.wrong += 1
+    return tally

@@ -1,8 +1,8 @@
-"""The least that can answer robots on SQL: a loop on one connection, with the gateway's drivers.
+"""What little can answer robots on SQL: a loop on one connection, with the gateway's drivers.
 
-``python -m benchmarks.bare_sql URL`` reads requests, writes an OpAck for each (and an empty map for Ready)
-and deletes them, in one transaction that waits for the disk no more than the gateway's does. It checks
-nothing and keeps nothing: what it cannot do faster is the database's and the robots' own time.
+``python -m benchmarks.bare_sql URL GATHER`` pauses for GATHER seconds, reads requests, writes an OpAck for
+each (and an empty map for Ready) and deletes them, in one transaction that waits for the disk no more than
+the gateway's does. It checks nothing and keeps nothing.
 """
 
 from __future__ import annotations
@@ -27,18 +27,30 @@ ADD = "insert into sa (robot, op, params, urgent) values (%s, %s, %s, 0)"
 class Server(ABC):
     """One connection."""
 
-    def __init__(self, url: str) -> None:
+    def __init__(self, url: str, gather: float) -> None:
         self.connection = self.connect(url)
+        self.gather = gather
         self.pause = SHORTEST_S
 
     def serve(self) -> None:
         """Answer until killed."""
         while True:
-            rows = self.read()
-            if rows:
-                ids = [row[0] for row in rows]
-                self.answer([answer for row in rows for answer in _answers(*row)], ids)
-            self.wait(bool(rows))
+            found = self.look() or self.look_before_sleep()
+            self.wait(found)
+            if self.gather:
+                time.sleep(self.gather)
+
+    def look(self) -> bool:
+        """Answer what is there; return false if nothing is."""
+        rows = self.read()
+        if rows:
+            ids = [row[0] for row in rows]
+            self.answer([answer for row in rows for answer in _answers(*row)], ids)
+        return bool(rows)
+
+    def look_before_sleep(self) -> bool:
+        """Look once more where something can be missed while nobody looks."""
+        return False
 
     def wait(self, found: bool) -> None:
         """Look again at once where there was something, else less and less often."""
@@ -117,8 +129,7 @@ class PostgreSQL(Server):
         connection = psycopg.connect(
             **where(url), dbname=urlsplit(url).path[1:], autocommit=True, options=options
         )
-        # Robots notify only where somebody dozes: this loop always does.
-        connection.execute(f"select pg_advisory_lock({GATEWAY_DOZES})")
+        self.dozes = False
         self.ear = Ear(connection, "rr")
         return connection
 
@@ -130,8 +141,20 @@ class PostgreSQL(Server):
             self.connection.cursor().executemany(ADD, rows)
             self.connection.execute("delete from rr where id = any(%s)", (ids,))
 
+    def look_before_sleep(self) -> bool:
+        """Have robots notify, which they do only while somebody dozes: their commits then wait in line."""
+        lock = f"select pg_try_advisory_lock({GATEWAY_DOZES})"
+        self.dozes = bool(self.connection.execute(lock).fetchone()[0])
+        return self.dozes and self.look()
+
     def wait(self, found: bool) -> None:
-        self.ear.wait()
+        if not self.dozes:
+            super().wait(found)
+            return
+        if not found:
+            self.ear.wait()
+        self.connection.execute(f"select pg_advisory_unlock({GATEWAY_DOZES})")
+        self.dozes = False
 
 
 KINDS: dict[str, type[Server]] = {"sqlite": SQLite, "postgresql": PostgreSQL, "mariadb": MariaDB}
@@ -143,6 +166,6 @@ def _answers(id: int, robot: str, op: str, _params: str | None) -> list[tuple[st
 
 
 if __name__ == "__main__":
-    server = KINDS[sys.argv[1].split(":")[0]](sys.argv[1])
+    server = KINDS[sys.argv[1].split(":")[0]](sys.argv[1], float(sys.argv[2]))
     print("answering", flush=True)
     server.serve()

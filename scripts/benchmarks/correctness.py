@@ -19,6 +19,8 @@ from .layers import features, moved, rows
 
 NEAR = 0.01
 """metres; what a map may be off the drawing."""
+SIDES = (30.0, 200.0)
+"""metres; the shortest and the longest side of a window."""
 _STUB = 2 * NEAR
 """metres; a piece this short may be no segment in centimetres."""
 _SLACK = 1e-4
@@ -41,15 +43,15 @@ class City:
         made = [row for source, shape, _ in read for row in rows(shape, source, place=moved(origin))]
         drawn = shapely.transform([shape for _, shape, _ in read], moved(origin))
         sources = np.array([source for source, _, _ in read])
-        return cls(name, OutlineIndex(Outlines.from_rows(made)), sources, drawn, shapely.STRtree(drawn))
+        return cls(name, OutlineIndex.of(Outlines.from_rows(made)), sources, drawn, shapely.STRtree(drawn))
 
     def windows(self, count: int, seed: int) -> Iterator[Window]:
         """Yield windows of 30 m to 200 m around corners of features."""
         chance = np.random.default_rng(seed)
         for feature in chance.integers(0, len(self.drawn), count):
             corners = shapely.get_coordinates(self.drawn[feature])
-            x, y = corners[chance.integers(0, len(corners))] + chance.uniform(-30, 30, 2)
-            yield Window(float(x), float(y), *chance.uniform(30, 200, 2).tolist())
+            x, y = corners[chance.integers(0, len(corners))] + chance.uniform(-SIDES[0], SIDES[0], 2)
+            yield Window(float(x), float(y), *chance.uniform(*SIDES, 2).tolist())
 
 
 def faults(city: City, window: Window) -> list[str]:

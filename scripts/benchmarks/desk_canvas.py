@@ -32,19 +32,26 @@ from qgis.gui import QgsMapCanvas
 from qgis.PyQt.QtCore import QEventLoop, QTimer
 from stage.processes import dying_with_this
 
-from .clock import megabytes
+from .clock import Spread, megabytes, spread
 from .desk_fleet import DrivingFleet
+from .trial import size
 
 ROOT = Path(__file__).parents[2]
 WINDOW = (1280, 800)
 CRS = "EPSG:32633"
-SECONDS = 6.0
-UPDATES = 40
-WARM_UP = 15
+SECONDS = size(3.0, 1.0)
+ROUNDS = size(5, 2)
+"""How often the live map is watched for so many seconds."""
+FRAME_S, UPDATE_S = 0.05, 0.1
+"""seconds between two updates of the memory layer, and between two positions of a robot."""
+UPDATES = size(40, 5)
+WARM_UP = size(15, 2)
+HOUR, SETTLED = size((3600, 300), (60, 20))
+"""seconds of updates, and those after which memory is looked at first."""
 
 
 class Stage:
-    """A canvas of 1280 × 800 with orthophoto and lanes, and robots all over what it shows."""
+    """A canvas as large as WINDOW with orthophoto and lanes, and robots all over what it shows."""
 
     def __init__(self, data: str, number: int) -> None:
         self.application = QgsApplication([], True)
@@ -103,8 +110,8 @@ def overlay(data: str, number: int) -> None:
     wire = importlib.import_module("fleet_supervisor.plugin.wire.position_rows")
     times = []
     for _ in range(WARM_UP + UPDATES):
-        now[0] += 0.1
-        stage.fleet.drive(0.1)
+        now[0] += UPDATE_S
+        stage.fleet.drive(UPDATE_S)
         told = wire.sightings(stage.fleet.told(), now[0])
         marks = [time.thread_time()]
         for step in (
@@ -119,11 +126,11 @@ def overlay(data: str, number: int) -> None:
         times.append(np.diff(marks) * 1e3)
     parts = np.array(times)[WARM_UP:]
     total = parts.sum(axis=1)
-    taken_in, prepared, painted, written = np.median(parts, axis=0).tolist()
+    taken_in, prepared, painted, written = (spread(column) for column in parts.T.tolist())
     view.overlay.hide()
     stage.end(
         {
-            "ms": float(np.median(total)),
+            "ms": spread(total.tolist()),
             "p99": float(np.percentile(total, 99)),
             "parts": {
                 "taken in": taken_in,
@@ -136,19 +143,19 @@ def overlay(data: str, number: int) -> None:
     )
 
 
-def _repainting(stage: Stage) -> float:
-    """Return the median of the milliseconds that painting the canvas takes after other work."""
+def _repainting(stage: Stage) -> Spread:
+    """Return the milliseconds that painting the canvas takes after other work."""
     times = []
     for _ in range(UPDATES):
         stage.fleet.told()
         began = time.thread_time()
         stage.canvas.viewport().repaint()
         times.append((time.thread_time() - began) * 1e3)
-    return float(np.median(times))
+    return spread(times)
 
 
 def layer(data: str, number: int) -> None:
-    """Print what the same costs as a memory layer, repainted for each update twenty times a second."""
+    """Print what the same costs as a memory layer, repainted for each update."""
     stage = Stage(data, number)
     made = QgsVectorLayer(f"Point?crs={CRS}&field=robot:string", "robots", "memory")
     features = []
@@ -165,7 +172,7 @@ def layer(data: str, number: int) -> None:
     stage.canvas.renderComplete.connect(lambda _: finished.append(time.perf_counter()))
 
     def update() -> None:
-        stage.fleet.drive(0.1)
+        stage.fleet.drive(UPDATE_S)
         places = (stage.fleet.xy + stage.origin).tolist()
         began = time.thread_time()
         moved = {k: QgsGeometry.fromPointXY(QgsPointXY(x, y)) for k, (x, y) in zip(ids, places, strict=True)}
@@ -175,10 +182,14 @@ def layer(data: str, number: int) -> None:
 
     timer = QTimer()
     timer.timeout.connect(update)
-    timer.start(50)
-    stage.run(SECONDS)
+    timer.start(round(FRAME_S * 1000))
+    frames = []
+    for _ in range(ROUNDS):
+        before = len(finished)
+        stage.run(SECONDS)
+        frames.append((len(finished) - before) / SECONDS)
     timer.stop()
-    stage.end({"ms": float(np.median(times)), "updates": len(times), "frames": len(finished) / SECONDS})
+    stage.end({"ms": spread(times), "frames": spread(frames)})
 
 
 def live(data: str, number: int, rate: float = 10.0) -> None:
@@ -206,15 +217,17 @@ def watch_live(stage: Stage, opened: tuple[Any, Any, Any], number: int, rate: fl
                 newest = desk.picture.view("robot-0", 0.0)
                 delays.append((time.monotonic() - newest.told["device_time"]) * 1e3)
 
-        before, began = view.overlay.frames, time.thread_time()
-        stage.run(SECONDS, look)
-        busy, painted = time.thread_time() - began, view.overlay.frames - before
+        rounds: list[tuple[float, float, float]] = []
+        for _ in range(ROUNDS):
+            before, known, began = view.overlay.frames, len(delays), time.thread_time()
+            stage.run(SECONDS, look)
+            busy, painted = time.thread_time() - began, view.overlay.frames - before
+            rounds.append((painted / SECONDS, (len(delays) - known) / SECONDS, busy / max(painted, 1) * 1e3))
     finally:
         feed.kill()
         feed.wait()
-    p50, p99 = np.percentile(delays, (50, 99)).tolist()
-    rates = {"frames": painted / SECONDS, "new": len(delays) / SECONDS, "computing": busy / painted * 1e3}
-    stage.end({**rates, "p50": p50, "p99": p99})
+    rates = dict(zip(("frames", "new", "computing"), map(spread, zip(*rounds, strict=True)), strict=True))
+    stage.end({**rates, "p50": spread(delays), "p99": float(np.percentile(delays, 99))})
 
 
 def hour(data: str, number: int) -> None:
@@ -224,7 +237,7 @@ def hour(data: str, number: int) -> None:
     desk, view, _ = open_desk(stage, lambda: now[0])
     wire = importlib.import_module("fleet_supervisor.plugin.wire.position_rows")
     memory = []
-    for second in range(3600):
+    for second in range(HOUR):
         now[0] += 1.0
         stage.fleet.drive(1.0)
         desk.picture.merge(wire.sightings(stage.fleet.told(), now[0]))
@@ -234,7 +247,7 @@ def hour(data: str, number: int) -> None:
         view.layer.go_on(desk.picture, now[0])
         if second % 20 == 0:
             stage.application.processEvents()
-        if second in (300, 3599):
+        if second in (SETTLED, HOUR - 1):
             memory.append(megabytes())
     stage.end(memory)
 
@@ -248,7 +261,7 @@ def open_desk(stage: Stage, clock: Callable[[], float] = time.monotonic) -> tupl
     site = site_of(stage)
     desk = Desk(stage.canvas, QgsProject.instance(), clock=clock)
     view = LiveView(desk)
-    desk._take_site(site, is_greeting=True)
+    desk._take_site(site, "")
     stage.canvas.setLayers([view.layer.layer, *stage.layers])
     stage.run(0.2)
     stage.wait(lambda: not stage.canvas.isDrawing())

@@ -13,15 +13,20 @@ from typing import Any
 import numpy as np
 from qgis.core import QgsFeature, QgsGeometry, QgsPointXY, QgsProject, QgsVectorLayer
 
+from .clock import spread
 from .desk_canvas import CRS, Stage, open_desk
+from .trial import size
 
 LAYERS = {"obstacle": (5000, 1.0), "keepout": (500, 2.0), "road_surface": (300, 20.0)}
 """By role how many discs there are, and their radius in metres."""
+RUNS = size(5, 2)
+"""How often each is checked, each time another draft of its kind."""
 DESK = "fleet_supervisor.plugin.desk"
 
 
 def drafts(data: str, number: int) -> None:
-    """Print of drafts of ``number`` points what checking takes, and the longest slice of it, in ms."""
+    """Print of drafts of ``number`` points what checking takes, the longest slice of it, and how long the
+    searches for garbage took, in ms."""
     stage = Stage(data, 100)
     desk, _, _ = open_desk(stage)
     random = np.random.default_rng(1)
@@ -30,19 +35,30 @@ def drafts(data: str, number: int) -> None:
     kinds = importlib.import_module(f"{DESK}.drafts")
     editing = importlib.import_module(f"{DESK}.drafting.route_editing")
     x, y, width, height = stage.area
-    targets = _points(random.uniform((x, y), (x + width, y + height), (number, 2)))
     middle = np.array([x + width / 2, y + height / 2])
-    way = _points(middle + random.uniform(-1.0, 1.0, (number, 2)).cumsum(axis=0))
-    route = kinds.Draft("robot-1", kinds.ROUTE, way, legs=(1,) * number)
     slices = _Slices()
-    result: dict[str, Any] = {
-        f"{number} targets": slices.of(stage, desk, kinds.Draft("robot-1", kinds.TARGETS, targets)),
-        f"a route of {number} points": slices.of(stage, desk, route),
+    checked: dict[str, list[list[float]]] = {}
+
+    def check(name: str, draft: Any) -> None:
+        checked.setdefault(name, []).append(slices.of(stage, desk, draft))
+
+    for _ in range(RUNS):
+        targets = _points(random.uniform((x, y), (x + width, y + height), (number, 2)))
+        way = _points(middle + random.uniform(-1.0, 1.0, (number, 2)).cumsum(axis=0))
+        check(f"{number} targets", kinds.Draft("robot-1", kinds.TARGETS, targets))
+        check(f"a route of {number} points", kinds.Draft("robot-1", kinds.ROUTE, way, legs=(1,) * number))
+        changed = editing.moved(desk.drafts.draft, number // 2, (way[0][0], way[0][1]))
+        check("one of these points moved", changed)
+        check("a cone", kinds.Draft("robot-1", kinds.CONE, targets[:1]))
+    rows = {
+        name: {
+            "ms": spread(map(sum, runs)),
+            "slices": max(map(len, runs)),
+            "longest": spread(map(max, runs)),
+        }
+        for name, runs in checked.items()
     }
-    changed = editing.moved(desk.drafts.draft, number // 2, (way[0][0], way[0][1]))
-    result["one of these points moved"] = slices.of(stage, desk, changed)
-    result["a cone"] = slices.of(stage, desk, kinds.Draft("robot-1", kinds.CONE, targets[:1]))
-    stage.end(result)
+    stage.end({"rows": rows, "garbage": spread(slices.garbage)})
 
 
 class _Slices:
@@ -52,16 +68,22 @@ class _Slices:
         self._kind = importlib.import_module(f"{DESK}.time_slices").TimeSlices
         self._slice = self._kind._slice
         self._taken: list[float] = []
+        self.garbage: list[float] = []
+        """Milliseconds of the searches for garbage."""
         self._kind._slice = lambda slices: self._timed(slices)
 
-    def of(self, stage: Stage, desk: Any, draft: Any) -> dict[str, float]:
-        """Have a draft checked; a search for garbage would be counted to whatever it happens to come in."""
+    def of(self, stage: Stage, desk: Any, draft: Any) -> list[float]:
+        """Return the milliseconds of each slice in which a draft is checked.
+
+        A search for garbage would be counted to whatever it happens to come in.
+        """
+        began = time.thread_time()
         gc.collect()
+        self.garbage.append((time.thread_time() - began) * 1e3)
         self._taken.clear()
         desk.put_draft(draft)
         stage.wait(lambda: not desk.checks.is_under_way)
-        slices = list(self._taken)
-        return {"ms": sum(slices), "slices": len(slices), "longest": max(slices)}
+        return list(self._taken)
 
     def _timed(self, slices: Any) -> Any:
         began = time.thread_time()

@@ -9,11 +9,11 @@ import importlib
 import time
 from collections.abc import Callable
 
-import numpy as np
-
+from .clock import spread
 from .desk_canvas import Stage, open_desk
+from .trial import size
 
-UPDATES = 30
+UPDATES = size(30, 4)
 SEARCH = "robot-7 fresh"
 
 
@@ -65,4 +65,4 @@ def lists(data: str, number: int) -> None:
             times[name].append((time.thread_time() - began) * 1e3)
         table.refresh()
         stage.application.processEvents()
-    stage.end({name: float(np.median(taken)) for name, taken in times.items()})
+    stage.end({name: spread(taken) for name, taken in times.items()})

@@ -48,7 +48,9 @@ def measure(_data: Path) -> Part:
     minutes = float(os.environ.get("MINUTES") or MINUTES)
     run = endure(minutes * 60, reloads_in(minutes * 60))
     wrong = [*faults(run), *grown(run.samples, minutes * 60)]
-    return Part("Endurance", report(run, minutes, wrong, ROBOTS, RASTER_CACHE), failed=bool(wrong))
+    text = report(run, minutes, wrong, robots=ROBOTS, raster_cache=RASTER_CACHE, window=WINDOW)
+    settings = {**MALLOC, "GDAL_CACHEMAX": str(RASTER_CACHE)}
+    return Part("Endurance", text, failed=bool(wrong), settings=settings)
 
 
 def reloads_in(seconds: float) -> int:

@@ -11,26 +11,29 @@ from typing import NamedTuple
 
 from stage.errors import StageError
 from stage.faults import breaking
-from stage.faults.audit import Findings
+from stage.faults.audit import LAST_WORDS_S, LOST_WITH_ROBOT, LOST_YOUNG, YOUNG_S, Findings
+from stage.faults.desk import LONGEST_BEFORE_ABORT, SHARE_ABORTED
 from stage.faults.disk import Disk
 from stage.faults.runs import ROBOTS, SERVERS, broken_on_server, broken_on_small_disk, broken_on_sqlite
-from stage.faults.yard import GATEWAY_KILLED, ROBOTS_KILLED, Yard
+from stage.faults.yard import DESKS, GATEWAY_KILLED, ROBOTS_KILLED, Yard
 
-from .clock import table
-from .page import Part
+from .clock import spread, table
+from .page import Part, goal
+from .trial import size
 
-GATEWAY_KILLS, SERVER_KILLS, ROBOT_KILLS = 50, 10, 10
-CUTS, CUT_S = 3, 10.0
+GATEWAY_KILLS, SERVER_KILLS, ROBOT_KILLS = size((50, 10, 10), (2, 1, 1))
+CUTS, CUT_S = size((3, 10.0), (1, 3.0))
 LONGEST_SEED = 10**6
 NAMES = {"sqlite": "SQLite", "postgresql": "PostgreSQL", "mariadb": "MariaDB"}
 
 TEXT = """\
 A real gateway on a real database that waits for the disk at every commit; {robots} robots, half on WebSocket,
 half on SQL with the rights of their accounts, which write down every message that they act on with its id;
-four desks that send them numbered commands, one after the other, every eighth followed by an Abort within
-0.15 s, and ask again under the same id where they get no answer. Everything dies by SIGKILL, at random
-moments (seed {seed}). What was killed is started again, and nobody does anything else. Then the database is
-held against what the desks were told and the robots wrote down.
+{desks} desks that send them numbered commands, one after the other, {aborted:.0f} % of them at random
+followed by an Abort within {abort:g} s, and ask again under the same id where they get no answer. Everything
+dies by SIGKILL, at random moments (seed {seed}). What was killed is started again, and nobody does anything
+else. A full disk or a broken network lasts {cut:g} s each time. Then the database is held against
+what the desks were told and the robots wrote down.
 
 {commands}
 
@@ -38,16 +41,16 @@ Told: commands that an operator was told are queued. Each of them was delivered,
 in an order of steps that can be. Those told and not acted on were aborted before the robot read them; those
 acted on again were told to a robot that was started again and had forgotten them. Asked again: for want of an
 answer. Back after: seconds from the fault, its own length and the start of what was killed included, to the
-next command that was reached; median and longest.
+next command that was reached.
 
 {kept}
 
 Accepted: the robot was told so; each is stored once, as it was told. Lost young: positions that a robot told
-within two seconds before the gateway was killed; none that was older is lost. Lost with the robot: positions
-that it told within half a second before it was itself killed, and that went down with its connection.
+within {young:g} s before the gateway was killed; none that was older is lost. Lost with the robot: positions
+that it told within {last_words:g} s before it was itself killed, and that went down with its connection.
 Stored twice: positions of which the gateway did not know that they were stored, when it or its database died.
 
-Wrong in all of this: {wrong}.
+Wrong in all of this: {wrong} ({goal}).
 """
 
 
@@ -70,7 +73,18 @@ def part(seed: int, runs: list[Run]) -> Part:
     """Return what is told of some runs, which were random by ``seed``."""
     wrong = [f"{run.kind}, {run.fault}: {text}" for run in runs for text in run.findings.wrong]
     text = TEXT.format(
-        robots=ROBOTS, seed=seed, commands=_commands(runs), kept=_kept(runs), wrong=len(wrong) or "nothing"
+        robots=ROBOTS,
+        desks=DESKS,
+        aborted=100 * SHARE_ABORTED,
+        abort=LONGEST_BEFORE_ABORT,
+        seed=seed,
+        cut=CUT_S,
+        commands=_commands(runs),
+        kept=_kept(runs),
+        young=YOUNG_S,
+        last_words=LAST_WORDS_S,
+        wrong=len(wrong) or "nothing",
+        goal=goal("nothing", not wrong),
     )
     return Part("Faults", "\n".join([text, *(f"- {sentence}" for sentence in wrong)]), bool(wrong))
 
@@ -131,9 +145,12 @@ def _commands(runs: list[Run]) -> str:
         "asked again for want of an answer",
         "refused with an error",
     ]
-    return table(
-        [*head, "refused", "back after, s"], [[*_row(run, counted), run.findings.back] for run in runs]
-    )
+    rows = [[*_row(run, counted), *_back(run.findings.back_after)] for run in runs]
+    return table([*head, "refused", "back after, s", "at most"], rows)
+
+
+def _back(seconds: list[float]) -> list[str]:
+    return [f"{spread(seconds):.1f}", f"{max(seconds):.1f}"] if seconds else ["–", "–"]
 
 
 def _kept(runs: list[Run]) -> str:
@@ -143,8 +160,8 @@ def _kept(runs: list[Run]) -> str:
         "images accepted",
         "positions told",
         "... stored",
-        "... lost, told at most 2 s before a gateway was killed",
-        "... lost, told at most 0.5 s before the robot itself was killed",
+        LOST_YOUNG,
+        LOST_WITH_ROBOT,
         "... stored twice",
     ]
     head += ["lost young", "lost with the robot", "stored twice"]

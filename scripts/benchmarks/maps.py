@@ -10,13 +10,14 @@ import numpy as np
 import shapely
 from osgeo import gdal
 
-from .correctness import City, faults
-from .growth import growth_table
-from .page import Part
-from .sizes import campus_table, quarter_table
-from .speed import publish, speed_tables
+from .correctness import NEAR, SIDES, City, faults
+from .growth import PITCH, growth_table
+from .page import Part, goal
+from .sizes import PAPER, PLANE, campus_table, quarter_table
+from .speed import SIDE, publish, speed_tables
+from .trial import size
 
-WINDOWS = 200
+WINDOWS = size(200, 5)
 CITIES = (
     ("Helsinki", "helsinki_centre_utm35n.gpkg", (385944.0, 6672300.0)),
     ("Malta", "malta_2018_utm33n.gpkg", (450000.0, 3970000.0)),
@@ -28,26 +29,27 @@ numpy {numpy}, shapely {shapely}, GDAL {gdal}.
 ### A window from a published site
 
 Malta's buildings and barriers (OpenStreetMap), published as the gateway serves them. Everything is warm: the
-site is loaded, the file is in the system's cache. In brackets, times the extraction, whose result is segments
+site is loaded, the file is in the system's cache; times are processor time. In round brackets, times the
+extraction, whose result is segments
 with direction, height and obstacle in centimetres; the others return clipped geometries.
 
 {speed}
 
 ### Growth
 
-Cities that are made up, 25 buildings in a window of 100 m × 100 m.
+Cities that are made up, {dense:.0f} buildings in a window of {side:g} m × {side:g} m.
 
 {growth}
 
 ### Sizes
 
-Bytes/m². The paper gives 3 as text for this site, with buildings, columns and walls. Strict is Fig. 2 and
-nothing else: what each obstacle comes from (`src`) is left out.
+Bytes/m². The paper gives {paper} as text for this site, with buildings, columns and walls. Strict is the
+paper's format and nothing else: what each obstacle comes from (`src`) is left out.
 
 {campus}
 
-The robot's plane leaves out what begins higher than 1 m above the ground beside it, or ends within 0.3 m of
-the ground. It, dissolving and chaining move no corner by more than a centimetre.
+The robot's plane leaves out what begins higher than {above:g} m above the ground beside it, or ends within
+{below:g} m of the ground.
 
 {quarter}
 
@@ -56,8 +58,8 @@ the ground. It, dissolving and chaining move no corner by more than a centimetre
 {correctness}
 
 Held against shapely, which shares no code with the builder: the segments are the drawn obstacles inside the
-window within 1 cm, both ways; buildings are on the left of their segments; no segment lies on the window's
-border where no wall is. Wrong windows: {wrong}.
+window within {near:g} cm, both ways; buildings are on the left of their segments; no segment lies on the
+window's border where no wall is. Wrong windows: {wrong} ({goal}).
 """
 
 
@@ -73,7 +75,8 @@ def _correctness(data: Path) -> tuple[str, int]:
             wrong += bool(found)
             for fault in found:
                 print(f"{name}, {window}: {fault}", file=sys.stderr)
-        said.append(f"- {name}: {WINDOWS} windows of 30 m to 200 m, {segments} segments")
+        sides = f"{SIDES[0]:g} m to {SIDES[1]:g} m"
+        said.append(f"- {name}: {WINDOWS} windows of {sides}, {segments} segments")
     return "\n".join(said), wrong
 
 
@@ -88,6 +91,13 @@ def measure(data: Path) -> Part:
         shapely=shapely.__version__,
         gdal=gdal.__version__,
         speed=speed,
+        dense=(SIDE / PITCH) ** 2,
+        side=SIDE,
+        paper=PAPER,
+        below=PLANE[0],
+        above=PLANE[1],
+        near=100 * NEAR,
+        goal=goal("none", wrong == 0),
         growth=growth_table(),
         campus=campus_table(data / "upc_campus_nord" / "upc_campus_nord_local.gpkg"),
         quarter=quarter_table(data / "osm" / "momepy_bubenec.gpkg"),

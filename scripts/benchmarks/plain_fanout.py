@@ -1,4 +1,6 @@
-"""The peers of the load, on the same library: messages decoded and dropped, or forwarded to every operator.
+"""The peers of the load, on the same library: positions decoded and dropped, or forwarded to every operator.
+
+They decode and check with the gateway's own function.
 
 ``python plain_fanout.py [--drop]`` prints ``listening on ws://127.0.0.1:PORT``. ``/metrics`` tells, as the
 gateway does, how many messages were read.
@@ -7,12 +9,15 @@ gateway does, how many messages were read.
 from __future__ import annotations
 
 import asyncio
+import contextlib
 import http
-import json
 import sys
 
 from websockets.asyncio.server import ServerConnection, broadcast, serve
+from websockets.exceptions import ConnectionClosed
 from websockets.http11 import Request, Response
+
+from robot_bridge.wire import decode_position
 
 
 async def main() -> None:
@@ -35,12 +40,14 @@ async def main() -> None:
             operators.discard(connection)
             return
         nonlocal read
-        async for frame in connection:
-            read += 1
-            if drop:
-                json.loads(frame)
-            else:
-                broadcast(operators, frame)
+        with contextlib.suppress(ConnectionClosed):
+            while True:
+                frame = await connection.recv(decode=False)
+                if decode_position(frame) is None:
+                    raise ValueError(f"this is no position: {frame!r}")
+                read += 1
+                if not drop:
+                    broadcast(operators, frame)
 
     options = {"compression": None, "ping_interval": None, "process_request": page}
     async with serve(connected, "127.0.0.1", 0, **options) as server:

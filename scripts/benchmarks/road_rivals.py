@@ -24,6 +24,8 @@ from robot_bridge.roads.engines.contraction import ContractionEngines
 from robot_bridge.roads.engines.engine import Graph
 from robot_bridge.roads.network import Network
 
+NO_WAY = "There is no route"
+"""What QGIS says where there is none."""
 Query = Callable[[int, int], object]
 
 
@@ -45,7 +47,13 @@ def by_networkx(network: Network, graph: networkx.DiGraph) -> Query:
         (x, y), (u, v) = nodes[a], nodes[b]
         return ((x - u) ** 2 + (y - v) ** 2) ** 0.5
 
-    return lambda a, b: networkx.astar_path(graph, a, b, heuristic=straight)
+    def query(a: int, b: int) -> object:
+        try:
+            return networkx.astar_path(graph, a, b, heuristic=straight)
+        except networkx.NetworkXNoPath:
+            return None
+
+    return query
 
 
 def by_routingkit(network: Network) -> tuple[Query, Query]:
@@ -91,6 +99,8 @@ def by_native(network: Network) -> Query:
         one, context, feedback = algorithm.create(), QgsProcessingContext(), QgsProcessingFeedback()
         context.setProject(QgsProject.instance())
         results, done = one.run(given, context, feedback)
+        if not done and NO_WAY in feedback.textLog():
+            return None
         assert done, feedback.textLog()
         return results["TRAVEL_COST"]
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable, Collection, Mapping
 
 import numpy as np
@@ -13,19 +12,24 @@ from robot_bridge.road_traffic.closed_roads import ClosedRoads
 from robot_bridge.road_traffic.traffic_picture import Seen
 from robot_bridge.road_traffic.ways import Underway
 from robot_bridge.roads.dense import Driving, dense_path
-from robot_bridge.roads.errors import NoRouteError
+from robot_bridge.roads.errors import NoRouteError, OffNetworkError
 from robot_bridge.roads.network import Network
 from robot_bridge.roads.routes import Place, Router
 from robot_bridge.sites.settings import RouteSettings
 from robot_bridge.traffic.conflicts import Conflict, conflicts_of, find_conflicts
 from robot_bridge.traffic.movement import Movement
 
-CLOSURES, LIMIT = 40, 10.0
+from .clock import FEW, Spread, again, once, spread
+from .trial import size
+
+CLOSURES, LIMIT = size(40, 5), 10.0
 """edges closed one after the other, and milliseconds within which that must be honoured."""
-FLEETS = (100, 1000)
+FLEETS = size((100, 1000), (20,))
 ENGINES = ("contraction", "scipy")
 SPEED, MARGIN = 1.0, 0.5
 """metres a second, and metres."""
+
+RUNS = size(5, 2)
 
 HEAD = """{closures} roads are closed one after the other, each in the middle of a way that had just been
 found. Honoured: the milliseconds from asking for the closure until the next way, found without it, is there;
@@ -36,12 +40,14 @@ itself. On the grid a street between its halves changes what a great part of the
 |---|---|---|---|
 {honoured}
 
+Goal on {limited}, with RoutingKit: at most {limit:g} ms; {late}.
+
 On Malta, to hold a path of {metres:.1f} km and {points} points against {closures} closures takes {order:.1f}
 ms, beside the gateway's event loop.
 
 One look at all robots, as the gateway takes it about once a second beside its event loop: what is left of
 each way, then the conflicts. Pair by pair: every two robots whose whole ways come near one another are held
-against each other, as was done before; the conflicts are the same.
+against each other; the conflicts are the same.
 
 | robots on ways of Malta at once | conflicts | ways left | conflicts found | pair by pair | times as long |
 |---|---|---|---|---|---|
@@ -60,12 +66,16 @@ def traffic(networks: Mapping[str, Network], limited: Collection[str]) -> tuple[
             router = Router(network, engine)
             took = _honoured(router)
             late |= name in limited and engine == "contraction" and max(took) > LIMIT
-            rows.append(f"| {name} | {router.engine_name} | {np.median(took):.1f} ms | {max(took):.1f} ms |")
+            honoured = f"{spread(took):.1f} ms | {max(took):.1f} ms"
+            rows.append(f"| {name} | {router.engine_name} | {honoured} |")
     network = next(iter(networks.values()))
     router = Router(network)
     order, longest = _order(router)
     text = HEAD.format(
         closures=CLOSURES,
+        limited=" and ".join(limited),
+        limit=LIMIT,
+        late="**missed**" if late else "met",
         honoured="\n".join(rows),
         metres=np.hypot(*np.diff(longest, axis=0).T).sum() / 1000,
         points=len(longest),
@@ -97,7 +107,7 @@ def _without(router: Router, edge: int, start: Place, goal: Place) -> list[int]:
     return _edges(router, start, goal)
 
 
-def _order(router: Router) -> tuple[float, np.ndarray]:
+def _order(router: Router) -> tuple[Spread, np.ndarray]:
     """Return the milliseconds of holding the longest of some paths against closures, and that path."""
     paths = [_dense(router, *pair) for pair in _pairs(router, 30)]
     longest = max(paths, key=len)
@@ -105,7 +115,7 @@ def _order(router: Router) -> tuple[float, np.ndarray]:
     router.close(edges)
     closures = {str(edge): frozenset([edge]) for edge in edges}
     closed = ClosedRoads(router.nearest, closures, router.closed)
-    took = min(_timed(lambda: closed.along(longest.tolist()))[0] for _ in range(5))
+    took = spread(_timed(lambda: closed.along(longest.tolist()))[0] for _ in range(FEW))
     router.open(edges)
     return took, longest
 
@@ -117,13 +127,14 @@ def _conflicts(router: Router, count: int) -> str:
         path, robot = SetPath(line.beyond(-1.0).tolist()), f"r{number}"
         underway.append(Underway(robot, f"c{number}", path, path.points[0], 0.0, None, line))
         places[robot] = path.points[0], SPEED
-    seen = Seen(0.0, RouteSettings(margin_m=MARGIN), underway, places, {})
-    left, moving = _timed(seen.movements)
+    seen = Seen(0.0, RouteSettings(margin_m=MARGIN), underway, places, {}, frozenset(places))
+    moving, left = again(seen.movements, RUNS)
     movements = list(moving.values())
-    took, found = _timed(lambda: find_conflicts(movements, MARGIN, 0.0))
-    slowly, same = _timed(lambda: _pair_by_pair(movements))
+    found, took = again(lambda: find_conflicts(movements, MARGIN, 0.0), RUNS)
+    same, slowly = again(lambda: _pair_by_pair(movements), RUNS)
     assert found == same
-    times = f"{left:.0f} ms | {took:.0f} ms | {slowly:.0f} ms | {slowly / took:.0f}"
+    milliseconds = [f"{seconds.scaled(1000):.0f} ms" for seconds in (left, took, slowly)]
+    times = f"{' | '.join(milliseconds)} | {slowly.median / took.median:.1f}"
     return f"| {count} | {len(found)} | {times} |"
 
 
@@ -159,7 +170,7 @@ def _pairs(
 def _edges(router: Router, start: tuple[float, float], goal: tuple[float, float]) -> list[int]:
     try:
         return router.route(start, goal).edges.tolist()
-    except NoRouteError:
+    except (NoRouteError, OffNetworkError):
         return []
 
 
@@ -169,7 +180,6 @@ def _dense(router: Router, start: tuple[float, float], goal: tuple[float, float]
 
 
 def _timed(work: Callable[[], object]) -> tuple[float, object]:
-    """Return the milliseconds that ``work`` took, and what it returned."""
-    start = time.perf_counter()
-    result = work()
-    return 1000 * (time.perf_counter() - start), result
+    """Return the milliseconds of processor time that ``work`` took, and what it returned."""
+    result, seconds = once(work)
+    return 1000 * seconds, result

@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 import importlib.util
-import os
 import resource
 import sys
-import time
 from collections.abc import Callable, Sequence
 from itertools import pairwise
 from pathlib import Path
@@ -22,21 +20,31 @@ from robot_bridge.roads.network import Network, build_network
 from robot_bridge.roads.repairs import repaired_network
 from robot_bridge.roads.routes import Router
 
-from .page import Part
+from .clock import FEW, Spread, again, once, spread
+from .page import Part, goal
 from .road_data import four_islands, grid, malta, track, track_surface
 from .road_rivals import by_graph_analyzer, by_native, by_networkx, by_routingkit, directed, start_qgis
 from .road_traffic import traffic
+from .trial import size
 
 TOLERANCE = 0.5
-PAIRS, STARTS = 1000, 50
-SLOW = 30
+SIDE = size(317, 40)
+"""Streets along each side of the made-up grid."""
+PAIRS, STARTS = size((1000, 50), (50, 5))
+SLOW = size(30, 4)
 """How many ways are asked of what takes a tenth of a second for each."""
+MOST = size(None, 1500)
+"""How many of Malta's roads are taken: all."""
+RUNS, CLOSED = size(5, 2), 100
+"""How often each is asked the same, and edges that are closed at once."""
+PRECISE, NEAR = 1e-6, 0.1
+"""Metres that lengths may differ by, and that a path may be off a surface."""
 ENGINES = {"contraction": PAIRS, "scipy": SLOW, "plain": SLOW}
 ROOT = Path(__file__).parents[2]
 
 TEXT = """\
-Load of the machine during the run: {load} (1 min, at the end). Ways per second count a whole question: both
-places taken to the nearest edge, the way, and its stretches; those of the others begin at nodes.
+Ways per second count a whole question: both places taken to the nearest edge, the way, and its stretches;
+those of the others begin at nodes. All times are processor time.
 
 ### The network
 
@@ -52,20 +60,21 @@ places taken to the nearest edge, the way, and its stretches; those of the other
 
 ### Ways per second
 
+Each was asked the same ways {runs} times, one after the other on the same network.
+
 | | Malta, {malta} edges | Malta four times, {four} edges | made-up grid, {town} edges |
 |---|---|---|---|
 {speeds}
 
-A grid is the hardest of networks for contraction hierarchies: no few crossings part it. A query of RoutingKit
-that is kept is for one thread only, and no road can be closed while there is one: the gateway makes one for
-each way.
+A grid is hard for contraction hierarchies: no few crossings part it. A query of RoutingKit that is kept is
+for one thread only, and no road can be closed while there is one: the gateway makes one for each way.
 
-Getting ready for ways costs {ready}. Closing 100 edges, then a way: {closing}.
+Getting ready for ways costs {ready}. Closing {closed} edges, then a way: {closing}.
 
 ### Correctness
 
-Malta: of {pairs} pairs with a way the greatest difference to networkx is {worst:.2e} m; {disagreed} pairs
-have a way by one and none by the other.
+Malta: of {pairs} pairs with a way the greatest difference to networkx is {worst:.2e} m ({precise});
+{disagreed} pairs have a way by one and none by the other ({agreed}).
 
 {track}
 
@@ -76,16 +85,19 @@ have a way by one and none by the other.
 
 
 def measure(data: Path) -> Part:
-    """Measure on Malta, once and four times, on a grid of 200 000 streets, and on ZalaZONE's track."""
+    """Measure on Malta, once and four times, on a grid of streets, and on ZalaZONE's track."""
     built, networks, findings = _networks(data)
-    island, town = networks["Malta"], grid(317)
-    four = build_network(four_islands(malta(data)))
+    island, town = networks["Malta"], grid(SIDE)
+    four = build_network(four_islands(malta(data, MOST)))
     large = {"Malta": island, "Malta four times": four, "the grid": town}
     speeds, ready, closing = _speeds(large)
     worst, disagreed, pairs = _held_against_networkx(island)
     told, late = traffic(large, limited=("Malta", "Malta four times"))
     text = TEXT.format(
-        load=f"{os.getloadavg()[0]:.1f}",
+        runs=RUNS,
+        closed=CLOSED,
+        precise=goal(f"at most {PRECISE:g} m", worst <= PRECISE),
+        agreed=goal("none", disagreed == 0),
         built="\n".join(built),
         tolerance=TOLERANCE,
         kinds=" | ".join(count_by_kind([])),
@@ -103,15 +115,17 @@ def measure(data: Path) -> Part:
         track=_on_the_track(networks["ZalaZONE, repaired"], data),
         traffic=told,
     )
-    return Part("Roads", text, failed=late or worst > 1e-6 or disagreed > 0)
+    return Part("Roads", text, failed=late or worst > PRECISE or disagreed > 0)
 
 
 def _networks(data: Path) -> tuple[list[str], dict[str, Network], list[str]]:
     built, networks, findings = [], {}, []
-    for name, roads in (("Malta", malta(data)), ("ZalaZONE", track(data))):
+    for name, roads in (("Malta", malta(data, MOST)), ("ZalaZONE", track(data))):
         before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
-        seconds, network = _timed(lambda roads=roads: build_network(roads))
+        network, first = once(lambda roads=roads: build_network(roads))
         grown = (resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before) / 1024
+        more = [once(lambda roads=roads: build_network(roads))[1] for _ in range(RUNS - 1)]
+        seconds = spread([first, *more])
         mended, done = repaired_network(roads, TOLERANCE)
         sizes = f"{len(roads)} | {len(network)} | {len(network.nodes)}"
         # After a great network a small one needs no more than was there.
@@ -131,10 +145,10 @@ def _speeds(networks: dict[str, Network]) -> tuple[list[str], str, str]:
     ready, closing = [], []
     for name, network in networks.items():
         for engine, count in ENGINES.items():
-            seconds, router = _timed(lambda network=network, engine=engine: Router(network, engine))
+            router = Router(network, engine)
             rows.setdefault(router.engine_name, []).append(_rate(_whole_route(router), network, count))
             if engine == "contraction":
-                ready.append(f"{seconds + _first(router):.1f} s on {name}")
+                ready.append(f"{_ready(network):.1f} s on {name}")
                 closing.append(f"{_closing(router):.1f} ms on {name}")
         for rival, (query, count) in _rivals(network).items():
             rows.setdefault(rival, []).append(_rate(query, network, count))
@@ -154,7 +168,7 @@ def _rivals(network: Network) -> dict[str, tuple[Callable[[int, int], object], i
         "RoutingKit alone, one query kept": (kept, PAIRS),
         "networkx, A*": (by_networkx(network, directed(network)), 10),
         "QgsGraphAnalyzer, graph kept": (by_graph_analyzer(network, _graph_engine()), 10),
-        "native:shortestpathpointtopoint": (by_native(network), 2),
+        "native:shortestpathpointtopoint": (by_native(network), 1),
     }
 
 
@@ -187,8 +201,9 @@ def _whole_route(router: Router) -> Callable[[int, int], object]:
 def _rate(query: Callable[[int, int], object], network: Network, count: int) -> str:
     pairs = _joined_pairs(network, count)
     query(*pairs[0])
-    seconds, _ = _timed(lambda: [query(a, b) for a, b in pairs])
-    return f"{len(pairs) / seconds:.3g}"
+    _, seconds = again(lambda: [query(a, b) for a, b in pairs], RUNS)
+    slowest, fastest = len(pairs) / seconds.high, len(pairs) / seconds.low
+    return f"{Spread(len(pairs) / seconds.median, slowest, fastest):.3g}"
 
 
 def _joined_pairs(network: Network, count: int) -> list[tuple[int, int]]:
@@ -199,23 +214,23 @@ def _joined_pairs(network: Network, count: int) -> list[tuple[int, int]]:
     return [(int(a), int(b)) for a, b in picked if a != b]
 
 
-def _first(router: Router) -> float:
-    """Return the seconds of the first way, for which costs are laid over the network."""
-    node = tuple(router.network.nodes[0].tolist())
-    return _timed(lambda: router.route(node, node))[0]
+def _ready(network: Network) -> Spread:
+    """Return the seconds until the first way is found, for which costs are laid over the network."""
+    node = tuple(network.nodes[0].tolist())
+    return again(lambda: Router(network, "contraction").route(node, node), RUNS)[1]
 
 
-def _closing(router: Router) -> float:
-    """Return the milliseconds of closing 100 edges and finding a way, at the median."""
+def _closing(router: Router) -> Spread:
+    """Return the milliseconds of closing CLOSED edges and finding a way."""
     (a, b), *_ = _joined_pairs(router.network, 5)
     query = _whole_route(router)
     random = np.random.default_rng(2)
     seconds = []
-    for _ in range(9):
-        edges = random.choice(len(router.network), 100, replace=False).tolist()
+    for _ in range(2 * FEW):
+        edges = random.choice(len(router.network), CLOSED, replace=False).tolist()
         seconds.append(_timed(lambda edges=edges: (router.close(edges), query(a, b)))[0])
         router.open(edges)
-    return 1000 * float(np.median(seconds))
+    return spread(1000 * one for one in seconds)
 
 
 def _held_against_networkx(network: Network) -> tuple[float, int, int]:
@@ -226,12 +241,12 @@ def _held_against_networkx(network: Network) -> tuple[float, int, int]:
     random = np.random.default_rng(1)
     for start in random.integers(0, len(network.nodes), STARTS).tolist():
         lengths = networkx.single_source_dijkstra_path_length(graph, start) if start in graph else {}
-        for goal in random.integers(0, len(network.nodes), PAIRS // STARTS).tolist():
-            route = query(start, goal)
-            if (route is None) != (goal not in lengths):
+        for end in random.integers(0, len(network.nodes), PAIRS // STARTS).tolist():
+            route = query(start, end)
+            if (route is None) != (end not in lengths):
                 disagreed += 1
             elif route is not None:
-                worst = max(worst, abs(route.metres - lengths[goal]))
+                worst = max(worst, abs(route.metres - lengths[end]))
                 compared += 1
     return worst, disagreed, compared
 
@@ -264,16 +279,15 @@ def _told(paths: Sequence[np.ndarray], refused: int, surface: shapely.Geometry, 
     drawn = [shapely.LineString(network.edges.line(k)) for k in range(len(network))]
     off = shapely.length(shapely.difference(drawn, surface)).sum() / shapely.length(drawn).sum()
     longest = max(max(np.hypot(*(b - a)) for a, b in pairwise(points)) for points in paths)
-    kept = int((outside < 0.1).sum())
+    kept = int((outside < NEAR).sum())
     return (
         f"ZalaZONE's track, repaired: of {PAIRS} pairs of random places on its surface {len(paths)} have a "
         f"way by the lanes' directions, {refused} have none; {kept} of the paths stay on that surface "
-        f"within 0.1 m, {100 * (1 - outside.sum() / metres):.2f} % of all {metres / 1000:.0f} km do; of the "
-        f"centrelines themselves {100 * (1 - off):.2f} % do. Points are at most {longest:.3f} m apart."
+        f"within {NEAR:g} m, {100 * (1 - outside.sum() / metres):.2f} % of all {metres / 1000:.0f} km do; of "
+        f"the centrelines themselves {100 * (1 - off):.2f} % do. Points are at most {longest:.3f} m apart."
     )
 
 
 def _timed(work: Callable[[], object]) -> tuple[float, object]:
-    start = time.perf_counter()
-    result = work()
-    return time.perf_counter() - start, result
+    result, seconds = once(work)
+    return seconds, result

@@ -6,7 +6,6 @@ import contextlib
 import itertools
 import json
 import os
-import statistics
 import subprocess
 import sys
 import tempfile
@@ -31,29 +30,36 @@ from websockets.sync.client import ClientConnection, connect
 from robot_bridge.store import revisions
 from robot_bridge.store.accounts.choice import keeper_on
 from robot_bridge.store.database import run_once
+from robot_bridge.store.wakeups import LONGEST_S, SHORTEST_S
 
-from .clock import table
+from .clock import Spread, spread, table
 from .page import Part
 from .sql_robots import Plan, Seen
+from .trial import size
 
 Databases = Iterator[tuple[str, str]]
 NUMBERS = itertools.count(1)
 SITE = ROOT / "resources" / "sample_site"
-COUNTS = (1, 20, 100)
-SECONDS = 3.0
+COUNTS = size((1, 20, 100), (1, 5))
+ROUNDS = size(3, 2)
+"""How often each is measured on the same database, for so many seconds:"""
+SECONDS = size(2.0, 1.0)
 ONCE_A_SECOND, ON_AND_ON = 1.0, 0.0
 PASSWORD = "robot-of-the-benchmark"
+GATHER_S, BLOCK = 0.002, 4096
+"""Seconds that the bare loop waits for more in one of its ways, and bytes that are written to the disk."""
 POLL_S = {"sqlite": 0.002, "postgresql": 0.0, "mariadb": 0.004}
 
 TEXT = """\
 A request (`Stopped`) and its OpAck. A real gateway with everything running on the sample site, with one
-operator who watches; its robots, a thread and a connection each with the rights of a robot's account, run in
-one other process on the same machine, as does the database server, which waits for the disk at every commit
-that is asked of it durably. The robots' drivers are in C, on MariaDB `python3-mysqldb`: in the field every
-robot has a computer of its own, and what its driver takes is here taken from the server and the gateway.
-PostgreSQL tells robots that there is something new (NOTIFY), and the gateway when it has nothing to do. On
-SQLite the robots look after {sqlite:g} ms, on MariaDB after {mariadb:g} ms, then less and less often, and the
-gateway every 0.3 ms to 20 ms, on PostgreSQL too while requests come. Each figure is of {seconds:g} s.
+operator who watches; its robots, a thread and a connection each with the rights of a robot's account, run
+in one other process on the same machine, as does the database server, which waits for the disk at every
+commit that is asked of it durably. The robots' drivers are in C, on MariaDB `python3-mysqldb`: in the field
+every robot has a computer of its own, and what its driver takes is here taken from the server and the
+gateway. PostgreSQL tells robots that there is something new (NOTIFY), and the gateway when it has nothing
+to do. On SQLite the robots look after {sqlite:g} ms, on MariaDB after {mariadb:g} ms, then less and less
+often, and the gateway every {soonest:g} ms to {latest:g} ms, on PostgreSQL too while requests come. Each
+figure is of {rounds} rounds of {seconds:g} s.
 
 *Robots not waiting for the disk* begin their sessions on PostgreSQL with `set synchronous_commit = off`, as
 the reference robot does; on SQLite all do the like (`synchronous = normal`). What a power cut takes of a
@@ -61,13 +67,15 @@ robot's requests had no answer. MariaDB leaves robots no choice: *nobody waiting
 `innodb_flush_log_at_trx_commit = 2`, with which a power cut also takes what operators were told is queued
 ([what to choose](operation.md#waiting-for-the-disk)).
 
-The bare loop is the least that can answer them (`scripts/benchmarks/bare_sql.py`): one connection with the
-gateway's driver and commits that wait for the disk as the gateway's do, no checks and nothing else to do. In
-brackets, the gateway's answers of its.
+The bare loop (`scripts/benchmarks/bare_sql.py`) has one connection with the gateway's driver, waits for the
+disk as the gateway does, is told of new rows as the gateway is, checks nothing and has nothing else to do.
+Behind it, in round brackets, the gateway's answers of its. It looks again as soon as it has answered; asked
+as fast as it goes it also ran with a pause of {gather:g} ms before each look, in which more requests
+gather, and of the two the one with more answers stands in the table. As fast as it goes the gateway gave more
+answers than the loop in {beyond}.
 
-To write 4 KiB and wait for the disk took {disk:.1f} ms (median) before, and {disk_after:.1f} ms afterwards; a
-durable request and its deletion wait for it once each, and so does the answer on MariaDB. Load of the machine
-when it began and when it ended: {load:.1f} and {after:.1f}.
+To write {block} bytes and wait for the disk took {disk:.2f} ms before, and {disk_after:.2f} ms afterwards; a
+durable request and its deletion wait for it once each, and so does the answer on MariaDB.
 
 ### Once a second
 
@@ -106,58 +114,88 @@ CASES = (
 
 @dataclass(frozen=True)
 class Run:
-    """What was measured with some robots; ``cpu`` is what answered them took, in cores."""
+    """What was measured with some robots: of each round what they saw, and the cores that answering took."""
 
     case: Case
     robots: int
     rate: float
     bare: bool
-    seen: Seen
-    cpu: float
+    rounds: list[tuple[Seen, float]]
 
     @property
-    def answers(self) -> float:
+    def answers(self) -> Spread:
         """Answers a second."""
-        return len(self.seen.times) / max(self.seen.seconds, 1e-9)
+        return spread(len(seen.times) / max(seen.seconds, 1e-9) for seen, _ in self.rounds)
 
-    def percentile(self, share: float) -> float:
-        """Return the milliseconds within which this share of the answers came."""
-        times = sorted(self.seen.times) or [0.0]
-        return times[min(len(times) - 1, int(len(times) * share))] * 1e3
+    @property
+    def cpu(self) -> Spread:
+        """What answered took, in cores."""
+        return spread(cpu for _, cpu in self.rounds)
+
+    @property
+    def failed(self) -> list[str]:
+        """What robots failed with."""
+        return [failure for seen, _ in self.rounds for failure in seen.failed]
+
+    def percentile(self, share: float) -> Spread:
+        """Return the milliseconds within which this share of the answers came, of each round."""
+        return spread(_percentile(seen.times, share) for seen, _ in self.rounds)
 
 
 def measure(_data: Path) -> Part:
     """Measure each kind of database with few and many robots."""
     if find_spec("MySQLdb") is None:
         sys.exit("bench: robots on MariaDB need their driver: apt-get install python3-mysqldb")
-    runs, load, disk = [], os.getloadavg()[0], _milliseconds_to_disk()
+    runs, disk = [], _milliseconds_to_disk()
     for case in CASES:
         with _databases(case) as databases:
             for robots in COUNTS:
-                runs += [
-                    measured(databases, case, robots, rate, bare=bare)
-                    for rate in (ONCE_A_SECOND, ON_AND_ON)
-                    for bare in ((False, True) if case.durable else (False,))
-                ]
+                for rate in (ONCE_A_SECOND, ON_AND_ON):
+                    runs.append(measured(databases, case, robots, rate))
+                    print(_row(runs[-1], None), file=sys.stderr, flush=True)
+                    if case.durable:
+                        runs.append(_bare(databases, case, robots, rate))
     text = TEXT.format(
         seconds=SECONDS,
         sqlite=POLL_S["sqlite"] * 1e3,
         mariadb=POLL_S["mariadb"] * 1e3,
+        rounds=ROUNDS,
+        soonest=SHORTEST_S * 1e3,
+        latest=LONGEST_S * 1e3,
+        gather=GATHER_S * 1e3,
+        beyond=_beyond(runs),
+        block=BLOCK,
         disk=disk,
         disk_after=_milliseconds_to_disk(),
-        load=load,
-        after=os.getloadavg()[0],
         paced=_table([run for run in runs if run.rate == ONCE_A_SECOND]),
         closed=_table([run for run in runs if run.rate == ON_AND_ON]),
     )
     for run in runs:
-        for failure in run.seen.failed:
+        for failure in run.failed:
             print(f"{run.case.name}, {run.robots} robots: {failure}", file=sys.stderr)
-    return Part("Round trips over SQL", text, any(run.seen.failed for run in runs))
+    return Part("Round trips over SQL", text, any(run.failed for run in runs))
 
 
-def measured(databases: Databases, case: Case, robots: int, rate: float, *, bare: bool) -> Run:
-    """Measure robots on a new database with the gateway, or with the least that can answer."""
+def _bare(databases: Databases, case: Case, robots: int, rate: float) -> Run:
+    """Return what the bare loop does; as fast as it goes, the better of its two ways."""
+    pauses = (0.0,) if rate else (0.0, GATHER_S)
+    runs = [measured(databases, case, robots, rate, bare=True, gather=pause) for pause in pauses]
+    return max(runs, key=lambda run: run.answers.median)
+
+
+def _beyond(runs: list[Run]) -> str:
+    """Return in how many rows of the closed loop the gateway gave more answers than the bare loop."""
+    closed = [run for run in runs if run.rate == ON_AND_ON]
+    peers = {(run.case, run.robots): run.answers.median for run in closed if run.bare}
+    pairs = {(run.case, run.robots): run.answers.median for run in closed if not run.bare}
+    more = sum(pairs[key] > peer for key, peer in peers.items())
+    return f"{more} of {len(peers)} rows"
+
+
+def measured(
+    databases: Databases, case: Case, robots: int, rate: float, *, bare: bool = False, gather: float = 0.0
+) -> Run:
+    """Measure robots on a new database with the gateway, or with the bare loop that pauses to ``gather``."""
     url, admin_url = next(databases)
     run_once(url, revisions.create)
     # Accounts belong to the server: each run has names of its own.
@@ -166,9 +204,10 @@ def measured(databases: Databases, case: Case, robots: int, rate: float, *, bare
         names = run_once(admin_url, _accounts, list(names), make_url(url))
     plan = Plan(names, SECONDS, rate, POLL_S[case.kind], case.durable)
     with tempfile.TemporaryDirectory() as folder, Processes(Path(folder)) as processes:
-        answered = _with_bare_loop if bare else _with_gateway
-        seen, cpu = answered(processes, url, plan)
-    return Run(case, robots, rate, bare, seen, cpu)
+        rounds = (
+            _with_bare_loop(processes, url, plan, gather) if bare else _with_gateway(processes, url, plan)
+        )
+    return Run(case, robots, rate, bare, rounds)
 
 
 @contextmanager
@@ -194,21 +233,21 @@ def _accounts(connection: Connection, names: list[str], url: Any) -> dict[str, s
     return {name: shared.set(username=name).render_as_string(hide_password=False) for name in names}
 
 
-def _with_gateway(processes: Processes, url: str, plan: Plan) -> tuple[Seen, float]:
+def _with_gateway(processes: Processes, url: str, plan: Plan) -> list[tuple[Seen, float]]:
     serve = ["serve", "--site", SITE, "--port", "0", "--database", url]
     gateway = processes.start("gateway", [sys.executable, "-m", "robot_bridge", *serve])
     address = processes.wait_for_line("gateway", r"listening on (ws://[\w.]+:\d+)", 30).group(1)
     with connect(f"{address}/desk") as desk:
         threading.Thread(target=_watch, args=(desk,), daemon=True).start()
-        return _ask(plan, gateway.pid)
+        return [_ask(plan, gateway.pid) for _ in range(ROUNDS)]
 
 
-def _with_bare_loop(processes: Processes, url: str, plan: Plan) -> tuple[Seen, float]:
+def _with_bare_loop(processes: Processes, url: str, plan: Plan, gather: float) -> list[tuple[Seen, float]]:
     path = os.pathsep.join([str(ROOT), str(ROOT / "scripts")])
-    command = [sys.executable, "-m", "benchmarks.bare_sql", url]
+    command = [sys.executable, "-m", "benchmarks.bare_sql", url, str(gather)]
     loop = processes.start("loop", command, env={"PYTHONPATH": path})
     processes.wait_for_line("loop", "answering", 30)
-    return _ask(plan, loop.pid)
+    return [_ask(plan, loop.pid) for _ in range(ROUNDS)]
 
 
 def _ask(plan: Plan, pid: int) -> tuple[Seen, float]:
@@ -235,16 +274,21 @@ def _watch(desk: ClientConnection) -> None:
             pass
 
 
-def _milliseconds_to_disk() -> float:
-    """Return the median of writing 4 KiB to the end of a file and waiting for the disk."""
+def _percentile(times: list[float], share: float) -> float:
+    found = sorted(times) or [0.0]
+    return found[min(len(found) - 1, int(len(found) * share))] * 1e3
+
+
+def _milliseconds_to_disk() -> Spread:
+    """Return what it takes to write a block to the end of a file and to wait for the disk."""
     times = []
     with tempfile.TemporaryFile(buffering=0) as file:
         for _ in range(200):
             began = time.perf_counter()
-            file.write(os.urandom(4096))
+            file.write(os.urandom(BLOCK))
             os.fdatasync(file.fileno())
-            times.append(time.perf_counter() - began)
-    return statistics.median(times) * 1e3
+            times.append((time.perf_counter() - began) * 1e3)
+    return spread(times)
 
 
 def _cpu(pid: int) -> float:
@@ -263,7 +307,8 @@ def _table(runs: list[Run]) -> str:
 def _row(run: Run, peer: Run | None) -> list[str]:
     beside = ["", ""]
     if peer is not None:
-        answers = f"{peer.answers:.0f} ({run.answers / max(peer.answers, 1e-9):.2f})"
+        ratio = run.answers.median / max(peer.answers.median, 1e-9)
+        answers = f"{peer.answers:.0f} ({ratio:.2f})"
         beside = [f"{peer.percentile(0.5):.1f}", answers]
     return [
         run.case.name,

@@ -23,15 +23,18 @@ from .layers import features, rows
 WINDOW = Window(48, 48, 104, 104)
 PLANE = (0.3, 1.0)
 """metres above the ground: what a knee-high robot of 1 m cannot drive under or over."""
+PAPER = 3
+"""bytes/m² that the paper gives for its text."""
 NO_FURNITURE = ("buildings", "walls")
 LOSSLESS = Shaping(plane=PLANE, dissolve=True, chain=True)
 FEWER_CORNERS = replace(LOSSLESS, tolerance=0.05, shortest=0.1, height_step=0.5)
 PROFILES = (
     ("every face an obstacle, as exported without options", Shaping(), None),
     ("faces chained, walls in and along buildings dissolved", Shaping(dissolve=True, chain=True), None),
-    ("the same, only what the robot's plane from 0.3 m to 1 m meets", LOSSLESS, None),
+    (f"the same, only what the robot's plane from {PLANE[0]:g} m to {PLANE[1]:g} m meets", LOSSLESS, None),
     (
-        "the same, simplified by 5 cm, corners nearer than 10 cm joined, heights in half metres",
+        f"the same, simplified by {100 * FEWER_CORNERS.tolerance:g} cm, corners nearer than "
+        f"{100 * FEWER_CORNERS.shortest:g} cm joined, heights in steps of {FEWER_CORNERS.height_step:g} m",
         FEWER_CORNERS,
         None,
     ),
@@ -65,7 +68,9 @@ def campus_table(file: Path) -> str:
         robot_map = build_map(shaped(Outlines.from_rows(some), shaping), WINDOW)
         lines.append((name, len(robot_map.obstacles), robot_map.segment_count, *_densities(robot_map)))
     formats = ("text", "text, strict", "codec 1, strict", "codec 2", "codec 2, strict")
-    return table(("campus, 104 m × 104 m", "obstacles", "segments", *formats), lines)
+    return table(
+        (f"campus, {WINDOW.width:g} m × {WINDOW.height:g} m", "obstacles", "segments", *formats), lines
+    )
 
 
 def _densities(robot_map: RobotMap) -> list[str]:

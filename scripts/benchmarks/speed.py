@@ -21,12 +21,17 @@ from robot_bridge.sites.publication import read_site, write_site
 from robot_bridge.sites.settings import Bounds, SiteSettings
 from robot_bridge.sites.site import Site
 
-from .clock import each, in_a_process, once, table
+from .clock import again, each, in_a_process, table, with_children
 from .layers import features, moved, rows
+from .trial import size
 
 ORIGIN = (430000.0, 3960000.0)
 SIDE = 100.0
 OBSTACLES = "obstacles"
+RUNS, CHOSEN, MOST = size((5, 3000, 200), (2, 3000, 10))
+"""How often the site is read, and windows looked at and measured."""
+CROWDED = (20, 30)
+"""obstacles in a window of a town."""
 
 
 def publish(file: Path, folder: Path) -> None:
@@ -35,8 +40,10 @@ def publish(file: Path, folder: Path) -> None:
     made = [
         row for source, shape, _ in read if shape.is_valid for row in rows(shape, source, place=moved(ORIGIN))
     ]
-    settings = SiteSettings("malta", "Malta", 1, "EPSG:32633", ORIGIN, Bounds(0.0, 0.0, 60000.0, 60000.0))
-    write_site(folder, settings, Outlines.from_rows(made))
+    outlines = Outlines.from_rows(made)
+    low, high = outlines.coordinates.min(axis=0).tolist(), outlines.coordinates.max(axis=0).tolist()
+    settings = SiteSettings("malta", "Malta", 1, "EPSG:32633", ORIGIN, Bounds(*low, *high))
+    write_site(folder, settings, outlines)
 
 
 def windows(outlines: Outlines, count: int) -> list[Window]:
@@ -48,15 +55,19 @@ def windows(outlines: Outlines, count: int) -> list[Window]:
 
 def speed_tables(folder: Path) -> str:
     """Return the tables of times for the site in ``folder``."""
-    site, loading = once(lambda: read_site(folder))
-    index, indexing = once(lambda: OutlineIndex(site.outlines))
-    anywhere = windows(site.outlines, 3000)
+    site, loading = again(lambda: read_site(folder), RUNS)
+    index, indexing = again(lambda: OutlineIndex.of(site.outlines), RUNS)
+    anywhere = windows(site.outlines, CHOSEN)
     counts = [len(np.unique(index.segments_in(w.border).outline)) for w in anywhere]
-    town = [w for w, n in zip(anywhere, counts, strict=True) if 20 <= n <= 30][:200]
-    country = [w for w, n in zip(anywhere, counts, strict=True) if n < 20][:200]
+    town = [w for w, n in zip(anywhere, counts, strict=True) if CROWDED[0] <= n <= CROWDED[1]][:MOST]
+    country = [w for w, n in zip(anywhere, counts, strict=True) if n < CROWDED[0]][:MOST]
     times = [_compared(site, index, folder, some) for some in (town, country)]
     lines = [(name, *(column[name] for column in times)) for name in times[0]]
-    heads = ("ms, median", f"{len(town)} windows with 20 to 30 obstacles", f"{len(country)} with fewer")
+    heads = (
+        "ms, median",
+        f"{len(town)} windows with {CROWDED[0]} to {CROWDED[1]} obstacles",
+        f"{len(country)} with fewer",
+    )
     megabytes_more = in_a_process(_MEMORY.format(folder=str(folder)))
     return (
         f"{len(site.outlines)} outlines with {len(site.outlines.coordinates)} points, read from the "
@@ -90,7 +101,7 @@ def _compared(site: Site, index: OutlineIndex, folder: Path, some: list[Window])
         "pyogrio: `raw.read(bbox=…)`, which opens the file, then one `clip_by_rect`": each(
             _pyogrio(folder), some
         ),
-        "`ogr2ogr -spat … -clipsrc …`, a process": each(_ogr2ogr(folder), some[:21]),
+        "`ogr2ogr -spat … -clipsrc …`, a process": each(_ogr2ogr(folder), some[:21], with_children),
     }
     first = next(iter(times.values())).median
     lines = {name: f"{time} ({time.median / first:.1f})" for name, time in times.items()}

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pyogrio
@@ -16,25 +14,31 @@ from robot_bridge.roads.surfaces.index import NOWHERE, SurfaceIndex
 from robot_bridge.roads.surfaces.outlines import areas_of, edges_of
 from robot_bridge.roads.surfaces.surface import Surface
 
-from .clock import once, table
-from .page import Part
+from .clock import Spread, again, table
+from .page import Part, goal
 from .road_data import malta, track
 from .road_rivals import start_qgis
 from .surface_rivals import by_spatial_index, by_tree
+from .trial import size
 
-BULK, SINGLE = 1_000_000, 100_000
-SLOW = 20_000
+BULK, SINGLE = size((1_000_000, 100_000), (20_000, 2_000))
+SLOW = size(20_000, 500)
 """Places for what takes longer."""
+RUNS = size(5, 2)
+POLYGONS, CORNERS = size(100_000, 2_000), 12
+"""of the made-up town."""
 
 _HEAD = ["ZalaZONE university track", "against", "IoU", "m² of both", "only the first", "only the second"]
 
 TEXT = """\
-Load of the machine during the run: {load} (1 min, at the end). Places lie at random in the extent of the
-surfaces, a fresh one for each question; all contenders are asked the same and give the same answers
-({wrong} of {asked} differ). The town is made up: 100 000 polygons of 12 corners that overlap. Malta's are
-generated from its {malta} roads; one of them is most of the island.
+Places lie at random in the extent of the surfaces, a fresh one for each question; all contenders are asked
+the same. Of {asked} answers {wrong} differ ({goal}). The town is made up: {polygons} polygons of {corners}
+corners that overlap. Malta's are generated from its {malta} roads; the largest has {share:.0f} % of
+their area.
 
 ### Points a second
+
+Each contender answered {runs} times, one contender after the other; seconds are of processor time.
 
 {speeds}
 
@@ -51,26 +55,31 @@ generated from its {malta} roads; one of them is most of the island.
 def measure(data: Path) -> Part:
     """Measure on a made-up town, on Malta and on ZalaZONE's track."""
     application = start_qgis()
-    roads = malta(data)
-    seconds, made = _timed(lambda: generate(roads))
-    town, island = Ground("made-up town", _town(100_000)), Ground("Malta", made)
+    roads = malta(data, size(None, 1500))
+    made, seconds = again(lambda: generate(roads), RUNS)
+    town, island = Ground("made-up town", _town(POLYGONS)), Ground("Malta", made)
     speeds: dict[str, list[str]] = {}
     for ground in (town, island):
         for name, rate in ground.rates().items():
             speeds.setdefault(name, []).append(f"{rate:,.0f}".replace(",", " "))
+    wrong = town.wrong + island.wrong
     built = [ground.ready for ground in (town, island)]
     text = TEXT.format(
-        load=f"{os.getloadavg()[0]:.1f}",
-        wrong=town.wrong + island.wrong,
+        wrong=wrong,
         asked=town.asked + island.asked,
+        goal=goal("none", wrong == 0),
+        polygons=POLYGONS,
+        corners=CORNERS,
         malta=len(roads),
+        share=100 * island.largest_share,
+        runs=RUNS,
         speeds=table(["", town.title, island.title], [[name, *rates] for name, rates in speeds.items()]),
         built=f"{table(['', 'polygons', 'edges', 'index built in'], built)}\n\n"
         f"Malta's surfaces are generated in {seconds:.1f} s.",
         truth=_truth(data),
     )
     assert application is not None
-    return Part("Road surfaces", text, failed=town.wrong + island.wrong > 0)
+    return Part("Road surfaces", text, failed=wrong > 0)
 
 
 class Ground:
@@ -79,13 +88,15 @@ class Ground:
     def __init__(self, name: str, surfaces: Sequence[Surface]) -> None:
         self._surfaces = surfaces
         self._shapes = np.array([polygon_of(one.rings) for one in surfaces])
-        seconds, self._index = _timed(lambda: SurfaceIndex(surfaces))
+        self._index, seconds = again(lambda: SurfaceIndex(surfaces), RUNS)
         edges = int(shapely.get_num_coordinates(self._shapes).sum())
+        areas = shapely.area(self._shapes)
+        self.largest_share = float(areas.max() / areas.sum())
         self.title = f"{name}, {len(surfaces)} polygons"
         self.ready = [name, len(surfaces), edges, f"{seconds:.2f} s"]
         self.wrong = self.asked = 0
 
-    def rates(self) -> dict[str, float]:
+    def rates(self) -> dict[str, Spread]:
         """Return points a second of every contender, ours first; the others' answers are held to ours."""
         low, high = shapely.total_bounds(self._shapes).reshape(2, 2)
         places = np.random.default_rng(1).uniform(low, high, (BULK, 2))
@@ -94,21 +105,21 @@ class Ground:
         rank = np.lexsort([-np.arange(len(areas)), areas]).argsort()
         tree_bulk, tree_single = by_tree(self._shapes, rank)
         spatial = by_spatial_index(self._shapes, rank)
-        seconds, told = _timed(lambda: ours.at_many(places))
-        rates = {"surface index, bulk": BULK / seconds}
+        told, seconds = again(lambda: ours.at_many(places), RUNS)
+        rates = {"surface index, bulk": _rate(BULK, seconds)}
         rates["surface index, single"] = self._single(ours.at, places[:SINGLE], told)
         rates["QgsSpatialIndex, prepared geometries, single"] = self._single(spatial, places[:SLOW], told)
-        seconds, found = _timed(lambda: tree_bulk(places[:SINGLE]))
+        found, seconds = again(lambda: tree_bulk(places[:SINGLE]), RUNS)
         self._hold(found, told)
-        rates["shapely STRtree, bulk"] = SINGLE / seconds
+        rates["shapely STRtree, bulk"] = _rate(SINGLE, seconds)
         rates["shapely STRtree, single"] = self._single(tree_single, places[:SLOW], told)
         return rates
 
-    def _single(self, query: Callable[[float, float], int], places: np.ndarray, told: np.ndarray) -> float:
+    def _single(self, query: Callable[[float, float], int], places: np.ndarray, told: np.ndarray) -> Spread:
         pairs = places.tolist()
-        seconds, found = _timed(lambda: [query(x, y) for x, y in pairs])
+        found, seconds = again(lambda: [query(x, y) for x, y in pairs], RUNS)
         self._hold(np.array(found), told)
-        return len(pairs) / seconds
+        return _rate(len(pairs), seconds)
 
     def _hold(self, found: np.ndarray, told: np.ndarray) -> None:
         self.wrong += int((found != told[: len(found)]).sum())
@@ -118,8 +129,8 @@ class Ground:
 def _town(count: int) -> list[Surface]:
     random = np.random.default_rng(2)
     centres = random.uniform(0, 20 * np.sqrt(count), (count, 1, 2))
-    turn = np.sort(random.uniform(0, 2 * np.pi, (count, 12)), axis=1)
-    reach = random.uniform(4, 12, (count, 12))
+    turn = np.sort(random.uniform(0, 2 * np.pi, (count, CORNERS)), axis=1)
+    reach = random.uniform(4, 12, (count, CORNERS))
     rings = centres + np.stack([np.cos(turn) * reach, np.sin(turn) * reach], axis=-1)
     shapes = shapely.make_valid(shapely.polygons(np.concatenate([rings, rings[:, :1]], axis=1)))
     shapes = shapely.convex_hull(shapes)
@@ -169,6 +180,6 @@ def _overlap(surfaces: Sequence[Surface], truth: shapely.Geometry) -> list[str]:
     return [f"{both / union:.3f}", f"{both:.0f}", f"{whole.area - both:.0f}", f"{truth.area - both:.0f}"]
 
 
-def _timed(work: Callable[[], Any]) -> tuple[float, Any]:
-    result, seconds = once(work)
-    return seconds, result
+def _rate(count: int, seconds: Spread) -> Spread:
+    """Return how many a second ``count`` of them come to: the longest time is the lowest rate."""
+    return Spread(count / seconds.median, count / seconds.high, count / seconds.low)

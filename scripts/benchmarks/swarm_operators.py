@@ -19,7 +19,8 @@ import msgspec
 import numpy as np
 from raw_websocket import BINARY, Stream, call, connect
 
-from robot_bridge.messages import POSITION_HEAD, POSITION_VALUE, PositionForm
+from robot_bridge.core.position_frame import POSITION_HEAD, POSITION_VALUE
+from robot_bridge.messages import PositionForm
 
 DEVICE_TIME = "device_time"
 
@@ -102,16 +103,24 @@ class Operators:
         while True:
             kind, payload = await stream.receive()
             now, at = time.time(), time.monotonic()
-            if look is not None and self._window[0] <= at < self._window[1]:
-                look(kind, payload, now, newest)  # type: ignore[operator]
+            if look is not None:
+                look(kind, payload, now, newest, self._window[0] <= at < self._window[1])  # type: ignore[operator]
 
-    def _delay(self, kind: int, payload: bytes, now: float, newest: dict[object, float]) -> None:
+    def _delay(
+        self, kind: int, payload: bytes, now: float, newest: dict[object, float], counts: bool
+    ) -> None:
         for robot, sent in self._positions(kind, payload):
             if sent > newest.get(robot, 0.0):
+                # Also before a window: what is told once more in it, for something else, is not new there.
                 newest[robot] = sent
-                self._delays.append((now - sent) * 1e3)
+                if counts:
+                    self._delays.append((now - sent) * 1e3)
 
-    def _age(self, _kind: int, payload: bytes, now: float, _newest: dict[object, float]) -> None:
+    def _age(
+        self, _kind: int, payload: bytes, now: float, _newest: dict[object, float], counts: bool
+    ) -> None:
+        if not counts:
+            return
         if found := re.search(rb'"params":\{"t":([0-9.]+)', payload[:200]):
             self._ages.append((now - float(found.group(1))) * 1e3)
 

@@ -11,6 +11,7 @@ import select
 import sys
 import time
 from dataclasses import asdict, dataclass
+from typing import Any
 
 from raw_websocket import PING, Inbox, call, connect, frame, pong, result
 
@@ -135,10 +136,10 @@ class Robots:
         return sent
 
 
-def main() -> None:
-    """Drive as told on standard input until that ends."""
+def serve(kind: Any) -> None:
+    """Drive robots of a ``kind`` like Robots as told on standard input, until that ends."""
     began = time.monotonic()
-    robots = Robots(json.loads(sys.argv[1]))
+    robots = kind(json.loads(sys.argv[1]))
     robots.arrive()
     print(time.monotonic() - began, flush=True)
     poll = select.poll()
@@ -154,4 +155,4 @@ def main() -> None:
 
 
 if __name__ == "__main__":
-    main()
+    serve(Robots)

@@ -5,8 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from qgis.gui import QgisInterface
-from qgis.PyQt.QtCore import Qt
+from qgis.PyQt.QtCore import QObject, Qt
 from qgis.PyQt.QtWidgets import QDockWidget, QLabel, QTableView, QTreeView
+
+from .found_again import FoundAgain
 
 
 class NotHappenedError(Exception):
@@ -27,6 +29,7 @@ class DeskView:
 
     def __init__(self, iface: QgisInterface):
         self._window = iface.mainWindow()
+        self._found = FoundAgain()
 
     def describe(self) -> str:
         """Return what the dock says now, for an error's text."""
@@ -34,7 +37,7 @@ class DeskView:
             return "the window has no fleet dock"
         return (
             f"link: {self.link_state()!r}; draft: {self.draft_text()!r}; robots: {self.robots()}; "
-            f"commands: {self.commands()}"
+            f"commands: {self.commands()}; notices: {self.notices()}"
         )
 
     def link_state(self) -> str:
@@ -74,12 +77,25 @@ class DeskView:
             for row in range(model.rowCount())
         ]
 
+    def notices(self) -> list[str]:
+        """Return what hangs in the message bar."""
+        return [label.text() for label in self._window.findChildren(QLabel, "fleet_notice")]
+
     def state_of(self, robot: str) -> str:
         """Return the state that the log shows for the newest command of ``robot``, empty when it has none."""
         return next((entry.state for entry in self.commands() if entry.what.startswith(f"{robot} ")), "")
 
     def _find(self, kind: type, name: str):
-        found = self._window.findChild(kind, name)
+        found = self._found.get(
+            (kind, name),
+            search=lambda: self._window.findChild(kind, name),
+            holds=lambda one: _is_inside(one, self._window),
+        )
         if found is None:
             raise NotHappenedError(f"the window has no {kind.__name__} named {name}; is the plugin loaded?")
         return found
+
+
+def _is_inside(one: QObject, window: QObject) -> bool:
+    parent = one.parent()
+    return parent is not None and (parent is window or _is_inside(parent, window))

@@ -31,20 +31,25 @@ from qgis.PyQt.QtWidgets import (
     QMenu,
     QMenuBar,
     QProgressBar,
+    QPushButton,
     QTabBar,
     QTabWidget,
     QToolButton,
     QWidget,
 )
+from qgis.PyQt.sip import unwrapinstance
 from qgis.utils import iface, plugins
 
 from .desk_view import DeskView, NotHappenedError
+from .found_again import FoundAgain
 from .out_of_sight import what_is_out_of_sight
 
 PLUGIN = "fleet_supervisor"
 PYTHON = "Python"
 """What the tags of QGIS's messages on exceptions begin with."""
 
+UNSEEN = {"there": True, **dict.fromkeys(("visible", "enabled", "on_top", "checked", "focus"), False)}
+"""How a widget stands that is not to be seen."""
 DROPPED = (Qt.CursorShape.DragCopyCursor, Qt.CursorShape.DragMoveCursor, Qt.CursorShape.DragLinkCursor)
 
 
@@ -54,20 +59,22 @@ class Reporter(QObject):
     def __init__(self, path: str, parent: QObject | None = None):
         super().__init__(parent)
         self._complaints: list[str] = []
+        self._view, self._found = DeskView(iface), FoundAgain()
         self._socket: QLocalSocket | None = None
         QgsApplication.messageLog().messageReceived.connect(self._logged)
         self._questions: dict[str, Callable[..., Any]] = {
             "window": _window,
-            "widget": _widget,
+            "widget": self._widget,
             "entry": _entry,
             "button": _button,
+            "buttons": _buttons,
             "field": _field,
             "tab": _tab,
             "panel_tab": _panel_tab,
             "row": _row,
             "panel": _panel,
             "place": _place,
-            "desk": _desk,
+            "desk": lambda: _desk(self._view),
             "layers": _layers,
             "counts": _counts,
             "map": _map,
@@ -96,6 +103,11 @@ class Reporter(QObject):
                 answer = {"error": str(error)}
             self._socket.write(json.dumps(answer).encode() + b"\n")
 
+    def _widget(self, name: str) -> dict[str, Any]:
+        """A widget by its object name, or its C++ class: where it can be clicked, and what it shows."""
+        widget = self._found.get(name, search=lambda: _widget(name), holds=_is_first)
+        return {**UNSEEN, "there": False} if widget is None else _how_it_stands(widget)
+
     def _logged(self, text: str, tag: str, level: Qgis.MessageLevel) -> None:
         if tag.startswith(PYTHON) and level in (Qgis.MessageLevel.Warning, Qgis.MessageLevel.Critical):
             self._complaints.append(f"{tag}: {text}")
@@ -118,17 +130,28 @@ def _over() -> QWidget | None:
     return QApplication.activeModalWidget() or next(beside, None)
 
 
-def _widget(name: str) -> dict[str, Any]:
-    """A widget by its object name, or its C++ class: where it can be clicked, and what it shows."""
+def _widget(name: str) -> QWidget | None:
+    """Return a widget by its object name, or its C++ class: of several, one that can be seen.
+
+    One in a dialog that blocks the others comes before those beneath it.
+    """
     widgets = QApplication.allWidgets()
     found = [one for one in widgets if name in (one.objectName(), one.metaObject().className())]
-    if not found:
-        return {"there": False, "visible": False}
     over = QApplication.activeModalWidget()
-    # Of several, one that can be seen, in a dialog rather than beneath it.
-    widget = max(found, key=lambda each: (each.isVisible(), over is not None and over.isAncestorOf(each)))
+    return max(
+        found, key=lambda one: (one.isVisible(), over is not None and over.isAncestorOf(one)), default=None
+    )
+
+
+def _is_first(widget: QWidget) -> bool:
+    """Tell whether no other of its name comes before it."""
+    over = QApplication.activeModalWidget()
+    return widget.isVisible() and (over is None or over.isAncestorOf(widget))
+
+
+def _how_it_stands(widget: QWidget) -> dict[str, Any]:
     if not widget.isVisible():
-        return {"there": True, "visible": False}
+        return UNSEEN
     seen = widget.visibleRegion().boundingRect()
     under = QApplication.widgetAt(widget.mapToGlobal(seen.center()))
     return {
@@ -151,6 +174,19 @@ def _button(text: str) -> list[int] | None:
         if button.text().replace("&", "") == text and button.isVisible() and button.isEnabled():
             return _on_screen(button, button.rect())
     return None
+
+
+def _buttons(name: str) -> dict[str, Any]:
+    """Where a panel is, and each button that is seen in it: its name and place by what it is known by."""
+    panel = _find(QWidget, name)
+    # A conflict's buttons bear the names of its robots, which change: the widget is the same.
+    seen = [one for one in panel.findChildren(QAbstractButton) if not one.visibleRegion().isEmpty()]
+    buttons = {
+        str(unwrapinstance(one)): [one.objectName() or one.text(), _on_screen(one, one.rect())]
+        for one in seen
+        if isinstance(one, (QPushButton, QToolButton)) and not isinstance(one.parent(), QLineEdit)
+    }
+    return {"rect": _on_screen(panel, panel.rect()), "buttons": buttons}
 
 
 def _field(label: str, of: str) -> dict[str, Any] | None:
@@ -304,14 +340,14 @@ def _vector_layers() -> list[QgsVectorLayer]:
     return [layer for layer in layers if isinstance(layer, QgsVectorLayer)]
 
 
-def _desk() -> dict[str, Any]:
-    """What the plugin's panel shows, and the draft that is drawn on the map."""
-    view = DeskView(iface)
+def _desk(view: DeskView) -> dict[str, Any]:
+    """What the plugin's panel shows, and the draft that is drawn on the map, with the way to a target."""
     draft = plugins[PLUGIN].window.desk.drafts.draft
     return {
         "link": view.link_state(),
         "draft": view.draft_text(),
         "points": list(draft.points) if draft is not None else [],
+        "way": list(draft.way.line) if draft is not None else [],
         "robots": view.robots(),
         "selected": view.selected_robots(),
         "commands": [asdict(command) for command in view.commands()],

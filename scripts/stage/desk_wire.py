@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 import json
+import time
 from collections.abc import Mapping
 from typing import Any
 
@@ -25,6 +26,23 @@ def ask(address: str, *questions: tuple[str, Mapping[str, Any]], token: str = ""
         numbers = itertools.count(1)
         _answer(wire, next(numbers), "hello", HELLO)
         return [_answer(wire, next(numbers), method, params) for method, params in questions]
+
+
+def watch(address: str, seconds: float, rate: float = 20.0) -> list[dict[str, Any]]:
+    """Return what an operator is told of robots' positions within ``seconds``: each snapshot's params."""
+    with _wire(address, "") as wire:
+        _answer(wire, 1, "hello", HELLO)
+        _answer(wire, 2, "subscribe", {"rate": rate})
+        told = []
+        until = time.monotonic() + seconds
+        while (left := until - time.monotonic()) > 0:
+            try:
+                message = json.loads(wire.recv(left))
+            except TimeoutError:
+                break
+            if message.get("method") == "positions":
+                told.append(dict(message["params"]))
+        return told
 
 
 def greet(address: str, token: str = "") -> dict[str, Any]:

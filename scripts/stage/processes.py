@@ -9,7 +9,8 @@ import signal
 import subprocess
 import sys
 import time
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 from types import FrameType
 
@@ -101,6 +102,15 @@ class Processes:
             if name not in but and process.poll() is not None:
                 text = self.log(name).read_text(encoding="utf-8", errors="replace")
                 raise StageError(f"{name} ended with status {process.returncode}{_said(text)}")
+
+    @contextmanager
+    def halted(self, name: str) -> Iterator[None]:
+        """Let process ``name`` stand still inside the block, as one that has no time."""
+        self._running[name].send_signal(signal.SIGSTOP)
+        try:
+            yield
+        finally:
+            self._running[name].send_signal(signal.SIGCONT)
 
     def end(self, name: str) -> None:
         """End process ``name`` if it still runs, gently first."""

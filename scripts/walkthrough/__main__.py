@@ -29,6 +29,7 @@ from .gateway import Gateway
 from .operator_at_screen import OperatorAtScreen
 from .scene import NAME, Scene
 from .screen import Screen
+from .still_buttons import StillButtons
 from .walks import WALKS, Walk
 from .window import Window
 
@@ -58,8 +59,8 @@ def run(walk: Walk, pictures: Path) -> None:
         screen = Screen(display)
         operator = OperatorAtScreen(screen, window, read_site(SITE).frame)
         operator.take_the_screen()
-        film = Film(screen, operator, pictures, walk.name)
-        scene = Scene(operator, film, Gateway(address, token), home, database)
+        film = Film(screen, operator, pictures, walk.name, StillButtons(window))
+        scene = Scene(operator, film, Gateway(address, token), home, database, processes)
         try:
             for act in walk.acts:
                 act(scene)

@@ -31,6 +31,7 @@ def send_cone(scene: Scene) -> None:
     operator.press("F8")
     operator.click_map(TARGET)
     operator.wait_for_text("fleet_draft_text", "Cone for r1")
+    operator.wait_for_text("fleet_draft_text", "along the roads")
     film.shoot("cone-draft", "a cone target as a draft")
     operator.press("Enter")
     # With the tool in hand the way to the mouse would go on being shown.
@@ -46,15 +47,18 @@ def send_cone(scene: Scene) -> None:
 
 def require_place(scene: Scene) -> None:
     """Raise StageError unless the gateway sent r1 where the operator clicked."""
-    sent = scene.gateway.newest_command("r1")["params"]
-    if math.dist((sent["x"], sent["y"]), TARGET) > PIXEL_M:
-        raise StageError(f"r1 was sent to {sent['x']:.2f}, {sent['y']:.2f}, but {TARGET} was clicked")
+    command = scene.gateway.newest_command("r1")
+    if command["op"] != "SetPath" or command["params"].get("cone") is not True:
+        raise StageError(f"r1 was not sent along the way that was drawn, but told {command['op']}")
+    x, y = command["params"]["points"][-1]
+    if math.dist((x, y), TARGET) > PIXEL_M:
+        raise StageError(f"r1 was sent to {x:.2f}, {y:.2f}, but {TARGET} was clicked")
 
 
 def require_reached(scene: Scene) -> None:
     """Raise StageError unless the gateway says reached, and r1 is where it was sent."""
     scene.gateway.require_state("r1", "reached")
     sent = scene.gateway.newest_command("r1")["params"]
-    off = math.dist((sent["x"], sent["y"]), scene.gateway.place_of("r1"))
+    off = math.dist(sent["points"][-1], scene.gateway.place_of("r1"))
     if off > REACHED_M:
         raise StageError(f"r1 stands {off:.2f} m from its target, not within {REACHED_M} m")

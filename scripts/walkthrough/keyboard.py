@@ -9,9 +9,9 @@ from .gateway import Place
 from .options import CONNECTION
 from .scene import NAME, Scene
 
-CONE = (52.0, 8.0)
+CONE = (32.0, 8.0)
 """Along the straight, ahead of r1; site frame, metres."""
-FAR = (70.0, 8.0)
+FAR = (60.0, 8.0)
 
 
 def work_by_keyboard(scene: Scene) -> None:

@@ -255,6 +255,15 @@ class OperatorAtScreen:
         """Click a place of the site on the map."""
         self._screen.click(self._pixel(place))
 
+    def places_to_click(self, place: Place, name: str) -> tuple[Pixel, Pixel]:
+        """Return where a place of the site is on the screen, and a widget: to be clicked without a look."""
+        return self._pixel(place), _middle(self._still(name))
+
+    def click_at_once(self, *pixels: Pixel) -> None:
+        """Click one pixel after the other, whatever is there by now."""
+        for pixel in pixels:
+            self._screen.click(pixel)
+
     def point_at_map(self, place: Place) -> None:
         """Rest the mouse on a place of the site on the map."""
         self._screen.move(self._pixel(place))

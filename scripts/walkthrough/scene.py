@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import math
+from contextlib import AbstractContextManager
 from dataclasses import dataclass
 from pathlib import Path
+
+from stage.processes import Processes
 
 from .film import Film
 from .gateway import Gateway
@@ -17,13 +20,21 @@ ROBOTS = ("r1", "r2", "r3")
 
 @dataclass(frozen=True)
 class Scene:
-    """One operator with a ``home`` folder before one window on one gateway, which stores in ``database``."""
+    """One operator with a ``home`` folder before one window on one gateway, which stores in ``database``.
+
+    ``processes`` are what runs beside the window: the gateway and the robots.
+    """
 
     operator: OperatorAtScreen
     film: Film
     gateway: Gateway
     home: Path
     database: Path
+    processes: Processes
+
+    def halted_gateway(self) -> AbstractContextManager[None]:
+        """Let the gateway answer nothing inside the block; a question waits 5 s before it is given up."""
+        return self.processes.halted("gateway")
 
     def wait_until_live(self) -> None:
         """Look until the desk is connected and every robot is fresh."""

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 from stage.errors import StageError
-from stage.picture import reduce_colours
+from stage.picture import save_few_colours
 from Xlib import XK, X
 from Xlib.display import Display
 from Xlib.ext import xtest
@@ -171,5 +171,4 @@ def keep(pixels: Pixels, path: Path) -> None:
     for band, channel in enumerate((2, 1, 0), start=1):
         picture.GetRasterBand(band).WriteArray(pixels[:, :, channel])
     path.parent.mkdir(parents=True, exist_ok=True)
-    gdal.GetDriverByName("PNG").CreateCopy(str(path), picture)
-    reduce_colours(path)
+    save_few_colours(picture, path)

@@ -7,7 +7,7 @@ from dataclasses import replace
 from .gateway import Gateway
 from .scene import Scene
 
-TARGET = (40.0, 8.0)
+TARGET = (28.0, 8.0)
 """Ahead of r1 on the straight; site frame, metres."""
 LAYERS_WIDTH = 230
 """Pixels in which the names of the sample site's layers can be read."""

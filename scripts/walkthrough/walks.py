@@ -5,9 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
+from .busy_panel import keep_buttons
 from .cone_target import send_cone
 from .connecting import connect
 from .drives import show_drives
+from .keepout import lead_round_keepout
 from .keyboard import work_by_keyboard
 from .options import keep_connection
 from .placed_cones import place_cones, report_cones
@@ -41,7 +43,20 @@ class Walk:
 
 
 WALKS = (
-    Walk("operator", (take_tour, connect, send_cone, send_route, stop_and_clear, play_again), greeted=False),
+    Walk(
+        "operator",
+        (
+            take_tour,
+            connect,
+            send_cone,
+            send_route,
+            lead_round_keepout,
+            stop_and_clear,
+            keep_buttons,
+            play_again,
+        ),
+        greeted=False,
+    ),
     Walk(
         "qgis",
         (show_site, keep_connection, work_by_keyboard, look_at_layer),

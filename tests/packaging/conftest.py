@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import signal
 import subprocess
 import sys
 import zipfile
@@ -19,10 +18,6 @@ SCREEN, A4 = [800, 1280], [620, 877]
 LARGEST = 400_000
 """Bytes of a picture that goes into the repository."""
 sys.path.insert(0, str(ROOT / "scripts"))
-
-if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
-    # A shell starts what runs in its background deaf to Ctrl-C, and with it what the tests start.
-    signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 @pytest.fixture(scope="session")

@@ -45,7 +45,7 @@ def test_the_demo_does_what_it_says(root, tmp_path, environment):
         env=environment,
         capture_output=True,
         text=True,
-        timeout=240,
+        timeout=600,
         check=False,
     )
     assert done.returncode == 0, done.stdout + done.stderr

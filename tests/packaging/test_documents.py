@@ -18,7 +18,10 @@ from stage.qgis import program
 from robot_bridge.robotmap.text import read_text
 
 ROOT = Path(__file__).resolve().parents[2]
-DOCUMENTS = [ROOT / "README.md", ROOT / "CHANGELOG.md", *sorted((ROOT / "docs").glob("*.md"))]
+DOCUMENTS = [
+    *(ROOT / name for name in ("README.md", "CHANGELOG.md", "CONTRIBUTING.md")),
+    *sorted((ROOT / "docs").rglob("*.md")),
+]
 LINK = re.compile(r"!?\[[^\]]*\]\(([^)\s]+)\)")
 
 
@@ -91,6 +94,17 @@ def test_gateway_and_robot_run_as_the_readme_says(tmp_path):
             time.sleep(0.2)
     assert robots[0]["robot"] == "r1"
     assert robots[0]["x"] == pytest.approx(20, abs=0.2)
+
+
+def test_each_block_of_the_readme_comes_to_its_end_or_is_one_command_that_runs_on():
+    """Who copies a block whole has all of it done: nothing stands behind what does not end."""
+    text = (ROOT / "README.md").read_text(encoding="utf-8")
+    blocks = [block.strip().splitlines() for block in re.findall(r"(?:^    .+\n?)+", text, re.MULTILINE)]
+    running = [
+        block for block in blocks if any(re.search(r"robot-bridge (serve|robot) ", one) for one in block)
+    ]
+    assert len(running) == 3
+    assert [len(block) for block in running] == [1, 1, 1]
 
 
 def test_the_map_is_exported_as_the_readme_says(tmp_path):

@@ -62,14 +62,14 @@ def newer(root, tmp_path):
 
 def said(process: subprocess.Popen[str]) -> str:
     """What the program said until its end, which is a failure."""
-    output, _ = process.communicate(timeout=60)
+    output, _ = process.communicate(timeout=240)
     assert process.returncode != 0, output
     return output
 
 
 def wait_until_gone(held: TextIO) -> None:
     """Return when the last process that had locked the file is gone."""
-    give_up = time.monotonic() + 30
+    give_up = time.monotonic() + 240
     while time.monotonic() < give_up:
         with contextlib.suppress(BlockingIOError):
             return fcntl.flock(held, fcntl.LOCK_EX | fcntl.LOCK_NB)

@@ -30,6 +30,7 @@ def test_what_is_installed_lies_below_destdir_and_is_taken_away_again(make, tmp_
     assert done.returncode == 0, done.stderr
     assert files(tmp_path) == [
         "etc/robot-bridge/robot-bridge.env",
+        "etc/systemd/system/robot-bridge-link@.service",
         "etc/systemd/system/robot-bridge.service",
         "usr/lib/sysusers.d/robot-bridge.conf",
     ]
@@ -69,7 +70,7 @@ def test_systemd_counts_the_service_among_those_that_are_shut_in(make, tmp_path)
     def judged(text):
         unit.write_text(text)
         command = ["systemd-analyze", "security", "--offline=true", "--no-pager", "--threshold=20", unit]
-        done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=60)
+        done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=240)
         return done.returncode, done.stdout
 
     installed = unit.read_text()

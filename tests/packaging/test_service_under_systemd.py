@@ -35,7 +35,7 @@ class World:
         # The namespace of processes is its child's: unshare itself stays outside.
         spaces = [f"--target={pid}", "--mount", "--net", "--root", f"--pid=/proc/{pid}/ns/pid_for_children"]
         inside = ["nsenter", *spaces, "chroot", str(self._root), *words]
-        return subprocess.run(inside, capture_output=True, text=True, check=False, timeout=30).stdout
+        return subprocess.run(inside, capture_output=True, text=True, check=False, timeout=240).stdout
 
     def fact(self, name: str) -> str:
         """Return a property of the service."""

@@ -93,12 +93,12 @@ def test_database_servers_are_installed_for_the_tests_and_nothing_waits_for_them
     calls = tmp_path / "calls"
     there = {"python3": '[ "$1" != -m ] || { echo on to the environment >&2; exit 1; }', "Xvfb": ""}
     there |= {"qgis.bin": "", "qgis_process.bin": "", "id": "echo 0", "ls": "exit 2"}
-    there |= {"apt-get": f'echo "$@" >> {calls}; exit 100', "mariadbd": ""}
+    there |= {"apt-get": f'echo "$@" >> {calls}; exit 100', "mariadbd": "", "mosquitto": ""}
     done = machine(there)
     asked = [line.split() for line in calls.read_text().splitlines()]
     assert [line[0] for line in asked] == ["install", "update", "install"]
     assert asked[0][-2:] == ["--no-install-recommends", "postgresql"]
-    assert "not installed: postgresql; the tests on these databases will be skipped" in done.stdout
+    assert "not installed: postgresql; the tests that need them will be skipped" in done.stdout
     assert "on to the environment" in done.stderr
 
 

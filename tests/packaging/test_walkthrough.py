@@ -20,9 +20,17 @@ STEPS = [
     "route-ready",
     "route-driving",
     "aborted",
+    "way-to-mouse",
+    "way-shown",
+    "round-keepout",
+    "all-aborted",
     "emergency",
     "clear",
     "cleared",
+    "nothing-to-send",
+    "send-pressed",
+    "conflict",
+    "refused",
     "replay",
 ]
 

@@ -57,7 +57,7 @@ def test_the_desk_connects_to_a_gateway_with_its_own_websockets(
             env=bare_environment,
             capture_output=True,
             text=True,
-            timeout=60,
+            timeout=240,
             check=False,
         )
     assert done.returncode == 0, done.stdout + done.stderr

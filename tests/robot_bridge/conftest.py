@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import os
 import shutil
 import sys
+import tempfile
 from pathlib import Path
 
 import pytest
@@ -56,7 +58,7 @@ def accounts_of():
 
 
 @pytest.fixture(scope="module")
-def start_bridge(tmp_path_factory):
+def start_bridge(tmp_path_factory, new_database):
     """Start a gateway: ``start_bridge(site)``, or ``start_bridge(site, url)``; all ends with the module."""
     from bridge_programs import Bridge
     from stage.processes import Processes
@@ -66,7 +68,7 @@ def start_bridge(tmp_path_factory):
         bridges = []
 
         def start(site, database: str | None = None, options=()) -> Bridge:
-            bridge = Bridge(processes, site, database or f"sqlite:///{folder}/fleet-{len(bridges)}.db")
+            bridge = Bridge(processes, site, database or new_database("sqlite"))
             bridge.options += options
             bridges.append(bridge)
             try:
@@ -120,9 +122,14 @@ def mariadb_url(mariadb_server) -> str:
 
 
 @pytest.fixture(scope="session")
-def new_database(request, tmp_path_factory):
-    """Make a database with the tables and nothing in them: ``new_database("postgresql")`` returns its URL."""
+def new_database(request):
+    """Make a database with the tables and nothing in them: ``new_database("postgresql")`` returns its URL.
+
+    Files of SQLite lie in memory where there is a folder of it: none need outlive a power cut.
+    """
     from database_maker import DatabaseMaker
 
-    folder = tmp_path_factory.mktemp("databases")
-    return DatabaseMaker(folder, lambda kind: request.getfixturevalue(f"{kind}_server"))
+    memory = Path("/dev/shm")
+    quick = memory if os.access(memory, os.W_OK) else None
+    with tempfile.TemporaryDirectory(prefix="fleet-databases-", dir=quick) as folder:
+        yield DatabaseMaker(Path(folder), lambda kind: request.getfixturevalue(f"{kind}_server"))

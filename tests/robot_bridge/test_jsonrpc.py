@@ -11,15 +11,23 @@ from hypothesis import strategies as st
 from robot_bridge import jsonrpc
 from robot_bridge.jsonrpc import Call, FrameError, Reply
 
-ids = st.none() | st.integers(-(2**53), 2**53) | st.text(max_size=10)
+stored = st.characters(exclude_categories=["Cs"], exclude_characters="\0")
+"""Characters that every database stores."""
+ids = st.none() | st.integers(-(2**53), 2**53) | st.text(stored, max_size=10)
 values = st.recursive(
-    st.none() | st.booleans() | st.integers(-(2**53), 2**53) | st.text(max_size=8),
-    lambda inner: st.lists(inner, max_size=3) | st.dictionaries(st.text(max_size=5), inner, max_size=3),
+    st.none() | st.booleans() | st.integers(-(2**53), 2**53) | st.text(stored, max_size=8),
+    lambda inner: (
+        st.lists(inner, max_size=3) | st.dictionaries(st.text(stored, max_size=5), inner, max_size=3)
+    ),
     max_leaves=6,
 )
 
 
-@given(st.text(min_size=1, max_size=12), st.dictionaries(st.text(max_size=5), values, max_size=3), ids)
+@given(
+    st.text(stored, min_size=1, max_size=12),
+    st.dictionaries(st.text(stored, max_size=5), values, max_size=3),
+    ids,
+)
 def test_a_call_comes_back_as_it_was_sent(method, params, id):
     assert jsonrpc.decode(jsonrpc.call(method, params, id)) == Call(method, params or None, id)
 
@@ -29,9 +37,28 @@ def test_a_result_comes_back_as_it_was_sent(id, value):
     assert jsonrpc.decode(jsonrpc.result(id, value)) == Reply(id, value)
 
 
-@given(ids, st.integers(-40000, 40000), st.text(max_size=20))
+@given(ids, st.integers(-40000, 40000), st.text(stored, max_size=20))
 def test_an_error_comes_back_as_it_was_sent(id, code, text):
     assert jsonrpc.decode(jsonrpc.error(id, code, text)) == Reply(id, None, text, code)
+
+
+@pytest.mark.parametrize(
+    ("sent", "answered"),
+    [
+        (r"a\u0000b", "a\ufffdb"),
+        (r"a\ud83db", "a\ufffdb"),
+        (r"\ude00", "\ufffd"),
+        (r"\ude00\ud83d", "\ufffd\ufffd"),
+        (r"\ud83d\ude00", "\U0001f600"),
+    ],
+)
+def test_an_id_is_answered_without_nul_and_halves_of_pairs(sent, answered):
+    id = jsonrpc.decode(f'{{"jsonrpc": "2.0", "method": "Alive", "id": "{sent}"}}').id
+    for frame in (jsonrpc.result(id, {}), jsonrpc.error(id, -1, "no")):
+        assert json.loads(frame)["id"] == answered
+    with pytest.raises(FrameError) as caught:
+        jsonrpc.decode(f'{{"jsonrpc": "2.0", "id": "{sent}"}}')
+    assert caught.value.id == answered
 
 
 def test_frames_say_their_version_and_a_notification_has_no_id():

@@ -63,6 +63,8 @@ from robot_bridge.wire import (
 )
 
 metres = st.floats(-1e6, 1e6)
+speeds = st.floats(-100, 100)
+heights = st.floats(-1e4, 1e4)
 ids = st.integers(1, 2**63 - 1)
 texts = st.text(max_size=40)
 words = st.text(st.characters(categories=["L", "N", "P"]), min_size=1, max_size=40)
@@ -82,7 +84,7 @@ REQUEST_MESSAGES = st.one_of(
         x=metres,
         y=metres,
         theta=metres,
-        v=metres,
+        v=speeds,
         t=st.none() | metres,
         battery=st.none() | st.floats(0, 1),
         status=st.none() | texts,
@@ -92,9 +94,9 @@ REQUEST_MESSAGES = st.one_of(
         SendGPS,
         lat=st.floats(-90, 90),
         lon=st.floats(-180, 180),
-        altitude=st.none() | metres,
+        altitude=st.none() | heights,
         heading=st.none() | st.floats(0, 360),
-        v=st.none() | metres,
+        v=st.none() | speeds,
         accuracy=st.none() | st.floats(0, 100),
     ),
     st.sampled_from([GetPath(), GetPosIni(), GetPosEnd()]),
@@ -146,7 +148,7 @@ def test_a_map_travels_in_the_payload_and_inside_json(content):
         Hello("Ada", 1),
         Subscribe(rate=2.0),
         GetPositions(),
-        SetPositions([TargetPosition("r1", 1.0, 2.0, 0.5, cone=False), TargetPosition("r2", 3.0, 4.0)]),
+        SetPositions([TargetPosition("r1", 1.0, 2.0, 0.5, cone=True), TargetPosition("r2", 3.0, 4.0)]),
         Send("command-1", "r1", "SetPosEnd", {"x": 1.0, "y": 2.0}),
         AbortAll(),
         GetCommands(robot="r1", limit=5),

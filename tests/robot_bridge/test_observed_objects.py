@@ -109,3 +109,26 @@ def test_wherever_objects_are_ids_are_unique_and_nothing_lies_outside(places):
     assert len(set(ids)) == len(ids)
     for obstacle in joined(*objects).obstacles:
         assert abs(np.concatenate([obstacle.a, obstacle.b])).max() <= 20.0
+
+
+def test_an_object_that_cannot_be_drawn_keeps_no_other_from_the_map(caplog):
+    found = joined(seen(1, 5.0, 5.0), seen(2, "east", 7.0), seen(3, 8.0, 8.0))
+    drawn = [obstacle.ext["src"] for obstacle in found.obstacles if obstacle.id >= FIRST_ID]
+    assert drawn == ["observation:1", "observation:3"]
+    assert "observation 2 is not drawn" in caplog.text
+
+
+def test_what_is_missing_is_left_out_where_it_was():
+    site = site_map("wall", "bench")
+    left = joined(seen(1, 0.0, -15.0, radius=5.0, doubts="walls:bench"), site=site)
+    assert [one.semantics for one in left.obstacles] == ["wall"]
+    # In another publication the same name may be another thing.
+    assert joined(seen(1, 0.0, 0.0, radius=5.0, doubts="walls:bench"), site=site).obstacles == site.obstacles
+    assert (
+        joined(seen(1, 0.0, -15.0, radius=5.0, doubts="walls:other"), site=site).obstacles == site.obstacles
+    )
+
+
+def test_what_is_missing_is_no_object_itself():
+    objects = ObservedObjects([seen(1, 0.0, 0.0, radius=0.4, doubts="walls:wall")], 0.25)
+    assert len(objects) == 0 and objects.areas() == []

@@ -16,7 +16,7 @@ def frame(**changes):
     return json.dumps({"jsonrpc": "2.0", "method": "SendPos", "params": POSE, **changes})
 
 
-@pytest.mark.parametrize("params", [POSE, {"x": 0, "y": 0, "theta": 0, "v": 0}, {**POSE, "colour": "red"}])
+@pytest.mark.parametrize("params", [POSE, {"x": 0, "y": 0, "theta": 0, "v": 0}])
 def test_a_position_is_what_the_long_way_makes_of_it(params):
     call = jsonrpc.decode(frame(params=params))
     assert decode_position(frame(params=params)) == decode_request(call.method, call.params)
@@ -30,6 +30,7 @@ def test_a_position_is_what_the_long_way_makes_of_it(params):
         frame(jsonrpc="1.0"),
         frame(params={**POSE, "x": "1"}),
         frame(params={**POSE, "battery": 2}),
+        frame(params={**POSE, "colour": "red"}),
         frame(params={**POSE, "x": 1e400}),
         frame(params={"x": 1}),
         frame(params=None),

@@ -9,14 +9,15 @@ from typing import NamedTuple
 from .thresholds import AlarmKind
 
 Key = tuple[AlarmKind, str, str]
-"""Kind, robot, and the other robot where there is one."""
+"""Kind, robot, and the other robot or the area where there is one."""
 
 
 class Alarm(NamedTuple):
     """Something that holds since ``began``, or held until ``ended``; times are seconds since 1970.
 
     It stays until it is over and somebody has seen it. ``times`` counts how often it began since it was
-    last acknowledged. ``xy`` is where the robot was when it began, metres in the site frame.
+    last acknowledged. ``area`` is the keepout or obstacle that it is about. ``xy`` is where the robot was
+    when it began, metres in the site frame.
     """
 
     kind: AlarmKind
@@ -29,11 +30,12 @@ class Alarm(NamedTuple):
     acknowledged: float | None = None
     by: str = ""
     times: int = 1
+    area: str = ""
 
     @property
     def key(self) -> Key:
         """What makes it the same alarm when it comes again."""
-        return self.kind, self.robot, self.other
+        return self.kind, self.robot, self.other or self.area
 
     @property
     def is_new(self) -> bool:

@@ -31,8 +31,10 @@ class AlarmBar(QObject):
         self._item: QgsMessageBarItem | None = None
         self._label: NoticeLabel | None = None
         self._level = Qgis.MessageLevel.Warning
+        self._shown = "", ""
         bar.widgetRemoved.connect(self._removed)
         watch.happened.connect(self._happened)
+        watch.changed.connect(self._changed)
 
     def text(self) -> str:
         """Return what hangs there, empty for nothing."""
@@ -42,43 +44,67 @@ class AlarmBar(QObject):
         """Take it down and listen no more."""
         self._bar.widgetRemoved.disconnect(self._removed)
         self._watch.happened.disconnect(self._happened)
+        self._watch.changed.disconnect(self._changed)
         self._take_down()
 
     def _happened(self, events: list) -> None:
-        new = [alarm for alarm in self._watch.board.alarms() if alarm.is_new]
+        self._show(has_begun=any(event.change is AlarmChange.BEGAN for event in events))
+
+    def _changed(self) -> None:
+        # Alarms also go without an event: with their robots, or with the link to others. And what the gateway
+        # does about one is told while it hangs there.
+        if self._item is not None:
+            self._show(has_begun=False)
+
+    def _show(self, *, has_begun: bool) -> None:
+        new = self._new()
         if not new:
             self._take_down()
             return
         pressing = any(alarm.kind in PRESSING and alarm.ended is None for alarm in new)
         level = Qgis.MessageLevel.Critical if pressing else Qgis.MessageLevel.Warning
-        has_begun = any(event.change is AlarmChange.BEGAN for event in events)
         if has_begun:
             self._bring_to_front(level)
-        if self._label is not None:
-            self._label.show_text(in_words(new))
-            self._label.setToolTip("\n".join(alarm.text for alarm in new[:20]))
+        self._show_words()
+
+    def _new(self) -> list[Alarm]:
+        return [alarm for alarm in self._watch.board.alarms() if alarm.is_new]
+
+    def _show_words(self) -> None:
+        """Say what the alarms say now."""
+        if self._label is None:
+            return
+        new = self._new()
+        text, tip = in_words(new), "\n".join(alarm.text for alarm in new[:20])
+        if new and (text, tip) != self._shown:
+            self._shown = text, tip
+            self._label.show_text(text)
+            self._label.setToolTip(tip)
 
     def _bring_to_front(self, level: Qgis.MessageLevel) -> None:
-        """Let it hang there with this level; it is hung up anew only behind another notice, since that takes
-        QGIS as long as a frame of the map."""
+        """Let it hang there with this level, in front; it is hung up anew only behind another notice, since
+        that takes QGIS as long as a frame of the map."""
         if self._item is None:
             self._hang_up(level)
-        elif level != self._level and self._bar.currentItem() is self._item:
-            self._level = level
-            self._item.setLevel(level)
-        elif level != self._level:
+        elif self._bar.currentItem() is not self._item:
             self._take_down()
             self._hang_up(level)
+        elif level != self._level:
+            self._level = level
+            self._item.setLevel(level)
 
     def _hang_up(self, level: Qgis.MessageLevel) -> None:
         self._level = level
+        self._shown = "", ""
         self._label = NoticeLabel("", self._bar)
         self._label.setObjectName("fleet_alarm_text")
-        buttons = (
-            _button("fleet_show_alarms", tr("Show"), self.wanted.emit),
-            _button("fleet_bar_acknowledge", tr("Acknowledge all"), self._watch.acknowledge_all),
-        )
-        body = NoticeBody(self._label, buttons, self._bar)
+        show = QToolButton()
+        show.setObjectName("fleet_show_alarms")
+        show.setText(tr("Show"))
+        show.clicked.connect(lambda: self.wanted.emit())
+        # Nothing else is pressed here: the bar comes and goes, and whoever aimed at what was there before
+        # would have acknowledged what nobody has read.
+        body = NoticeBody(self._label, [show], self._bar)
         body.setObjectName("fleet_alarm_bar")
         self._item = QgsMessageBarItem(body, level, 0)
         self._bar.pushItem(self._item)
@@ -97,11 +123,3 @@ def in_words(new: list[Alarm]) -> str:
     """Return how many alarms nobody has seen, and what the most pressing ones are."""
     head = tr_count(len(new), "1 alarm", "%n alarms")
     return f"{head}: {'; '.join(first_of([alarm.text for alarm in new], NAMED))}"
-
-
-def _button(name: str, text: str, pressed: object) -> QToolButton:
-    button = QToolButton()
-    button.setObjectName(name)
-    button.setText(text)
-    button.clicked.connect(lambda: pressed())
-    return button

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from qgis.PyQt.QtCore import QItemSelection, QItemSelectionModel, Qt, pyqtSignal
+from qgis.PyQt.QtCore import QItemSelection, QItemSelectionModel, pyqtSignal
 from qgis.PyQt.QtWidgets import (
     QAbstractItemView,
     QHBoxLayout,
     QHeaderView,
-    QLabel,
     QPushButton,
     QSizePolicy,
     QTableView,
@@ -16,6 +15,7 @@ from qgis.PyQt.QtWidgets import (
 )
 
 from ...language import tr
+from ..fixed_size import ElidedText
 from ..going_there import GoingThere
 from ..push_button import push_button
 from ..small_views import shrink
@@ -41,7 +41,7 @@ class AlarmPanel(QWidget):
         self._watch = watch
         self._model = AlarmModel(self)
         self._view = QTableView()
-        self._note = QLabel()
+        self._note = ElidedText("fleet_alarm_note")
         self._log: AlarmLogDialog | None = None
         self._set_up_view()
         self._lay_out()
@@ -58,7 +58,6 @@ class AlarmPanel(QWidget):
         self._choose(chosen)
         note = self._watch.why_not()
         self._note.setText(note)
-        self._note.setVisible(bool(note))
         new = sum(alarm.is_new for alarm in alarms)
         self._all.setEnabled(new > 0)
         self._allow()
@@ -104,15 +103,13 @@ class AlarmPanel(QWidget):
         return buttons
 
     def _lay_out(self) -> None:
-        self._note.setObjectName("fleet_alarm_note")
-        self._note.setWordWrap(True)
-        self._note.setTextFormat(Qt.TextFormat.PlainText)
         rows = QVBoxLayout(self)
         rows.setContentsMargins(0, 2, 0, 0)
         rows.setSpacing(4)
+        # At the top: what takes room from the panel takes it from the end of the list.
+        rows.addLayout(self._buttons())
         rows.addWidget(self._view, 1)
         rows.addWidget(self._note)
-        rows.addLayout(self._buttons())
 
     def show_log(self) -> None:
         """Open the log of this session."""

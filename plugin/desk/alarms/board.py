@@ -10,6 +10,7 @@ import numpy as np
 from ..picture import Gone
 from .alarm import Alarm, AlarmChange, AlarmEvent, Key
 from .latches import PairLatch, RowLatch
+from .reported import Reported
 from .rules import RULES, Situation, too_close
 from .thresholds import AlarmKind, Thresholds
 from .words import text_of
@@ -19,6 +20,8 @@ MOST_ALARMS = 1000
 ON_AFTER = 1.0
 """Seconds for which a rule holds before it is an alarm; a robot that stands has longer."""
 OFF_AFTER = 1.0
+GONE_AFTER = 2.0
+"""Seconds without a report after which a reported alarm is over: a conflict at its limit comes and goes."""
 URGENCY = {kind: number for number, kind in enumerate(AlarmKind)}
 
 
@@ -29,6 +32,8 @@ class AlarmBoard:
         self._limits = limits or Thresholds()
         self._rows = {kind: RowLatch() for kind in RULES}
         self._pairs = PairLatch()
+        self._reported: dict[Key, float] = {}
+        """The alarms that the gateway judges, with when each was reported last."""
         self._alarms: dict[Key, Alarm] = {}
         self._ordered: list[Alarm] | None = []
         self.log: deque[AlarmEvent] = deque(maxlen=MOST_EVENTS)
@@ -67,6 +72,27 @@ class AlarmBoard:
             self._ordered = None
         return events
 
+    def report(self, reported: Iterable[Reported], moment: float, at: float) -> tuple[list[AlarmEvent], bool]:
+        """Take in what the gateway reports now; return what changed by it, and whether a text did."""
+        events, renewed = [], False
+        for one in reported:
+            if one.kind not in self._limits.kinds:
+                continue
+            if one.key not in self._reported:
+                began = at if one.began is None else one.began
+                alarm = Alarm(one.kind, one.robot, one.text, began, one.other, one.xy, area=one.area)
+                events.append(self._put_up(alarm, at))
+            self._reported[one.key] = moment
+            renewed |= self._renew_text(one)
+        gone = [key for key, seen in self._reported.items() if moment - seen >= GONE_AFTER]
+        for key in gone:
+            del self._reported[key]
+        events += self._end(gone, at)
+        self.log.extend(events)
+        if events or renewed:
+            self._ordered = None
+        return events, renewed
+
     def set_limits(self, limits: Thresholds) -> None:
         """Judge by other settings from the next look on."""
         self._limits = limits
@@ -92,6 +118,7 @@ class AlarmBoard:
         """Forget the robots and their alarms: they are another site's. The log stays."""
         self._rows = {kind: RowLatch() for kind in RULES}
         self._pairs = PairLatch()
+        self._reported.clear()
         self._alarms.clear()
         self._ordered = None
 
@@ -102,6 +129,7 @@ class AlarmBoard:
         for key, alarm in list(self._alarms.items()):
             if {alarm.robot, alarm.other} & gone.names:
                 del self._alarms[key]
+                self._reported.pop(key, None)
         self._ordered = None
 
     def _let_go(self) -> None:
@@ -133,6 +161,20 @@ class AlarmBoard:
             "" if other is None else now.names[other],
             (x, y) if np.isfinite(x) and np.isfinite(y) else None,
         )
+        return self._put_up(alarm, at)
+
+    def _renew_text(self, one: Reported) -> bool:
+        """Let an alarm say what the gateway says of it now, and return whether that is something else.
+
+        How near two robots pass changes all the time: that stays as it was when the alarm began.
+        """
+        alarm = self._alarms.get(one.key)
+        if alarm is None or alarm.text == one.text or not one.area:
+            return False
+        self._alarms[one.key] = alarm._replace(text=one.text)
+        return True
+
+    def _put_up(self, alarm: Alarm, at: float) -> AlarmEvent:
         before = self._alarms.get(alarm.key)
         if before is not None and before.is_new:
             alarm = alarm._replace(times=before.times + 1)

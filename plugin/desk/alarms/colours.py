@@ -9,7 +9,19 @@ from ..colours import is_dark
 from .alarm import Alarm
 from .thresholds import AlarmKind
 
-PRESSING = frozenset({AlarmKind.LOST, AlarmKind.TOO_CLOSE, AlarmKind.OUTSIDE_SITE})
+PRESSING = frozenset(
+    {
+        AlarmKind.LOST,
+        AlarmKind.UNSURE,
+        AlarmKind.IN_KEEPOUT,
+        AlarmKind.AT_OBSTACLE,
+        AlarmKind.NEAR_ROBOT,
+        AlarmKind.COMES_NEAR,
+        AlarmKind.TOO_CLOSE,
+        AlarmKind.WILL_PASS,
+        AlarmKind.OUTSIDE_SITE,
+    }
+)
 """Kinds for which somebody has to act at once."""
 
 

@@ -36,8 +36,9 @@ class Situation:
     """All robots at one moment, n rows that keep their places.
 
     ``xy`` (n, 2) metres in the site frame, ``v`` (n,) metres a second, ``battery`` (n,) part of a full one,
-    each NaN where not known; ``state`` (n,) index into :data:`STATES`; ``stopped`` (n,) whether it said that
-    it stops; ``driving`` (n,) whether it accepted a task that is not finished and nobody has it wait;
+    ``accuracy`` (n,) metres, each NaN where not known; ``state`` (n,) index into :data:`STATES`;
+    ``stopped`` (n,) whether it said that it stops; ``driving`` (n,) whether it accepted a task that is not
+    finished and nobody has it wait; ``only_seen`` (n,) whether it takes no commands, as phones do;
     ``off_road`` (n,) whether it is further than the margin from every road surface, and ``on_road`` whether
     it is on one, both None where no surfaces are known. ``bounds`` is x_min, y_min, x_max, y_max.
     """
@@ -46,9 +47,11 @@ class Situation:
     xy: Floats
     v: Floats
     battery: Floats
+    accuracy: Floats
     state: npt.NDArray[np.intp]
     stopped: Bools
     driving: Bools
+    only_seen: Bools
     bounds: tuple[float, float, float, float]
     off_road: Bools | None = None
     on_road: Bools | None = None
@@ -57,6 +60,17 @@ class Situation:
 def lost(now: Situation, limits: Thresholds) -> Verdict:
     """Nothing is heard of a robot any more; over when it speaks again or went offline in good order."""
     return now.state == LOST, (now.state == FRESH) | (now.state == OFFLINE)
+
+
+def unsure(now: Situation, limits: Thresholds) -> Verdict:
+    """A robot says that it does not know its place; over when it does, or says no more of it, or is offline.
+
+    A margin as large as the limit would never end: then half the limit is well enough.
+    """
+    surely = max(limits.unsure - limits.unsure_margin, limits.unsure / 2)
+    fresh = now.state == FRESH
+    known = (now.accuracy < surely) | np.isnan(now.accuracy)
+    return fresh & (now.accuracy >= limits.unsure), (fresh & known) | (now.state == OFFLINE)
 
 
 def low_battery(now: Situation, limits: Thresholds) -> Verdict:
@@ -90,6 +104,7 @@ def off_road(now: Situation, limits: Thresholds) -> Verdict:
 
 RULES: dict[AlarmKind, Callable[[Situation, Thresholds], Verdict]] = {
     AlarmKind.LOST: lost,
+    AlarmKind.UNSURE: unsure,
     AlarmKind.LOW_BATTERY: low_battery,
     AlarmKind.STOPPED: stopped,
     AlarmKind.OUTSIDE_SITE: outside_site,
@@ -101,9 +116,10 @@ RULES: dict[AlarmKind, Callable[[Situation, Thresholds], Verdict]] = {
 def too_close(now: Situation, limits: Thresholds) -> tuple[Ints, Ints, Floats]:
     """Return pairs i < j of robots that are near, and how far apart they are.
 
-    That is all pairs nearer than an alarm takes to end; two that are both offline are parked, not near.
+    That is all pairs nearer than an alarm takes to end; two that are both offline are parked, not near. The
+    gateway tells who is near of what is only seen.
     """
-    placed = np.flatnonzero(np.isfinite(now.xy).all(axis=1))
+    placed = np.flatnonzero(np.isfinite(now.xy).all(axis=1) & ~now.only_seen)
     one, other, apart = close_pairs(now.xy[placed], limits.too_close + limits.close_margin)
     one, other = placed[one], placed[other]
     counts = (now.state[one] != OFFLINE) | (now.state[other] != OFFLINE)

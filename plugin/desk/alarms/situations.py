@@ -26,14 +26,18 @@ class Situations:
         """Return how things are at ``moment`` of the desk's clock; the site has to be known."""
         robots = self._desk.picture.arrays(moment)
         off, on = self._roads(robots.xy, limits)
+        only_seen = self._desk.picture.only_seen()
         return Situation(
             names=robots.names,
             xy=robots.xy,
             v=self._speeds(robots, moment),
             battery=self._desk.picture.column("battery"),
+            # Nobody drives by the accuracy of what is only seen: a phone's is some metres all day.
+            accuracy=np.where(only_seen, np.nan, robots.accuracy),
             state=robots.state,
             stopped=self._desk.picture.column("stopped") == 1.0,
             driving=self._driving(len(robots.names)),
+            only_seen=only_seen,
             bounds=self._desk.site.bounds,
             off_road=off,
             on_road=on,

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from qgis.PyQt.QtWidgets import QCheckBox, QDoubleSpinBox, QGridLayout, QLabel, QWidget
 
 from ...language import tr
+from ..fixed_size import ElidedText
 from .thresholds import RANGES, AlarmKind, Thresholds
 from .words import KINDS
 
@@ -26,13 +27,17 @@ class Field:
 FIELDS = (
     Field(AlarmKind.LOW_BATTERY, "low_battery", tr("begins below"), " %", 100.0, 0),
     Field(AlarmKind.LOW_BATTERY, "battery_margin", tr("ends so much above that"), " %", 100.0, 0),
+    Field(AlarmKind.UNSURE, "unsure", tr("begins when less exact than"), " m"),
+    Field(AlarmKind.UNSURE, "unsure_margin", tr("ends so much below that"), " m"),
     Field(AlarmKind.TOO_CLOSE, "too_close", tr("begins when two are nearer than"), " m"),
     Field(AlarmKind.TOO_CLOSE, "close_margin", tr("ends so much further apart"), " m"),
+    Field(AlarmKind.WILL_PASS, "pass_within", tr("begins so long before"), " s", 1.0, 0),
     Field(AlarmKind.OUTSIDE_SITE, "outside_margin", tr("begins so far outside"), " m"),
     Field(AlarmKind.OFF_ROAD, "road_margin", tr("begins so far beside the road"), " m"),
     Field(AlarmKind.STOPPED, "stopped_after", tr("begins after standing with a task for"), " s", 1.0, 0),
 )
 SITE_SETS = tr("the site's settings say after how long (see the robots' state)")
+GATEWAY_JUDGES = tr("the gateway judges it by the published site, and says what it does")
 
 
 class ThresholdsForm(QWidget):
@@ -45,6 +50,8 @@ class ThresholdsForm(QWidget):
         grid = QGridLayout(self)
         grid.setContentsMargins(0, 0, 0, 0)
         grid.setColumnStretch(1, 1)
+        # All of it fits QGIS's options on a small screen with large type.
+        grid.setVerticalSpacing(2)
         for kind in AlarmKind:
             self._add(grid, kind)
 
@@ -70,8 +77,7 @@ class ThresholdsForm(QWidget):
         grid.addWidget(box, row, 0)
         fields = [field for field in FIELDS if field.kind is kind]
         if not fields:
-            told = QLabel(SITE_SETS)
-            told.setWordWrap(True)
+            told = ElidedText("", SITE_SETS if kind is AlarmKind.LOST else GATEWAY_JUDGES)
             grid.addWidget(told, row, 1, 1, 2)
         for number, field in enumerate(fields):
             grid.addWidget(QLabel(field.label), row + number, 1)

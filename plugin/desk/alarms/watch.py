@@ -16,12 +16,15 @@ from ..time_slices import ONE_STEP, Steps, TimeSlices
 from .alarm import AlarmChange, AlarmEvent, Key
 from .board import AlarmBoard
 from .message_log import AlarmMessages
+from .reported import fence_alarms, nearness_alarms, passing_alarms
 from .road_ground import RoadGround
 from .situations import Situations
 from .stored_limits import read_limits, write_limits
 from .thresholds import AlarmKind, Thresholds
 from .words import KINDS
 
+FENCED = frozenset({AlarmKind.IN_KEEPOUT, AlarmKind.AT_OBSTACLE})
+NEARNESS = frozenset({AlarmKind.NEAR_ROBOT, AlarmKind.COMES_NEAR})
 MANY = 500
 """With more robots it looks half as often."""
 
@@ -64,6 +67,10 @@ class AlarmWatch(QObject):
             return tr("Nothing is watched: the desk is not connected.")
         off = [KINDS[kind] for kind in AlarmKind if kind not in self.board.limits.kinds]
         texts = [tr("Switched off: {kinds}.", kinds=", ".join(off))] if off else []
+        if (unfenced := self._desk.geofence.why_not()) and FENCED & self.board.limits.kinds:
+            texts.append(unfenced)
+        if (unwatched := self._desk.nearness.why_not()) and NEARNESS & self.board.limits.kinds:
+            texts.append(unwatched)
         if self._ground.why_not and AlarmKind.OFF_ROAD in self.board.limits.kinds:
             why = self._ground.why_not.rstrip(".")
             texts.append(tr("Off the road is not watched: {why}.", why=why))
@@ -75,6 +82,7 @@ class AlarmWatch(QObject):
             moment = self._desk.clock()
             situation = self._situations.at(moment, self.board.limits)
             self._tell(self.board.look(situation, moment, time.time()))
+            self._take_reported(moment)
         self._tell_of_watching()
 
     def acknowledge(self, keys: Iterable[Key]) -> None:
@@ -93,6 +101,15 @@ class AlarmWatch(QObject):
         write_limits(limits)
         self.board.set_limits(limits)
         self.changed.emit()
+
+    def _take_reported(self, moment: float) -> None:
+        reported = fence_alarms(self._desk.geofence.alarms)
+        reported += nearness_alarms(self._desk.nearness.alarms)
+        reported += passing_alarms(self._desk.roads.conflicts, self.board.limits)
+        events, renewed = self.board.report(reported, moment, time.time())
+        self._tell(events)
+        if renewed and not events:
+            self.changed.emit()
 
     def _pulled(self) -> None:
         if self._generation != self._desk.picture.generation:

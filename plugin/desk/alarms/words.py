@@ -11,7 +11,13 @@ from .thresholds import AlarmKind
 
 KINDS = {
     AlarmKind.LOST: tr("lost"),
+    AlarmKind.UNSURE: tr("unsure of its place"),
+    AlarmKind.IN_KEEPOUT: tr("in a keepout"),
+    AlarmKind.AT_OBSTACLE: tr("at an obstacle"),
+    AlarmKind.NEAR_ROBOT: tr("near a robot"),
+    AlarmKind.COMES_NEAR: tr("will come near a robot"),
     AlarmKind.TOO_CLOSE: tr("too close"),
+    AlarmKind.WILL_PASS: tr("will pass too near"),
     AlarmKind.OUTSIDE_SITE: tr("outside the site"),
     AlarmKind.OFF_ROAD: tr("off the road"),
     AlarmKind.STOPPED: tr("stopped unasked"),
@@ -41,6 +47,14 @@ def text_of(kind: AlarmKind, now: Situation, row: int, other: int | None = None)
     if kind is AlarmKind.LOST:
         last = tr("; last{where}", where=where) if where else ""
         return tr("{robot} is lost: nothing is heard of it{last}", robot=name, last=last)
+    if kind is AlarmKind.UNSURE:
+        accuracy = now.accuracy[row]
+        return tr(
+            "{robot} does not know its place: ± {accuracy:.1f} m{where}",
+            robot=name,
+            accuracy=accuracy,
+            where=where,
+        )
     if kind is AlarmKind.LOW_BATTERY:
         return tr("{robot} has {part:.0%} of its battery left", robot=name, part=now.battery[row])
     if kind is AlarmKind.STOPPED:

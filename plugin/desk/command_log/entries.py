@@ -8,7 +8,7 @@ from enum import Enum
 
 from ....robot_bridge.messages import Abort, CommandReport, CommandState, CommandStep
 from ...language import tr
-from ..command_book import UNDER_WAY, in_words, place_of
+from ..command_book import UNDER_WAY, in_words, place_of, state_word
 from ..csv_files import iso_time
 from ..state_words import COMMAND_STATES
 from ..wall_clock import short_time
@@ -61,7 +61,7 @@ def cells(report: CommandReport) -> tuple[str, str, str, str]:
     return (
         short_time(first),
         f"{report.robot} · {in_words(report)}",
-        COMMAND_STATES[report.state],
+        state_word(report.op, report.state),
         _details(report),
     )
 
@@ -70,7 +70,7 @@ def step_cells(step: CommandStep, report: CommandReport) -> tuple[str, str, str,
     """Return a step's row: time, by whom and why, state, and how far off."""
     off = _off(report) if step.state is CommandState.REACHED else ""
     because = f": {step.reason}" if step.reason else ""
-    return short_time(step.at), tr("by {by}", by=step.by) + because, COMMAND_STATES[step.state], off
+    return short_time(step.at), tr("by {by}", by=step.by) + because, state_word(report.op, step.state), off
 
 
 def summary(reports: Iterable[CommandReport]) -> str:

@@ -8,7 +8,6 @@ from qgis.PyQt.QtWidgets import (
     QComboBox,
     QHBoxLayout,
     QHeaderView,
-    QLabel,
     QToolButton,
     QTreeView,
     QVBoxLayout,
@@ -23,7 +22,9 @@ from ...settings.preferences import export_path
 from ..command_book import asked_at, in_words, place_of
 from ..csv_files import write_csv
 from ..desk import Desk
+from ..fixed_size import ElidedText
 from ..going_there import GoingThere
+from ..messages import file_topic
 from ..name_order import name_order
 from ..small_views import shrink
 from ..state_words import COMMAND_STATES, longest
@@ -38,6 +39,7 @@ WHICH = {
     Which.OPEN: tr("Open"),
     Which.FAILED: tr("Failed, aborted, expired"),
 }
+FILE = file_topic("command_log")
 MERGED = 500
 """New commands that are sorted in one by one; of more of them all are listed anew."""
 
@@ -62,9 +64,7 @@ class CommandLog(QWidget):
         self._robots.addItems([EVERY_ROBOT, SELECTED])
         self._which = _choices("fleet_log_filter", tr("Which commands are listed"))
         self._which.addItems([WHICH[which] for which in Which])
-        self._summary = QLabel(tr("None open"))
-        self._summary.setObjectName("fleet_log_summary")
-        self._summary.setWordWrap(True)
+        self._summary = ElidedText("fleet_log_summary", tr("None open"))
         self._lay_out()
         self._robots.currentIndexChanged.connect(self.refresh)
         self._which.currentIndexChanged.connect(self.refresh)
@@ -105,10 +105,11 @@ class CommandLog(QWidget):
 
     def export(self, path: str) -> None:
         """Write what is listed, every step of it, to ``path`` and say so."""
+        self._desk.messages.end(FILE)
         try:
             count = write_csv(path, CSV_HEAD, csv_rows(self._model.shown))
         except FleetError as error:
-            self._desk.failed.emit(str(error))
+            self._desk.report_failure(str(error), FILE)
             return
         self._desk.noted.emit(
             tr(

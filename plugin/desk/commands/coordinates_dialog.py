@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from qgis.core import QgsCoordinateReferenceSystem, QgsPointXY
+from qgis.core import QgsCoordinateReferenceSystem
 from qgis.gui import QgsProjectionSelectionWidget
 from qgis.PyQt.QtCore import Qt, pyqtSignal
 from qgis.PyQt.QtWidgets import (
@@ -21,9 +21,8 @@ from ...language import tr
 from ..colours import WRONG_STYLE
 from ..desk import Desk
 from ..drafting.datum_path import datum_path
-from ..drafting.place_text import read_place
+from ..drafting.typed_place import read_site_place
 from ..drafts import Point
-from ..placement import Placement
 
 WGS84 = "EPSG:4326"
 
@@ -108,11 +107,9 @@ class CoordinatesDialog(QDialog):
         if not self._text.text().strip():
             order = tr("latitude, longitude") if crs.isGeographic() else tr("x, y")
             return tr("Write {order} in {crs}.\n{path}", order=order, crs=crs.authid(), path=path)
-        x, y = read_place(self._text.text(), geographic=crs.isGeographic())
-        placement = Placement(self._desk.site, crs, context)
-        self._place = placement.to_site(QgsPointXY(x, y))
+        self._place = read_site_place(self._text.text(), crs, self._desk.site, context)
         site = tr("{x:.2f}, {y:.2f} m on the site", x=self._place[0], y=self._place[1])
-        ((east, north),) = placement.frame.to_crs([self._place])
+        ((east, north),) = self._desk.placement().frame.to_crs([self._place])
         return tr(
             "{site}; {east:.2f}, {north:.2f} in {crs}.\n{path}",
             site=site,

@@ -13,7 +13,6 @@ from qgis.PyQt.QtWidgets import QWidget
 from ....robot_bridge.messages import SendMap
 from ...errors import FleetError, NotSentError
 from ...language import tr
-from ...wire.outbox import Answer
 from ..actions import Actions
 from ..desk import Desk
 from ..draft_tool import DraftTool
@@ -35,7 +34,6 @@ class DraftCommands(QObject):
         self._edits = edits
         self._actions = actions
         self._window = window
-        self._enqueued: dict[str, Draft] = {}
         self._coordinates: CoordinatesDialog | None = None
         actions.undo.triggered.connect(lambda: desk.drafts.undo())
         actions.redo.triggered.connect(lambda: desk.drafts.redo())
@@ -45,7 +43,6 @@ class DraftCommands(QObject):
         actions.from_layer.triggered.connect(lambda: self._try(self._take_from_layer))
         actions.coordinates.triggered.connect(self._ask_for_coordinates)
         actions.send_map.triggered.connect(lambda: self._try(self._send_maps))
-        desk.answered.connect(self._answered)
         desk.drafts.changed.connect(self._enable)
         self._enable()
 
@@ -72,10 +69,13 @@ class DraftCommands(QObject):
 
         :raises FleetError: when it must not or cannot be; it stays on the map then.
         """
+        if self._desk.sending.is_second_press():
+            return
         self._draft()
         self._desk.sending.order(lambda draft: self._try(lambda: self._add(draft)))
 
     def _add(self, draft: Draft) -> None:
+        draft = draft.as_task()
         if draft.fault:
             raise NotSentError(
                 tr(
@@ -93,16 +93,8 @@ class DraftCommands(QObject):
                 )
             )
         words = tr("{in_words}, into the queue", in_words=draft.in_words())
-        key = self._edits.add(draft.robot, tasks_of(draft), words, draft.override)
-        if key is not None:
-            self._enqueued[key] = draft
-            self._desk.drafts.done()
-
-    def _answered(self, answer: Answer) -> None:
-        draft = self._enqueued.pop(answer.order.key, None)
-        if draft is not None and answer.error is not None and self._desk.drafts.draft is None:
-            # Nothing the operator drew is lost because a gateway refused it.
-            self._desk.drafts.put(draft)
+        if self._edits.add(draft.robot, tasks_of(draft), words, draft.override, draft) is not None:
+            self._desk.sending.clear(draft)
 
     def _override(self) -> None:
         draft = self._draft()
@@ -165,7 +157,7 @@ class DraftCommands(QObject):
 
     def _check_free(self) -> None:
         draft = self._desk.drafts.draft
-        if draft is not None:
+        if draft is not None and not self._desk.checks.has_order:
             raise NotSentError(
                 tr(
                     "{in_words} is still on the map. Send it (Enter) or cancel it (Esc) first.",

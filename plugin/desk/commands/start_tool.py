@@ -50,7 +50,7 @@ class StartTool(DraftTool):
         self._put(place, math.atan2(ahead[1] - place[1], ahead[0] - place[0]))
 
     def _put(self, place: Point, theta: float | None) -> None:
-        other = self.desk.drafts.draft
+        other = self.on_map
         if other is not None and other.kind != START:
             raise FleetError(
                 tr(

@@ -19,20 +19,23 @@ class DraftChecker(QObject):
     """Checks the draft on ``board``, and no other.
 
     What was found is for the one draft that was looked at: a draft is never changed, only replaced, and with
-    another one on the board nothing comes of the check that was under way, nor of what was to follow it.
+    another one on the board nothing comes of the check that was under way. What was to follow it is passed on
+    with ``displaced`` where another draft was begun.
     """
 
     progressed = pyqtSignal()
     """A check has begun, gone on, or come to its end."""
     overtaken = pyqtSignal(object)
-    """Another draft is on the board before something could be done with this one: the Draft."""
+    """The draft was changed before something could be done with it: the Draft as it was."""
+    displaced = pyqtSignal(object, object)
+    """Another draft was begun before something could be done with this one: the Draft, and what to do."""
     found = pyqtSignal(object)
     """The draft that was put on the map has been looked at: the Draft, with its findings."""
 
     def __init__(self, board: DraftBoard, work: Work, parent: QObject | None = None):
         super().__init__(parent)
         self._board = board
-        self._work = work
+        self.work = work
         self._slices = TimeSlices(self)
         self._draft: Draft | None = None
         self._afresh = self._is_put = False
@@ -63,6 +66,16 @@ class DraftChecker(QObject):
 
         :raises FleetError: when it cannot be checked; what was on the board stays then.
         """
+        self._put(draft, self._board.put)
+
+    def amend(self, draft: Draft) -> None:
+        """Put ``draft`` in place of the one on the board, whose way is another by now; check it as by put.
+
+        :raises FleetError: as :meth:`put`.
+        """
+        self._put(draft, self._board.renew)
+
+    def _put(self, draft: Draft, place: Callable[[Draft], None]) -> None:
         before, ordered = (self._draft, self._afresh, self._is_put, self._then), self._ordered
         self._draft, self._afresh, self._is_put, self._then = draft, False, True, None
         try:
@@ -72,10 +85,13 @@ class DraftChecker(QObject):
             self._anew.start()
             raise
         self._draft = draft if checked is None else checked
-        self._board.put(self._draft)
+        place(self._draft)
         if checked is not None:
             self._end(checked)
-        self._tell_of(ordered)
+        if ordered is not None:
+            # To take changes back must not lead to what is on its way out.
+            self._board.forget_changes()
+            self.displaced.emit(ordered, before[3])
         self.progressed.emit()
 
     def again(self, then: Callable[[Draft], None]) -> None:
@@ -135,7 +151,7 @@ class DraftChecker(QObject):
 
     def _begin(self) -> Draft | None:
         self._anew.stop()
-        work = self._work(self._draft, self._afresh)
+        work = self.work(self._draft, self._afresh)
         return self._slices.begin(work, self.progressed.emit, self._take, self._failed)
 
     def _begin_anew(self) -> None:

@@ -8,7 +8,7 @@ from qgis.core import QgsProject, QgsVectorLayer
 
 from ...language import tr
 from ...sites.roles import KEEPOUT
-from ..drafts import Draft, Findings
+from ..drafts import ROUTE, Draft, Findings
 from ..placement import Placement
 from ..time_slices import Steps
 from .layer_features import LayerFeatures, engine_of, name_of
@@ -45,11 +45,16 @@ class KeepoutCheck:
                 yield 0.0
         return found
 
-    def told(self, found: Sequence[tuple[Track, list[str]]], is_watched: bool) -> Steps[Findings]:
+    def told(
+        self, draft: Draft, found: Sequence[tuple[Track, list[str]]], is_watched: bool
+    ) -> Steps[Findings]:
         """Return the findings of what was found for each track."""
         texts: dict[str, None] = {}
         for track, names in found:
-            spot = place_in_words(track) if len(track) == 1 else tr("The route")
+            place = place_in_words(track)
+            is_leg = draft.kind == ROUTE and track != draft.way.line
+            way = tr("The route") if is_leg else tr("The way to {to}", to=place)
+            spot = place if len(track) == 1 else way
             for name in names:
                 texts[
                     tr(

@@ -78,7 +78,9 @@ class ObstacleCheck:
             ) from error
         return found
 
-    def told(self, found: Sequence[tuple[Track, list[Hit]]], is_watched: bool) -> Steps[Findings]:
+    def told(
+        self, draft: Draft, found: Sequence[tuple[Track, list[Hit]]], is_watched: bool
+    ) -> Steps[Findings]:
         """Return the findings, each obstacle once for each track."""
         texts = []
         for track, hits in found:

@@ -59,7 +59,9 @@ class SurfaceCheck:
                 yield 0.0
         return found
 
-    def told(self, found: Sequence[tuple[Track, list[Share]]], is_watched: bool) -> Steps[Findings]:
+    def told(
+        self, draft: Draft, found: Sequence[tuple[Track, list[Share]]], is_watched: bool
+    ) -> Steps[Findings]:
         """Return the findings; without any road surface nobody can tell."""
         yield 1.0
         if not is_watched:

@@ -5,6 +5,7 @@ Each is looked at by itself, so that after a change only what has changed is loo
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
 from itertools import chain
 
@@ -13,21 +14,26 @@ from qgis.core import QgsCoordinateTransform, QgsGeometry, QgsProject, QgsRectan
 
 from ...language import tr
 from ...sites.many_points import line_of
-from ..drafts import ROUTE, START, Draft, Point
+from ..drafts import ROUTE, START, Draft, Point, WayKind
 from ..placement import Placement, transformed
 from ..time_slices import Steps
 
 Track = tuple[Point, ...]
 """One point is a place, several are a way; metres in the site frame."""
+AT_BEGINNING_M = 0.5
+"""Metres within which a robot stands where its route begins."""
 AT_ONCE = 200
 """Tracks that become geometries between two looks at the clock."""
 
 
 def legs(draft: Draft) -> Iterator[Track]:
-    """Yield the places of a draft, or each leg of a route with the point it leads on from."""
+    """Yield a draft's places and the way there, or each leg of a route with the point it leads on from."""
     if draft.kind != ROUTE:
         yield from _places(draft)
+        if draft.way.line:
+            yield draft.way.line
         return
+    yield from _way_to_route(draft)
     for begin, end in _spans(draft):
         # The first click of several is where the second leg begins.
         if begin > 0 or end > 1 or len(draft.points) == 1:
@@ -35,13 +41,18 @@ def legs(draft: Draft) -> Iterator[Track]:
 
 
 def drawn_by_hand(draft: Draft) -> Iterator[Track]:
-    """Yield the places of a draft, or the legs of a route that do not follow the roads.
+    """Yield the places of a draft and the straight way to it, and legs of a route that follow no roads.
 
     Legs along the roads are the gateway's, which knows obstacles as the site was published.
     """
-    if draft.kind != ROUTE or len(draft.points) == 1:
+    if draft.kind != ROUTE:
         yield from _places(draft)
+        if draft.way.kind is WayKind.STRAIGHT:
+            yield draft.way.line
         return
+    yield from _way_to_route(draft)
+    if len(draft.points) == 1:
+        yield from _places(draft)
     for begin, end in _spans(draft):
         if end - begin == 1 and begin > 0:
             yield draft.points[begin - 1 : end]
@@ -97,6 +108,12 @@ def place_in_words(track: Track) -> str:
     """Return the end of a track as operators read it."""
     x, y = track[-1]
     return tr("({x:.2f}, {y:.2f}) m", x=x, y=y)
+
+
+def _way_to_route(draft: Draft) -> Iterator[Track]:
+    """Yield the straight way of a robot to the beginning of its route, none to one that it stands at."""
+    if draft.way.line and math.dist(*draft.way.line) > AT_BEGINNING_M:
+        yield draft.way.line
 
 
 def _places(draft: Draft) -> Iterator[Track]:

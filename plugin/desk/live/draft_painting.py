@@ -11,7 +11,7 @@ from qgis.PyQt.QtCore import QPointF, Qt
 from qgis.PyQt.QtGui import QColor, QImage, QPainter, QPen
 
 from ..colours import PAPER, REFUSED, ROUTE
-from ..drafts import CONE, START, TARGETS, Draft
+from ..drafts import CONE, START, TARGETS, Draft, WayKind
 from ..glyphs import draw_cone
 from .atlases import CONE_TARGET
 from .scene import PlacedScene
@@ -53,21 +53,31 @@ class DraftPainter:
         if draft.kind == START:
             _paint_start(painter, points, colour)
             return
-        row = placed.scene.rows.get(draft.robot)
-        start = robots[[row]] if row is not None and np.isfinite(robots[row]).all() else np.empty((0, 2))
+        start = _robot_of(draft, placed, robots)
+        if draft.way.is_along_roads:
+            self._paint_way(painter, placed, points, screen, colour if is_wrong else ROUTE)
+            _paint_targets(painter, points[-1:], colour)
+            return
         targets = draft.kind in (CONE, TARGETS)
         first = Qt.PenStyle.DashLine if targets else Qt.PenStyle.DotLine
         dashes(painter, np.concatenate([start, points[:1]]), colour, first)
-        if len(points) > MANY:
-            line = colour if is_wrong or targets else ROUTE
-            self._paint_many(painter, placed.draft, points, screen, line, marks if targets else None)
+        if targets and len(points) > MANY:
+            self._paint_many(painter, placed.draft, points, screen, colour, marks)
         elif targets:
             _paint_targets(painter, points, colour)
         else:
-            route(painter, points, colour if is_wrong else ROUTE)
+            self._paint_way(painter, placed, points, screen, colour if is_wrong else ROUTE)
         if not targets:
             _paint_clicks(painter, points, draft, colour)
             dashes(painter, np.concatenate([points[-1:], cursor]), colour, Qt.PenStyle.DashLine)
+
+    def _paint_way(
+        self, painter: QPainter, placed: PlacedScene, points: Points, screen: Screen, colour: QColor
+    ) -> None:
+        if len(points) > MANY:
+            self._paint_many(painter, placed.draft, points, screen, colour, None)
+        else:
+            route(painter, points, colour)
 
     def _paint_many(
         self,
@@ -105,6 +115,17 @@ def _is_cheap(points: Points, screen: Screen) -> bool:
     seen = (high > 0.0).all(axis=1) & (low < (screen.width, screen.height)).all(axis=1)
     length = np.hypot(*(high - low)[seen].T).sum()
     return len(points) <= MANY_LEGS and float(length) <= FAR_PX
+
+
+def _robot_of(draft: Draft, placed: PlacedScene, robots: Points) -> Points:
+    """Return where the draft's robot is, (1, 2) pixels; (0, 2) where that is not known.
+
+    Nor while the way to a target is sought: a straight line would be taken for it.
+    """
+    row = placed.scene.rows.get(draft.robot)
+    if row is None or draft.way.kind is WayKind.SOUGHT or not np.isfinite(robots[row]).all():
+        return np.empty((0, 2))
+    return robots[[row]]
 
 
 def _paint_targets(painter: QPainter, points: Points, colour: QColor) -> None:

@@ -13,11 +13,11 @@ from qgis.core import (
 )
 from qgis.gui import QgsMapCanvas
 from qgis.PyQt import sip
-from qgis.PyQt.QtCore import QObject, QTimer, pyqtSignal
+from qgis.PyQt.QtCore import QObject, pyqtSignal
 
 from ....robot_bridge.messages import RobotState, SiteReport
 from ....robot_bridge.sites.frame import SiteFrame
-from ...sites.fleet_group import fleet_group, remove_if_empty
+from ...sites.fleet_group import fleet_group, leave_clean, remove_if_empty
 from ..live_layers import give_style, make_live
 from ..picture import RobotPicture
 from ..placement import frame_of
@@ -77,7 +77,7 @@ class RobotLayer(QObject):
         self._layer.selectionChanged.connect(self._selection_changed)
         self._project.addMapLayer(self._layer, False)
         fleet_group(self._project).insertLayer(0, self._layer)
-        self._leave_clean(was_dirty)
+        leave_clean(self._project, was_dirty)
 
     def begin(self, robots: int) -> None:
         """Have every one of the first ``robots`` rows written, unless the last round is still under way."""
@@ -141,7 +141,7 @@ class RobotLayer(QObject):
             layer.selectionChanged.disconnect(self._selection_changed)
             self._project.removeMapLayer(layer.id())
         remove_if_empty(self._project)
-        self._leave_clean(was_dirty)
+        leave_clean(self._project, was_dirty)
 
     def _write(self, features: list[RobotFeature]) -> None:
         """Write what is not in the layer yet, and no value that is: the provider looks at each one given."""
@@ -184,15 +184,6 @@ class RobotLayer(QObject):
         self._layer.triggerRepaint(self._canvas.isDrawing())
         # An attribute table learns of writes in no other way; to look whether one is open takes 40 ms.
         self._layer.dataChanged.emit()
-
-    def _leave_clean(self, was_dirty: bool) -> None:
-        """A layer that comes anew with each link is no change that the user would want to save."""
-        if was_dirty:
-            return
-        self._project.setDirty(False)
-        # QGIS's layer panel notes a change once more when it has laid out the new group.
-        project = self._project
-        QTimer.singleShot(0, lambda: project.setDirty(False))
 
     def _keep_style(self, layer: QgsVectorLayer) -> None:
         self._style = QgsMapLayerStyle()

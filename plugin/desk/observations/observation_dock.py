@@ -4,14 +4,16 @@ from __future__ import annotations
 
 import numpy as np
 from qgis.PyQt.QtCore import QModelIndex, Qt, QTimer
-from qgis.PyQt.QtWidgets import QCheckBox, QLabel, QListView, QVBoxLayout, QWidget
+from qgis.PyQt.QtWidgets import QCheckBox, QListView, QVBoxLayout, QWidget
 
 from ....robot_bridge.messages import ObservationReport, ReviewObservation
 from ...errors import FleetError
 from ...language import tr
 from ..desk import Desk
 from ..dock_action import ActionDock
+from ..fixed_size import ElidedText
 from ..live.following import show_places
+from ..messages import observation_topic
 from ..observation_book import is_pending
 from .observation_feed import ObservationFeed
 from .observation_layer import ObservationLayer
@@ -39,9 +41,7 @@ class ObservationDock(ActionDock):
         self.feed = ObservationFeed(desk, self.thumbnails, self)
         self.layer = ObservationLayer(desk.project, self.thumbnails)
         self.model = ObservationModel(self.thumbnails, self)
-        self.head = QLabel()
-        self.head.setObjectName("fleet_observation_head")
-        self.head.setWordWrap(True)
+        self.head = ElidedText("fleet_observation_head")
         self.reviewed = QCheckBox(tr("Show reviewed ones, too"))
         self.reviewed.setObjectName("fleet_observation_reviewed")
         self.list = QListView()
@@ -128,16 +128,17 @@ class ObservationDock(ActionDock):
             self._timer.start(SHOW_AFTER_MS)
 
     def _review(self, request: ReviewObservation) -> None:
+        topic = observation_topic(request.observation)
+        self._desk.messages.end(topic)
         try:
             self.feed.review(request)
         except FleetError as error:
-            self._desk.failed.emit(
-                tr(
-                    "Observation {observation} was NOT reviewed: {error}",
-                    observation=request.observation,
-                    error=error,
-                )
+            text = tr(
+                "Observation {observation} was NOT reviewed: {error}",
+                observation=request.observation,
+                error=error,
             )
+            self._desk.report_failure(text, topic)
         self._show_chosen()
 
     def _reviewed(self, number: int) -> None:
@@ -152,7 +153,8 @@ class ObservationDock(ActionDock):
         self.refresh()
 
     def _refused(self, number: int, why: str) -> None:
-        self._desk.failed.emit(tr("Observation {number} was not reviewed: {why}", number=number, why=why))
+        text = tr("Observation {number} was not reviewed: {why}", number=number, why=why)
+        self._desk.report_failure(text, observation_topic(number))
         self._show_chosen()
 
     def _show_chosen(self) -> None:

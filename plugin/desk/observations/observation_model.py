@@ -83,6 +83,8 @@ class ObservationModel(QAbstractListModel):
 def in_words(one: ObservationReport) -> str:
     """Return two lines on an observation."""
     kind = tr("image") if one.media_type else one.semantics or one.label or tr("object")
+    if one.doubts is not None:
+        kind = tr("not there any more: {what}", what=one.label or one.doubts)
     state = STATES[one.state]
     if one.reviewed_by:
         state = tr("{state} by {by}", state=state, by=one.reviewed_by)

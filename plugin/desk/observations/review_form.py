@@ -19,6 +19,7 @@ from qgis.PyQt.QtWidgets import (
 
 from ....robot_bridge.messages import ObservationReport, ReviewObservation
 from ...language import tr
+from ..fixed_size import ScrollingText
 from ..observation_book import is_pending
 from ..push_button import push_button
 from .observation_layer import STATES
@@ -26,7 +27,13 @@ from .observation_layer import STATES
 WORDS = ("traffic cone", "barrier", "bin", "bench", "column", "vehicle", "object")
 """Offered besides what robots said; anything may be written. In English: robots read them on their maps."""
 PICTURE = QSize(104, 110)
-"""Pixels that a picture fills at most: beside a broader one the form would widen the window."""
+"""Pixels that a picture fills at most, beside the fields and no higher than they are."""
+
+
+STANDS = tr("It stands there: draw it on the maps that robots get from now on")
+DRAWN_NOWHERE = tr("Draw it on no map")
+GONE = tr("It is gone: leave it out of the maps that robots get from now on")
+STAYS = tr("It is there: leave it on the maps")
 
 
 class ReviewForm(QWidget):
@@ -38,11 +45,12 @@ class ReviewForm(QWidget):
     def __init__(self, parent: QWidget | None = None):
         super().__init__(parent)
         self._report: ObservationReport | None = None
-        self.about = QLabel()
-        self.about.setObjectName("fleet_observation_about")
-        self.about.setWordWrap(True)
+        self.about = ScrollingText("fleet_observation_about", lines=3)
         self.picture = QLabel()
         self.picture.setObjectName("fleet_observation_picture")
+        self.picture.setAlignment(Qt.AlignmentFlag.AlignCenter)
+        # Kept free where there is none: the panel would be made wider by the first one that is looked at.
+        self.picture.setFixedSize(PICTURE)
         self.semantics = QComboBox()
         self.semantics.setObjectName("fleet_observation_semantics")
         self.semantics.setEditable(True)
@@ -54,12 +62,8 @@ class ReviewForm(QWidget):
         self.reason.setMaxLength(ReviewObservation.texts["reason"])
         self.reason.setPlaceholderText(tr("optional"))
         self.go = push_button("fleet_observation_go", tr("Show"), tr("Go to it on the map"))
-        self.accept = push_button(
-            "fleet_observation_accept",
-            tr("Accept"),
-            tr("It stands there: draw it on the maps that robots get from now on"),
-        )
-        self.reject = push_button("fleet_observation_reject", tr("Reject"), tr("Draw it on no map"))
+        self.accept = push_button("fleet_observation_accept", tr("Accept"), "")
+        self.reject = push_button("fleet_observation_reject", tr("Reject"), "")
         self._lay_out()
         self.go.clicked.connect(lambda: self._report and self.place_wanted.emit(self._report.observation))
         self.accept.clicked.connect(lambda: self._want(accept=True))
@@ -75,7 +79,10 @@ class ReviewForm(QWidget):
             self._report and (self._report.observation, self._report.state)
         )
         self._report = report
-        is_object = report is not None and report.media_type is None
+        is_object = report is not None and _is_drawn(report)
+        is_doubt = report is not None and report.doubts is not None
+        self.accept.setToolTip(GONE if is_doubt else STANDS)
+        self.reject.setToolTip(STAYS if is_doubt else DRAWN_NOWHERE)
         for field in (self.semantics, self.height_m, self.radius):
             field.setEnabled(is_object)
         self.reason.setEnabled(report is not None)
@@ -101,7 +108,6 @@ class ReviewForm(QWidget):
             )
         self.picture.setPixmap(picture)
         self.picture.setToolTip(f'<img src="{QUrl.fromLocalFile(file).toString()}">' if file else "")
-        self.picture.setVisible(not picture.isNull())
 
     def request(self, *, accept: bool) -> ReviewObservation | None:
         """Return the review as it stands in the form, None without an observation."""
@@ -109,7 +115,7 @@ class ReviewForm(QWidget):
         if report is None:
             return None
         details = {}
-        if accept and report.media_type is None:
+        if accept and _is_drawn(report):
             details = {
                 "semantics": self.semantics.currentText().strip() or None,
                 "height": self.height_m.value() or None,
@@ -145,9 +151,22 @@ class ReviewForm(QWidget):
         rows.addLayout(buttons)
 
 
+def _is_drawn(report: ObservationReport) -> bool:
+    """Tell whether it is drawn when it is accepted: it is no image, and nothing that is missing."""
+    return report.media_type is None and report.doubts is None
+
+
 def _about(report: ObservationReport) -> str:
     facts = {"object": report.object, "robot": report.robot, "x": report.x, "y": report.y}
-    if report.media_type:
+    if report.doubts is not None:
+        text = tr(
+            "Not there any more? {robot} looks through {what} ({source}) of its map again and again, "
+            "at {x:.2f}, {y:.2f} m.",
+            **facts,
+            what=report.label or tr("object"),
+            source=report.doubts,
+        )
+    elif report.media_type:
         text = tr("An image of {object}, told by {robot}, at {x:.2f}, {y:.2f} m.", **facts)
     else:
         text = tr("An object: {object}, told by {robot}, at {x:.2f}, {y:.2f} m.", **facts)

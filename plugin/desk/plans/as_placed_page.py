@@ -7,7 +7,6 @@ from qgis.PyQt.QtWidgets import (
     QAbstractItemView,
     QComboBox,
     QHBoxLayout,
-    QLabel,
     QTableWidget,
     QTableWidgetItem,
     QVBoxLayout,
@@ -22,6 +21,8 @@ from ...settings.preferences import export_path
 from ..column_heads import fit_heads
 from ..csv_files import write_csv
 from ..desk import Desk
+from ..fixed_size import ScrollingText
+from ..messages import file_topic
 from ..push_button import push_button
 from ..wall_clock import time_of_day
 from .as_placed import COLUMNS, chosen, csv_row, tally
@@ -37,6 +38,7 @@ HEADS = (
     tr("Collected"),
 )
 THIS_PLAN, EVERYTHING = "plan", "all"
+FILE, REPORT = file_topic("placed_cones"), file_topic("cone_report")
 MANY = 2000
 """Rows that the table shows at most, the newest; the CSV file has all."""
 
@@ -61,9 +63,7 @@ class AsPlacedPage(QWidget):
         self.which.setObjectName("fleet_placed_which")
         self.which.setSizeAdjustPolicy(QComboBox.SizeAdjustPolicy.AdjustToMinimumContentsLengthWithIcon)
         self.which.setMinimumContentsLength(8)
-        self.figures = QLabel()
-        self.figures.setObjectName("fleet_placed_figures")
-        self.figures.setWordWrap(True)
+        self.figures = ScrollingText("fleet_placed_figures", lines=3)
         self.table = QTableWidget(0, len(HEADS))
         self.table.setObjectName("fleet_placed_table")
         self.table.setHorizontalHeaderLabels(HEADS)
@@ -107,10 +107,11 @@ class AsPlacedPage(QWidget):
 
     def save(self, path: str) -> None:
         """Write the report to ``path`` as CSV and say so."""
+        self._desk.messages.end(FILE)
         try:
             count = write_csv(path, COLUMNS, map(csv_row, self.placements))
         except FleetError as error:
-            self._desk.failed.emit(str(error))
+            self._desk.report_failure(str(error), FILE)
             return
         cones = tr_count(count, "1 cone", "%n cones")
         self._desk.noted.emit(tr("{cones} written to {path}", cones=cones, path=path))
@@ -153,10 +154,11 @@ class AsPlacedPage(QWidget):
         # The user may have taken the layer out of the project.
         self.show_placed()
         self.layer_wanted.emit()
+        self._desk.messages.end(REPORT)
         try:
             open_report_dialog(self._desk.project)
         except ReportError as error:
-            self._desk.failed.emit(str(error))
+            self._desk.report_failure(str(error), REPORT)
 
     def _go_there(self, row: int, _: int) -> None:
         one = self.placements[-MANY:][row]

@@ -14,6 +14,7 @@ from ....robot_bridge.roads.along import edges_along
 from ....robot_bridge.roads.centrelines import centrelines
 from ....robot_bridge.roads.nearest import NearestEdge
 from ....robot_bridge.roads.network import build_network
+from ....robot_bridge.roads.route import stretch
 from ...language import tr
 from ...sites.ground_reading import DEFAULT_WIDTH_M
 from ..time_slices import Steps
@@ -45,8 +46,8 @@ class ClosedWay:
 def closed_ways(plan: Plan, closures: Sequence[ClosureReport]) -> Steps[tuple[ClosedWay, ...]]:
     """Find the ways of ``plan`` that lead along a closed road, one step for each road and each way.
 
-    A way that only crosses one may be driven. The gateway says of closures no width, so that a road counts as
-    wide as one of which none is known.
+    A way that only crosses one, or turns off where it begins, may be driven. The gateway says of closures no
+    width, so that a road counts as wide as one of which none is known.
     """
     if not closures:
         return ()
@@ -69,7 +70,7 @@ def closed_ways(plan: Plan, closures: Sequence[ClosureReport]) -> Steps[tuple[Cl
 class _Road:
     def __init__(self, closure: ClosureReport) -> None:
         self.by, self.reason = closure.closed_by, closure.reason or ""
-        line = np.array(closure.line, dtype=float)
+        line = _without_ends(np.array(closure.line, dtype=float))
         self._low, self._high = line.min(axis=0) - DEFAULT_WIDTH_M, line.max(axis=0) + DEFAULT_WIDTH_M
         self._nearest = NearestEdge(build_network(centrelines([line], width=[DEFAULT_WIDTH_M])))
         self._all = np.ones(len(self._nearest.network), dtype=bool)
@@ -82,3 +83,13 @@ class _Road:
             return False
         # Most of a long way is far from the road, and need not be looked at.
         return len(edges_along(self._nearest, path[legs[0] : legs[-1] + 2], self._all)) > 0
+
+
+def _without_ends(line: Floats) -> Floats:
+    """Return ``line``, (n, 2), without half a road's width at either end, at most nine tenths of it.
+
+    A way is on a road up to half its width beyond the road's end, which is where other roads begin.
+    """
+    metres = float(np.hypot(*np.diff(line, axis=0).T).sum())
+    cut = min(DEFAULT_WIDTH_M / 2, 0.45 * metres)
+    return stretch(line, cut, metres - cut)

@@ -15,6 +15,7 @@ from ...errors import FleetError
 from ...language import first_of, tr
 from ..desk import Desk
 from ..drafts import in_brief
+from ..messages import PLAN_ASKED, PLAN_SENT
 from .available_robots import has_place
 from .closure_look import ClosureLook
 from .draft import Draft
@@ -47,10 +48,7 @@ class DrivenPlan(QObject):
 
     changed = pyqtSignal()
     """Something new is known of the plan that is driven."""
-    failed = pyqtSignal(str)
     remarked = pyqtSignal(str)
-    settled = pyqtSignal(str)
-    """What ``failed`` told with this text is over."""
 
     def __init__(self, desk: Desk, drafts: DraftPlan, parent: QObject | None = None):
         super().__init__(parent)
@@ -63,8 +61,6 @@ class DrivenPlan(QObject):
         """Robots that wait for the new plan, with the time since which their queues are paused for that."""
         self._followed = FollowedPlan(desk, self)
         self._followed.changed.connect(self.changed)
-        self._followed.failed.connect(self.failed)
-        self._followed.settled.connect(self.settled)
         self._followed.troubled.connect(self._plan_rest_by_itself)
         self._look_at_offer = ClosureLook(self)
         desk.roads.closures_changed.connect(self._take_closures)
@@ -147,7 +143,7 @@ class DrivenPlan(QObject):
                 tr("Nothing was overridden: what was refused is no longer being sent. Look at the plan.")
             )
         self._check_no_emergency()
-        self.settled.emit(_in_words(refusal))
+        self._desk.messages.end(PLAN_SENT)
         self.sending.override(why)
         self.changed.emit()
 
@@ -155,7 +151,7 @@ class DrivenPlan(QObject):
         """Send no more of the plan than robots have by now; raises PlanningError if nothing is refused."""
         if self.refusal is None:
             raise PlanningError(tr("Nothing of the plan waits to be overridden."))
-        self.settled.emit(_in_words(self.refusal))
+        self._desk.messages.end(PLAN_SENT)
         self.sending.leave()
 
     def plan_rest(self, *, try_again: bool = False) -> None:
@@ -221,8 +217,7 @@ class DrivenPlan(QObject):
 
     def clear(self) -> None:
         """Watch no plan any more, and send no more of it; robots go on with what is in their queues."""
-        if self.refusal is not None:
-            self.settled.emit(_in_words(self.refusal))
+        self._desk.messages.end(PLAN_SENT)
         if self.sending is not None:
             self.sending.give_up()
             self._forget_sending()
@@ -306,11 +301,12 @@ class DrivenPlan(QObject):
 
     def _start(self, steps: list[Step], then: Callable[[bool], None]) -> None:
         self.sending = sending = Sending(self._desk, steps, self)
+        self._desk.messages.end(PLAN_SENT)
 
         def ended(done: bool, why: str) -> None:
             self._forget_sending()
             if not done:
-                self.failed.emit(tr("The cone plan was not sent as a whole. {why}", why=why))
+                self._fail(tr("The cone plan was not sent as a whole. {why}", why=why))
             then(done)
             self.changed.emit()
 
@@ -321,8 +317,8 @@ class DrivenPlan(QObject):
 
     def _refused(self) -> None:
         # One text that says where it is decided, in place of the one that every refusal brings.
-        self.settled.emit(self.refusal.told)
-        self.failed.emit(_in_words(self.refusal))
+        self._desk.messages.withdraw(self.refusal.told)
+        self._fail(_in_words(self.refusal))
         self.changed.emit()
 
     def _forget_sending(self) -> None:
@@ -333,14 +329,17 @@ class DrivenPlan(QObject):
         if done:
             self.remarked.emit(tr("The cone plan is in the robots' queues."))
             for text in after_sending(self._desk, self.driven.plan):
-                self.failed.emit(text)
+                self._fail(text)
         self._followed.look_at_queues()
 
     def _try(self, action: Callable[[], None]) -> None:
         try:
             action()
         except FleetError as error:
-            self.failed.emit(str(error))
+            self._desk.report_failure(str(error), PLAN_ASKED)
+
+    def _fail(self, text: str) -> None:
+        self._desk.report_failure(text, PLAN_SENT)
 
 
 def _in_words(refusal: Refusal) -> str:

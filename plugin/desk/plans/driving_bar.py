@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from qgis.PyQt.QtCore import pyqtSignal
-from qgis.PyQt.QtWidgets import QCheckBox, QGridLayout, QLabel, QWidget
+from qgis.PyQt.QtWidgets import QCheckBox, QGridLayout, QWidget
 
 from ...language import first_of, tr, tr_count
 from ..colours import WRONG_STYLE
 from ..drafts import in_brief
+from ..fixed_size import ScrollingText
 from ..push_button import push_button
 from .draft_plan import DraftPlan
 from .driven_plan import DrivenPlan
@@ -30,8 +31,8 @@ class DrivingBar(QWidget):
     def __init__(self, drafts: DraftPlan, driven: DrivenPlan, parent: QWidget | None = None):
         super().__init__(parent)
         self._drafts, self._driven = drafts, driven
-        self.text, self.trouble = _label("fleet_plan_text"), _label("fleet_plan_trouble")
-        self.trouble.setStyleSheet(WRONG_STYLE)
+        self.text = ScrollingText("fleet_plan_text", lines=2)
+        self.trouble = ScrollingText("fleet_plan_trouble", lines=2)
         self._make_sending_buttons()
         self._make_new_plan_buttons()
         self._make_choices()
@@ -92,45 +93,43 @@ class DrivingBar(QWidget):
         grid.setSpacing(4)
         grid.addWidget(self.text, 0, 0, 1, 2)
         grid.addWidget(self.trouble, 1, 0, 1, 2)
-        grid.addWidget(self.send, 2, 0)
-        grid.addWidget(self.clear, 2, 1)
-        # In place of these two, while it is to be decided.
-        grid.addWidget(self.override, 2, 0)
-        grid.addWidget(self.leave, 2, 1)
-        grid.addWidget(self.rest, 3, 0)
-        grid.addWidget(self.again, 3, 1)
-        grid.addWidget(self.confirm, 4, 0)
-        grid.addWidget(self.discard, 4, 1)
-        # Shown only while there is no new plan to confirm.
-        grid.addWidget(self.resume, 4, 0)
-        grid.addWidget(self.by_itself, 5, 0, 1, 2)
+        # Each has a place of its own: no button comes to be where another one was pressed.
+        places = (
+            (self.send, self.clear),
+            (self.override, self.leave),
+            (self.confirm, self.discard),
+            (self.rest, self.resume),
+        )
+        for row, parts in enumerate(places, 2):
+            for column, part in enumerate(parts):
+                grid.addWidget(part, row, column)
+        grid.addWidget(self.again, 6, 0, 1, 2)
+        grid.addWidget(self.by_itself, 7, 0, 1, 2)
+        for column in range(2):
+            grid.setColumnStretch(column, 1)
 
     def refresh(self) -> None:
         """Show how things stand now."""
         drafts, driven = self._drafts, self._driven
         idle = not driven.busy
         is_refused = driven.refusal is not None
-        for button in (self.send, self.clear):
-            button.setVisible(not is_refused)
         for button in (self.override, self.leave):
-            button.setVisible(is_refused)
-        self.send.setEnabled(idle and drafts.draft is not None and driven.driven is None)
+            button.setEnabled(is_refused)
+        can_send = idle and not is_refused and drafts.draft is not None and driven.driven is None
+        self.send.setEnabled(can_send)
         shown = driven.offer or driven.driven or drafts.draft
-        self.clear.setEnabled(idle and shown is not None and not driven.held)
+        self.clear.setEnabled(idle and not is_refused and shown is not None and not driven.held)
         watching = driven.driven is not None and not driven.progress.is_finished(driven.driven.plan)
-        self.rest.setVisible(watching and driven.offer is None)
-        self.rest.setEnabled(idle and watching)
-        self.again.setVisible(watching and bool(driven.trouble.failed))
-        self.confirm.setVisible(driven.offer is not None)
-        self.confirm.setEnabled(idle)
-        self.discard.setVisible(bool(driven.held))
-        self.discard.setEnabled(driven.sending is None)
-        self.resume.setVisible(watching and driven.offer is None and bool(driven.paused))
-        self.resume.setEnabled(idle)
-        self.text.setText(self._in_words())
-        self.text.setToolTip("" if shown is None else how_made(shown))
+        self.rest.setEnabled(idle and watching and driven.offer is None)
+        self.again.setEnabled(watching and bool(driven.trouble.failed))
+        self.confirm.setEnabled(idle and driven.offer is not None)
+        self.discard.setEnabled(bool(driven.held) and driven.sending is None)
+        self.resume.setEnabled(idle and watching and driven.offer is None and bool(driven.paused))
+        told = self._in_words()
+        self.text.setText(told)
+        self.text.setToolTip("\n".join([told, *([] if shown is None else [how_made(shown)])]))
         self.trouble.setText(self._wrong())
-        self.trouble.setVisible(bool(self.trouble.text()))
+        self.trouble.set_text_style(WRONG_STYLE if self.trouble.text() else "")
 
     def _in_words(self) -> str:
         drafts, driven = self._drafts, self._driven
@@ -165,10 +164,3 @@ class DrivingBar(QWidget):
         if driven.trouble and driven.offer is None:
             parts.insert(0, driven.trouble.in_words())
         return "; ".join(parts)
-
-
-def _label(name: str) -> QLabel:
-    label = QLabel()
-    label.setObjectName(name)
-    label.setWordWrap(True)
-    return label

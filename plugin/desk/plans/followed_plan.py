@@ -12,6 +12,7 @@ from ....robot_bridge.messages import GetPlacements, QueueTask, TaskState
 from ...language import tr
 from ...wire.status import Phase
 from ..desk import Desk
+from ..messages import PLAN_TROUBLE
 from ..placement_book import MOST_ASKED
 from .closure_look import ClosureLook
 from .draft import Draft
@@ -29,9 +30,6 @@ class FollowedPlan(QObject):
     """Something new is known of the plan."""
     troubled = pyqtSignal()
     """The plan does not go on as it is; told at each news until somebody has seen to that."""
-    failed = pyqtSignal(str)
-    settled = pyqtSignal(str)
-    """What ``failed`` told with this text is over."""
 
     def __init__(self, desk: Desk, parent: QObject | None = None):
         super().__init__(parent)
@@ -42,7 +40,6 @@ class FollowedPlan(QObject):
         self.trouble = Trouble()
         self.seen_to = Trouble()
         """The trouble that a new plan was made for, or was tried to be."""
-        self._complaints: list[str] = []
         self._look = ClosureLook(self)
         desk.roads.closures_changed.connect(self.look_at_closures)
         desk.queues_changed.connect(self._take_queues)
@@ -147,13 +144,10 @@ class FollowedPlan(QObject):
     def _complain(self, text: str) -> None:
         """Tell what a new plan is to mend: it hangs there until one was agreed to, and no longer."""
         self._settle()
-        self._complaints.append(text)
-        self.failed.emit(text)
+        self._desk.report_failure(text, PLAN_TROUBLE)
 
     def _settle(self) -> None:
-        for text in self._complaints:
-            self.settled.emit(text)
-        self._complaints.clear()
+        self._desk.messages.end(PLAN_TROUBLE)
 
     def _note(self, plan: Plan, tasks: Tasks) -> None:
         for one in plan.robots:

@@ -22,6 +22,7 @@ from ...language import tr
 from ..commands.override_dialog import OverrideDialog
 from ..desk import Desk
 from ..dock_action import ActionDock
+from ..messages import PLAN_ASKED, Level
 from ..placement_book import MOST_ASKED
 from ..push_button import push_button
 from ..safe_question import safe_question
@@ -64,7 +65,6 @@ class PlanDock(ActionDock):
         self.progress = QProgressBar()
         self._turn = desk.beat.turn()
         self.question: QMessageBox | None = None
-        self._refusals: list[str] = []
         self._generation = desk.picture.generation
         self._lay_out()
         self._wire()
@@ -91,9 +91,7 @@ class PlanDock(ActionDock):
                 )
             )
             return
-        for why in self._refusals:
-            self._desk.settled.emit(why)
-        self._refusals.clear()
+        self._desk.messages.end(PLAN_ASKED)
         try:
             self.drafts.make(preview=preview)
         except FleetError as error:
@@ -145,7 +143,9 @@ class PlanDock(ActionDock):
         for button in (self.preview, self.solve):
             button.setEnabled(not driven.busy)
         self.cancel.setEnabled(self.drafts.busy)
-        self.progress.setVisible(self.drafts.busy)
+        if not self.drafts.busy:
+            self.progress.reset()
+        self.progress.setEnabled(self.drafts.busy)
 
     def _placements_changed(self) -> None:
         if self._desk.placements and self.isVisible():
@@ -190,6 +190,7 @@ class PlanDock(ActionDock):
             self._clear()
 
     def _clear(self) -> None:
+        self._desk.messages.end(PLAN_ASKED)
         self.driven.clear()
         self.drafts.put(None)
 
@@ -202,17 +203,15 @@ class PlanDock(ActionDock):
         self._desk.canvas.refresh()
 
     def _refuse(self, why: str) -> None:
-        """Say why there is no plan; it hangs there until another one is asked for."""
-        self._refusals.append(why)
-        self._desk.failed.emit(why)
+        """Say why something of a plan was not done; it hangs there until something else is asked for."""
+        self._desk.report_failure(why, PLAN_ASKED)
 
-    def _try(self, action: Callable[[], object]) -> bool:
+    def _try(self, action: Callable[[], object]) -> None:
+        self._desk.messages.end(PLAN_ASKED)
         try:
             action()
         except FleetError as error:
-            self._desk.failed.emit(str(error))
-            return False
-        return True
+            self._refuse(str(error))
 
     # --- how it is put together ---
 
@@ -233,14 +232,15 @@ class PlanDock(ActionDock):
         rows.addWidget(self.bar)
         self.tabs = QTabWidget()
         self.tabs.setObjectName("fleet_plan_tabs")
-        self.tabs.addTab(plan, tr("Plan"))
+        # The tabs are outside of what scrolls: they are seen wherever that stands.
+        self.tabs.addTab(TallContent(plan), tr("Plan"))
         self.tabs.addTab(self.placed, tr("As placed"))
         body = QWidget()
         outer = QVBoxLayout(body)
         outer.setContentsMargins(8, 6, 8, 8)
         outer.addWidget(self.tabs)
         self.tree.setMinimumHeight(100)
-        self.setWidget(TallContent(body))
+        self.setWidget(body)
         self.setFocusProxy(self.form.cones)
 
     def _wire(self) -> None:
@@ -267,10 +267,8 @@ class PlanDock(ActionDock):
         self.drafts.changed.connect(self._refresh)
         self.driven.changed.connect(self._refresh)
         self.drafts.refused.connect(self._refuse)
-        self.driven.failed.connect(desk.failed)
         self.driven.remarked.connect(desk.remarked)
-        self.driven.settled.connect(desk.settled)
-        self.collecting.refused.connect(desk.complained)
+        self.collecting.refused.connect(lambda text: desk.messages.post(text, Level.WARNING, PLAN_ASKED))
         self.placed.refresh_wanted.connect(self._ask_for_placements)
         self.placed.collect_wanted.connect(self.collect)
         self.placed.shown.connect(self._show_placed_layer)

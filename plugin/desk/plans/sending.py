@@ -24,6 +24,7 @@ from ...errors import NotSentError
 from ...language import first_of, tr
 from ...wire.outbox import Answer
 from ..desk import Desk
+from ..messages import PLAN_SENT
 
 Request = SetQueue | PauseQueue | ResumeQueue | TakeOver
 
@@ -102,7 +103,7 @@ class Sending(QObject):
             return False
         self._sent = request if override is None else replace(request, override=override)
         try:
-            self._key = self._desk.ask(self._sent, self._now.words)
+            self._key = self._desk.ask(self._sent, self._now.words, PLAN_SENT)
         except NotSentError as error:
             self._end(False, str(error))
         return True

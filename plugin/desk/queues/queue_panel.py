@@ -6,14 +6,14 @@ from collections.abc import Callable
 
 import numpy as np
 from qgis.core import QgsPointXY
-from qgis.PyQt.QtCore import Qt
-from qgis.PyQt.QtWidgets import QHBoxLayout, QLabel, QSizePolicy, QToolButton, QVBoxLayout, QWidget
+from qgis.PyQt.QtWidgets import QHBoxLayout, QSizePolicy, QStackedWidget, QToolButton, QVBoxLayout, QWidget
 
 from ....robot_bridge.messages import QueueReport, QueueState, TaskState
 from ...errors import FleetError
 from ...language import tr
 from ..colours import WRONG_STYLE
 from ..desk import Desk
+from ..fixed_size import ElidedText, SteadyButton
 from ..going_there import GoingThere
 from .queue_edits import QueueEdits
 from .task_list import TaskList
@@ -31,10 +31,12 @@ class QueuePanel(QWidget):
         self.setObjectName("fleet_queue")
         self._desk = desk
         self._edits = edits
-        self._head = _label("fleet_queue_head")
-        self._conflict = _label("fleet_queue_conflict")
+        self._head = ElidedText("fleet_queue_head")
+        self._conflict = ElidedText("fleet_queue_conflict")
         self._conflict.setStyleSheet(WRONG_STYLE)
-        self._last = _label("fleet_queue_last")
+        self._last = ElidedText("fleet_queue_last")
+        self._foot = QStackedWidget()
+        """The conflict while there is one; else the task that ended last."""
         self.list = TaskList()
         self._buttons(
             tr("Move the selected task one up (Alt+Up)"),
@@ -43,11 +45,14 @@ class QueuePanel(QWidget):
         rows = QVBoxLayout(self)
         rows.setContentsMargins(0, 2, 0, 0)
         rows.setSpacing(3)
-        rows.addWidget(self._head)
-        rows.addWidget(self._conflict)
-        rows.addWidget(self.list, 1)
-        rows.addWidget(self._last)
+        # At the top: what takes room from the panel takes it from the end of the list.
         rows.addLayout(self._row)
+        rows.addWidget(self._head)
+        rows.addWidget(self.list, 1)
+        for line in (self._last, self._conflict):
+            self._foot.addWidget(line)
+        self._foot.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Fixed)
+        rows.addWidget(self._foot)
         self._listen()
         self._show()
 
@@ -60,7 +65,7 @@ class QueuePanel(QWidget):
             tr("Do now"),
             tr("Let the robot do the selected task at once; what it is doing comes next (Ctrl+Enter)"),
         )
-        self._hold = _button("fleet_queue_hold", tr("Pause"), "")
+        self._hold = _button("fleet_queue_hold", tr("Pause"), "", (tr("Resume"),))
         self._row = QHBoxLayout()
         self._row.setSpacing(4)
         for button in (self._up, self._down, self._remove, self._first, self._hold):
@@ -87,10 +92,8 @@ class QueuePanel(QWidget):
         self._head.setText(self._in_words(queue))
         conflict = self._edits.conflict(self._desk.selected or "")
         self._conflict.setText(conflict)
-        self._conflict.setVisible(bool(conflict))
-        last = last_ended_in_words(queue) if queue else ""
-        self._last.setText(last)
-        self._last.setVisible(bool(last))
+        self._foot.setCurrentWidget(self._conflict if conflict else self._last)
+        self._last.setText(last_ended_in_words(queue) if queue else "")
         self.list.show_tasks(list(queue.tasks) if queue else [])
         self._show_buttons()
 
@@ -174,18 +177,8 @@ class QueuePanel(QWidget):
         self._desk.canvas.refresh()
 
 
-def _label(name: str) -> QLabel:
-    label = QLabel()
-    label.setObjectName(name)
-    label.setTextFormat(Qt.TextFormat.PlainText)
-    label.setWordWrap(True)
-    label.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Preferred)
-    return label
-
-
-def _button(name: str, text: str, tip: str) -> QToolButton:
-    button = QToolButton()
-    button.setObjectName(name)
+def _button(name: str, text: str, tip: str, others: tuple[str, ...] = ()) -> QToolButton:
+    button = SteadyButton(name, (text, *others))
     button.setText(text)
     button.setToolTip(tip)
     button.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)

@@ -11,8 +11,7 @@ import numpy.typing as npt
 
 from ....robot_bridge.messages import Abort, CommandReport, CommandState, CommandStep
 from ...language import tr
-from ..command_book import UNDER_WAY, asked_at, in_words
-from ..state_words import COMMAND_STATES
+from ..command_book import UNDER_WAY, asked_at, in_words, state_word
 from ..time_slices import Steps
 
 AT_ONCE = 100
@@ -47,7 +46,7 @@ class Mark:
             "{robot}: {command} · {state} by {by}",
             robot=self.command.robot,
             command=in_words(self.command),
-            state=COMMAND_STATES[self.state],
+            state=state_word(self.command.op, self.state),
             by=self.step.by,
         )
         return text + (f" ({self.step.reason})" if self.step.reason else "")

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from qgis.core import QgsApplication
-from qgis.PyQt.QtWidgets import QComboBox, QHBoxLayout, QLabel, QToolButton, QVBoxLayout, QWidget
+from qgis.PyQt.QtWidgets import QComboBox, QHBoxLayout, QToolButton, QVBoxLayout, QWidget
 
 from ...errors import FleetError
 from ...language import tr, tr_count
 from ..desk import Desk
 from ..dock_action import ActionDock
+from ..fixed_size import ScrollingText
+from ..messages import REPLAY, SELECTION, Level, Topic
 from ..time_slices import ONE_STEP, Steps, TimeSlices
 from ..wall_clock import date_and_time
 from .arranging import Arranging
@@ -20,7 +22,7 @@ from .replay_map import ReplayMap
 from .stretch_form import StretchForm
 from .time_line import TimeLine
 
-BANNER = "background: #7B1FA2; color: white; font-weight: bold; padding: 3px 8px;"
+BANNER = "background: #7B1FA2; color: white; font-weight: bold; padding: 0px 6px;"
 
 PLAY, PAUSE = "/temporal_navigation/forward.svg", "/temporal_navigation/pause.svg"
 
@@ -42,10 +44,8 @@ class ReplayDock(ActionDock):
         self.form = StretchForm()
         self.map = ReplayMap(desk.canvas)
         self.map.setTemporalController(self.clockwork.controller)
-        self.banner = QLabel()
-        self.banner.setObjectName("fleet_replay_banner")
-        self.banner.setStyleSheet(BANNER)
-        self.banner.setWordWrap(True)
+        self.banner = ScrollingText("fleet_replay_banner", lines=2)
+        self.banner.set_text_style(BANNER)
         self.line = TimeLine()
         self.play = QToolButton()
         self.play.setObjectName("fleet_replay_play")
@@ -77,20 +77,22 @@ class ReplayDock(ActionDock):
     def load(self) -> None:
         """Fetch the time in the form and begin to show it."""
         since, until = self.form.stretch()
+        self._desk.messages.end(REPLAY)
         if self._desk.site is None:
-            self._desk.complained.emit(tr("There is nothing to replay yet. Connect to a gateway first."))
+            self._complain(tr("There is nothing to replay yet. Connect to a gateway first."))
             return
         if until <= since:
-            self._desk.complained.emit(tr("The replay's time ends before it begins. Correct one of the two."))
+            self._complain(tr("The replay's time ends before it begins. Correct one of the two."))
             return
         robots = list(self._desk.selection) if self.form.selected.isChecked() else []
         if self.form.selected.isChecked() and not robots:
-            self._desk.complained.emit(tr("No robot is selected to be replayed. Select one, or replay all."))
+            text = tr("No robot is selected to be replayed. Select one, or replay all.")
+            self._complain(text, SELECTION)
             return
         try:
             self.fetching.begin(since, until, robots)
         except FleetError as error:
-            self._desk.failed.emit(tr("The replay was not loaded: {error}", error=error))
+            self._desk.report_failure(tr("The replay was not loaded: {error}", error=error), REPLAY)
             return
         self._robots = robots
         self._showing.stop()
@@ -107,7 +109,8 @@ class ReplayDock(ActionDock):
         self.form.stop_wanted.connect(self.fetching.stop)
         self.fetching.progressed.connect(self._progressed)
         self.fetching.ended.connect(self._ended)
-        self.layer.failed.connect(self._desk.complained)
+        self.layer.failed.connect(self._complain)
+        self.layer.changed.connect(self.map.follow)
         self.line.wanted.connect(self.clockwork.seek)
         self.clockwork.moved.connect(self._show)
         self.line.play_wanted.connect(self._play_or_hold)
@@ -140,7 +143,7 @@ class ReplayDock(ActionDock):
         self.form.show_busy(False)
         history = self.fetching.history
         if why:
-            self._desk.complained.emit(why)
+            self._complain(why)
         if not len(history):
             self._say(why or tr("No positions are stored of that time."))
             return
@@ -165,7 +168,7 @@ class ReplayDock(ActionDock):
         try:
             self.map.show_all(self.fetching.history)
         except FleetError as error:
-            self._desk.complained.emit(str(error))
+            self._complain(str(error))
 
     def _show_robots(self) -> None:
         self._show(self.clockwork.moment)
@@ -180,7 +183,7 @@ class ReplayDock(ActionDock):
             self.map.show_moment(self.fetching.history, self._past.commands, moment, self._desk.selection)
         except FleetError as error:
             self.clockwork.play(False)
-            self._desk.complained.emit(str(error))
+            self._complain(str(error))
 
     def _commands_changed(self, *_: object) -> None:
         if self.clockwork.is_set:
@@ -212,6 +215,10 @@ class ReplayDock(ActionDock):
         self.line.show_time(0.0, 0.0)
         self.line.show_marks(NO_MARKS)
         self._say(tr("Choose a time and press Load."))
+
+    def _complain(self, text: str, *topics: Topic) -> None:
+        """Say what is wrong with what is loaded, until something else is."""
+        self._desk.messages.post(text, Level.WARNING, REPLAY, *topics)
 
     def _say(self, text: str) -> None:
         self._told = text

@@ -23,7 +23,7 @@ from qgis.PyQt.QtCore import QObject, pyqtSignal
 from ....robot_bridge.messages import SiteReport
 from ....robot_bridge.sites.frame import SiteFrame
 from ...language import tr
-from ...sites.fleet_group import fleet_group, remove_if_empty
+from ...sites.fleet_group import fleet_group, leave_clean, remove_if_empty
 from ..live_layers import give_style, make_live
 from ..placement import frame_of
 from ..time_slices import Steps, TimeSlices
@@ -44,9 +44,14 @@ AT_ONCE = 100
 
 
 class ReplayLayer(QObject):
-    """The layer *Trajectories (replay)*, made beside the window and written bit by bit."""
+    """The layer *Trajectories (replay)*, made beside the window and written bit by bit.
+
+    The replay's own map shows it; in the project it is not ticked.
+    """
 
     failed = pyqtSignal(str)
+    changed = pyqtSignal()
+    """The layer is in the project now, or out of it."""
 
     def __init__(self, project: QgsProject, parent: QObject | None = None):
         super().__init__(parent)
@@ -94,9 +99,10 @@ class ReplayLayer(QObject):
             dirty = self._project.isDirty()
             self._out.append((self._project.takeMapLayer(self.layer), self._lines))
             remove_if_empty(self._project)
-            self._project.setDirty(dirty)
+            leave_clean(self._project, dirty)
             self._freeing.begin_soon(self._free())
         self._id, self._lines = None, []
+        self.changed.emit()
 
     def remove(self) -> None:
         """Take the layer out of the project and be done with it."""
@@ -123,9 +129,11 @@ class ReplayLayer(QObject):
         if not give_style(self._project, layer):
             layer.loadNamedStyle(str(STYLE))
         self._project.addMapLayer(layer, False)
-        fleet_group(self._project).addLayer(layer)
+        # What was has no place among what is: only who ticks the layer has it on the live map.
+        fleet_group(self._project).addLayer(layer).setItemVisibilityChecked(False)
         self._id = layer.id()
-        self._project.setDirty(dirty)
+        leave_clean(self._project, dirty)
+        self.changed.emit()
         return layer
 
     def _made(self) -> None:

@@ -17,7 +17,7 @@ from ..live.overlay import FleetOverlay
 from ..live.plans import Plans
 from ..live.scene import Placer, Scene
 from ..live.trails import Trails
-from ..live_layers import MARK
+from ..live_layers import MARK, live_layers
 from ..placement import Placement
 from .history import History
 from .past_commands import PastCommands
@@ -92,10 +92,11 @@ class ReplayMap(QgsMapCanvas):
         show_places(self, self._place().to_map(corners))
 
     def follow(self, *_what: object) -> None:
-        """Take over the live map's layers, CRS and rotation."""
+        """Take over the live map's layers, CRS and rotation; what was driven lies above the layers."""
         self.setDestinationCrs(self._live.mapSettings().destinationCrs())
         self.setRotation(self._live.rotation())
-        layers = [layer for layer in self._live.layers() if layer.customProperty(MARK) in (None, OWN_LAYER)]
+        own = [one for one in live_layers(QgsProject.instance()) if one.customProperty(MARK) == OWN_LAYER]
+        layers = own + [layer for layer in self._live.layers() if layer.customProperty(MARK) is None]
         if layers != self.layers():
             self.setLayers(layers)
 

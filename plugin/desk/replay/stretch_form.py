@@ -5,9 +5,10 @@ from __future__ import annotations
 import time
 
 from qgis.PyQt.QtCore import QDateTime, Qt, pyqtSignal
-from qgis.PyQt.QtWidgets import QCheckBox, QComboBox, QDateTimeEdit, QGridLayout, QPushButton, QWidget
+from qgis.PyQt.QtWidgets import QCheckBox, QComboBox, QDateTimeEdit, QGridLayout, QWidget
 
 from ...language import tr
+from ..fixed_size import SteadyPushButton
 from .clockwork import local
 
 LAST = {
@@ -37,8 +38,7 @@ class StretchForm(QWidget):
         self.selected.setToolTip(tr("Load what the selected robots did, not what all did"))
         self.since.setToolTip(tr("From when on"))
         self.until.setToolTip(tr("Until when"))
-        self.load = QPushButton(tr("Load"))
-        self.load.setObjectName("fleet_replay_load")
+        self.load = SteadyPushButton("fleet_replay_load", (tr("Load"), tr("Stop")))
         self._is_busy = False
         self._lay_out()
         self.last.currentIndexChanged.connect(self._last_changed)

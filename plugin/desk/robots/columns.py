@@ -8,8 +8,8 @@ import numpy as np
 
 from ....robot_bridge.messages import CommandReport, CommandState, SetPath, SetPosEnd
 from ...language import tr
+from ..last_heard import age_in_words
 from ..state_words import COMMAND_STATES, ROBOT_STATES, longest
-from .last_heard import age_in_words
 
 
 @dataclass(frozen=True)
@@ -70,15 +70,23 @@ def short_link(told: dict) -> str:
     return SHORT.get(link, link)
 
 
-def task_in_words(task: CommandReport | None, told: dict) -> str:
-    """Return what a robot is doing, else what it says of itself."""
+def idle_in_words(*, stopped: bool, paused: bool) -> str:
+    """Return how a robot without a task stands: who was paused goes on when it is told so."""
+    return tr("paused") if paused else tr("stopped") if stopped else ""
+
+
+def task_in_words(task: CommandReport | None, told: dict, *, paused: bool = False) -> str:
+    """Return what a robot is doing, else what it says of itself, else whether it was ``paused``."""
     if task is None:
-        return str(told.get("status") or (tr("stopped") if told.get("stopped") else ""))
+        idle = idle_in_words(stopped=bool(told.get("stopped")), paused=paused)
+        return str(told.get("status") or idle)
     if task.state is CommandState.ACKNOWLEDGED:
-        if task.op == SetPath.__name__:
-            return tr("on route")
-        return tr("to cone") if task.params.get("cone") else tr("to target")
-    target = tr("cone") if task.params.get("cone") else tr("target")
+        if task.params.get("cone"):
+            return tr("to cone")
+        return tr("on route") if task.op == SetPath.__name__ else tr("to target")
+    if task.params.get("cone"):
+        return f"{tr('cone')} {COMMAND_STATES[task.state]}"
+    target = tr("target")
     name = {SetPosEnd.__name__: target, SetPath.__name__: tr("route")}.get(task.op, task.op)
     return f"{name} {COMMAND_STATES[task.state]}"
 

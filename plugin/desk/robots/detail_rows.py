@@ -9,13 +9,13 @@ from ....robot_bridge.messages import CommandReport, QueueReport
 from ...language import tr
 from ..alarms.alarm import Alarm
 from ..alarms.words import state_in_words
-from ..command_book import asked_at, in_words
+from ..command_book import asked_at, in_words, state_word
+from ..last_heard import heard_in_words
 from ..picture import RobotView
 from ..queues.task_words import queue_in_words, task_in_words
 from ..queues.task_words import state_in_words as task_state
 from ..state_words import COMMAND_STATES, ROBOT_STATES
 from ..wall_clock import date_and_time, time_of_day
-from .last_heard import heard_in_words
 
 Row = tuple[str, str]
 TIMES = ("device_time", "fix_time")
@@ -81,7 +81,7 @@ def command_rows(commands: Iterable[CommandReport]) -> list[Row]:
         why = report.steps[-1].reason if report.steps else None
         off = "" if report.deviation is None else tr(", {metres:.2f} m off", metres=report.deviation)
         because = f": {why}" if why else ""
-        what = f"{in_words(report)}: {COMMAND_STATES[report.state]}{off}{because}"
+        what = f"{in_words(report)}: {state_word(report.op, report.state)}{off}{because}"
         told = tr("{told}, by {operator}", told=what, operator=report.operator)
         rows.append((time_of_day(asked_at(report)), told))
     return rows

@@ -9,13 +9,14 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from ....robot_bridge.messages import RobotState
+from ....robot_bridge.messages import QueueState, RobotState
 from ...language import tr
 from ...wire.sightings import STATES
 from ..command_book import CommandBook
 from ..picture import RobotPicture
+from ..queue_book import QueueBook
 from ..state_words import ROBOT_STATES
-from .columns import SHORT, task_in_words
+from .columns import SHORT, idle_in_words, task_in_words
 from .deviations import Deviations
 
 Floats = npt.NDArray[np.float64]
@@ -44,6 +45,8 @@ class FleetRows:
     state: npt.NDArray[np.intp]
     xy: Floats
     numbers: dict[str, Floats]
+    paused: frozenset[str]
+    """Robots with a queue that is paused."""
     _off: dict[int, float] = field(default_factory=dict)
     _texts: dict[str, list[str]] = field(default_factory=dict)
 
@@ -56,7 +59,8 @@ class FleetRows:
 
     def task(self, row: int) -> str:
         """Return what a robot is doing, in words."""
-        return task_in_words(self.book.task_of(self.names[row]), self.told(row))
+        name = self.names[row]
+        return task_in_words(self.book.task_of(name), self.told(row), paused=name in self.paused)
 
     def off(self, row: int) -> float:
         """Return how far a robot is from where it was told to be, NaN where nobody can tell."""
@@ -136,6 +140,8 @@ class FleetRows:
         says = self.picture.texts("status")
         silent = ("", tr("stopped"))
         texts = [text or silent[bool(stands)] for text, stands in zip(says, stopped, strict=True)]
+        for row in self._paused_rows():
+            texts[row] = says[row] or idle_in_words(stopped=True, paused=True)
         for task in self.book.under_way():
             row = self.picture.row(task.robot)
             if row is not None:
@@ -153,14 +159,22 @@ class FleetRows:
         has = self.picture.says("status", word)
         if word in tr("stopped").casefold():
             has |= (self.picture.column("stopped") == 1.0) & ~self.picture.says("status", "")
+        told = ~self.picture.says("status", "")
+        for row in self._paused_rows():
+            has[row] |= bool(told[row]) and word in tr("paused").casefold()
         for task in self.book.under_way():
             row = self.picture.row(task.robot)
             if row is not None:
                 has[row] = word in task_in_words(task, {}).casefold()
         return has
 
+    def _paused_rows(self) -> list[int]:
+        return [row for robot in self.paused if (row := self.picture.row(robot)) is not None]
 
-def fleet_rows(picture: RobotPicture, book: CommandBook, deviations: Deviations, moment: float) -> FleetRows:
+
+def fleet_rows(
+    picture: RobotPicture, book: CommandBook, queues: QueueBook, deviations: Deviations, moment: float
+) -> FleetRows:
     """Return all robots at ``moment`` of the desk's clock."""
     robots = picture.arrays(moment)
     numbers = {
@@ -169,4 +183,5 @@ def fleet_rows(picture: RobotPicture, book: CommandBook, deviations: Deviations,
         "Age": robots.age,
         "Ping": picture.column("latency"),
     }
-    return FleetRows(picture, book, deviations, robots.names, robots.state, robots.xy, numbers)
+    paused = frozenset(queue.robot for queue in queues if queue.state is QueueState.PAUSED)
+    return FleetRows(picture, book, deviations, robots.names, robots.state, robots.xy, numbers, paused)

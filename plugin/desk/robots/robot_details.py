@@ -24,6 +24,7 @@ from ...errors import FleetError, PlacementError
 from ...language import tr
 from ..alarms.alarm import Alarm
 from ..desk import Desk
+from ..fixed_size import ElidedText
 from ..small_views import shrink
 from . import detail_rows as rows_of
 from .deviations import Deviations
@@ -61,20 +62,14 @@ class RobotDetails(QWidget):
         self._asked_for = ""
         self.alarms_of: Callable[[str], list[Alarm]] = lambda robot: []
         """Returns a robot's alarms."""
-        self._title = QLabel()
-        self._title.setObjectName("fleet_details_title")
-        self._title.setTextFormat(Qt.TextFormat.PlainText)
-        self._title.setWordWrap(True)
+        self._title = ElidedText("fleet_details_title")
         font = QFont(self._title.font())
         font.setBold(True)
         self._title.setFont(font)
         self._tree = _tree()
         self._sections = {name: _section(self._tree, name) for name in SECTIONS}
         self._picture = _Picture()
-        self._about = QLabel()
-        self._about.setObjectName("fleet_image_text")
-        self._about.setTextFormat(Qt.TextFormat.PlainText)
-        self._about.setWordWrap(True)
+        self._about = ElidedText("fleet_image_text")
         self._image = LastImage(desk, self)
         self._lay_out()
         self._image.changed.connect(self._show_image)
@@ -180,7 +175,6 @@ class RobotDetails(QWidget):
 
     def _show_image(self) -> None:
         self._about.setText(self._image.text)
-        self._about.setVisible(bool(self._image.text))
         self._picture.show_image(None if self._image.image is None else QPixmap.fromImage(self._image.image))
 
 

@@ -17,12 +17,13 @@ from ..colours import STATE_COLOURS, for_letters
 from ..command_book import CommandBook, in_words
 from ..glyphs import state_icon
 from ..item_values import TO_THE_RIGHT
+from ..last_heard import heard_in_words
 from ..picture import RobotPicture
+from ..queue_book import QueueBook
 from ..state_words import COMMAND_STATES, ROBOT_STATES
 from .columns import COLUMNS, POSITION, TITLES, number_in_words, short_link
 from .deviations import Deviations
 from .fleet_rows import FleetRows, Rows, Which, fleet_rows
-from .last_heard import heard_in_words
 
 ANSWERED_ROLES = frozenset(
     {
@@ -39,10 +40,13 @@ ANSWERED_ROLES = frozenset(
 class RobotModel(QAbstractTableModel):
     """One row for each robot that is listed. ``rows`` are looked at afresh by :meth:`show`."""
 
-    def __init__(self, picture: RobotPicture, book: CommandBook, parent: QObject | None = None):
+    def __init__(
+        self, picture: RobotPicture, book: CommandBook, queues: QueueBook, parent: QObject | None = None
+    ):
         super().__init__(parent)
         self.deviations = Deviations(book)
-        self._fleet: FleetRows = fleet_rows(picture, book, self.deviations, 0.0)
+        self._queues = queues
+        self._fleet: FleetRows = fleet_rows(picture, book, queues, self.deviations, 0.0)
         self._arrangement = picture.arrangement
         self._order: Rows = np.empty(0, dtype=np.intp)
         self._row_at: Rows = np.empty(0, dtype=np.intp)
@@ -91,7 +95,7 @@ class RobotModel(QAbstractTableModel):
     def show(self, moment: float) -> None:
         """Show what is known at ``moment`` of the desk's clock."""
         picture = self._fleet.picture
-        fleet = fleet_rows(picture, self._fleet.book, self.deviations, moment)
+        fleet = fleet_rows(picture, self._fleet.book, self._queues, self.deviations, moment)
         if picture.arrangement != self._arrangement:
             # Rows of another arrangement are other robots.
             self._arrangement = picture.arrangement
@@ -106,6 +110,10 @@ class RobotModel(QAbstractTableModel):
     def count(self) -> int:
         """Return how many robots there are, listed or not."""
         return len(self._fleet)
+
+    def names(self) -> list[str]:
+        """Return the names of all robots, listed or not."""
+        return self._fleet.names
 
     def name_at(self, row: int) -> str:
         """Return the name of the robot in ``row``."""

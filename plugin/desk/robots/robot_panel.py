@@ -1,4 +1,4 @@
-"""The table of robots with what is above it: a search, which robots are listed, and which columns."""
+"""The table of robots, and what narrows it: a search, which robots are listed, and which columns."""
 
 from __future__ import annotations
 
@@ -8,16 +8,15 @@ from qgis.PyQt.QtCore import Qt
 from qgis.PyQt.QtWidgets import (
     QComboBox,
     QHBoxLayout,
-    QLabel,
     QMenu,
     QSizePolicy,
     QToolButton,
-    QVBoxLayout,
     QWidget,
 )
 
 from ...language import tr
 from ..desk import Desk
+from ..fixed_size import ElidedText
 from .columns import COLUMNS
 from .fleet_rows import Which
 from .robot_table import RobotTable
@@ -34,7 +33,11 @@ WHICH = {
 
 
 class RobotPanel(QWidget):
-    """What is typed narrows the list at once; the line says how many of how many are listed."""
+    """The line of filters: what is typed narrows the table at once; it says how many of how many are listed.
+
+    The table itself stands apart, above it: as the part of the panel that gives way to others it must move no
+    button.
+    """
 
     def __init__(self, desk: Desk, parent: QWidget | None = None):
         super().__init__(parent)
@@ -64,17 +67,13 @@ class RobotPanel(QWidget):
         return button
 
     def _lay_out(self) -> None:
-        head = QHBoxLayout()
+        head = QHBoxLayout(self)
+        head.setContentsMargins(0, 0, 0, 0)
         head.setSpacing(4)
         head.addWidget(self._search, 1)
         head.addWidget(self._which)
         head.addWidget(self._count)
         head.addWidget(self._columns)
-        rows = QVBoxLayout(self)
-        rows.setContentsMargins(0, 0, 0, 0)
-        rows.setSpacing(4)
-        rows.addLayout(head)
-        rows.addWidget(self.table, 1)
 
     def _narrow(self, *_what: object) -> None:
         self.table.robots.text = self._search.text()
@@ -146,11 +145,11 @@ def _choice_of_robots() -> QComboBox:
     return box
 
 
-def _counter() -> QLabel:
-    label = QLabel()
-    label.setObjectName("fleet_robot_count")
-    # A panel that grew with each digit would move the map.
-    label.setMinimumWidth(label.fontMetrics().horizontalAdvance("10000"))
+def _counter() -> ElidedText:
+    label = ElidedText("fleet_robot_count")
+    # One that grew with each digit would move what is beside it.
+    widest = tr("{listed} of {all}", listed=100, all=1000)
+    label.setSizePolicy(QSizePolicy.Policy.Fixed, QSizePolicy.Policy.Fixed)
+    label.setFixedWidth(label.fontMetrics().horizontalAdvance(widest))
     label.setAlignment(Qt.AlignmentFlag.AlignCenter)
-    label.setSizePolicy(QSizePolicy.Policy.Minimum, QSizePolicy.Policy.Preferred)
     return label

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import heapq
+
 from qgis.core import QgsSettings
 from qgis.PyQt.QtCore import (
     QItemSelection,
@@ -11,8 +13,7 @@ from qgis.PyQt.QtCore import (
     Qt,
     pyqtSignal,
 )
-from qgis.PyQt.QtGui import QShowEvent
-from qgis.PyQt.QtWidgets import QAbstractItemView, QHeaderView, QTableView, QWidget
+from qgis.PyQt.QtWidgets import QAbstractItemView, QApplication, QHeaderView, QTableView, QWidget
 
 from ...errors import PlacementError
 from ...language import tr
@@ -21,7 +22,7 @@ from ..desk import Desk
 from ..going_there import GoingThere
 from ..picture import Gone
 from ..small_views import shrink
-from .columns import COLUMNS, TASK
+from .columns import COLUMNS, TASK, TITLES
 from .position_crs import PositionCrs
 from .robot_model import RobotModel
 
@@ -29,8 +30,17 @@ MANY = 500
 """With more robots the table is renewed half as often, with ten times as many four times as seldom."""
 HIDDEN_KEY = "fleet_supervisor/robot_table/hidden"
 TASK_WIDTH = 70
+NAME = TITLES.index("Robot")
+BESIDE_NAME = 32
+"""Pixels of the icon beside a name, of what Qt leaves free, and two more: Qt cuts by half a pixel."""
+WIDEST_NAME = 300
+"""Pixels that names get at most; longer ones are cut in their middle, since they differ at their ends."""
+LONGEST_NAMES = 20
+"""Names of which the widest is looked for: those of the most characters."""
 ROWS_AT_LEAST = 4
-"""Robots that are seen at once however low the panel is: what else it shows is scrolled then."""
+"""Robots that are seen at once however low the panel is."""
+OF_THEMES = 2
+"""Pixels that QGIS's themes draw around heads and rows, and that stand in no size hint."""
 
 
 class RobotTable(QTableView):
@@ -46,8 +56,10 @@ class RobotTable(QTableView):
         self._desk = desk
         self._turn = desk.beat.turn()
         self._marking = self._is_reset = False
+        self._is_fitting = self._is_fitted_by_hand = False
+        self._fitted: tuple[int, int] = (0, 0)
         self.positions = PositionCrs(desk.project, self)
-        self._model = RobotModel(desk.picture, desk.book, self)
+        self._model = RobotModel(desk.picture, desk.book, desk.queues, self)
         self._model.place_in_words = self._place
         self.setModel(self._model)
         self._model.modelReset.connect(self._reset)
@@ -72,6 +84,7 @@ class RobotTable(QTableView):
         self._marking = True
         self._model.show(self._desk.clock())
         self._marking = False
+        self._fit_names()
         if self._is_reset:
             # Rows that only changed places took their selection along.
             self._is_reset = False
@@ -88,6 +101,25 @@ class RobotTable(QTableView):
         self._model.deviations.forget(gone.names)
         self.refresh()
 
+    def _fit_names(self) -> None:
+        """Give the names the room that they take, whatever the other columns have left, until a hand does."""
+        picture = self._desk.picture
+        known = picture.arrangement, len(picture)
+        if self._is_fitted_by_hand or known == self._fitted:
+            return
+        self._fitted = known
+        longest = heapq.nlargest(LONGEST_NAMES, self._model.names(), key=len)
+        widest = max(map(self.fontMetrics().horizontalAdvance, longest), default=0) + BESIDE_NAME
+        self._is_fitting = True
+        # Wider only: a column that becomes narrower moves those beside it under the mouse.
+        self.setColumnWidth(NAME, max(self.columnWidth(NAME), min(widest, WIDEST_NAME)))
+        self._is_fitting = False
+
+    def _resized(self, column: int, _before: int, _now: int) -> None:
+        # A click on the head makes room for the mark of sorting, which is nobody's wish for a width.
+        is_dragged = bool(QApplication.mouseButtons() & Qt.MouseButton.LeftButton)
+        self._is_fitted_by_hand |= column == NAME and is_dragged and not self._is_fitting
+
     def _set_up(self) -> None:
         self.setSelectionBehavior(QAbstractItemView.SelectionBehavior.SelectRows)
         self.setSelectionMode(QAbstractItemView.SelectionMode.ExtendedSelection)
@@ -95,6 +127,7 @@ class RobotTable(QTableView):
         self.setAlternatingRowColors(True)
         self.setShowGrid(False)
         self.setWordWrap(False)
+        self.setTextElideMode(Qt.TextElideMode.ElideMiddle)
         self.setSortingEnabled(True)
         self.sortByColumn(0, Qt.SortOrder.AscendingOrder)
         self.verticalHeader().hide()
@@ -107,7 +140,7 @@ class RobotTable(QTableView):
         hidden = QgsSettings().value(HIDDEN_KEY)
         for number, column in enumerate(COLUMNS):
             # Qt leaves three pixels free at either side of a text; beside a name there is an icon.
-            extra = 28 if number == 0 else 7
+            extra = BESIDE_NAME if number == NAME else 7
             widest = max(map(metrics.horizontalAdvance, (column.head, column.widest)))
             self.setColumnWidth(number, max(widest + extra, TASK_WIDTH if number == TASK else 0))
             by_choice = column.first if hidden is None else column.title not in str(hidden).split(",")
@@ -116,13 +149,13 @@ class RobotTable(QTableView):
         # The column that takes what is left keeps room for its head.
         header.setMinimumSectionSize(max(24, metrics.horizontalAdvance(COLUMNS[TASK].head) + 9))
         header.setSectionResizeMode(TASK, QHeaderView.ResizeMode.Stretch)
+        header.sectionResized.connect(self._resized)
 
-    def showEvent(self, event: QShowEvent) -> None:
-        super().showEvent(event)
-        # Only now it has the style of QGIS's theme.
+    def least_height(self) -> int:
+        """Return the pixels of height that :data:`ROWS_AT_LEAST` rows take."""
         rows = ROWS_AT_LEAST * self.verticalHeader().defaultSectionSize()
         beside = self.horizontalScrollBar().sizeHint().height() + 2 * self.frameWidth()
-        self.setMinimumHeight(self.horizontalHeader().sizeHint().height() + rows + beside)
+        return self.horizontalHeader().sizeHint().height() + rows + beside + OF_THEMES
 
     def _pulled(self) -> None:
         count = len(self._desk.picture)

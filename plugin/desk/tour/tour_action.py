@@ -16,6 +16,7 @@ from ...language import tr
 from ...settings.gateway_connection import GatewayConnection
 from ...wire.addresses import Credentials
 from ...wire.status import Phase
+from ..notices import NoticeLabel
 from ..window import DeskWindow
 from .practice_fleet import PracticeFleet
 from .spotlight import Spotlight
@@ -92,9 +93,11 @@ class TourAction(QObject):
         if settings.value(OFFERED, False, type=bool):
             return
         settings.setValue(OFFERED, True)
-        text = tr("Fleet Supervisor is new here: a five-minute tour shows it.")
         bar = self._iface.messageBar()
-        self._offer = bar.createMessage(text)
+        # QGIS's own item cuts its text beside a button.
+        label = NoticeLabel(tr("A five-minute tour shows how it works."), bar)
+        label.setObjectName("fleet_tour_offer_text")
+        self._offer = QgsMessageBarItem(label, Qgis.MessageLevel.Info)
         button = QPushButton(tr("Start the tour"))
         button.setObjectName("fleet_tour_start")
         button.clicked.connect(lambda: self.start())

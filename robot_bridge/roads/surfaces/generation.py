@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from ...missing_packages import installation
 from ..centrelines import Centrelines
 from ..errors import CancelledError, RoadsError
 from .joins import wedges
@@ -136,7 +137,7 @@ def _shapely() -> Any:
         import shapely
     except ImportError as error:
         raise RoadsError(
-            "The Python package shapely 2 is missing, which makes surfaces of centrelines: install it with "
-            "'python3 -m pip install shapely' in the Python of QGIS."
+            "The Python package shapely 2 is missing, which makes surfaces of centrelines: install it "
+            f"{installation('shapely')}."
         ) from error
     return shapely

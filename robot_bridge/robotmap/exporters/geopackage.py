@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from ...missing_packages import installation
 from ..model import RobotMap
 from .errors import ExportError, MissingPackageError
 from .lines import Points
@@ -132,6 +133,6 @@ def _pyogrio() -> Any:
     except ImportError:
         raise MissingPackageError(
             "GeoPackage needs the Python package pyogrio, which is not installed here; install it "
-            "(python3 -m pip install pyogrio), or choose GeoJSON"
+            f"{installation('pyogrio')}, or choose GeoJSON"
         ) from None
     return pyogrio

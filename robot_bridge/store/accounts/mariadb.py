@@ -20,7 +20,7 @@ from sqlalchemy import text
 
 from .keeper import LIMITS, MOST_CONNECTIONS, STATEMENT_SECONDS, AccountError, AccountKeeper
 
-_VERSION = "robots' side of the fleet, version 3"
+_VERSION = "robots' side of the fleet, version 4"
 _SERVER_OWN = (
     "root",
     "mysql",
@@ -31,6 +31,13 @@ _SERVER_OWN = (
     "current_role",
     "session_user",
 )
+_ROUTINES = (
+    "procedure {}.end_stuck_robots",
+    "function {}.forsaken",
+    "procedure {}.blocking_robots",
+    "procedure {}.suspend_robot",
+)
+"""What a gateway may call."""
 _NOT_GATEWAYS = {"rr": "select, delete", "sa": "select, insert, delete"}
 
 
@@ -79,6 +86,8 @@ class MariaDbAccounts(AccountKeeper):
             self.prepare()
         for name in self.gateways():
             self._grant_tables(self._account(name))
+            if self._prepared():
+                self._all(self._routine_grants(self._account(name)))
 
     def _prepared(self) -> list[str]:
         """Return of which version the robots' side is, nothing when there is none."""
@@ -125,11 +134,13 @@ class MariaDbAccounts(AccountKeeper):
         self._do(f"kill soft user {self._account(name)}")
 
     def _make_gateway(self, name: str, password: str) -> None:
-        account, base = self._account(name), self._quoted(self._database())
-        routines = ("procedure {}.end_stuck_robots", "function {}.forsaken")
-        grants = [f"grant execute on {routine.format(base)} to {account}" for routine in routines]
-        self._make_user(account, password, "", *grants)
+        account = self._account(name)
+        self._make_user(account, password, "", *self._routine_grants(account))
         self._grant_tables(account)
+
+    def _routine_grants(self, account: str) -> list[str]:
+        base = self._quoted(self._database())
+        return [f"grant execute on {routine.format(base)} to {account}" for routine in _ROUTINES]
 
     def _make_user(self, account: str, password: str, options: str, *grants: str) -> None:
         self._do(f"create user {account} {_identified(password)} {options}")
@@ -178,7 +189,7 @@ grant select, insert, update, trigger on {base}.rr to {keeper}
 
 grant select, delete on {base}.sa to {keeper}
 
-grant process, connection admin on *.* to {keeper}
+grant process, connection admin, create user on *.* to {keeper}
 
 grant select on mysql.tables_priv to {keeper}
 
@@ -247,5 +258,32 @@ create or replace definer = {keeper} function {base}.forsaken(seconds int) retur
     )
 
 grant execute on function {base}.forsaken to {keeper}
+
+create or replace definer = {keeper} procedure {base}.blocking_robots(seconds int) sql security definer
+    select distinct p.user from information_schema.processlist p
+    join information_schema.innodb_trx t on t.trx_mysql_thread_id = p.id and t.trx_rows_locked > 0
+    join mysql.tables_priv g on g.User = p.user and g.Db = {side_text} and g.Table_name = 'sa'
+    where t.trx_started <= now() - interval seconds second
+
+grant execute on procedure {base}.blocking_robots to {keeper}
+
+create or replace definer = {keeper} procedure {base}.suspend_robot(robot varchar(128), suspended bool)
+    sql security definer
+begin
+    declare continue handler for 1094 begin end;
+    if exists (
+        select 1 from mysql.tables_priv g where g.User = robot and g.Db = {side_text} and g.Table_name = 'sa'
+    ) then
+        execute immediate
+            concat('alter user ', quote(robot), '@''%'' account ', if(suspended, 'lock', 'unlock'));
+        if suspended then
+            for own in (select p.id from information_schema.processlist p where p.user = robot) do
+                kill connection own.id;
+            end for;
+        end if;
+    end if;
+end
+
+grant execute on procedure {base}.suspend_robot to {keeper}
 
 alter database {side} comment '{version}'"""

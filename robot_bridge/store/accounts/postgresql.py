@@ -13,7 +13,18 @@ from sqlalchemy import text
 
 from .keeper import LIMITS, MOST_CONNECTIONS, STATEMENT_SECONDS, AccountError, AccountKeeper
 
-_VERSION = "robots' side of the fleet, version 1"
+_ALL = "using (true)"
+_GATEWAYS_MAY = {
+    "rr": {"select": _ALL, "delete": _ALL},
+    "sa": {
+        "select": _ALL,
+        "insert": "with check (true)",
+        "update": "using (true) with check (false)",
+        "delete": _ALL,
+    },
+}
+"""The rows that a gateway may read, write and remove. Of SA it locks rows for update, and changes none."""
+_VERSION = "robots' side of the fleet, version 2"
 _SERVER_OWN = ("postgres", "public", "none")
 
 # What anybody may call in any database, and what it would let a robot do to the others.
@@ -49,22 +60,28 @@ class PostgreSqlAccounts(AccountKeeper):
             return
         database = self.robots_database()
         self._check_database(database)
-        self._all(
-            _COMMON.format(
-                database=self._quoted(database),
-                reader=self._quoted(f"{database}_sa_reader"),
-                owner=self._quoted(self._owner()),
-                version=_VERSION.replace("'", "''"),
-                robots=_ROBOTS,
-                **LIMITS,
-            ).split("\n\n")
-        )
-        if self._is_superuser():
+        if not found:
+            self._all(
+                _COMMON.format(
+                    database=self._quoted(database),
+                    reader=self._quoted(f"{database}_sa_reader"),
+                    owner=self._quoted(self._owner()),
+                    robots=_ROBOTS,
+                    **LIMITS,
+                ).split("\n\n")
+            )
+        version = _VERSION.replace("'", "''")
+        self._all(_SUSPENSION.format(robots=_ROBOTS, version=version).split("\n\n"))
+        if not found and self._is_superuser():
             self._close_what_everybody_may()
 
     def renew_rights(self) -> None:
+        if self._scalar("select count(*) from pg_namespace where nspname = 'for_robots'") != "0":
+            self.prepare()
         for name in self.gateways():
             self._grant_tables(self._quoted(name))
+            self._grant_routines(self._quoted(name))
+            self._make_policies(name)
 
     def _exists(self, name: str) -> bool:
         found = self._connection.execute(text("select 1 from pg_roles where rolname = :name"), {"name": name})
@@ -127,16 +144,20 @@ class PostgreSqlAccounts(AccountKeeper):
         self._do(f"grant connect, temporary on database {database} to {role}")
         self._do(f"grant usage on schema public, for_robots to {role}")
         self._grant_tables(role)
-        self._do(f"grant execute on function for_robots.end_stuck(integer) to {role}")
+        self._grant_routines(role)
         for function in self._functions(_TO_GATEWAYS):
             if self._is_superuser():
                 self._do(f"grant execute on function {function} to {role}")
-        policies = {"rr": ("select", "delete"), "sa": ("select", "insert", "delete")}
-        for table, kinds in policies.items():
-            for kind in kinds:
-                check = "with check (true)" if kind == "insert" else "using (true)"
+        self._make_policies(name)
+
+    def _make_policies(self, name: str) -> None:
+        for table, kinds in _GATEWAYS_MAY.items():
+            for kind, check in kinds.items():
                 policy = self._quoted(f"gateway {kind} {name}"[:63])
-                self._do(f"create policy {policy} on public.{table} for {kind} to {role} {check}")
+                self._do(f"drop policy if exists {policy} on public.{table}")
+                self._do(
+                    f"create policy {policy} on public.{table} for {kind} to {self._quoted(name)} {check}"
+                )
 
     def _grant_tables(self, role: str) -> None:
         self._all(
@@ -146,8 +167,14 @@ class PostgreSqlAccounts(AccountKeeper):
                 f"grant select on all sequences in schema public to {role}",
                 f"revoke insert, update on public.rr from {role}",
                 f"revoke update on public.sa from {role}",
+                # No row can be changed all the same, by the policy; without the right none can be locked.
+                f"grant update (urgent) on public.sa to {role}",
             ]
         )
+
+    def _grant_routines(self, role: str) -> None:
+        for routine in ("end_stuck(integer)", "blocking_robots(integer)", "suspend_robot(text, boolean)"):
+            self._do(f"grant execute on function for_robots.{routine} to {role}")
 
     def _make_role(self, name: str, password: str, *options: str) -> None:
         self._do(
@@ -291,6 +318,27 @@ create function for_robots.end_stuck(seconds integer) returns bigint
     from pg_stat_activity a
     where a.datname = current_database() and a.xact_start < clock_timestamp() - make_interval(secs => seconds)
         and a.usename in ({robots})
+$$"""
+
+_SUSPENSION = """\
+create or replace function for_robots.blocking_robots(seconds integer) returns setof text
+    language sql security definer set search_path = pg_catalog, pg_temp as $$
+    select distinct a.usename::text
+    from pg_stat_activity a join pg_locks l on l.pid = a.pid and l.locktype = 'transactionid' and l.granted
+    where a.datname = current_database() and a.xact_start < clock_timestamp() - make_interval(secs => seconds)
+        and a.usename in ({robots})
+$$
+
+create or replace function for_robots.suspend_robot(robot text, suspended boolean) returns void
+    language plpgsql security definer set search_path = pg_catalog, pg_temp as $$
+begin
+    if robot in ({robots}) then
+        execute format('alter role %I %s', robot, case when suspended then 'nologin' else 'login' end);
+        if suspended then
+            perform pg_terminate_backend(pid) from pg_stat_activity where usename = robot;
+        end if;
+    end if;
+end
 $$
 
 revoke all on all functions in schema for_robots from public

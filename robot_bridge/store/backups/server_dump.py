@@ -21,6 +21,7 @@ from typing import IO, Any
 
 from sqlalchemy import URL, Connection, inspect
 
+from ...core.decoding import SHORT, decode_json
 from ...errors import StoreError
 from ..address import shown
 from ..database import run_once
@@ -83,9 +84,11 @@ class ServerBackups:
         try:
             with gzip.open(file, "rb") as source:
                 first = source.readline(4096)
+                if not first.startswith(MARK):
+                    return {}
                 while source.read(_PIECE):
                     pass  # to its end, where its checksum stands
-            about = json.loads(first.removeprefix(MARK)) if first.startswith(MARK) else {}
+            about = decode_json(first.removeprefix(MARK), SHORT)
         except (OSError, EOFError, ValueError) as error:
             raise StoreError(f"backup {file} is damaged: {error}") from error
         return about if isinstance(about, dict) else {}

@@ -14,6 +14,7 @@ from sqlalchemy.pool import NullPool
 from ...errors import StoreError
 from .. import facts, revisions
 from ..database import run_once
+from ..engines.sqlite import make_file
 from ..schema import bridge, rr
 
 _MAGIC = b"SQLite format 3\x00"
@@ -60,6 +61,8 @@ class SqliteBackups:
         with tempfile.TemporaryDirectory(prefix=".restoring-", dir=database.parent) as folder:
             # Renewed before it takes the place: between the two robots would know the old id.
             renewed = Path(folder) / "backup"
+            for made in (renewed, database):
+                make_file(made)
             with _connected(file) as source, _connected(renewed) as target:
                 source.backup(target)
             run_once(URL.create("sqlite", database=str(renewed)), _renew)

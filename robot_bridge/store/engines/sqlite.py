@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+import contextlib
+import logging
+import os
 import sqlite3
+import stat
 import time
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -13,6 +17,8 @@ from sqlalchemy.exc import OperationalError
 from sqlalchemy.pool import NullPool
 
 from .dialect import PATIENCE_S, Dialect, Mode
+
+log = logging.getLogger(__name__)
 
 LOCK_PAUSE_S = 0.0005
 _GONE = "was taken away or replaced while it was in use: put it back, or end whatever uses it"
@@ -34,7 +40,9 @@ class SQLite(Dialect):
             poolclass=NullPool,
             hide_parameters=True,
         )
+        event.listen(engine, "do_connect", self._make_file)
         event.listen(engine, "connect", _prepare)
+        event.listen(engine, "connect", self._close_to_others)
         event.listen(engine, "begin", self._begin)
         return engine
 
@@ -63,6 +71,33 @@ class SQLite(Dialect):
             connection.exec_driver_sql(f"PRAGMA synchronous = {synchronous}")
             connection.info["synchronous"] = synchronous
         self._lock(connection)
+
+    @staticmethod
+    def _make_file(_dialect: Any, _record: Any, arguments: list[Any], _options: Any) -> None:
+        path = str(arguments[0])
+        if path != ":memory:" and not path.startswith("file:"):
+            make_file(Path(path))
+
+    @staticmethod
+    def _close_to_others(_connection: Any, record: Any) -> None:
+        """Take the file, and what SQLite keeps beside it, from every account that is not of its group."""
+        opened: _Opened | None = record.info.get("opened")
+        if opened is None:
+            return
+        for path in [Path(f"{opened.path}{end}") for end in ("", "-wal", "-shm", "-journal")]:
+            try:
+                rights = stat.S_IMODE(path.stat().st_mode)
+            except OSError:
+                continue
+            if not rights & stat.S_IRWXO:
+                continue
+            try:
+                path.chmod(rights & ~stat.S_IRWXO)
+            except OSError as error:
+                text = "every account of this computer may open %s (%s); run: chmod o-rwx on it"
+                log.warning(text, path, error.strerror)
+                continue
+            log.warning("every account of this computer could open %s; now its owner and group may", path)
 
     def _lock(self, connection: Connection) -> None:
         """Take the lock of all writers as soon as it is free; SQLite itself would sleep up to 0.1 s."""
@@ -117,8 +152,17 @@ def _prepare(connection: Any, record: Any) -> None:
     connection.text_factory = _decode_leniently
     cursor = connection.cursor()
     cursor.execute("PRAGMA journal_mode = WAL")
+    # Some distributions have SQLite write zeros over what is deleted: the map of a city, page by page, for
+    # which everybody else would wait.
+    cursor.execute("PRAGMA secure_delete = FAST")
     cursor.close()
     record.info["opened"] = _Opened.by(connection)
+
+
+def make_file(path: Path) -> None:
+    """Make a new database's file for its owner alone, whatever the umask: who may write it, commands."""
+    with contextlib.suppress(OSError):
+        os.close(os.open(path, os.O_RDWR | os.O_CREAT | os.O_EXCL | os.O_CLOEXEC, 0o600))
 
 
 def _decode_leniently(text: bytes) -> str:

@@ -25,6 +25,8 @@ LAST_WORDS_S = 0.5
 """seconds before the death of a robot in which what it said may go down with its connection, unread."""
 CLOCK_S = 0.1
 """seconds by which two processes of this machine may disagree on what came first."""
+LOST_YOUNG = f"... lost, told at most {YOUNG_S:g} s before a gateway was killed"
+LOST_WITH_ROBOT = f"... lost, told at most {LAST_WORDS_S:g} s before the robot itself was killed"
 ORDER = ("queued", "delivered", "acknowledged", "reached")
 
 
@@ -228,9 +230,9 @@ def _judge_positions(
         if (line["robot"], line["t"]) in stored.positions:
             counts["... stored"] += 1
         elif _is_beside(line["t"], deaths.gateways, YOUNG_S, NOTICED_WITHIN):
-            counts["... lost, told at most 2 s before a gateway was killed"] += 1
+            counts[LOST_YOUNG] += 1
         elif _is_beside(line["t"], deaths.robots.get(line["robot"], ()), LAST_WORDS_S, 0.0):
-            counts["... lost, told at most 0.5 s before the robot itself was killed"] += 1
+            counts[LOST_WITH_ROBOT] += 1
         else:
             findings.wrong.append(f"position of {line['robot']} told {_beside(faults, line['t'])} is lost")
     counts["... stored twice"] = sum(count - 1 for count in stored.positions.values())

@@ -6,6 +6,7 @@ import base64
 import json
 import threading
 import time
+from collections.abc import Iterable
 from typing import Any
 
 from websockets.exceptions import WebSocketException
@@ -128,10 +129,24 @@ class SqlRobot:
         while not self._ended.is_set():
             rows = tables.read()
             # What was acted on is acknowledged even if the row is gone when it can be said at last.
-            read = [id for id, op, params in rows if self._hear(id, op, json.loads(params or "{}"))]
+            read = self._hear_all(rows)
             self._write(tables, read, self._unsaid)
             self._unsaid = []
             self._ended.wait(LOOK_EVERY)
+
+    def _hear_all(self, rows: Iterable[tuple[int, str, str | None]]) -> list[int]:
+        """Take in messages in their order; return the ids of those that can go."""
+        read: list[int] = []
+        was_ready, is_behind = self._ready, False
+        for id, op, params in rows:
+            if self._hear(id, op, json.loads(params or "{}")):
+                read.append(id)
+            else:
+                is_behind = True
+            if is_behind and self._ready and not was_ready:
+                # What stands before the OpAck of Ready is to be done first: it is read again.
+                break
+        return read
 
     def _hear(self, id: int, op: str, params: dict[str, Any]) -> bool:
         """Take in a message; return true if it can go.

@@ -50,7 +50,7 @@ def run(folder: Path, script: str, *more_paths: Path) -> str:
     start = f"import sys; sys.path[:0] = {paths!r}\n"
     script = start + textwrap.dedent(script)
     done = subprocess.run(
-        [sys._base_executable, "-I", "-S", "-c", script], capture_output=True, text=True, timeout=60
+        [sys._base_executable, "-I", "-S", "-c", script], capture_output=True, text=True, timeout=240
     )
     assert done.returncode == 0, done.stderr
     return done.stdout.strip()

@@ -70,6 +70,8 @@ class SmallGateway:
         self.site = site
         self.port = 0
         self.protocol = 1
+        self.database = ""
+        """What it tells a desk of its database; nothing where it is empty, as older gateways do."""
         self.who: dict[str, str] = {}
         """What it tells a desk of who that is: ``operator`` and ``role``, as gateways with accounts do."""
         self.robots: dict[str, RobotReport] = {}
@@ -83,6 +85,8 @@ class SmallGateway:
         """What is sent in place of every answer."""
         self.answers: dict[str, Callable[[dict], dict]] = {}
         """By method, what answers it in place of what is here: returns {"result": …} or {"error": …}."""
+        self.subscriptions = 0
+        """How many desks have begun to be told of what happens."""
         self._sockets: set = set()
         self._clock = itertools.count(1_700_000_000)
 
@@ -157,6 +161,7 @@ class SmallGateway:
                 await socket.send(self.raw or json.dumps(self._answer(message)))
                 if message["method"] == "subscribe":
                     self._sockets.add(socket)
+                    self.subscriptions += 1
                     robots = [to_json(robot) for robot in self.robots.values()]
                     params = {"t": time.time(), "robots": robots}
                     await socket.send(json.dumps({"jsonrpc": "2.0", "method": "positions", "params": params}))
@@ -174,6 +179,7 @@ class SmallGateway:
             return {**answer, **self.answers[method](params)}
         if method == "hello":
             facts = {"site": to_json(self.site), "emergency": to_json(self.emergency)}
+            facts |= {"database": self.database} if self.database else {}
             return {**answer, "result": {"protocol": self.protocol, **facts, **self.who}}
         if method == "send":
             return {**answer, "result": to_json(self._queue(**params))}
@@ -322,6 +328,8 @@ class Window(QMainWindow):
 def iface(qgis_app):
     QgsSettings().remove("fleet_supervisor")
     QgsProject.instance().clear()
+    # Tests press faster than any hand; what a double click does has a test that sets it.
+    QApplication.setDoubleClickInterval(1)
     window = Window()
     window.resize(1280, 800)
     window.show()

@@ -105,29 +105,29 @@ def test_the_line_below_the_robots_follows_the_command_that_was_sent_last(at_des
     iface.click(70, 55)
     words = at_desk.desk.drafts.draft.in_words()
     press(at_desk, QToolButton, "fleet_send_button")
-    wait(lambda: line.text() == f"{words}. Queued.", what="the command being kept")
+    wait(lambda: line.text() == f"Queued. {words}.", what="the command being kept")
     (command,) = gateway.commands
     gateway.step(command, CommandState.ACKNOWLEDGED, "r1")
-    wait(lambda: line.text() == f"{words}. Acknowledged.", what="the line going on")
+    wait(lambda: line.text() == f"Acknowledged. {words}.", what="the line going on")
     gateway.step(command, CommandState.FAILED, "r1", reason="the cone holder is jammed")
-    wait(lambda: line.text() == f"{words}. Failed: the cone holder is jammed.", what="the end of it")
+    wait(lambda: line.text() == f"Failed: the cone holder is jammed. {words}.", what="the end of it")
 
 
 def test_the_line_says_of_an_abort_that_it_is_done(at_desk, gateway, wait):
     line = at_desk.dock.findChild(QLabel, "fleet_draft_text")
     at_desk.desk.select("r1")
     press(at_desk, QToolButton, "fleet_abort_button")
-    wait(lambda: line.text() == "Abort of r1. Queued.", what="the abort being kept")
+    wait(lambda: line.text() == "Queued. Abort of r1.", what="the abort being kept")
     (command,) = gateway.commands
     gateway.step(command, CommandState.REACHED, "r1")
-    wait(lambda: line.text() == "Abort of r1. Done.", what="the abort being done")
+    wait(lambda: line.text() == "Done. Abort of r1.", what="the abort being done")
 
 
 def test_the_line_leaves_a_command_for_what_happens_after_it(at_desk, gateway, wait):
     line = at_desk.dock.findChild(QLabel, "fleet_draft_text")
     at_desk.desk.select("r1")
     press(at_desk, QToolButton, "fleet_abort_button")
-    wait(lambda: line.text() == "Abort of r1. Queued.", what="the abort being kept")
+    wait(lambda: line.text() == "Queued. Abort of r1.", what="the abort being kept")
     at_desk.desk.remarked.emit("3 commands written")
     (command,) = gateway.commands
     gateway.step(command, CommandState.REACHED, "r1")

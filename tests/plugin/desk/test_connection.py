@@ -133,7 +133,7 @@ def test_what_is_no_gateway_is_named_and_tried_again(connection, wait, answer, s
     assert str(babbler.port) in reason
 
 
-@pytest.mark.parametrize("text", ["garbage", "[1]", '{"id": 1, "result": {"protocol": 1}}'])
+@pytest.mark.parametrize("text", ["garbage", "[1]", '{"id": 1, "result": {"protocol": 1}}', "[" * 2000])
 def test_a_websocket_that_does_not_speak_the_desks_protocol_is_named(connection, gateway, wait, text):
     gateway.raw = text
     connection.open(gateway.url, "anna")
@@ -155,6 +155,28 @@ def test_another_protocol_ends_the_attempts_and_says_what_to_update(connection, 
     connection.open(gateway.url, "anna")
     reason = reason_when(connection, wait, Phase.FAILED)
     assert "speaks protocol 2, this plugin protocol 1" in reason
+    assert len(gateway.asked("hello")) == 1
+
+
+@pytest.mark.parametrize(
+    ("url", "desk"),
+    [
+        ("ws://127.0.0.1:8765/robot", "ws://127.0.0.1:8765/desk"),
+        ("wss://fleet.example/site-1/robot/", "wss://fleet.example/site-1/desk"),
+    ],
+)
+def test_the_address_of_robots_is_refused_with_that_of_operators(connection, url, desk):
+    with pytest.raises(AddressError, match=f"where robots connect; operators connect to {desk}. Write that"):
+        connection.open(url, "anna")
+    assert not connection.is_open
+
+
+def test_what_knows_no_desk_ends_the_attempts_and_names_the_path(connection, gateway, wait):
+    """As a gateway answers at the address of robots, behind whatever path a proxy gave that."""
+    gateway.answers["hello"] = lambda _params: {"error": {"code": -32601, "message": "unknown operation"}}
+    connection.open(gateway.url, "anna")
+    reason = reason_when(connection, wait, Phase.FAILED)
+    assert "knows no desk" in reason and "ws://127.0.0.1:8765/desk" in reason
     assert len(gateway.asked("hello")) == 1
 
 

@@ -87,6 +87,20 @@ def test_one_click_and_no_question_stops_everything_and_the_banner_says_what_was
     assert waiting == "No answer from r1, r2"
 
 
+@pytest.fixture
+def dark(at_desk):
+    """The window in the colours of QGIS's theme Night Mapping."""
+    at_desk.dock.window().setStyleSheet("QWidget { background-color: #323232; color: #eeeeee; }")
+
+
+def test_the_banner_is_red_in_a_dark_theme_too(dark, at_desk, wait):
+    press_stop(at_desk)
+    wait(lambda: at_desk.dock.banner.isVisible() and "in force" in banner(at_desk), what="the banner")
+    image = at_desk.dock.banner.grab().toImage()
+    middle = [image.pixelColor(image.width() // 3, y).name() for y in range(5, image.height() - 5)]
+    assert middle.count("#b00020") > len(middle) // 2
+
+
 @pytest.mark.parametrize("key", [Qt.Key.Key_F10, Qt.Key.Key_Pause])
 def test_one_key_does_the_same_wherever_the_focus_is(at_desk, gateway, iface, wait, key):
     for widget in (iface.canvas, at_desk.dock.findChild(QLineEdit, "fleet_url")):
@@ -151,7 +165,7 @@ def test_until_the_gateway_answers_it_is_only_asked_for(at_desk, gateway, wait):
     press_stop(at_desk)
     assert "asked for. The gateway has not confirmed it yet" in banner(at_desk)
     assert "in force" not in banner(at_desk)
-    assert not at_desk.dock.findChild(QToolButton, "fleet_clear_emergency_button").isVisible()
+    assert not at_desk.dock.findChild(QToolButton, "fleet_clear_emergency_button").isEnabled()
 
 
 def test_a_stop_of_another_operator_is_shown_also_to_who_connects_later(plugin, gateway, at_desk, wait):
@@ -225,6 +239,33 @@ def test_who_does_not_confirm_clears_nothing(stopped, gateway, iface, how):
     assert "in force" in banner(stopped)
 
 
+def test_enter_after_a_reason_keeps_it_and_goes_on_to_the_button_that_clears(stopped, gateway, iface, wait):
+    QTest.mouseClick(stopped.dock.findChild(QToolButton, "fleet_clear_emergency_button"), LEFT)
+    asks = dialog(iface)
+    reason = asks.findChild(QLineEdit, "fleet_clear_reason")
+    QTest.keyClicks(reason, "track is free")
+    QTest.keyClick(reason, Qt.Key.Key_Return)
+    assert asks.isVisible()
+    assert reason.text() == "track is free"
+    assert asks.focusWidget() is asks.findChild(QPushButton, "fleet_clear_confirm")
+    assert gateway.asked("clear_emergency_stop") == []
+    QTest.keyClick(asks.focusWidget(), Qt.Key.Key_Return)
+    wait(lambda: gateway.asked("clear_emergency_stop"))
+    assert gateway.asked("clear_emergency_stop")[0]["reason"] == "track is free"
+
+
+def test_enter_on_the_button_that_keeps_the_stop_keeps_it_also_after_a_reason(stopped, gateway, iface):
+    QTest.mouseClick(stopped.dock.findChild(QToolButton, "fleet_clear_emergency_button"), LEFT)
+    asks = dialog(iface)
+    QTest.keyClicks(asks.findChild(QLineEdit, "fleet_clear_reason"), "not yet")
+    QTest.keyClick(asks.findChild(QLineEdit, "fleet_clear_reason"), Qt.Key.Key_Return)
+    keep = asks.findChild(QPushButton, "fleet_clear_keep")
+    keep.setFocus()
+    QTest.keyClick(keep, Qt.Key.Key_Return)
+    assert not asks.isVisible()
+    assert gateway.asked("clear_emergency_stop") == []
+
+
 def test_who_may_not_clear_it_is_told_so_and_it_stays(stopped, gateway, iface, wait):
     gateway.refuse["clear_emergency_stop"] = "anna is operator, and this takes a supervisor"
     QTest.mouseClick(stopped.dock.findChild(QToolButton, "fleet_clear_emergency_button"), LEFT)
@@ -256,6 +297,28 @@ def test_what_is_not_stored_and_who_is_missing_is_said_in_words():
         "Not stored yet: the gateway cannot write its database, so robots on SQL are not told.",
         "The link to the gateway is down: this is what it said last.",
     ]
+
+
+@pytest.mark.parametrize(
+    ("robots", "acknowledged", "waiting", "refused", "lines"),
+    [
+        (1001, 0, 50, 0, ["No answer from r0, r1, r2, r3, r4, r5, and 995 more"]),
+        (1001, 900, 50, 1, ["No answer from r0, r1, r2, r3, r4, r5, and 94 more", "REFUSED by x0"]),
+        (200, 20, 0, 50, ["REFUSED by x0, x1, x2, x3, x4, x5, and 174 more"]),
+        (3, 1, 2, 0, ["No answer from r0, r1"]),
+    ],
+)
+def test_of_many_robots_it_counts_all_that_have_not_answered(robots, acknowledged, waiting, refused, lines):
+    report = EmergencyReport(
+        True,
+        "stop",
+        by="eve",
+        robots=robots,
+        acknowledged=acknowledged,
+        waiting=[f"r{k}" for k in range(waiting)],
+        refused=[f"x{k}" for k in range(refused)],
+    )
+    assert in_words(report, asked=False, connected=True).splitlines()[2:] == lines
 
 
 def test_the_latency_of_each_link_stands_in_the_table(at_desk, gateway, make_robot, wait):

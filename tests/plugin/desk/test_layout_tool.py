@@ -6,9 +6,11 @@ import math
 
 import numpy as np
 import pytest
+from fleet_supervisor.plugin.desk import cone_file
+from fleet_supervisor.plugin.desk.cone_store import ConeStore
 from fleet_supervisor.plugin.desk.layout_action import LayoutAction
-from fleet_supervisor.plugin.desk.layout_dimensions import GROUP, remembered
-from fleet_supervisor.plugin.sites.roles import ROAD_SURFACE, set_role
+from fleet_supervisor.plugin.desk.layout_dimensions import GROUP, _value, remembered
+from fleet_supervisor.plugin.sites.roles import OBSTACLE, ROAD_SURFACE, set_role
 from fleet_supervisor.robot_bridge.layouts.catalogue import LAYOUTS
 from qgis.core import (
     QgsCoordinateReferenceSystem,
@@ -20,7 +22,7 @@ from qgis.core import (
 )
 from qgis.gui import QgsMapToolPan, QgsRubberBand
 from qgis.PyQt.QtCore import QEvent, QPoint, QPointF, Qt
-from qgis.PyQt.QtGui import QWheelEvent
+from qgis.PyQt.QtGui import QKeySequence, QWheelEvent
 from qgis.PyQt.QtTest import QTest
 from qgis.PyQt.QtWidgets import QAction, QApplication, QWidget
 
@@ -162,6 +164,113 @@ def test_cones_that_should_not_stand_there_are_told_and_placed(slalom, iface):
     )
 
 
+@pytest.fixture
+def road():
+    """A road of which the slalom at (40, 50) leaves the east end, and a wall across it."""
+    for wkt, role, name in (
+        ("POLYGON((30 40,53 40,53 60,30 60,30 40))", ROAD_SURFACE, "Road"),
+        ("POLYGON((45 49.5,46.2 49.5,46.2 50.5,45 50.5,45 49.5))", OBSTACLE, "Wall"),
+    ):
+        layer = QgsVectorLayer("Polygon?crs=EPSG:32633&field=surface:string", name, "memory")
+        feature = QgsFeature(layer.fields())
+        box = QgsGeometry.fromWkt(wkt)
+        box.translate(*ORIGIN)
+        feature.setGeometry(box)
+        layer.dataProvider().addFeature(feature)
+        set_role(layer, role)
+        QgsProject.instance().addMapLayer(layer)
+
+
+def bad(tool):
+    return sorted(map(tuple, np.round(tool.bad_preview() - ORIGIN).tolist()))
+
+
+def test_cones_that_should_not_stand_there_are_marked_before_they_are_placed(slalom, road, iface, wait):
+    iface.hover(40, 50)
+    wait(lambda: len(slalom.bad_preview()) == 4, what="the marks")
+    assert bad(slalom) == [(46.0, 50.0), (56.0, 50.0), (62.0, 48.0), (62.0, 52.0)]
+    iface.hover(33, 56)
+    assert len(slalom.bad_preview()) == 0
+    wait(lambda: len(slalom.bad_preview()) == 2, what="the marks of the other place")
+    iface.click(33, 56)
+    wait(lambda: len(slalom.bad_preview()) == 7, what="cones on cones")
+    QTest.keyClick(iface.canvas, Qt.Key.Key_Escape)
+    assert len(slalom.bad_preview()) == 0
+
+
+def test_a_layer_that_is_changed_under_the_preview_counts_as_it_is_now(slalom, road, iface, wait):
+    iface.hover(40, 50)
+    wait(lambda: len(slalom.bad_preview()) == 4, what="the marks")
+    (wall,) = QgsProject.instance().mapLayersByName("Wall")
+    wall.startEditing()
+    wall.deleteFeatures(wall.allFeatureIds())
+    assert wall.commitChanges()
+    iface.hover(40.5, 50)
+    wait(lambda: len(slalom.bad_preview()) == 3, what="the marks without the wall")
+
+
+def test_a_layout_that_was_placed_is_taken_back_and_done_again(slalom, entry, iface):
+    for place in ((40, 50), (40, 80)):
+        iface.click(*place)
+    assert len(cones()) == 14
+    QTest.keyClick(iface.canvas, Qt.Key.Key_Z, Qt.KeyboardModifier.ControlModifier)
+    assert sorted(cones()) == [f"slalom-{k}" for k in range(1, 8)]
+    QTest.keySequence(iface.canvas, QKeySequence(QKeySequence.StandardKey.Redo))
+    assert len(cones()) == 14
+    assert entry.dimensions.undo.isEnabled()
+    for left in (7, 0):
+        QTest.mouseClick(entry.dimensions.undo, Qt.MouseButton.LeftButton)
+        assert len(cones()) == left
+    assert not entry.dimensions.undo.isEnabled()
+
+
+def test_in_another_project_nothing_is_taken_back(slalom, iface):
+    iface.click(40, 50)
+    QgsProject.instance().clear()
+    ConeStore(QgsProject.instance()).add(
+        slalom.layout.cones("slalom"), "slalom", QgsCoordinateReferenceSystem("EPSG:32633")
+    )
+    QTest.keyClick(iface.canvas, Qt.Key.Key_Z, Qt.KeyboardModifier.ControlModifier)
+    assert len(cones()) == 7
+    assert iface.said[-1] == ("There is nothing to take back.", False)
+
+
+def test_cones_are_there_again_when_the_project_is_saved_and_opened(slalom, iface, tmp_path):
+    project = QgsProject.instance()
+    iface.click(40, 50)
+    before = cones()
+    (layer,) = project.mapLayersByName("Cones")
+    number = layer.id()
+    assert project.write(str(tmp_path / "yard.qgz"))
+    assert [path.name for path in sorted(tmp_path.iterdir())] == ["yard.qgz", "yard_cones.gpkg"]
+    iface.click(40, 80)
+    after = cones()
+    assert len(after) == 14 and after.items() > before.items()
+    project.clear()
+    assert project.read(str(tmp_path / "yard.qgz"))
+    assert cones() == after
+    (layer,) = project.mapLayersByName("Cones")
+    assert layer.id() == number and layer.renderer().type() != "singleSymbol"
+    assert iface.said == [("7 cones are in the layer Cones.", False)] * 2
+
+
+def test_a_file_that_is_there_already_is_not_written_over(slalom, iface, tmp_path):
+    (tmp_path / "yard_cones.gpkg").write_text("mine")
+    iface.click(40, 50)
+    assert QgsProject.instance().write(str(tmp_path / "yard.qgz"))
+    assert (tmp_path / "yard_cones.gpkg").read_text() == "mine"
+    assert (tmp_path / "yard_cones_2.gpkg").exists()
+
+
+def test_cones_that_cannot_be_saved_with_the_project_are_told(slalom, iface, tmp_path, monkeypatch):
+    monkeypatch.setattr(cone_file, "_free_path", lambda _project: tmp_path / "no_such" / "cones.gpkg")
+    iface.click(40, 50)
+    assert QgsProject.instance().write(str(tmp_path / "yard.qgz"))
+    text, complaint = iface.said[-1]
+    assert complaint and "The cones of the layer Cones are not saved with the project" in text
+    assert len(cones()) == 7
+
+
 def test_a_map_without_true_metres_is_refused_with_what_to_do(slalom, iface):
     iface.canvas.setDestinationCrs(QgsCoordinateReferenceSystem("EPSG:3857"))
     QTest.mouseClick(iface.canvas.viewport(), Qt.MouseButton.LeftButton, NONE, QPoint(300, 300))
@@ -288,6 +397,20 @@ def test_what_cannot_be_is_said_and_not_placed(entry, fields, iface):
     type_into(shown["vehicle_width"], "2")
     assert not entry.dimensions.problem.isVisible()
     assert entry.tool.layout.vehicle_width == 2.0
+
+
+def test_the_wheel_scrolls_and_changes_no_dimension(entry, fields):
+    shown = fields("iso3888_1")
+    for field in (*shown.values(), entry.dimensions.heading):
+        field.setFocus()
+        before = _value(field)
+        place = QPointF(field.rect().center())
+        event = QWheelEvent(
+            place, QPointF(field.mapToGlobal(place.toPoint())), QPoint(), QPoint(0, -120),
+            Qt.MouseButton.NoButton, NONE, Qt.ScrollPhase.NoScrollPhase, False,
+        )  # fmt: skip
+        QApplication.sendEvent(field, event)
+        assert _value(field) == before, field.objectName()
 
 
 def test_each_layout_remembers_its_dimensions_until_they_are_reset(entry, fields):

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from fleet_supervisor.plugin.desk.alarms.latches import PairLatch, RowLatch
 from fleet_supervisor.plugin.desk.live.trails import LENGTHS, Trails
+from fleet_supervisor.plugin.desk.messages import Level, robot_topic
 from fleet_supervisor.plugin.desk.picture import RobotPicture
 from fleet_supervisor.plugin.wire.mailbox import Mailbox
 from fleet_supervisor.plugin.wire.position_rows import sightings
@@ -40,6 +41,25 @@ def rows_of(window):
 def layer_of(window):
     (layer,) = [one for one in window.desk.project.mapLayers().values() if one.name().endswith("(live)")]
     return sorted(feature["robot"] for feature in layer.getFeatures())
+
+
+def test_its_queue_and_what_was_told_of_it_are_gone(at_desk, gateway, wait, iface):
+    desk = at_desk.desk
+    task = {"task": "t1", "kind": "place", "state": "waiting", "added_by": "anna", "added_at": 1.0}
+    for robot in ("r1", "r2"):
+        tasks = [{**task, "robot": robot, "x": 6.0, "y": 5.0}]
+        queue = {"robot": robot, "revision": 1, "state": "paused", "robot_state": "lost", "tasks": tasks}
+        gateway.tell("queue", queue)
+        desk.messages.post(f"{robot} strays", Level.ERROR, robot_topic(robot))
+    wait(lambda: len(list(desk.queues)) == 2, what="the queues")
+    gateway.refuse["remove_task"] = "not now"
+    at_desk.queue_edits.remove("r1", "t1")
+    wait(lambda: any("not now" in text for text in iface.texts()), what="the refusal")
+    remove(gateway, "r1")
+    wait(lambda: len(desk.picture) == 1, what="the news")
+    assert [queue.robot for queue in desk.queues] == ["r2"]
+    wait(lambda: not any("not now" in text or "r1 strays" in text for text in iface.texts()))
+    assert any("r2 strays" in text for text in iface.texts())
 
 
 @pytest.mark.parametrize("removed", ["r1", "r2"])

@@ -5,8 +5,7 @@ from __future__ import annotations
 import pytest
 from fleet_supervisor.plugin.desk.orders import SLOW_AFTER
 from fleet_supervisor.plugin.desk.route_preview import UNANSWERED_AFTER, Question, RoutePreview, in_words
-from fleet_supervisor.plugin.desk.way_wishes import SHORTEST, WayWishes, surfaces_of
-from fleet_supervisor.plugin.desk.way_wishes_dialog import WayWishesDialog
+from fleet_supervisor.plugin.desk.way_wishes import SHORTEST, WayWishes, WayWishesDialog, surfaces_of
 from fleet_supervisor.plugin.wire.outbox import Answer
 from fleet_supervisor.robot_bridge.messages import RouteReport, SurfaceMetres
 from qgis.PyQt.QtWidgets import QLineEdit, QPushButton, QWidget
@@ -21,7 +20,7 @@ class Gateway:
 
     def answer(self, preview, **how):
         result = {"points": [[0, 0], [1, 1]], "metres": 1.4, "seconds": 1.0}
-        return preview.take(Answer(self.orders[-1], **(how or {"result": result})))
+        return preview.accept_answer(Answer(self.orders[-1], **(how or {"result": result})))
 
     def goals(self):
         return [order.params["x"] for order in self.orders]
@@ -70,7 +69,7 @@ def test_a_lost_question_holds_nothing_up_and_its_late_answer_shows_nothing(prev
     gateway.now = 3.1
     preview.want(to(2.0))
     assert gateway.goals() == [1.0, 2.0]
-    assert preview.take(Answer(lost, result={"points": [[9, 9]], "metres": 9, "seconds": 9}))
+    assert preview.accept_answer(Answer(lost, result={"points": [[9, 9]], "metres": 9, "seconds": 9}))
     assert preview.route is None
 
 
@@ -90,7 +89,7 @@ def test_a_click_that_stays_unanswered_is_told_once_and_its_late_answer_leads_no
     assert len(refused) == 1 and "5 s" in refused[0] and "Click there again" in refused[0]
     assert gateway.goals() == [1.0, 2.0], "what the mouse leads to meanwhile"
     assert not preview.awaits_click
-    preview.take(Answer(lost, result={"points": [[9, 9]], "metres": 9, "seconds": 9}))
+    preview.accept_answer(Answer(lost, result={"points": [[9, 9]], "metres": 9, "seconds": 9}))
     assert taken == []
 
 

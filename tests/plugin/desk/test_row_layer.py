@@ -214,6 +214,21 @@ def test_removed_it_leaves_neither_layer_nor_group_nor_a_changed_project(points,
     assert not project.isDirty()
 
 
+@pytest.mark.parametrize("unsaved", [False, True])
+def test_it_neither_makes_nor_hides_unsaved_changes(points, project, site, unsaved):
+    # As QGIS's layer panel does, at once and again when it has laid out the group.
+    for change in (project.layerTreeRoot().addedChildren, project.layerTreeRoot().removedChildren):
+        change.connect(lambda *_: project.setDirty(True))
+        change.connect(lambda *_: QTimer.singleShot(0, project.setDirty))
+    project.setDirty(unsaved)
+    show(points, TWO, site)
+    QApplication.processEvents()
+    assert project.isDirty() is unsaved
+    points.remove()
+    QApplication.processEvents()
+    assert project.isDirty() is unsaved
+
+
 def test_a_group_that_the_user_moved_into_another_is_filled_and_emptied_there(points, project, site):
     root = project.layerTreeRoot()
     show(points, TWO, site)

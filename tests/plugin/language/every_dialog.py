@@ -19,10 +19,11 @@ from fleet_supervisor.plugin.desk.alarms.log_dialog import AlarmLogDialog
 from fleet_supervisor.plugin.desk.alarms.thresholds import Thresholds
 from fleet_supervisor.plugin.desk.alarms.thresholds_dialog import ThresholdsDialog
 from fleet_supervisor.plugin.desk.clear_dialog import ClearDialog
-from fleet_supervisor.plugin.desk.closure_dialog import ClosureDialog
+from fleet_supervisor.plugin.desk.closure_tool import ClosureDialog
 from fleet_supervisor.plugin.desk.commands.coordinates_dialog import CoordinatesDialog
 from fleet_supervisor.plugin.desk.commands.override_dialog import OverrideDialog
 from fleet_supervisor.plugin.desk.drafts import CONE, Draft
+from fleet_supervisor.plugin.desk.robots.removal import RemovalDialog
 from fleet_supervisor.plugin.desk.site_choice.site_choice_dialog import SiteChoiceDialog
 from fleet_supervisor.plugin.desk.site_choice.site_question import site_question
 from fleet_supervisor.plugin.help.help_window import HelpWindow
@@ -78,6 +79,8 @@ def _of_the_desk(window, desk_window) -> Dialogs:
     yield "override_plan", OverrideDialog(queue, found, then, window, is_safe=True)
     stop = EmergencyReport(True, "s1", time.time(), "anna", robots=5, waiting=["r1", "r2"])
     yield "clear", ClearDialog(stop, window)
+    gone = [f"robot-north-{k:03}" for k in range(30)]
+    yield "removal", RemovalDialog(gone[:2], gone, window)
 
 
 def _of_accounts(window, desk_window) -> Dialogs:

@@ -39,6 +39,7 @@ EVERYWHERE = {
     r"^Fleet( Supervisor)?$": "a proper name",
     r"^\s*(Q\w+(#\w+)? \{)?[^{}]*\b(color|background|border|font-weight|padding):? ?[^{}]*;": "a style sheet",
     r"^ENGCRS\[": "a CRS in the words of its standard",
+    r"^(SELECT|INSERT INTO|UPDATE|PRAGMA) | IS NULL( |$)": "SQL",
     r"<(svg|text|path|rect|span|img|p style)\b|^</b> &nbsp;<span": "markup without words of its own",
 }
 """What need not be translated in any file, as a pattern of the text, and why."""
@@ -56,13 +57,28 @@ TEXTS = {
     "Connect call failed": "what Python says, to be told better",
     "fleet road_surface ": "a key of a cache",
     "traffic cone": "a label that robots read on their maps",
+    "emergency stop": "what is looked for in a gateway's refusal",
+    "asks and cones": "a word of the protocol",
+    "give way": "the protocol's word for what a robot can do",
     **dict.fromkeys(
         ("to the left", "to the right", "left limit", "right limit"),
         "the bridge's word for a choice of a layout's dimension, with the operator's word beside it",
     ),
     **dict.fromkeys(("PyVRP", "RoutingKit", "SciPy", "QGIS", "GeoJSON", "GeoPackage"), "a proper name"),
     **dict.fromkeys(
-        ("too close", "outside the site", "off the road", "stopped unasked", "low battery"),
+        (
+            "unsure of its place",
+            "in a keepout",
+            "at an obstacle",
+            "near a robot",
+            "will come near a robot",
+            "too close",
+            "will pass too near",
+            "outside the site",
+            "off the road",
+            "stopped unasked",
+            "low battery",
+        ),
         "the value that a kind of alarm is kept under; plugin/desk/alarms/words.py has its words",
     ),
 }

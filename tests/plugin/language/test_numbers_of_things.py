@@ -37,8 +37,8 @@ NEVER_ONE = {
     "The file {path} has {size} bytes, and a robot map at most {largest_text}: choose a map.":
         "a large number",
     "{target}: {content} bytes": "a file has more",
-    "{size} bytes in binary, {ratio:.2f} bytes/m²": "a file has more",
-    "{size} bytes of text, {ratio:.2f} bytes/m² (paper 1: about 3 bytes/m² as text)": "a file has more",
+    "{size} bytes in binary, {ratio:.3g} bytes/m²": "a file has more",
+    "{size} bytes of text, {ratio:.3g} bytes/m² (paper 1: about 3 bytes/m² as text)": "a file has more",
     "{tiles}, {segments}, {size} bytes": "a file has more",
 }  # fmt: skip
 """Texts that are never said of one thing, and why."""

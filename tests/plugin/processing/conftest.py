@@ -185,7 +185,7 @@ def qgis_process(qgis_process_place):
             env={**environment, **seen},
             capture_output=True,
             text=True,
-            timeout=120,
+            timeout=240,
             check=False,
         )
         return Finished(done.returncode, done.stdout, done.stderr)

@@ -281,7 +281,7 @@ async def exported(root, tmp_path):
     def export(name):
         options = ["placements", "export", tmp_path / name, "--site", root / "resources" / "sample_site"]
         words = [*map(str, options), "--database", f"sqlite:///{tmp_path}/fleet.db"]
-        subprocess.run([sys.executable, "-m", "robot_bridge", *words], check=True, timeout=60)
+        subprocess.run([sys.executable, "-m", "robot_bridge", *words], check=True, timeout=240)
         return tmp_path / name
 
     return export

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 import pytest
-from fleet_supervisor.plugin.sites.roles import LayerExpressions, set_expressions
+from fleet_supervisor.plugin.sites.roles import LayerExpressions, set_expressions, set_role
 from fleet_supervisor.robot_bridge.robotmap.model import ShapeType
 from qgis.core import (
     QgsCoordinateReferenceSystem,
@@ -49,7 +49,7 @@ def test_polygons_and_lines_come_out_oriented_grouped_and_measured(export, house
 def test_the_log_says_bytes_and_bytes_per_square_metre_next_to_the_papers(export, house):
     done = export(house, CENTER="20,20", WIDTH=100, HEIGHT=50)
     size = done.results["BYTES"]
-    assert f"{size} bytes of text, {size / 5000:.2f} bytes/m² (paper 1: about 3 bytes/m²" in done.log
+    assert f"{size} bytes of text, {size / 5000:.3g} bytes/m² (paper 1: about 3 bytes/m²" in done.log
     assert "Window 100 m x 50 m = 5000 m²" in done.log
 
 
@@ -149,9 +149,9 @@ def test_a_broken_feature_is_a_warning_with_layer_and_id_and_the_rest_is_exporte
     done = export(layer, CENTER="10,10")
     assert {obstacle.ext["src"] for obstacle in done.map.obstacles} == {"houses:1", "houses:4"}
     assert [warning.split(":")[0] for warning in done.warnings] == [
+        "Layer houses, feature 3",
         "Layer houses, feature 1",
         "Layer houses, feature 2",
-        "Layer houses, feature 3",
     ]
     assert done.results["WARNING_COUNT"] == 3
 
@@ -188,8 +188,35 @@ def test_a_profile_says_what_a_layer_is_and_wins_over_what_it_keeps(export, make
     assert export(wall, CENTER="0,0").map.obstacles[0].height.tolist() == [9.0]
 
 
+def test_a_profile_that_knows_none_of_the_layers_says_what_it_looks_for(export, house, wall, tmp_path):
+    profile = tmp_path / "mine.toml"
+    profile.write_text(
+        'name = "Mine"\n[[layers]]\nnames = ["roof*", "wall"]\nfields = ["h"]\nrole = "obstacle"\n'
+    )
+    assert export(house, CENTER="0,0", PROFILE=str(profile)).warnings == [
+        "Mine knows none of these layers. It looks for layers that are named, in their source or in the "
+        "project: roof*, wall with h."
+    ]
+    profile.write_text('[[layers]]\nnames = ["wall"]\nrole = "obstacle"\n')
+    assert export(house, wall, CENTER="0,0", PROFILE=str(profile)).warnings == []
+
+
 def test_a_broken_profile_stops_the_export(export, make_layer, tmp_path):
     profile = tmp_path / "mine.toml"
     profile.write_text('[[layers]]\nnames = ["wall"]\nrole = "obstacel"\n')
     with pytest.raises(QgsProcessingException, match=r"mine\.toml: layers\[0\]\.role is 'obstacel'"):
         export(make_layer("wall"), CENTER="0,0", PROFILE=str(profile))
+
+
+def test_without_layers_those_of_the_project_with_a_role_of_obstacles_are_exported(export, wall, make_layer):
+    layer, other = wall, make_layer("trees", "LineString", features=[("LineString(0 0, 5 0)",)])
+    set_role(layer, "obstacle")
+    project = QgsProject()
+    project.setCrs(layer.crs())
+    project.addMapLayers([layer.clone(), other])
+    done = export(project=project, OBSTACLES=None, CENTER="0,0", WIDTH=100, HEIGHT=100)
+    assert len(done.map.obstacles) == 1
+    empty = QgsProject()
+    empty.setCrs(layer.crs())
+    with pytest.raises(QgsProcessingException, match="no layer of the project has a role of obstacles"):
+        export(project=empty, OBSTACLES=None, CENTER="0,0", WIDTH=100, HEIGHT=100)

@@ -101,3 +101,23 @@ def test_a_process_with_no_display_places_a_real_layout(qgis_process, data, tmp_
     layer = QgsVectorLayer(str(target))
     assert {f["layout"] for f in layer.getFeatures()} == {"fssim_acceleration"}
     assert sum(f["colour"] == "big_orange" for f in layer.getFeatures()) == 8
+
+
+def test_tracks_and_wide_tables_are_read_by_themselves(bring, table, tmp_path):
+    track = tmp_path / "skidpad.yaml"
+    track.write_text("cones_left: [[1, 2]]\ncones_right: [[1, -2]]\n", encoding="utf-8")
+    for file in (
+        str(track),
+        table("blue_x,blue_y,yellow_x,yellow_y\n1,2,1,-2\n"),
+        table("blue,1,2\nyellow,1,-2\n"),
+    ):
+        made = bring(FILE=file, ORIGIN=PLACE)["CONES"].getFeatures()
+        found = [(f["colour"], f.geometry().asPoint().y() - Y) for f in made]
+        assert found == [("blue", pytest.approx(2)), ("yellow", pytest.approx(-2))]
+
+
+def test_a_file_of_another_kind_is_refused_with_what_is_read(bring, tmp_path):
+    drawing = tmp_path / "track.dxf"
+    drawing.touch()
+    with pytest.raises(QgsProcessingException, match=r"track\.dxf is none that is read: give one of \.csv, "):
+        bring(FILE=str(drawing), ORIGIN=PLACE)

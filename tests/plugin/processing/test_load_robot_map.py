@@ -11,12 +11,15 @@ from fleet_supervisor.robot_bridge.robotmap.binary import encode
 from fleet_supervisor.robot_bridge.robotmap.text import read_text
 from qgis.core import (
     QgsCoordinateReferenceSystem,
+    QgsLayerTreeRegistryBridge,
     QgsProcessingContext,
     QgsProcessingException,
     QgsProcessingUtils,
     QgsProject,
+    QgsRasterLayer,
     QgsVectorLayer,
 )
+from qgis.PyQt.QtCore import QCoreApplication
 
 LAYERS = ("AREAS", "LINES", "SEGMENTS", "BORDER")
 PLACED = "%crs EPSG:32633\n%origin 600000,5100000\n%rotation 0\n"
@@ -271,3 +274,46 @@ def test_binary_without_zstandard_says_what_to_install(qgis_process, tmp_path):
     done = qgis_process(*words, packages=False)
     assert done.status != 0
     assert "needs the Python package zstandard" in done.said and "Traceback" not in done.said
+
+
+@pytest.fixture
+def open_project(provider, make_layer, root):
+    """The project that is open: roads above buildings above a photo, and the photo is the current layer."""
+    project = QgsProject.instance()
+    project.clear()
+    photo = QgsRasterLayer(str(root / "resources" / "sample_site" / "orthophoto.tif"), "photo")
+    buildings = make_layer("buildings", "Polygon", features=[("Polygon((0 0, 9 0, 9 9, 0 0))",)])
+    group = project.layerTreeRoot().addGroup("Ground")
+    for layer in (make_layer("roads"), buildings, photo):
+        project.addMapLayer(layer, False)
+    project.layerTreeRoot().insertLayer(0, project.mapLayersByName("roads")[0])
+    group.addLayer(buildings)
+    group.addLayer(photo)
+    bridge = project.layerTreeRegistryBridge()
+    bridge.setLayerInsertionPoint(QgsLayerTreeRegistryBridge.InsertionPoint(group, 1))
+    yield project
+    # The group goes with the project, and layers of later tests must not be put into it.
+    root = project.layerTreeRoot()
+    bridge.setLayerInsertionPoint(QgsLayerTreeRegistryBridge.InsertionPoint(root, 0))
+    project.clear()
+
+
+TITLES = ["Segments", "Obstacles that are lines", "Obstacles that are areas", "Border of the map"]
+
+
+@pytest.mark.parametrize("custom", [False, True])
+def test_what_is_loaded_lies_above_everything_that_would_cover_it(open_project, tmp_path, custom):
+    import processing
+
+    root = open_project.layerTreeRoot()
+    if custom:
+        root.setHasCustomLayerOrder(True)
+        root.setCustomLayerOrder(root.layerOrder())
+    (tmp_path / "house.txt").write_text(HOUSE)
+    made = dict.fromkeys(LAYERS, "TEMPORARY_OUTPUT")
+    processing.runAndLoadResults("fleet:loadrobotmap", {"MAP": str(tmp_path / "house.txt"), **made})
+    # What is nowhere in the tree for a moment is taken out of the project with the next events.
+    QCoreApplication.processEvents()
+    drawn = [layer.name() for layer in root.layerOrder()]
+    assert drawn == ["roads", *TITLES, "buildings", "photo"]
+    assert [child.name() for child in root.children()] == ["roads", *TITLES, "Ground"]

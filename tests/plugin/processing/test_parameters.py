@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import re
 
+from fleet_supervisor.plugin.processing import parameter_labels
+from fleet_supervisor.plugin.processing.fleet_algorithm import plain_text
 from fleet_supervisor.plugin.processing.provider import FleetProvider
-from qgis.core import QgsApplication
+from qgis.core import QgsApplication, QgsProcessingContext
 
 
 def test_no_algorithm_has_two_parameters_of_one_name(qgis_app):
@@ -45,6 +47,15 @@ def test_a_command_in_a_help_can_be_pasted_into_a_shell(qgis_app):
     assert not any("\\" in text for text in helps)
 
 
+def test_a_help_in_a_terminal_has_no_tags(qgis_app):
+    provider = FleetProvider()
+    provider.loadAlgorithms()
+    texts = [plain_text(algorithm.HELP) for algorithm in provider.algorithms()]
+    assert len(texts) > 10
+    assert not [text for text in texts if re.search(r"</?[a-z]+>|&[a-z]+;|\n\n\n|  ", text)]
+    assert any("\n\nqgis_process run" in text for text in texts)
+
+
 def documented_calls(root):
     """Yield the file, the algorithm and the names of its parameters for each command in guides and help."""
     files = [
@@ -67,3 +78,17 @@ def test_every_documented_command_has_parameters_that_there_are(qgis_app, root):
     for file, algorithm, names in calls:
         known = {definition.name() for definition in provider.algorithm(algorithm).parameterDefinitions()}
         assert set(names) <= known, f"{file}: fleet:{algorithm}"
+
+
+def test_a_dialogs_errors_name_parameters_by_their_labels_and_a_scripts_by_their_names(provider, monkeypatch):
+    algorithm = provider.algorithm("exportrobotmap").create()
+    context = QgsProcessingContext()
+    _, by_script = algorithm.checkParameterValues({"WIDTH": 10}, context)
+    assert by_script.startswith(
+        "Neither CENTER nor EXTENT is given: give the centre of the window with WIDTH"
+    )
+    monkeypatch.setattr(parameter_labels, "is_in_a_dialog", lambda: True)
+    _, in_dialog = algorithm.checkParameterValues({"WIDTH": 10}, context)
+    names = {one.name() for one in algorithm.parameterDefinitions()}
+    assert not names & set(re.findall(r"\w+", in_dialog))
+    assert in_dialog.startswith("Neither “Centre of the window” nor “")

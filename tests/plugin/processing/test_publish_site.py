@@ -107,6 +107,20 @@ def test_surfaces_are_published_with_their_names_and_where_they_come_from(publis
     assert told == [("asphalt", "Yard", "generated"), ("sand", "", "drawn")]
 
 
+def test_what_a_gateway_maps_is_what_it_would_read_of_the_layers(publish, yard):
+    folder = publish(**yard, ORIGIN="-10,-20", ROTATION=33).folder
+    mapped = read_site(folder)
+    (Path(folder) / "site.cache").unlink()
+    read = read_site(folder)
+    assert mapped.cache is not None and read.cache is None
+    np.testing.assert_allclose(mapped.outlines.coordinates, read.outlines.coordinates, rtol=0, atol=1e-9)
+    for name in ("offsets", "shape_type", "courtyard", "height", "outdoor"):
+        np.testing.assert_array_equal(getattr(mapped.outlines, name), getattr(read.outlines, name), name)
+    for name in ("semantics", "source"):
+        assert getattr(mapped.outlines, name) == getattr(read.outlines, name)
+    assert write_text(mapped.whole_map()) == write_text(read.whole_map())
+
+
 def test_what_is_published_is_what_the_layers_hold(publish, yard):
     done = publish(**yard, ORIGIN="-10,-20", ROTATION=90, REACHED_TOLERANCE=0.3, STALE_AFTER=2, LOST_AFTER=5)
     site = read_site(done.folder)
@@ -131,6 +145,8 @@ def test_what_is_published_is_what_the_layers_hold(publish, yard):
     assert done.warnings == [
         "Layer roads, feature 2: has no geometry; it is left out",
         "Layer roads, feature 3: its width -1.0 is not a number of metres above 0; the default is used",
+        "Layer roads: none of its fields direction, oneway, one_way and other_tags is there to tell one-way "
+        "roads; all are taken as driven both ways",
         "Layer roads: the width of 1 of its roads is not known and taken as 3.5 m (feature 3 is the first)",
     ]
 
@@ -236,7 +252,7 @@ def test_a_second_file_that_cannot_be_replaced_gives_back_the_first(publish, yar
     (folder / "site.toml" / "in the way").mkdir(parents=True)
     with pytest.raises(QgsProcessingException, match="The site cannot be published in"):
         publish(**yard)
-    assert sorted(entry.name for entry in folder.iterdir()) == ["site.gpkg", "site.toml"]
+    assert sorted(entry.name for entry in folder.iterdir()) == ["site.cache", "site.gpkg", "site.toml"]
     assert (folder / "site.gpkg").read_bytes() == layers
 
 
@@ -402,3 +418,14 @@ def test_the_papers_campus_in_local_metres_is_published_by_its_profile(qgis_proc
     assert "litter_bin" in furniture and len(furniture) > 4
     pier = (4.50, 12.20)  # of the paper's Fig. 2
     assert np.hypot(*(site.outlines.coordinates - pier).T).min() < 0.05
+
+
+@pytest.mark.parametrize(("origin", "warned"), [(None, True), ("640000,5190000", False)])
+def test_an_origin_of_nought_far_from_the_site_is_warned_of(publish, make_layer, origin, warned):
+    far = "Polygon((640000 5190000, 640020 5190000, 640020 5190020, 640000 5190000))"
+    layers = [make_layer("house", "Polygon", features=[(far, 9.5)])]
+    done = publish(OBSTACLES=layers, **({} if origin is None else {"ORIGIN": origin}))
+    told = [
+        one for one in done.warnings if "The origin of the site frame is 0,0 of EPSG:32633, 5229 km" in one
+    ]
+    assert bool(told) is warned

@@ -78,7 +78,7 @@ def test_what_a_killed_publication_left_in_the_folder_goes_with_the_next(qgis_pr
     project = root / "resources" / "sample_site" / "sample_site.qgz"
     done = qgis_process("run", "fleet:publishsite", f"--PROJECT_PATH={project}", "--", f"FOLDER={tmp_path}")
     assert done.status == 0, done.said
-    assert {file.name for file in tmp_path.iterdir()} == {"site.gpkg", "site.toml"}
+    assert {file.name for file in tmp_path.iterdir()} == {"site.cache", "site.gpkg", "site.toml"}
 
 
 def test_processes_that_publish_at_once_use_no_version_twice(qgis_process, data, tmp_path):
@@ -96,4 +96,4 @@ def test_processes_that_publish_at_once_use_no_version_twice(qgis_process, data,
     assert sorted(versions) == list(range(1, len(versions) + 1)) and versions
     assert all("is under way, by process" in done.said for done in ended if done.status)
     assert read_site(tmp_path).version == len(versions)
-    assert {file.name for file in tmp_path.iterdir()} == {"site.gpkg", "site.toml"}
+    assert {file.name for file in tmp_path.iterdir()} == {"site.cache", "site.gpkg", "site.toml"}

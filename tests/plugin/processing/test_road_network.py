@@ -196,12 +196,16 @@ def test_surfaces_that_no_road_has_are_warned_of(run, make_layer, listener):
     assert made["WARNING_COUNT"] == 1
 
 
-def test_a_layer_without_roads_is_told(run, make_layer, listener):
-    layer = make_layer("roads", fields=ALL, features=[])
-    assert run("buildroadnetwork", layer)["EDGE_COUNT"] == 0
-    assert listener.warnings == ["Layer roads: none of its features is a road"]
-    with pytest.raises(QgsProcessingException, match="more than 20 m from every road"):
-        run("route", layer, **PLACES)
+@pytest.mark.parametrize("name", ["buildroadnetwork", "checkroadnetwork", "route"])
+def test_a_layer_without_roads_is_refused_with_what_it_holds(run, make_layer, name):
+    places = PLACES if name == "route" else {}
+    empty = make_layer("roads", fields=ALL, features=[])
+    with pytest.raises(QgsProcessingException, match="the layer roads has no features: choose the layer of"):
+        run(name, empty, **places)
+    far = make_layer("roads", fields=ALL, features=[("LINESTRING(0 0, 1e12 0)", *SQUARE[0][1:])])
+    said = r"no feature of the layer roads is a road: .* has a coordinate .* 100 000 km"
+    with pytest.raises(QgsProcessingException, match=said):
+        run(name, far, **places)
 
 
 def test_areas_that_must_not_be_driven_through_are_driven_round(run, make_layer, listener):

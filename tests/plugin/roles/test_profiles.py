@@ -8,21 +8,24 @@ from collections import Counter
 import numpy as np
 import pytest
 from fleet_supervisor.plugin.sites.errors import ProfileError
-from fleet_supervisor.plugin.sites.obstacle_source import obstacle_sources
+from fleet_supervisor.plugin.sites.layer_rules import LayerRules, as_metres
+from fleet_supervisor.plugin.sites.obstacle_source import names_of, obstacle_sources
 from fleet_supervisor.plugin.sites.placing import SitePlacing
+from fleet_supervisor.plugin.sites.profile import Profile, ProfileRule
 from fleet_supervisor.plugin.sites.profile_file import find_profile, read_profile, shipped_profiles
 from fleet_supervisor.plugin.sites.reading import read_outlines
 from fleet_supervisor.plugin.sites.roles import LayerExpressions, LayerSetup, keep_setup
 from fleet_supervisor.robot_bridge.robotmap.model import ShapeType
 from fleet_supervisor.robot_bridge.sites.frame import SiteFrame
 from qgis.core import (
-    NULL,
     QgsExpression,
     QgsExpressionContext,
     QgsExpressionContextUtils,
     QgsFeatureRequest,
     QgsFeedback,
     QgsProject,
+    QgsProviderRegistry,
+    QgsProviderSublayerDetails,
     QgsVectorLayer,
 )
 
@@ -94,6 +97,12 @@ def test_json_says_the_same_as_toml(qgis_app, profile):
         (RULE + 'hight = "2"\n', "layers[0].hight is no key of a profile: known are names"),
         (RULE + 'height = "2 +"\n', "layers[0].height is no QGIS expression"),
         (RULE + 'filter = "2 +"\n', "layers[0].filter is no QGIS expression"),
+        (
+            RULE + f'height = "{"1+" * 5500}1"\n',
+            "is no QGIS expression: it has 11001 characters, more than 10000",
+        ),
+        ("a" + ".a" * 100_000 + " = 1", "a key has more than 32 parts"),
+        ("x = " + "[" * 100_000, "nested too deeply"),
         (RULE + "height = 2\n", "layers[0].height is 2: write text in quotes"),
         (RULE + "fields = [2]\n", "layers[0].fields is [2]: write a list of texts"),
         (RULE + 'geometry = "dot"\n', "layers[0].geometry is 'dot': write one of point, line, polygon"),
@@ -120,13 +129,14 @@ def test_a_shipped_profile_is_right_and_found_by_its_name(qgis_app, file):
 def evaluated(source, what, file="openstreetmap"):
     """Return the values that a shipped profile gives to the features of a real layer."""
     setup = read_profile(find_profile(file)).setup_for(source)
-    expression = QgsExpression(getattr(setup.expressions, what))
     context = QgsExpressionContext(QgsExpressionContextUtils.globalProjectLayerScopes(source))
-    values = []
+    rules = LayerRules(source.name(), source.fields(), context)
+    rule = rules.needed_rule(what, getattr(setup.expressions, what))
+    values, notes = [], []
     for feature in source.getFeatures():
-        context.setFeature(feature)
-        values.append(expression.evaluate(context))
-        assert not expression.hasEvalError(), expression.evalErrorString()
+        rules.at(feature)
+        values.append(rules.value(what, rule, notes))
+    assert notes == []
     return values
 
 
@@ -142,7 +152,7 @@ def test_openstreetmap_knows_heights_and_widths_of_helsinki(qgis_app, data):
     ]
     assert len(told) > 100
     assert {1.5, 2.0, 0.15, "0.5 m"} <= {*evaluated(barriers, "height"), *evaluated(barriers, "estimate")}
-    widths = [width for width in evaluated(roads, "width") if width]
+    widths = [as_metres(width) for width in evaluated(roads, "width") if width]
     assert len(widths) > 2000 and min(widths) > 0.5 and max(widths) < 40.0
 
 
@@ -202,7 +212,7 @@ def test_openstreetmap_turns_furniture_as_its_direction_says(qgis_app, make_laye
     for values in ((way, None), (None, tags)):
         things = make_layer("furniture", "Point", fields, [("Point(0 0)", *values)])
         (value,) = evaluated(things, "rotation")
-        assert value == degrees or (degrees is None and value == NULL)
+        assert value == degrees
 
 
 def test_the_campus_has_ramps_among_its_ground_and_walls_that_begin_above_it(read_by_profile, data):
@@ -235,3 +245,61 @@ def test_the_profile_in_the_guide_is_one(qgis_app, profile, root):
     assert ours.name == "Our campus"
     assert ours.setup_for(layer("Sheds", "Polygon", "&field=roof:double")).role == "obstacle"
     assert ours.setup_for(layer("roads")).expressions.width == '"lanes" * 3.25'
+
+
+CAMPUS_LAYERS = {
+    "buildings": "obstacle",
+    "walls": "obstacle",
+    "step_edges": "stairs",
+    "furniture": "furniture",
+    "ground_surfaces": "ramp",
+}
+
+
+@pytest.fixture
+def browsed_campus(qgis_app, data):
+    """The campus as QGIS's browser adds it: each layer is called after its file, too."""
+    project = QgsProject.instance()
+    file = data / "upc_campus_nord" / "upc_campus_nord_nominal_epsg25831.gpkg"
+    layers = {}
+    for found in QgsProviderRegistry.instance().querySublayers(str(file)):
+        options = QgsProviderSublayerDetails.LayerOptions(project.transformContext())
+        made = found.toLayer(options)
+        # As QgsAppLayerHandling names layers of a file that has several.
+        made.setName(f"{file.stem} — {found.name()}")
+        layers[found.name()] = made
+    project.addMapLayers(list(layers.values()))
+    yield layers
+    project.clear()
+
+
+def test_layers_are_known_by_the_name_in_their_source(browsed_campus):
+    campus = read_profile(find_profile("upc_campus_nord"))
+    assert all(" — " in layer.name() for layer in browsed_campus.values())
+    found = {name: campus.setup_for(layer) for name, layer in browsed_campus.items()}
+    assert {name: setup.role for name, setup in found.items() if setup is not None} == CAMPUS_LAYERS
+    # A name that somebody gave it in the project counts as before.
+    walls = browsed_campus["walls"]
+    mine = Profile("", "", (ProfileRule(("our walls",), (), "", LayerSetup("keepout")),))
+    assert mine.setup_for(walls) is None
+    walls.setName("Our walls")
+    assert mine.setup_for(walls).role == "keepout" and campus.setup_for(walls).role == "obstacle"
+
+
+@pytest.mark.parametrize("name", ["walls", "furniture"])
+def test_the_campus_stands_on_its_ground_whatever_the_layers_are_called(browsed_campus, name):
+    """The layer of the ground is found beside them: without it everything would stand at height 0."""
+    layer = browsed_campus[name]
+    as_browsed = evaluated(layer, "base", "upc_campus_nord")
+    assert sum(base is not None for base in as_browsed) > 50
+    for inside, one in browsed_campus.items():
+        one.setName(inside)
+    assert evaluated(layer, "base", "upc_campus_nord") == as_browsed
+
+
+def test_a_layer_without_a_source_of_several_goes_by_what_it_is(qgis_app, tmp_path):
+    file = tmp_path / "walls.geojson"
+    file.write_text('{"type": "FeatureCollection", "features": []}', encoding="utf-8")
+    assert names_of(QgsVectorLayer(str(file), "Mine", "ogr")) == ["Mine", "walls"]
+    assert names_of(layer("Mine")) == ["Mine"]
+    assert names_of(QgsVectorLayer("nowhere.gpkg|layername=walls", "nowhere", "ogr")) == ["walls"]

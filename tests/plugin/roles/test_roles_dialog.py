@@ -9,7 +9,7 @@ import pytest
 from fleet_supervisor.plugin.roles.picture import COLOURS, GROUND
 from fleet_supervisor.plugin.roles.preview_view import PreviewView
 from fleet_supervisor.plugin.roles.roles_action import RolesAction
-from fleet_supervisor.plugin.roles.roles_dialog import RolesDialog
+from fleet_supervisor.plugin.roles.roles_dialog import WIDEST_NAME, RolesDialog
 from fleet_supervisor.plugin.roles.table_model import (
     BASE,
     ESTIMATE,
@@ -109,7 +109,7 @@ def test_a_role_chosen_by_the_mouse_is_counted_and_drawn(dialog, wait):
     ]
     roles.setCurrentIndex(4)
     roles.activated.emit(4)
-    wait(lambda: cell(dialog, "roads", RESULT).data() == "1 road, 1 segment")
+    wait(lambda: cell(dialog, "roads", RESULT).data() == "1 road, 1 segment, 1 warning")
     wait(lambda: not dialog.preview.busy)
     assert "1 road," in said(dialog)
     image = dialog.findChild(PreviewView, "fleet_roles_preview").image
@@ -199,6 +199,22 @@ def test_the_table_fits_its_columns_into_the_dialog(dialog):
     assert table.horizontalHeader().length() <= table.viewport().width()
 
 
+def test_the_names_of_layers_of_one_file_are_read_whole(project):
+    name = "UPC_Campus_Nord — buildings"
+    project.mapLayersByName("buildings")[0].setName(name)
+    dialog = RolesDialog(project)
+    dialog.open()
+    QApplication.processEvents()
+    table = dialog.findChild(QTableView, "fleet_roles_table")
+    assert table.columnWidth(LAYER) >= table.fontMetrics().horizontalAdvance(name) + 4
+    project.mapLayersByName("roads")[0].setName(30 * "very long ")
+    dialog.reject()
+    again = RolesDialog(project)
+    again.open()
+    assert again.findChild(QTableView, "fleet_roles_table").columnWidth(LAYER) == WIDEST_NAME
+    again.reject()
+
+
 def test_nothing_is_kept_before_apply(dialog, project):
     apply = dialog.findChild(QDialogButtonBox).button(BUTTONS.Apply)
     assert not apply.isEnabled()
@@ -240,6 +256,7 @@ def test_a_broken_profile_changes_nothing_and_says_why(dialog, tmp_path):
     assert cell(dialog, "roads", ROLE).data() == "–"
     dialog.apply_profile(find_profile("upc_campus_nord"))
     assert "knows none of these layers" in message(dialog)
+    assert "buildings with bid, z_roof; walls with z_min, z_max; step_edges" in message(dialog)
 
 
 def test_a_project_that_cannot_carry_a_site_is_told(project, wait):

@@ -26,7 +26,7 @@ def workshop(root, sample_site, tmp_path):
 
 
 def make(folder, *parts):
-    subprocess.run([sys.executable, str(folder / "make_sample_site.py"), *parts], check=True, timeout=120)
+    subprocess.run([sys.executable, str(folder / "make_sample_site.py"), *parts], check=True, timeout=240)
 
 
 def test_two_runs_give_the_same_bytes(workshop, sample_site):

@@ -17,7 +17,7 @@ def made(root, data, tmp_path_factory):
     """The folder that the script has filled."""
     out = tmp_path_factory.mktemp("proving_ground")
     script = root / "scripts" / "proving_ground.py"
-    subprocess.run([sys.executable, str(script), str(out), str(data)], check=True, timeout=120)
+    subprocess.run([sys.executable, str(script), str(out), str(data)], check=True, timeout=240)
     return out
 
 

@@ -33,6 +33,8 @@ def changed(**how):
     ("text", "says"),
     [
         ("<xml/>", "is not JSON"),
+        ("[" * 100_000, "is not JSON"),
+        (" " * 200_001, "more than 200000"),
         ("[]", "holds no connections"),
         ("{}", "holds no connections"),
         (changed(version=2), "is of version 2"),

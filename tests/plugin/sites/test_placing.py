@@ -95,6 +95,6 @@ def test_a_point_beyond_the_projection_is_a_warning_and_the_rest_is_read(make_la
     reading = read(layer)
     assert [row.source for row in reading.rows] == ["walls:2"]
     assert reading.warnings == [
-        "Layer walls, feature 1: has a coordinate that is no number or has no place in the site's CRS; "
-        "it is left out"
+        "Layer walls, feature 1: has a coordinate that is no number, has no place in the site's CRS or "
+        "lies beyond 100 000 km; it is left out"
     ]

@@ -7,6 +7,7 @@ import math
 import pytest
 import shapely
 from fleet_supervisor.plugin.sites.errors import ExpressionError, LayerTypeError
+from fleet_supervisor.plugin.sites.missing_geometry import subset_without_geometry
 from fleet_supervisor.plugin.sites.roles import (
     KEEPOUT,
     RAMP,
@@ -16,7 +17,15 @@ from fleet_supervisor.plugin.sites.roles import (
     set_role,
 )
 from fleet_supervisor.robot_bridge.robotmap.model import ShapeType
-from qgis.core import NULL, QgsFeedback
+from qgis.core import (
+    NULL,
+    QgsCoordinateTransformContext,
+    QgsDataSourceUri,
+    QgsFeedback,
+    QgsGeometry,
+    QgsVectorFileWriter,
+    QgsVectorLayer,
+)
 
 LINE = "LineString(0 0, 4 0)"
 SQUARE = "Polygon((0 0, 10 0, 10 10, 0 10, 0 0))"
@@ -137,11 +146,56 @@ def test_an_outdoor_flag_that_is_neither_is_named(make_layer, read):
     ]
 
 
-def test_a_feature_without_geometry_is_named_and_one_outside_the_window_is_not_read(make_layer, read):
-    features = [(None, 1.0), ("LineString(900 900, 950 900)", 1.0), (LINE, 1.0)]
-    reading = read(make_layer(fields=HEIGHT, features=features), window=(-5, -5, 5, 5))
+NOWHERE = "Layer walls, feature 1: has no geometry; it is left out"
+
+
+@pytest.mark.parametrize("stored", [False, True])
+def test_features_outside_the_window_are_not_asked_for_and_those_without_geometry_are_named(
+    make_layer, read, tmp_path, stored
+):
+    features = [(None, 1.0), ("LineString(900 900, 950 900)", -1.0), (LINE, 1.0)]
+    layer = make_layer(fields=HEIGHT, features=features)
+    if stored:
+        layer = saved(layer, tmp_path / "walls.gpkg")
+    reading = read(layer, window=(-5, -5, 5, 5))
     assert [row.source for row in reading.rows] == ["walls:3"]
-    assert reading.warnings == ["Layer walls, feature 1: has no geometry; it is left out"]
+    assert reading.warnings == [NOWHERE]
+    whole = read(layer, window=None)
+    assert [row.source for row in whole.rows] == ["walls:2", "walls:3"]
+    assert whole.warnings[0] == NOWHERE
+
+
+def test_what_does_not_count_needs_no_geometry(make_layer, read, tmp_path):
+    features = [(None, 1.0), (None, 2.0), (None, 3.0), (LINE, 3.0)]
+    layer = saved(make_layer(fields=HEIGHT, features=features), tmp_path / "walls.gpkg")
+    assert layer.setSubsetString('"height" > 1')
+    set_expressions(layer, LayerExpressions(filter='"height" < 3'))
+    reading = read(layer, window=(-5, -5, 5, 5))
+    assert reading.rows == []
+    assert reading.warnings == ["Layer walls, feature 2: has no geometry; it is left out"]
+
+
+def test_changes_that_are_not_saved_are_looked_at_for_geometry_too(make_layer, read, tmp_path):
+    layer = saved(make_layer(fields=HEIGHT, features=[(None, 1.0)]), tmp_path / "walls.gpkg")
+    assert layer.startEditing() and layer.changeGeometry(1, QgsGeometry.fromWkt(LINE))
+    reading = read(layer, window=(-5, -5, 5, 5))
+    assert [row.source for row in reading.rows] == ["walls:1"] and reading.warnings == []
+
+
+def test_a_database_is_asked_for_what_has_no_geometry():
+    uri = 'dbname=\'city\' table="public"."walls" (geom) sql=height > 1'
+    found = QgsDataSourceUri(subset_without_geometry("postgres", uri))
+    assert found.sql() == '(height > 1) AND "geom" IS NULL'
+    assert (found.table(), found.geometryColumn()) == ("walls", "geom")
+
+
+def saved(layer, file):
+    """Return ``layer`` as a layer of a GeoPackage."""
+    options = QgsVectorFileWriter.SaveVectorOptions()
+    options.layerName = layer.name()
+    transforms = QgsCoordinateTransformContext()
+    assert not QgsVectorFileWriter.writeAsVectorFormatV3(layer, str(file), transforms, options)[0]
+    return QgsVectorLayer(f"{file}|layername={layer.name()}", layer.name(), "ogr")
 
 
 def test_layers_of_one_name_are_told_apart(make_layer, read):

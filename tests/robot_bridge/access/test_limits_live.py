@@ -115,10 +115,11 @@ def test_an_emergency_stop_is_taken_from_whoever_has_talked_too_much(bridge):
 @pytest.mark.parametrize(
     ("path", "fits", "too_large"), [("/desk", 19_000, 21_000), ("/robot", 100_000, 120_000)]
 )
-def test_a_message_has_a_largest_size_and_a_robots_may_hold_an_image(bridge, path, fits, too_large):
+def test_a_message_has_a_largest_size_and_only_an_image_may_be_larger(bridge, path, fits, too_large):
     with connect(f"{bridge.address}{path}") as wire:
         wire.send(json.dumps({"jsonrpc": "2.0", "id": 1, "method": "x" * fits}))
-        assert "x" * 100 in next(text for text in iter(lambda: wire.recv(5), "") if '"id":1' in text)
+        told = next(text for text in iter(lambda: wire.recv(5), "") if '"id":1' in text)
+        assert "x" * 40 in told and ("but for SendImage" in told) == (path == "/robot")
         wire.send(json.dumps({"jsonrpc": "2.0", "id": 2, "method": "x" * too_large}))
         with pytest.raises(ConnectionClosed) as caught:
             wire.recv(5)

@@ -25,6 +25,7 @@ LEAST = {
     "get_surface": VIEWER,
     "get_closures": VIEWER,
     "get_conflicts": VIEWER,
+    "get_ways_out": VIEWER,
     "close_road": OPERATOR,
     "open_road": OPERATOR,
     "resolve_conflict": OPERATOR,
@@ -56,6 +57,7 @@ LEAST = {
     "rotate_token": SUPERVISOR,
     "revoke_token": SUPERVISOR,
     "set_role": SUPERVISOR,
+    "remove_robots": SUPERVISOR,
     "get_sites": SUPERVISOR,
     "choose_site": SUPERVISOR,
 }
@@ -85,18 +87,20 @@ def params(method):
         "clear_emergency_stop": {"reason": "clear"},
         "get_image": {"observation": 1},
         "review_observation": {"observation": 1, "accept": False, "reason": "no"},
-        "get_trajectory": {"robot": "nobody"},
+        "get_trajectory": {"robots": ["nobody"]},
         "get_surface": {"points": [[1.0, 1.0]]},
         "get_route": {**target, "robot": "nobody"},
         "close_road": {"closure": str(uuid.uuid4()), "x": -9999.0, "y": 1.0},
         "open_road": {"closure": str(uuid.uuid4())},
         "resolve_conflict": {"robot": "nobody", "other": "nobody-else"},
+        "get_ways_out": {"robot": "nobody", "other": "nobody-else"},
         "end_session": {"session": "0000"},
         "add_operator": {"operator": " ", "role": "supervisor"},
         "rotate_token": {"operator": "nobody"},
         "revoke_token": {"operator": "nobody"},
         "set_role": {"operator": "nobody", "role": "supervisor"},
         "choose_site": {"site": "nowhere"},
+        "remove_robots": {"robots": ["nobody"]},
     }
     return known.get(method, {})
 

@@ -10,7 +10,7 @@ import pytest
 from bridge_accounts import bearing
 from bridge_programs import wait_until
 from bridge_sockets import frame, plain_socket
-from bridge_wires import RefusedError, is_refused
+from bridge_wires import RefusedError, is_refused, is_shut
 from stage.patience import BUSY
 from websockets.sync.client import connect
 
@@ -29,8 +29,10 @@ def accounts(bridge, accounts_of):
 
 
 @pytest.fixture(scope="module")
-def ada(accounts):
-    return accounts.operator("Ada", "supervisor")
+def ada(bridge, accounts):
+    token = accounts.operator("Ada", "supervisor")
+    wait_until(lambda: is_shut(bridge.desk))
+    return token
 
 
 @pytest.fixture(scope="module")

@@ -58,3 +58,12 @@ def test_a_note_adds_a_line_and_changes_no_state():
 def test_a_deviation_known_stays_known():
     reached = advance(command(CommandState.ACKNOWLEDGED), CommandState.REACHED, 2.0, "gateway", None, 0.07)
     assert note(reached, 3.0, "gateway", "x").deviation == 0.07
+
+
+def test_where_a_robot_stood_and_how_far_off_stay_known_until_they_are_told_otherwise():
+    stood = (1.0, 2.0, 3.0)
+    taken = advance(command(CommandState.QUEUED), CommandState.DELIVERED, 2.0, "gateway", None, 0.07, stood)
+    later = advance(taken, CommandState.ACKNOWLEDGED, 3.0, "r1")
+    assert (later.deviation, later.stood) == (0.07, stood)
+    reached = advance(later, CommandState.REACHED, 4.0, "gateway", None, 0.09, (4.0, 5.0, 6.0))
+    assert (reached.deviation, reached.stood) == (0.09, (4.0, 5.0, 6.0))

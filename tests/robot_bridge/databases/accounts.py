@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import itertools
 import subprocess
-import sys
 from pathlib import Path
 
+from command_line import run_command
 from sqlalchemy import make_url
 
 NUMBERS = itertools.count(1)
@@ -38,7 +38,6 @@ class Accounts:
             self._run("remove", name)
 
     def _run(self, *words: str) -> subprocess.CompletedProcess[str]:
-        command = [sys.executable, "-m", "robot_bridge", "robots", *words, "--database", self._admin_url]
-        done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=60)
+        done = run_command("robots", *words, "--database", self._admin_url)
         assert done.returncode == 0, done.stderr
         return done

@@ -47,3 +47,5 @@ def make_old(file: Path) -> None:
     """Make a database of version 0.1.0."""
     with contextlib.closing(sqlite3.connect(file)) as connection:
         connection.executescript(VERSION_0_1_0)
+    # As whoever runs a gateway keeps it.
+    file.chmod(0o600)

@@ -57,6 +57,7 @@ def test_a_robot_with_the_rights_of_its_account_takes_the_map_and_drives_to_its_
     assert desk.robots[name]["link"] == "sql"
 
 
+@SERVERS
 def test_a_gateway_killed_while_robots_drive_goes_on_where_it_stopped(bridge, accounts):
     name, address = accounts.add(bridge.database)
     bridge.start_robot(name, (20.0, 20.0, 0.0), sql=address)

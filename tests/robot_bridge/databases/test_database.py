@@ -54,9 +54,10 @@ async def test_a_file_that_cannot_be_used_is_named(tmp_path, how):
 
 @pytest.mark.parametrize("kind", ["sqlite"], indirect=True)
 @pytest.mark.parametrize("replaced", [False, True])
-async def test_a_file_that_was_taken_away_is_not_written_until_it_is_back(url, tmp_path, replaced):
+async def test_a_file_that_was_taken_away_is_not_written_until_it_is_back(url, replaced):
     database = Database(url)
-    file, aside = Path(database.url.database), tmp_path / "aside.db"
+    file = Path(database.url.database)
+    aside = file.with_name(f"{file.name}.aside")
     await database.run(add, "a")
     file.rename(aside)
     if replaced:

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import os
 import pwd
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
+from command_line import run_command
 from database_client import DatabaseClient
 from old_database import make_old
 from sqlalchemy import make_url
@@ -18,9 +17,7 @@ from robot_bridge.store.revisions import NEEDED
 
 def robot_bridge(*words, **environment):
     """Run the program; return its status and what it says."""
-    command = [sys.executable, "-m", "robot_bridge", *map(str, words)]
-    env = {**os.environ, **environment}
-    return subprocess.run(command, capture_output=True, text=True, check=False, timeout=60, env=env)
+    return run_command(*words, env=environment)
 
 
 def refusal(done) -> str:

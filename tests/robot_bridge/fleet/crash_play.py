@@ -21,9 +21,9 @@ from robot_bridge.command_life.states import is_open, may_become
 from robot_bridge.emergency.journal import StopJournal
 from robot_bridge.errors import OutdatedError, RefusedError, StoreError
 from robot_bridge.fleet import Fleet
-from robot_bridge.links.sql import SqlLink
 from robot_bridge.messages import CommandState, GetQueue, QueueTask, ResumeQueue, Send, SetQueue
 from robot_bridge.road_traffic.road_planning import RoadPlanner
+from robot_bridge.robot_api.sql import SqlLink
 from robot_bridge.site_maps import SiteMaps
 
 DRIVE_ON, START_ANEW, STAY_AWAY = "drive on", "start anew", "stay away"

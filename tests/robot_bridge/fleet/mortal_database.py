@@ -70,7 +70,7 @@ class MortalDatabase(Database):
     def __init__(self, address: str, death: Death):
         super().__init__(address)
         self._engine, self.dialect = _ENGINES.setdefault(address, (self._engine, self.dialect))
-        self._worker = WorkerInPlace(self._engine, self.dialect, shown(self.url), PATIENCE_S)
+        self._worker = WorkerInPlace(self._engine, self.dialect, shown(self.url), PATIENCE_S, self.offences)
         self.death = death
         self.dead = False
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import threading
 import time
+import uuid
 
 import pytest
 
@@ -218,10 +219,13 @@ async def test_a_target_sent_in_the_same_moment_does_not_set_a_robot_in_motion(t
 
 
 async def test_a_robot_that_says_ready_meanwhile_is_stopped_before_it_gets_its_map(two, control):
-    await control.stop()
+    await control.stop(reason="smoke")
     await two.take("r1")
     assert control.report.waiting == ["r2"]
     await two.ready("new", link="sql")
+    (told,) = await two.fleet.commands("new", 10)
+    assert uuid.UUID(told.command)
+    assert (told.steps[0].by, told.steps[0].reason) == ("Ada", "smoke")
     await two.ready("r1", magic=2)
     assert control.outbox("new")[0] == control.outbox("r1")[0] == ("Abort", True)
     assert (control.report.robots, control.report.waiting) == (3, ["new", "r1", "r2"])

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import asyncio
-
 import pytest
 from queue_line import LANE, PLACES, task
 
@@ -15,6 +13,7 @@ from robot_bridge.messages import (
     QueueTask,
     RemoveTask,
 )
+from robot_bridge.store import queues
 
 
 async def test_two_operators_do_not_overwrite_each_other(line):
@@ -82,16 +81,23 @@ async def test_another_task_is_made_current_and_the_present_one_comes_next(line)
     assert await line.states() == {"a": "done", "b": "done", "c": "done"}
 
 
-async def test_an_edit_made_while_somebody_orders_the_robot_about_does_not_undo_the_pause(line):
+async def test_an_edit_made_while_somebody_orders_the_robot_about_does_not_undo_the_pause(line, monkeypatch):
     await line.set(task("a"), task("b"))
     await line.yard.take()
-    added, _ = await asyncio.gather(
-        line.queues.add(AddTasks("r1", 1, [task("c")]), "Eve"),
-        line.yard.send("x", x=25.0, y=40.0),
-        return_exceptions=True,
-    )
+    run = line.yard.database.run
+
+    async def ordered_first(asked, *arguments):
+        if asked is queues.save:
+            monkeypatch.setattr(line.yard.database, "run", run)
+            await line.yard.send("x", x=25.0, y=40.0)
+        return await run(asked, *arguments)
+
+    monkeypatch.setattr(line.yard.database, "run", ordered_first)
+    with pytest.raises(OutdatedError) as refused:
+        await line.queues.add(AddTasks("r1", 1, [task("c")]), "Eve")
+    added = refused.value
     await line.go()
-    assert isinstance(added, OutdatedError) and added.newer["state"] == "paused"
+    assert added.newer["state"] == "paused"
     report = await line.seen()
     assert (report.revision, report.reason) == (2, "Ada ordered SetPosEnd beside the queue")
     assert await line.states() == {"a": "waiting", "b": "waiting"}

@@ -8,8 +8,8 @@ import pytest
 from queue_line import task
 
 from robot_bridge.commanding.writing import write_all
-from robot_bridge.errors import NotReadyError, StoreError, UncertainError
-from robot_bridge.messages import EmergencyStop, GetQueue, PositionForm
+from robot_bridge.errors import NotReadyError, RefusedError, StoreError, UncertainError
+from robot_bridge.messages import EmergencyStop, GetQueue, PositionForm, RemoveRobots
 from robot_bridge.snapshots import EVERYTHING
 from robot_bridge.trajectories import saving
 
@@ -137,3 +137,85 @@ async def test_its_queue_is_told_no_more_and_sends_nothing(stored):
     await stored.go()
     assert await stored.queues.read(GetQueue()) == []
     assert stored.yard.waiting() == []
+
+
+# --- at a desk --------------------------------------------------------------------------------------------
+
+
+async def silence(yard, robot="r1", others=("r2",)):
+    """Let nothing be heard of a robot for longer than the site's limits; ``others`` go on talking."""
+    yard.now += 60.0
+    for other in others:
+        await yard.at(1.0, 2.0, robot=other)
+    yard.fleet.robots.age(yard.now)
+    assert yard.fleet.robots.get(robot).state.value == "lost"
+
+
+async def at_desk(yard, *robots, reason=None):
+    return await yard.fleet.removals.remove(RemoveRobots(list(robots), reason), "Ada")
+
+
+async def test_a_supervisor_removes_one_that_is_lost_with_its_queue_and_its_command(stored):
+    yard = stored.yard
+    await stored.set(task("a", "place"), task("b"))
+    await yard.send("other", robot="r2")
+    await silence(yard)
+    seen = yard.fleet.snapshots.after(EVERYTHING).revision
+    report = await at_desk(yard, "r1")
+    assert (report.removed, report.kept) == (["r1"], [])
+    assert told(yard, seen)["removed"] == ["r1"]
+    assert yard.sql("select name from robots") == [("r2",)]
+    assert set((await yard.states()).values()) == {"failed", "queued"}
+    assert (await yard.states())["other"] == "queued"
+    await yard.ready()
+    assert (await stored.seen()).tasks == []
+    assert {one.state.value for one in (await stored.seen()).ended} == {"removed"}
+
+
+@pytest.mark.parametrize("restarts", [False, True])
+async def test_one_that_comes_back_is_told_to_abort_what_it_may_still_do(stored, restarts):
+    yard = stored.yard
+    await yard.send("a")
+    await yard.take()
+    await silence(yard)
+    await at_desk(yard, "r1")
+    if restarts:
+        await yard.restart()
+    await yard.ready()
+    assert "Abort" in await yard.take()
+    assert "Abort" not in await yard.take()
+
+
+async def test_of_many_those_that_are_back_are_left_alone_and_named(stored):
+    yard = stored.yard
+    await silence(yard)
+    report = await at_desk(yard, "r2", "r1", "r1", "r9")
+    assert report.removed == ["r1"]
+    assert [(one.robot, one.reason) for one in report.kept] == [
+        ("r2", "robot 'r2' is fresh; only robots that are lost or offline are removed"),
+        ("r9", "robot 'r9' is not known to this gateway"),
+    ]
+    with pytest.raises(RefusedError, match="'r2' is fresh; only robots that are lost or offline"):
+        await at_desk(yard, "r2")
+    assert yard.fleet.robots.names() == ["r2"]
+
+
+async def test_while_an_emergency_stop_is_in_force_nobody_is_removed_from_its_count(stored):
+    yard = stored.yard
+    await silence(yard)
+    await yard.fleet.emergency.stop(EmergencyStop("stop-0001"), "Ada")
+    with pytest.raises(RefusedError, match="an emergency stop is in force"):
+        await at_desk(yard, "r1")
+    assert yard.fleet.emergency.report().waiting == ["r1", "r2"]
+
+
+@pytest.mark.parametrize("error", [StoreError, UncertainError])
+async def test_what_could_not_be_stored_of_a_removal_is_done_later(stored, lose, error):
+    yard = stored.yard
+    await yard.send("a")
+    await silence(yard)
+    lose(yard, write_all, done=False, error=error)
+    assert (await at_desk(yard, "r1")).removed == ["r1"]
+    await yard.fleet.save()
+    assert (await yard.states())["a"] == "failed"
+    assert "r1" not in yard.fleet.robots

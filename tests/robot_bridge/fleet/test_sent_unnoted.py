@@ -10,9 +10,10 @@ from queue_line import PLACES, placed, task
 
 from robot_bridge.commanding.writing import write_all
 from robot_bridge.errors import StoreError, UncertainError
-from robot_bridge.links import delivery
-from robot_bridge.links.delivery import Delivery
 from robot_bridge.messages import AbortTask, EmergencyStop
+from robot_bridge.robot_api import delivery
+from robot_bridge.robot_api.delivery import Delivery
+from robot_bridge.robot_api.own_connection import OwnChannel
 
 CONE = PLACES["a"]
 
@@ -42,7 +43,7 @@ class Wire:
 async def wire(line):
     """Robot r1's wire, on which its outbox goes out once its ``delivery`` begins."""
     wire = Wire(line.yard)
-    wire.delivery = Delivery(line.yard.fleet, wire, "r1")
+    wire.delivery = Delivery(line.yard.fleet, OwnChannel(wire), "r1")
     yield wire
     wire.delivery.end()
 
@@ -97,7 +98,11 @@ async def test_a_cone_that_was_put_down_while_no_gateway_ran_is_put_down_once(li
 async def test_what_is_taken_back_while_its_delivery_is_to_be_noted_is_not_sent(line):
     await line.yard.send("target")
     (row,) = await line.yard.fleet.mailboxes.outbox("r1", 0)
-    _, may_be_sent = await asyncio.gather(abort(line.yard), line.yard.fleet.mailboxes.hand_over("r1", row.id))
+    aborting = asyncio.ensure_future(abort(line.yard))
+    for _ in range(5):  # until it holds the robot
+        await asyncio.sleep(0)
+    may_be_sent = await line.yard.fleet.mailboxes.hand_over("r1", row.id)
+    await aborting
     assert (await line.yard.states())["target"] == "aborted"
     assert not may_be_sent
 

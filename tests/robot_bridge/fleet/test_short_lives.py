@@ -12,8 +12,8 @@ from mortal_database import Death, Killed, MortalDatabase
 
 from robot_bridge.exchange import Outcome, rows_of
 from robot_bridge.fleet import Fleet
-from robot_bridge.links.sql import SqlLink
 from robot_bridge.messages import OpAck, Ready, SendPos, SetMap
+from robot_bridge.robot_api.sql import SqlLink
 from robot_bridge.trajectories import saving
 
 ROBOTS = [f"r{number}" for number in range(1, 9)]

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from road_places import SOUTH
 
-from robot_bridge.commanding.writing import write_acknowledged, write_drafts
+from robot_bridge.commanding.writing import write_acknowledged, write_again, write_drafts
 from robot_bridge.errors import StoreError, UncertainError
 from robot_bridge.messages import (
     GetObservations,
@@ -37,6 +37,53 @@ async def test_an_acknowledgement_is_looked_up_and_its_robot_is_seen_to_arrive(r
     for x in (30.0, 40.0, 50.0):
         await roads.at(x, 40.0, v=float(x < 50))
     assert (await roads.states())["a"] == "reached"
+
+
+async def carrying_out(yard):
+    """Have robot r1 carry out a target."""
+    await yard.ready()
+    await yard.take()
+    await yard.at(20.0, 40.0)
+    await yard.send("a")
+    await yard.take()
+    assert await yard.states() == {"a": "acknowledged"}
+
+
+def targets(yard):
+    return [id for (id,) in yard.sql("select id from sa where robot = 'r1' and op = 'SetPosEnd'")]
+
+
+@DONE
+async def test_a_robot_that_starts_anew_is_sent_its_task_once_by_a_commit_in_doubt(roads, lose, done):
+    await carrying_out(roads)
+    lose(roads, write_again, done)
+    with pytest.raises(UncertainError):
+        await roads.ready(magic=2)
+    sent = targets(roads)
+    assert len(sent) == done
+    await roads.ready(magic=2)
+    assert len(targets(roads)) == 1 and targets(roads)[: len(sent)] == sent
+    assert await roads.take() == ["SetMap", "SetPosEnd"]
+    assert await roads.states() == {"a": "acknowledged"}
+
+
+async def test_a_gateway_that_dies_as_a_robot_has_started_anew_sends_it_nothing_again(roads, monkeypatch):
+    await carrying_out(roads)
+    await roads.fleet.save()
+    # A position that waits to be stored; a pose that is stored ahead of it would have it left out as late.
+    await roads.at(21.0, 40.0, v=1.0)
+
+    async def die(_robot=None):
+        raise StoreError("the gateway is killed")
+
+    monkeypatch.setattr(roads.fleet.reception._saving, "save", die)
+    with pytest.raises(StoreError):
+        await roads.ready(magic=2)
+    (sent,) = targets(roads)
+    await roads.restart()
+    assert roads.fleet.robots.get("r1").pose.x == 20.0
+    await roads.ready(magic=2)
+    assert targets(roads) == [sent]
 
 
 @DONE

@@ -6,7 +6,8 @@ import contextlib
 import urllib.parse
 
 import pytest
-from yards import GATEWAY, MINE, OTHER, ROBOTS, RefusedError, Yard, command_line
+from command_line import run_command
+from yards import GATEWAY, MINE, OTHER, ROBOTS, RefusedError, Yard
 
 from robot_bridge.errors import StoreError
 from robot_bridge.robots import Robot
@@ -21,7 +22,7 @@ NAME = "Iso.3-x_1"
 
 
 def run(yard, *arguments: str):
-    return command_line(*arguments, "--database", yard.admin)
+    return run_command(*arguments, "--database", yard.admin)
 
 
 @pytest.fixture
@@ -142,7 +143,7 @@ def test_names_that_mariadb_takes_for_the_same_are_refused(mariadb):
 
 def test_only_an_administrator_makes_accounts(yard):
     for account in (MINE, GATEWAY):
-        done = command_line("robots", "add", "iso-9", "--database", yard.address(account))
+        done = run_command("robots", "add", "iso-9", "--database", yard.address(account))
         assert done.returncode == 1
         assert done.stderr.startswith("robot-bridge: ")
         assert "Traceback" not in done.stderr
@@ -249,7 +250,7 @@ def test_on_sqlite_a_robot_gets_a_token_and_no_password(tmp_path):
     run_once(url, revisions.create)
 
     def sqlite(*arguments):
-        return command_line(*arguments, "--database", url)
+        return run_command(*arguments, "--database", url)
 
     made = sqlite("robots", "add", "r1")
     assert made.stdout.startswith("fleet_robot_")
@@ -267,6 +268,6 @@ def test_on_sqlite_a_robot_that_was_never_given_a_token_is_removed(tmp_path):
     run_once(url, revisions.create)
     gone, stays = (stored_robots.row(Robot(name, 1, "websocket", 1.0)) for name in ("r1", "r2"))
     run_once(url, lambda connection: stored_robots.save(connection, [gone, stays]))
-    assert command_line("robots", "remove", "r1", "--database", url).returncode == 0
+    assert run_command("robots", "remove", "r1", "--database", url).returncode == 0
     assert run_once(url, stored_robots.names) == ["r2"]
-    assert "'r1' is not known" in command_line("robots", "remove", "r1", "--database", url).stderr
+    assert "'r1' is not known" in run_command("robots", "remove", "r1", "--database", url).stderr

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import contextlib
 import time
 from concurrent.futures import ThreadPoolExecutor
 
@@ -10,9 +11,11 @@ import pytest
 from yards import GATEWAY, MINE, OTHER, RefusedError
 
 from robot_bridge import exchange
+from robot_bridge.emergency import storing
 from robot_bridge.exchange import Outcome
 from robot_bridge.messages import Abort, OpAck, SetMap
 from robot_bridge.store import answers, requests
+from robot_bridge.store.accounts.choice import keeper_on
 from robot_bridge.store.accounts.stuck import end_stuck
 from robot_bridge.store.database import Database, run_once
 
@@ -95,6 +98,16 @@ def test_what_a_robot_has_not_committed_holds_up_no_other_robots_requests(yard):
     assert yard.sql("select robot, op from rr order by id") == [(OTHER, "Alive"), (OTHER, "SendImage")]
 
 
+@contextlib.contextmanager
+def hesitating(yard):
+    """A robot's connection in a transaction, on either database with the locks of READ COMMITTED."""
+    with yard.session(MINE) as session:
+        if yard.kind == "mariadb":
+            session.run("set session transaction isolation level read committed")
+        session.run("begin")
+        yield session
+
+
 def answer_at_once(connection):
     """Deal with the other robot's requests, and stop everybody, as the gateway does; fail where it waits."""
     connection.exec_driver_sql(AT_ONCE["mariadb" if connection.dialect.name == "mariadb" else "postgresql"])
@@ -107,11 +120,8 @@ def answer_at_once(connection):
 
 @pytest.mark.parametrize("number", [1, 2, 12, 300])
 def test_what_a_robot_has_not_committed_holds_up_no_other_robots_answers(yard, number):
-    yard.sql(f"insert into sa (robot, op) values ('{OTHER}', 'SetMap'), ('{OTHER}', 'SetPath')")
-    with yard.session(MINE) as hesitant:
-        if yard.kind == "mariadb":
-            hesitant.run("set session transaction isolation level read committed")
-        hesitant.run("begin")
+    yard.sql(f"insert into sa (robot, op) values ('{OTHER}', 'SetPath'), ('{OTHER}', 'SetMap')")
+    with hesitating(yard) as hesitant:
         hesitant.run("insert into rr (op) values ('Alive')")
         hesitant.run("delete from sa")
         for _ in range(number - 1):
@@ -121,6 +131,47 @@ def test_what_a_robot_has_not_committed_holds_up_no_other_robots_answers(yard, n
     assert [robot for (robot,) in yard.sql("select robot from rr")] == [MINE, MINE]
     told = [op for _, op in yard.sql("select robot, op from sa order by id") if op != "Start"]
     assert told == ["OpAck", "SetMap"] * number
+
+
+def stop_at_once(connection):
+    # Not 0 as above, for which MariaDB's "skip locked" has no answer but an error.
+    limits = {**AT_ONCE, "mariadb": "set session innodb_lock_wait_timeout = 1"}
+    connection.exec_driver_sql(limits[connection.dialect.name])
+    storing._write_bare(connection, [MINE, OTHER])
+
+
+def aborted(yard):
+    return [robot for (robot,) in yard.sql("select robot from sa where op = 'Abort' order by robot")]
+
+
+def test_what_a_robot_is_just_reading_keeps_no_stop_from_the_others(yard):
+    yard.sql(f"insert into sa (robot, op) values ('{MINE}', 'SetPosEnd'), ('{OTHER}', 'SetPosEnd')")
+    with hesitating(yard) as hesitant:
+        hesitant.run("delete from sa where op = 'SetPosEnd'")
+        run_once(yard.address(GATEWAY), stop_at_once)
+        assert yard.sql("select robot from sa where op = 'SetPosEnd'") == [(MINE,)]
+        assert aborted(yard) == [MINE, OTHER]
+        hesitant.run("rollback")
+
+
+def test_a_gateway_that_may_lock_no_rows_stops_all_the_same_and_an_upgrade_lets_it(postgresql, caplog):
+    postgresql.sql(f'revoke update (urgent) on sa from "{GATEWAY}"')
+    for times in (1, 2):
+        caplog.clear()
+        postgresql.sql(f"insert into sa (robot, op) values ('{MINE}', 'SetPosEnd')")
+        run_once(postgresql.address(GATEWAY), stop_at_once)
+        assert postgresql.sql("select robot from sa where op = 'SetPosEnd'") == []
+        assert aborted(postgresql) == [MINE] * times + [OTHER] * times
+        assert caplog.text.count("robot-bridge database upgrade") == 1
+    run_once(postgresql.admin, lambda connection: keeper_on(connection).renew_rights())
+    caplog.clear()
+    run_once(postgresql.address(GATEWAY), stop_at_once)
+    assert "database upgrade" not in caplog.text
+
+
+def test_a_gateway_changes_no_answer_of_a_robot(postgresql):
+    with postgresql.session(GATEWAY) as gateway, pytest.raises(RefusedError, match="row-level security"):
+        gateway.run("update sa set urgent = 1")
 
 
 async def test_a_lock_for_update_holds_it_up_no_longer(mariadb):

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import contextlib
 import secrets
-import subprocess
-import sys
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import Any
@@ -40,6 +38,7 @@ class Yard:
     url: str
     passwords: dict[str, str]
     _open: dict[str, Session] = field(default_factory=dict)
+    _pid: int = 0
     _stack: contextlib.ExitStack = field(default_factory=contextlib.ExitStack)
 
     @property
@@ -95,6 +94,9 @@ class Yard:
 
     def of(self, account: str) -> Session:
         """Return a connection of ``account`` that stays open for the next who asks."""
+        if self._pid != self.server.pid:  # another test killed the server, and started it again
+            self.close()
+            self._pid = self.server.pid
         if account not in self._open:
             self._open[account] = self._stack.enter_context(self.session(account))
         return self._open[account]
@@ -148,13 +150,6 @@ class Session:
         except pymysql.Error as error:
             raise RefusedError(error.args[0], str(error)) from None
         return cursor
-
-
-def command_line(*arguments: str) -> subprocess.CompletedProcess[str]:
-    """Run ``robot-bridge`` as an administrator does."""
-    return subprocess.run(
-        [sys.executable, "-m", "robot_bridge", *arguments], capture_output=True, text=True, check=False
-    )
 
 
 def make_yard(server: Any) -> Yard:

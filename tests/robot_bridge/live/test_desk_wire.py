@@ -40,6 +40,7 @@ def test_hello_is_answered_with_the_site(bridge):
         "reached_tolerance": 0.2,
         "stale_after": 0.8,
         "lost_after": 1.6,
+        "roads": True,
     }
 
 
@@ -207,7 +208,7 @@ def test_every_operator_is_told_of_every_step_and_who_asked(bridge):
     id = report["command"]
     robot.say(robot.wait_for("SetPosEnd")["id"])
     told = bob.wait_for_step(id, "acknowledged")
-    assert (told["operator"], told["params"]) == ("Ada", {"x": 9.0, "y": 8.0, "cone": True})
+    assert (told["operator"], told["params"]) == ("Ada", {"x": 9.0, "y": 8.0, "cone": False})
     bob.ask("abort_all")
     ended = robot.wait_for("Abort")
     robot.say(ended["id"])

@@ -51,7 +51,7 @@ def test_a_robot_goes_to_its_target_step_by_step_and_stands_within_20_cm_of_it(d
     desk.listen(0.5)
     report = desk.robots[robot]
     assert math.hypot(report["x"] - x, report["y"] - y) <= 0.20
-    assert report["v"] == 0.0
+    desk.until(lambda: desk.robots[robot]["v"] == 0.0)
     assert report["link"] == robot.removeprefix("over-")
     assert "command" not in report
 

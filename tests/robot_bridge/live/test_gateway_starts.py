@@ -10,16 +10,17 @@ import subprocess
 import sys
 
 import pytest
+from command_line import run_command
 
 
-def serve(*options, cwd=None):
+def run_program(*options):
+    """Run a process of its own, as the other tests do not: what it says is the same."""
     return subprocess.run(
         [sys.executable, "-m", "robot_bridge", *map(str, options)],
         capture_output=True,
         text=True,
-        timeout=20,
+        timeout=240,
         check=False,
-        cwd=cwd,
     )
 
 
@@ -54,63 +55,84 @@ def site_with(sample_site, tmp_path):
     return make
 
 
+def test_a_wrong_database_is_named_before_the_site_is_read(site_with, tmp_path):
+    """A city takes minutes to read, and nobody waits that long for a spelling mistake."""
+    site = site_with('id = "sample"', 'id = "sample"')
+    (site / "site.gpkg").write_bytes(b"no GeoPackage")
+    said = refusal(
+        run_command("serve", "--site", site, "--database", f"sqlite:///{tmp_path}/nowhere/fleet.db")
+    )
+    assert "nowhere" in said and "site.gpkg" not in said
+
+
+def test_a_site_that_is_not_there_leaves_no_database(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    said = refusal(run_command("serve", "--site", "nowhere", "--database", "sqlite:///fleet.db"))
+    assert "nowhere is no folder" in said
+    assert list(tmp_path.iterdir()) == []
+
+
 def test_a_port_that_is_taken_is_named(sample_site, free_database):
     with socket.socket() as taken:
         taken.bind(("127.0.0.1", 0))
         taken.listen()
         port = taken.getsockname()[1]
-        line = refusal(serve("serve", "--site", sample_site, "--database", free_database, "--port", port))
+        line = refusal(
+            run_program("serve", "--site", sample_site, "--database", free_database, "--port", port)
+        )
     assert f"cannot listen on 127.0.0.1:{port}" in line
     assert "choose another --port, or 0 for any" in line
 
 
 @pytest.mark.parametrize("host", ["0.0.0.0", "192.168.1.10", "::"])
 def test_without_tls_it_listens_on_loopback_only(sample_site, free_database, host):
-    line = refusal(serve("serve", "--site", sample_site, "--database", free_database, "--host", host))
+    line = refusal(run_command("serve", "--site", sample_site, "--database", free_database, "--host", host))
     assert f"host {host} can be reached from other computers" in line
     assert "use 127.0.0.1" in line
 
 
 def test_a_host_is_an_address(sample_site, free_database):
-    line = refusal(serve("serve", "--site", sample_site, "--database", free_database, "--host", "my-pi"))
+    line = refusal(
+        run_command("serve", "--site", sample_site, "--database", free_database, "--host", "my-pi")
+    )
     assert "host 'my-pi' is not an IP address; use 127.0.0.1, or 0.0.0.0 for" in line
 
 
 def test_a_site_that_is_not_there_is_named(tmp_path, free_database):
-    line = refusal(serve("serve", "--site", tmp_path / "none", "--database", free_database))
+    line = refusal(run_command("serve", "--site", tmp_path / "none", "--database", free_database))
     assert f"{tmp_path}/none is no folder: a published site is a folder with site.toml and site.gpkg" in line
 
 
 def test_web_mercator_is_no_frame_for_a_site(site_with, free_database):
     folder = site_with("EPSG:32633", "EPSG:3857")
-    line = refusal(serve("serve", "--site", folder, "--database", free_database))
+    line = refusal(run_command("serve", "--site", folder, "--database", free_database))
     assert f"{folder}/site.toml: site.crs:" in line
     assert "3857" in line
 
 
 def test_a_setting_that_is_wrong_is_named(site_with, free_database):
     folder = site_with("reached_tolerance_m = 0.2", "reached_tolerance_m = -1.0")
-    line = refusal(serve("serve", "--site", folder, "--database", free_database))
+    line = refusal(run_command("serve", "--site", folder, "--database", free_database))
     assert "site.reached_tolerance_m = -1.0" in line
 
 
 def test_a_database_in_a_folder_that_is_not_there_is_named(sample_site, tmp_path):
     url = f"sqlite:///{tmp_path}/none/fleet.db"
-    line = refusal(serve("serve", "--site", sample_site, "--port", "0", "--database", url))
+    line = refusal(run_command("serve", "--site", sample_site, "--port", "0", "--database", url))
     assert f"database {url}: unable to open database file; check that it exists" in line
 
 
 def test_a_database_that_may_not_be_written_is_named(sample_site, tmp_path):
     sqlite3.connect(tmp_path / "fleet.db").close()
     url = f"sqlite:///file:{tmp_path}/fleet.db?mode=ro&uri=true"
-    line = refusal(serve("serve", "--site", sample_site, "--port", "0", "--database", url))
+    line = refusal(run_command("serve", "--site", sample_site, "--port", "0", "--database", url))
     assert "readonly database" in line
 
 
 def test_a_robot_has_one_link(free_database):
     both = ["--url", "ws://127.0.0.1:1/robot", "--database", free_database]
     for ways in ([], both):
-        line = refusal(serve("robot", "--name", "r1", *ways))
+        line = refusal(run_command("robot", "--name", "r1", *ways))
         assert "give either --url or --database" in line
 
 
@@ -124,7 +146,7 @@ def test_a_robot_has_one_link(free_database):
     ],
 )
 def test_what_a_robot_is_started_with_is_checked(options, text):
-    assert text in refusal(serve("robot", *options))
+    assert text in refusal(run_command("robot", *options))
 
 
 @pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT])

@@ -77,6 +77,37 @@ def test_a_rejected_object_is_on_no_map_and_says_why(robot, desk):
     assert told["reason"] == "a reflection"
 
 
+def test_what_is_missing_is_off_the_next_maps_when_accepted(robot, desk):
+    robot.ask("Ready", {"magic": 1})
+    before = decode(robot.hear("SetMap")).obstacles
+    bench = next(one for one in before if one.semantics.startswith("bench"))
+    x, y = bench.a.mean(axis=0).round(2).tolist()
+    source = bench.ext["src"]
+    robot.ask(
+        "SetObject", {"x": x, "y": y, "object": f"no bench {robot.name}", "radius": 1.0, "doubts": source}
+    )
+    (told,) = observations(desk, robot)
+    assert (told["doubts"], told["state"]) == (source, "pending")
+
+    def sources_on_maps():
+        robot.ask("GetMap", {"x": x, "y": y, "area": 400})
+        window = decode(robot.hear("SetMap")).obstacles
+        robot.ask("Ready", {"magic": 1})
+        return [
+            {one.ext["src"] for one in found} for found in (window, decode(robot.hear("SetMap")).obstacles)
+        ]
+
+    assert all(source in found for found in sources_on_maps())
+    with pytest.raises(RefusedError, match="leave out semantics, height and radius"):
+        desk.ask("review_observation", {"observation": told["observation"], "accept": True, "height": 1.0})
+    desk.ask("review_observation", {"observation": told["observation"], "accept": True})
+    window, whole = sources_on_maps()
+    assert source not in window | whole
+    assert len(whole) == len({one.ext["src"] for one in before}) - 1
+    desk.ask("review_observation", {"observation": told["observation"], "accept": False, "revise": True})
+    assert all(source in found for found in sources_on_maps())
+
+
 def test_a_review_is_changed_only_on_purpose(robot, desk):
     robot.ask("SetObject", {"x": 95.0, "y": 80.0, "object": f"box {robot.name}"})
     (told,) = observations(desk, robot)

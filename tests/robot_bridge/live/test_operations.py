@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import math
-import subprocess
-import sys
 from itertools import pairwise
 
 import pyproj
 import pytest
 from bridge_programs import wait_until
 from bridge_wires import RefusedError
+from command_line import run_command
 
 PNG = b"\x89PNG\r\n\x1a\n" + bytes(range(256)) * 40
 
@@ -200,17 +199,7 @@ def test_the_reference_robot_tells_what_it_sees_and_asks_for_its_path(bridge, tm
     ],
 )
 def test_what_the_reference_robot_is_to_see_is_checked(options, text):
-    command = [
-        sys.executable,
-        "-m",
-        "robot_bridge",
-        "robot",
-        "--name",
-        "r1",
-        "--url",
-        "ws://127.0.0.1:1/robot",
-    ]
-    done = subprocess.run([*command, *options], capture_output=True, text=True, timeout=30)
+    done = run_command("robot", "--name", "r1", "--url", "ws://127.0.0.1:1/robot", *options)
     assert done.returncode == 1
     assert text in done.stderr
     assert done.stderr.startswith("robot-bridge: ")

@@ -7,6 +7,8 @@ import math
 import pytest
 
 END = (66.0, 24.0)
+UNHURRIED = ("--speed", "2.5")
+"""On a busy machine, too, the robot is still on its way when it is told to stand."""
 
 
 @pytest.fixture
@@ -42,7 +44,7 @@ def go_on(desk, robot):
 
 @pytest.mark.parametrize("sql", [False, True], ids=["websocket", "sql"])
 def test_a_route_that_was_sent_directly_is_driven_to_its_end_once_also_if_the_gateway_is_killed(bridge, sql):
-    bridge.start_robot("r1", (20.0, 20.0, 0.0), sql=sql)
+    bridge.start_robot("r1", (20.0, 20.0, 0.0), sql=sql, options=UNHURRIED)
     desk = watch(bridge)
     desk.wait_for_robots("r1")
     desk.send("command-route", "r1", "SetPath", points=[[20.0, 20.0], [60.0, 20.0], END])
@@ -53,7 +55,8 @@ def test_a_route_that_was_sent_directly_is_driven_to_its_end_once_also_if_the_ga
     desk = watch(bridge)
     desk.wait_for_robots("r1")
     assert desk.queues["r1"]["state"] == "paused"
-    assert math.dist((x, y), (desk.robots["r1"]["x"], desk.robots["r1"]["y"])) < 0.5
+    # Until it is back it is shown where the gateway stored it last, which may be metres behind.
+    desk.until(lambda: math.dist((x, y), (desk.robots["r1"]["x"], desk.robots["r1"]["y"])) < 0.5)
     go_on(desk, "r1")
     assert math.dist(END, (desk.robots["r1"]["x"], desk.robots["r1"]["y"])) < 0.3
     ends = bridge.sql("select op, state from commands order by sa_id")
@@ -62,7 +65,7 @@ def test_a_route_that_was_sent_directly_is_driven_to_its_end_once_also_if_the_ga
 
 
 def test_a_cone_that_was_sent_directly_is_put_down_once(bridge):
-    bridge.start_robot("r1", (20.0, 20.0, 0.0))
+    bridge.start_robot("r1", (20.0, 20.0, 0.0), options=UNHURRIED)
     desk = watch(bridge)
     desk.wait_for_robots("r1")
     desk.send("command-cone", "r1", "SetPosEnd", x=60.0, y=20.0, cone=True)

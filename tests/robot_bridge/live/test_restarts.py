@@ -102,6 +102,8 @@ def test_a_cone_that_was_put_down_before_its_robot_was_killed_is_not_put_down_ag
     desk.wait_for_robots("r1")
     desk.send("target-1", "r1", "SetPosEnd", x=40.0, y=20.0, cone=True)
     desk.wait_for_step("target-1", "acknowledged")
+    # It has asked for its path, and stands until it is known.
+    wait_until(lambda: not json.loads(file.read_text())["awaits_path"], 30)
     # It comes to its end, and nobody hears of it.
     bridge.kill_gateway()
     wait_until(lambda: json.loads(file.read_text())["way"] == [], 30)

@@ -23,6 +23,7 @@ class Ring:
 def looks():
     """The looks that begin in a gateway that has started."""
     begun, thresholds = [], gc.get_threshold()
+    gc.unfreeze()  # what tests/conftest.py has spared
     spare_what_lasts()
 
     def note(phase, info):
@@ -33,7 +34,6 @@ def looks():
     yield begun
     gc.callbacks.remove(note)
     gc.set_threshold(*thresholds)
-    gc.unfreeze()
 
 
 def test_ten_thousand_positions_that_wait_to_be_stored_bring_no_look(looks):

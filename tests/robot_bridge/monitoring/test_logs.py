@@ -66,3 +66,30 @@ def test_a_token_is_not_in_the_log(root_log, form, kind):
 )
 def test_what_looks_like_a_password_is_masked_and_nothing_else(text, shown):
     assert without_secrets(text) == shown
+
+
+FORGED = "r1\n2026-11-23 12:00:00,000 WARNING all is well\r\x1b[2J\x9b31m\u202e\u2028\x00"
+
+
+@pytest.mark.parametrize("form", ["text", "json"])
+def test_no_text_from_outside_makes_a_line_of_the_log(root_log, form):
+    stream = io.StringIO()
+    set_up_log(form, stream=stream)
+    root_log.warning("robot %s: refused", FORGED)
+    (line,) = stream.getvalue().splitlines()
+    assert line.isprintable()
+    assert "all is well" in line
+    if form == "json":
+        assert json.loads(line)["message"] == f"robot {FORGED}: refused"
+
+
+def test_nor_does_one_inside_a_traceback(root_log):
+    stream = io.StringIO()
+    set_up_log("text", stream=stream)
+    try:
+        raise ValueError(FORGED)
+    except ValueError:
+        root_log.exception("link sql: unexpected")
+    first, *rest = stream.getvalue().splitlines()
+    assert first.endswith("ERROR link sql: unexpected")
+    assert all(line.startswith("    ") and line.isprintable() for line in rest)

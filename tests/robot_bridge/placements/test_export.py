@@ -1,10 +1,9 @@
 """Placed cones as CSV and GeoPackage, made by the real command line and read with other programs."""
 
 import csv
-import subprocess
-import sys
 
 import pytest
+from command_line import run_command
 from osgeo import ogr
 
 from robot_bridge.store import placements
@@ -18,13 +17,7 @@ AT = 1_790_000_000.125
 
 
 def run(*options):
-    return subprocess.run(
-        [sys.executable, "-m", "robot_bridge", "placements", "export", *map(str, options)],
-        capture_output=True,
-        text=True,
-        timeout=60,
-        check=False,
-    )
+    return run_command("placements", "export", *options)
 
 
 def cone(n, layout="slalom", robot="r1", plan=None):

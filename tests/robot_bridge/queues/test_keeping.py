@@ -70,7 +70,7 @@ def test_a_path_that_was_begun_is_not_begun_anew():
 
 def test_what_is_driven_and_what_comes_after_waiting_are_two_tasks():
     first = task_of(ordered(SetPath(LINE)), BENEATH, None)
-    rest = task_of_rest(SetPath([LINE[-1], (30.0, 0.0)]), "command-x", "Bob", 5.0)
+    rest = task_of_rest(SetPath([LINE[-1], (30.0, 0.0)]), BENEATH, "command-x", "Bob", 5.0)
     assert first.id != rest.id
     assert (rest.state, rest.command, rest.added_by) == (TaskState.WAITING, None, "Bob")
 

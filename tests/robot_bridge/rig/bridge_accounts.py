@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import subprocess
-import sys
+
+from command_line import run_command
 
 
 class Accounts:
@@ -14,8 +15,7 @@ class Accounts:
 
     def run(self, *words: object) -> subprocess.CompletedProcess[str]:
         """Run ``robot-bridge`` with these words on the database."""
-        command = [sys.executable, "-m", "robot_bridge", *map(str, words), "--database", self.database]
-        return subprocess.run(command, capture_output=True, text=True, timeout=30, check=False)
+        return run_command(*words, "--database", self.database)
 
     def do(self, *words: object) -> str:
         """Run what must succeed; return what it printed on standard output."""

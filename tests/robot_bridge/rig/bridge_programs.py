@@ -71,8 +71,13 @@ class Bridge:
             else ["--url", f"{self.address}/robot"]
         )
         where = ",".join(str(number) for number in pose)
-        fast = ["--name", name, f"--pose={where}", "--speed", "5", "--turn-rate", "3", "--rate", "20"]
-        self._run(name, ["robot", *way, *fast, *options])
+        fast = ["--speed", "5", "--turn-rate", "6", "--acceleration", "8", "--rate", "20"]
+        self._run(name, ["robot", *way, "--name", name, f"--pose={where}", *fast, *options])
+        return self.process
+
+    def start_link(self, kind: str, config: Path) -> Popen[bytes]:
+        """Start an adapter with the settings in ``config``."""
+        self._run(f"link-{kind}", ["link", kind, "--config", config])
         return self.process
 
     def _run(self, name: str, command: list[Any]) -> str:

@@ -12,6 +12,7 @@ from urllib.parse import urlsplit
 
 from stage.patience import BUSY
 from tls_wire import plain_end
+from websockets.exceptions import InvalidStatus
 from websockets.sync.client import connect
 
 
@@ -34,6 +35,15 @@ def is_refused(wire: Wire, method: str) -> bool:
     return False
 
 
+def is_shut(open_wire: Callable[[], Wire]) -> bool:
+    """Tell whether nobody gets in without a token."""
+    try:
+        open_wire().connection.close()
+    except InvalidStatus as error:
+        return error.response.status_code == 401
+    return False
+
+
 class Wire:
     """One connection. What comes in between is handed to ``_hear``."""
 
@@ -42,6 +52,8 @@ class Wire:
             address = urlsplit(url)
             options |= {"unix": True, "sock": plain_end(address.hostname, address.port, context)}
             url = url.replace("wss://", "ws://", 1)
+        # All that comes is taken in at once, pings too: a test that does something else is not gone.
+        options = {"max_queue": None, "ping_interval": None} | options
         self.connection = connect(url, max_size=None, compression=None, close_timeout=1, **options)
         self._ids = itertools.count(1)
 
@@ -108,6 +120,10 @@ class Desk(Wire):
         self.queues: dict[str, dict[str, Any]] = {}
         self.observations: dict[int, dict[str, Any]] = {}
         self.snapshots: list[dict[str, Any]] = []
+        self.geofence: dict[str, Any] = {}
+        self.nearness: dict[str, Any] = {}
+        self.suspended: list[dict[str, Any]] = []
+        self.links: list[dict[str, Any]] = []
         self.hello = self.ask("hello", {"operator": operator})
         self.site, self.emergency = self.hello["site"], self.hello["emergency"]
 
@@ -137,8 +153,16 @@ class Desk(Wire):
             self.observations[frame["params"]["observation"]] = frame["params"]
         elif frame["method"] == "emergency":
             self.emergency = frame["params"]
+        elif frame["method"] == "geofence":
+            self.geofence = frame["params"]
+        elif frame["method"] == "nearness":
+            self.nearness = frame["params"]
         elif frame["method"] == "queue":
             self.queues[frame["params"]["robot"]] = frame["params"]
+        elif frame["method"] == "suspensions":
+            self.suspended = frame["params"]["robots"]
+        elif frame["method"] == "links":
+            self.links = frame["params"]["links"]
         elif frame["method"] == "command":
             self.commands[frame["params"]["command"]] = frame["params"]
 
@@ -165,9 +189,9 @@ class RobotWire(Wire):
             frame["error"] = {"code": -32000, "message": error}
         self.connection.send(json.dumps(frame))
 
-    def plug_in(self, magic: int) -> dict[str, Any]:
+    def plug_in(self, magic: int, **declared: Any) -> dict[str, Any]:
         """Say Ready and take the map; return the gateway's acknowledgement."""
-        ack = self.ask("Ready", {"magic": magic})
+        ack = self.ask("Ready", {"magic": magic, **declared})
         self.say(self.wait_for("SetMap")["id"])
         return ack
 

@@ -11,8 +11,11 @@ import pytest
 import shapely
 
 from robot_bridge.errors import RefusedError
-from robot_bridge.road_traffic.road_planning import RoadPlanner
+from robot_bridge.road_traffic.road_planning import RoadPlanner, Wanted
 from robot_bridge.roads.dense import Driving
+from robot_bridge.roads.surfaces.surface import Surface
+from robot_bridge.robotmap.model import ShapeType
+from robot_bridge.robotmap.outlines import OutlineRow, Outlines
 from robot_bridge.sites.features import Area, Centreline
 from robot_bridge.sites.publication import read_site
 from robot_bridge.sites.site import Site
@@ -61,9 +64,40 @@ def test_off_the_roads_the_path_is_straight_and_says_so(planner):
     assert planned.note.startswith("the path is a straight line and not along roads: The goal (500.00, 8.00)")
 
 
+def test_the_last_metres_to_a_place_are_straight_and_lead_round_no_block(sample):
+    block = [(0, 0), (50, 0), (50, 2), (0, 2)]
+    roads = with_roads(sample, block[:2], block[1:3], block[2:])
+    planned = RoadPlanner(lambda: roads).path((1.0, 0.0), (1.0, 2.0))
+    assert planned.points == [(1.0, 0.0), (1.0, 2.0)] and planned.note.endswith("the place is 2.0 m away")
+    assert len(RoadPlanner(lambda: roads).path((1.0, 0.0), (5.0, 2.0)).points) > 50
+    basin = [(0.0, 0.5), (3.0, 0.5), (3.0, 1.5), (0.0, 1.5), (0.0, 0.5)]
+    fenced = with_roads(sample, block[:2], block[1:3], block[2:], keepouts=[basin])
+    assert len(RoadPlanner(lambda: fenced).path((1.0, 0.0), (1.0, 2.0)).points) > 50
+
+
+@pytest.mark.parametrize(
+    ("line", "is_straight"),
+    [
+        pytest.param([(0.5, 1.0), (1.5, 1.0)], False, id="across"),
+        pytest.param([(1.1, 1.0), (1.9, 1.0)], False, id="too near for the robot's width"),
+        pytest.param([(1.3, 1.0), (1.9, 1.0)], True, id="beside the way"),
+        pytest.param([(0.8, 0.1), (0.8, -1.0)], True, id="at the robot, beside the way"),
+        pytest.param([(0.5, 0.2), (1.5, 0.2)], False, id="at the robot, across"),
+        pytest.param([(1.0, 2.0), (1.0, 3.0)], True, id="at the goal"),
+    ],
+)
+def test_nor_do_they_lead_through_an_obstacle(sample, line, is_straight):
+    block = [(0, 0), (50, 0), (50, 2), (0, 2)]
+    roads = with_roads(sample, block[:2], block[1:3], block[2:])
+    wall = OutlineRow(np.array(line, float), ShapeType.OPEN_POLYGON, 2.0, "wall", "walls:1")
+    walled = replace(roads, outlines=Outlines.from_rows([wall]))
+    planned = RoadPlanner(lambda: walled).path((1.0, 0.0), (1.0, 2.0))
+    assert (len(planned.points) == 2) is is_straight
+
+
 def test_a_site_without_roads_has_straight_paths_and_no_note(sample):
     planner = RoadPlanner(lambda: with_roads(sample))
-    assert planner.path((0.0, 0.0), (5.0, 5.0)) == ([(0.0, 0.0), (5.0, 5.0)], "")
+    assert planner.path((0.0, 0.0), (5.0, 5.0)) == ([(0.0, 0.0), (5.0, 5.0)], "", False)
 
 
 def test_keepouts_are_driven_round_and_where_no_way_is_left_the_question_is_refused(sample):
@@ -119,6 +153,40 @@ def test_who_stands_beside_the_middle_of_a_road_joins_it_aslant(sample):
     assert np.diff(points[:, 0]).min() > 0
     assert np.abs(points[:, 1]).max() == 2.0
     assert points[np.argmin(np.abs(points[:, 0] - 12.0)), 1] == pytest.approx(0.0, abs=0.3)
+
+
+@pytest.mark.parametrize(
+    ("setting", "shown", "seconds"),
+    [(1.0, 0.0, 100.0), (2.0, 0.0, 50.0), (1.0, 4.0, 25.0), (50.0, 0.0, 100.0 / 13.9)],
+)
+def test_seconds_are_the_robots_and_not_the_roads(sample, setting, shown, seconds):
+    road = Centreline(np.array([(0, 0), (100, 0)], float), 6.0, "asphalt", speed_ms=13.9)
+    routes = replace(sample.settings.routes, speed_ms=setting)
+    site = replace(sample, centrelines=(road,), keepouts=(), settings=replace(sample.settings, routes=routes))
+    report = RoadPlanner(lambda: site).route((0.0, 0.0), (100.0, 0.0), Wanted(speed=shown))
+    assert report.metres == pytest.approx(100.0)
+    assert report.seconds == pytest.approx(seconds, abs=0.1)
+    straight = RoadPlanner(lambda: replace(site, centrelines=())).route((0.0, 0.0), (100.0, 0.0))
+    assert straight.seconds == pytest.approx(100.0 / setting, abs=0.1)
+
+
+def test_a_road_without_a_surface_has_that_of_the_area_that_it_lies_on(sample):
+    yard = Surface((np.array([(-5, -5), (60, -5), (60, 5), (-5, 5)], float),), "asphalt")
+    roads = [
+        Centreline(np.array(line, float), 6.0, surface)
+        for line, surface in (
+            ([(0, 0), (50, 0)], ""),
+            ([(50, 0), (100, 0)], ""),
+            ([(100, 0), (130, 0)], "gravel"),
+        )
+    ]
+    site = replace(sample, centrelines=tuple(roads), keepouts=(), surfaces=(yard,))
+    report = RoadPlanner(lambda: site).route((0.0, 0.0), (130.0, 0.0))
+    assert [(one.surface, round(one.metres)) for one in report.surfaces] == [
+        ("asphalt", 50),
+        ("", 50),
+        ("gravel", 30),
+    ]
 
 
 @pytest.mark.parametrize("aside", [0.01, 0.08, 0.3, 1.0, 2.0])

@@ -88,7 +88,7 @@ def test_a_layer_without_roads_has_no_way_and_ends_no_process(root) -> None:
     pytest.importorskip("routingkit_cch")
     done = subprocess.run(
         [sys.executable, "-c", WITHOUT_ROADS], capture_output=True, text=True, cwd=root, check=False,
-        timeout=120,
+        timeout=240,
     )  # fmt: skip
     assert (done.returncode, done.stdout) == (0, "automatic OffNetworkError\ncontraction OffNetworkError\n")
 
@@ -141,7 +141,7 @@ def test_a_router_made_in_one_thread_is_asked_in_another_and_ends_without_a_word
     pytest.importorskip("routingkit_cch", reason="the package has wheels for x86_64 alone")
     done = subprocess.run(
         [sys.executable, "-c", IN_TWO_THREADS], capture_output=True, text=True, cwd=root, check=False,
-        timeout=120,
+        timeout=240,
     )  # fmt: skip
     assert done.stdout.startswith("contraction hierarchies")
     assert float(done.stdout.split()[-1]) == pytest.approx(300.0)

@@ -10,6 +10,7 @@ import pytest
 from robot_bridge.messages import (
     Abort,
     Alive,
+    GetMap,
     GetPath,
     GetSurface,
     OpAck,
@@ -66,7 +67,7 @@ def robot() -> Robot:
 def test_start_makes_it_say_ready_with_its_magic_number(robot):
     assert robot.agent.receive(Start("first"), 3) == OpAck(id=3)
     assert robot.agent.receive(Start("first"), None) is None
-    assert robot.said == [Ready(42), Ready(42)]
+    assert robot.said == [Ready(42, path_cones=True), Ready(42, path_cones=True)]
 
 
 def test_an_acknowledgement_is_not_acknowledged(robot):
@@ -187,17 +188,17 @@ def test_it_says_nothing_before_its_ready_was_taken():
     for _ in range(20):
         agent.step(DT)
     agent.stop()
-    assert said == [Ready(42)]
+    assert said == [Ready(42, path_cones=True)]
 
 
 def test_it_says_ready_again_while_another_robot_uses_its_name(robot):
     robot.said.clear()
     robot.agent.receive(OpAck(id=1, ok=False, magic=42, reason="in use"), None)
     robot.live(2.5)
-    assert robot.said == [Ready(42)]
+    assert robot.said == [Ready(42, path_cones=True)]
     robot.agent.receive(OpAck(id=2, ok=False, magic=42, reason="in use"), None)
     robot.live(1.5)
-    assert robot.said == [Ready(42), Ready(42)]
+    assert robot.said == [Ready(42, path_cones=True), Ready(42, path_cones=True)]
     robot.agent.receive(OpAck(id=3, magic=42), None)
     robot.live(1)
     assert robot.heard(SendPos)
@@ -276,6 +277,44 @@ def test_it_asks_for_a_path_and_drives_what_it_is_answered():
     assert robot.agent.pose == pytest.approx((3.0, 3.0, 0.0), abs=0.06)
 
 
+def test_it_declares_in_ready_that_it_asks_for_its_path():
+    robot = Robot(asks_path=True)
+    robot.agent.greet()
+    assert robot.said[-1] == Ready(42, asks_path=True, path_cones=True)
+
+
+def test_it_stands_until_it_is_told_its_path_says_why_not_and_asks_again():
+    robot = Robot(asks_path=True)
+    robot.agent.receive(SetPosEnd(30.0, 0.0), 1)
+    robot.live(2)
+    assert robot.agent.pose[:2] == pytest.approx((0.0, 0.0), abs=0.01)
+    robot.agent.receive(OpAck(id=9, ok=False, reason="GetPath: no way leads there"), None)
+    robot.live(2)
+    assert len(robot.heard(GetPath)) == 2
+    assert robot.heard(SendPos)[-1].status == "stands without a path: GetPath: no way leads there"
+    assert not robot.heard(Stopped)
+    robot.agent.receive(SetPath([(0.0, 0.0), (3.0, 0.0)]), 2)
+    robot.live(6)
+    assert robot.agent.pose[:2] == pytest.approx((3.0, 0.0), abs=0.06)
+    assert (robot.heard(SendPos)[-1].status, len(robot.heard(GetPath))) == (None, 2)
+
+
+def test_a_robot_that_drives_stops_for_a_target_to_which_it_has_no_path_yet():
+    robot = Robot(asks_path=True)
+    robot.agent.receive(SetPath([(0.0, 0.0), (30.0, 0.0)]), 1)
+    robot.live(3)
+    robot.agent.receive(SetPosEnd(0.0, 30.0), 2)
+    robot.live(3)
+    assert robot.heard(SendPos)[-1].v == 0.0
+    place = robot.agent.pose
+    assert robot.live(1) is None
+    assert robot.agent.pose == place
+    robot.agent.receive(Abort(), 3)
+    asked = len(robot.heard(GetPath))
+    robot.live(4)
+    assert len(robot.heard(GetPath)) == asked > 0
+
+
 def test_it_says_where_it_is_before_it_asks_for_a_path_and_asks_again_after_each_ready():
     robot = Robot(asks_path=True)
     robot.agent.receive(SetPosEnd(30.0, 0.0), 1)
@@ -321,3 +360,23 @@ def test_when_time_passes_late_and_at_once_it_drives_as_it_would_have_step_by_st
             robot.agent.step(dt)
         poses.append(robot.agent.pose)
     assert poses[1] == pytest.approx(poses[0], abs=0.01)
+
+
+def test_it_asks_for_the_next_map_before_it_leaves_one_that_is_a_part(robot):
+    def map_around(x, y, meta):
+        return SetMap(encode(build_map(Outlines.from_rows([]), Window(x, y, 40.0, 40.0), meta)))
+
+    part = {"part_of": "-500,-500,500,500"}
+    robot.agent.receive(map_around(0.0, 0.0, part), 1)
+    robot.agent.receive(SetPosEnd(60.0, 0.0), 2)
+    robot.live(2)
+    assert not robot.heard(GetMap)
+    robot.live(4)
+    (asked,) = robot.heard(GetMap)
+    assert 10.0 < asked.x < 11.0 and asked.area == 1600.0
+    robot.agent.receive(map_around(asked.x + 10, asked.y, part), 3)
+    robot.live(2)
+    assert len(robot.heard(GetMap)) == 1
+    robot.agent.receive(map_around(15.0, 0.0, {}), 4)
+    robot.live(20)
+    assert len(robot.heard(GetMap)) == 1

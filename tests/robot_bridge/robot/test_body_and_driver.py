@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 
 import numpy as np
@@ -110,3 +111,11 @@ def test_a_fast_robot_is_fast_where_its_path_is_straight():
     _, trace = drive((0.0, 0.0, 0.0), CORNERS["right angle"], limits=BodyLimits(speed=5.0))
     steps = np.hypot(*np.diff(np.array(trace)[:, :2], axis=0).T)
     assert steps.max() / DT > 3.5
+
+
+@pytest.mark.parametrize("acceleration", [1.5, 8.0])
+def test_a_robot_keeps_its_speed_where_a_straight_path_has_many_points(acceleration):
+    limits = BodyLimits.of(2.0, 6.0, acceleration)
+    _, trace = drive((0.0, 0.0, 0.0), [(x, 0.0) for x in np.arange(0, 20, 0.5)], limits=limits)
+    speeds = [(b[0] - a[0]) / DT for a, b in itertools.pairwise(trace) if 3 < b[0] < 16]
+    assert min(speeds) > 1.9

@@ -40,6 +40,22 @@ async def said(database, count):
     return [(row.op, json.loads(row.params).get("id") if row.op == "OpAck" else None) for row in rows]
 
 
+async def test_on_sql_what_stands_before_the_answer_to_ready_is_done_before_what_stands_behind(
+    database, tmp_path
+):
+    link = SqlLink(f"sqlite:///{tmp_path}/fleet.db", "r1")
+    running = asyncio.create_task(link.run(agent_on(link)))
+    await said(database, 1)
+    welcome = OpAck(ok=True, magic=42, robot="r1", database="first")
+    messages = [Abort(), welcome, SetPosEnd(5.0, 0.0)]
+    await database.run(answers.add_all, [("r1", message) for message in messages])
+    async with asyncio.timeout(30):
+        while [one for one in await said(database, 2) if one[0] == "OpAck"] != [("OpAck", 1), ("OpAck", 3)]:
+            await asyncio.sleep(0.02)
+    running.cancel()
+    await asyncio.gather(running, return_exceptions=True)
+
+
 @pytest.fixture
 async def on_sql(database, tmp_path):
     """A robot on SQL that was let in, with RR empty."""

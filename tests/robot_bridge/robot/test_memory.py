@@ -8,7 +8,7 @@ import math
 import pytest
 
 from robot_bridge.errors import BridgeError
-from robot_bridge.messages import Abort, OpAck, Ready, SendPos, SetPath, SetPosEnd, Stopped
+from robot_bridge.messages import Abort, GetPath, OpAck, Ready, SendPos, SetPath, SetPosEnd, Stopped
 from robot_bridge.robot.agent import Agent, AgentSettings
 from robot_bridge.robot.body import BodyLimits
 from robot_bridge.robot.memory import Memory, Remembered
@@ -22,12 +22,15 @@ class Runs:
     def __init__(self, memory):
         self.memory = memory
         self.magic = 40
+        self.asks_path = False
 
     def start(self, database="first"):
         self.magic += 1
         self.said = []
         limits = BodyLimits(speed=3.0)
-        settings = AgentSettings(self.magic, (0.0, 0.0, 0.0), limits, noise=0.0, memory=self.memory)
+        settings = AgentSettings(
+            self.magic, (0.0, 0.0, 0.0), limits, noise=0.0, asks_path=self.asks_path, memory=self.memory
+        )
         self.agent = Agent(settings, self.said.append)
         self.agent.greet()
         (ready,) = self.said
@@ -47,11 +50,14 @@ def runs(tmp_path) -> Runs:
 
 def test_without_a_file_each_run_is_another():
     runs = Runs(None)
-    assert [runs.start().said[0] for _ in range(2)] == [Ready(41), Ready(42)]
+    assert [runs.start().said[0] for _ in range(2)] == [
+        Ready(41, path_cones=True),
+        Ready(42, path_cones=True),
+    ]
 
 
 def test_every_run_with_one_file_is_the_same_to_the_gateway(runs):
-    assert [runs.start().said[0] for _ in range(2)] == [Ready(41), Ready(41)]
+    assert [runs.start().said[0] for _ in range(2)] == [Ready(41, path_cones=True)] * 2
 
 
 def test_a_target_under_way_is_driven_to_its_end_and_what_was_done_is_not_done_again(runs):
@@ -64,6 +70,16 @@ def test_a_target_under_way_is_driven_to_its_end_and_what_was_done_is_not_done_a
     assert runs.live(12) == pytest.approx((9.0, 0.0, 1.0), abs=0.1)
     assert isinstance(runs.said[-1], SendPos)
     assert runs.said.count(Stopped()) == 1
+
+
+def test_one_that_was_not_told_its_path_yet_asks_for_it_and_does_not_drive_straight(runs):
+    runs.asks_path = True
+    runs.start().agent.receive(SetPosEnd(9.0, 0.0, 1.0), 7)
+    runs.start()
+    assert GetPath() in runs.said
+    assert runs.live(3)[:2] == pytest.approx((0.0, 0.0), abs=0.01)
+    runs.agent.receive(SetPath([(0.0, 0.0), (0.0, 2.0)], 1.0), 8)
+    assert runs.live(8) == pytest.approx((0.0, 2.0, 1.0), abs=0.1)
 
 
 def test_one_that_had_come_to_its_end_stays_there_and_says_so(runs):

@@ -125,6 +125,31 @@ def test_ids_do_not_depend_on_the_window():
     assert whole[one.ext["src"]] == one.id
 
 
+def test_no_id_means_another_building_in_another_window():
+    comb = [
+        (0, 0),
+        (30, 0),
+        (30, 9),
+        (26, 9),
+        (26, 2),
+        (17, 2),
+        (17, 9),
+        (13, 9),
+        (13, 2),
+        (4, 2),
+        (4, 9),
+        (0, 9),
+    ]
+    rows = [row(np.add([*comb, comb[0]], (0, 20 * n)), source=f"b:{n}") for n in range(3)]
+    sources: dict[int, set[str]] = {}
+    for low in range(0, 60, 2):
+        found = made(*rows, window=Window(15, low, 40, 11)).obstacles
+        assert len({obstacle.id for obstacle in found}) == len(found)
+        for obstacle in found:
+            sources.setdefault(obstacle.id, set()).add(obstacle.ext["src"])
+    assert len(sources) > 6 and all(len(names) == 1 for names in sources.values())
+
+
 def test_segments_shorter_than_a_centimetre_vanish_and_the_chain_holds():
     points = [(0, 0), (5, 0), (5.001, 0.001), (10, 0), (10, 10), (0, 10), (0, 0)]
     (obstacle,) = made(row(points), window=Window(5, 5, 30, 30)).obstacles

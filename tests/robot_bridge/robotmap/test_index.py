@@ -38,7 +38,7 @@ a_row = st.one_of(
 )
 def test_a_window_of_the_index_is_the_window_without_it(rows, windows):
     some = outlines(*(replace(row, source=f"layer:{k}") for k, row in enumerate(rows)))
-    index = OutlineIndex(some)
+    index = OutlineIndex.of(some)
     for (x, y), side in windows:
         if not np.isfinite([x, y]).all() or abs(x) > 1e8 or abs(y) > 1e8:
             continue
@@ -50,7 +50,7 @@ def test_a_window_of_the_index_is_the_window_without_it(rows, windows):
 
 @pytest.mark.parametrize("touch", [(20, 20, 30, 30), (10, 10, 20, 20), (5, 5, 100, 7)])
 def test_a_window_that_only_touches_an_outline_still_finds_what_lies_on_its_border(touch):
-    index = OutlineIndex(outlines(row([(10, 20), (20, 20)]), row([(20, 20), (30, 20)])))
+    index = OutlineIndex.of(outlines(row([(10, 20), (20, 20)]), row([(20, 20), (30, 20)])))
     assert len(index.segments_in(Border(*touch)).a) == (touch != (5, 5, 100, 7))
 
 
@@ -73,7 +73,7 @@ def squares(count):
 
 
 def test_a_window_takes_as_long_in_a_city_as_in_a_village():
-    village, city = OutlineIndex(squares(400)), OutlineIndex(squares(160_000))
+    village, city = OutlineIndex.of(squares(400)), OutlineIndex.of(squares(160_000))
     border = Window(200, 200, 100, 100).border
     assert len(village.segments_in(border).a) == len(city.segments_in(border).a) >= 100
 
@@ -89,4 +89,4 @@ def test_a_window_takes_as_long_in_a_city_as_in_a_village():
 
 
 def test_an_index_of_nothing_has_empty_maps():
-    assert OutlineIndex(outlines()).map_of(Window(0, 0, 10, 10)).obstacles == ()
+    assert OutlineIndex.of(outlines()).map_of(Window(0, 0, 10, 10)).obstacles == ()

@@ -176,3 +176,28 @@ def test_no_text_raises_anything_but_the_familys_errors(text):
         read_text(text)
     except RobotMapError as error:
         assert str(error).startswith("line ")
+
+
+PLAIN = [-0.0, 0.0, 0.01, -4.0, 12.1, 1e15 + 0.5, 123456.78]
+
+
+@pytest.mark.parametrize("odd", [None, 1e-5, 1e17, -1.5e300, 9e-5])
+def test_every_number_is_written_as_if_alone_whatever_stands_beside_it(odd):
+    values = [*PLAIN, *([] if odd is None else [odd])]
+    ends = np.array([[x, y] for x in values for y in values])
+    heights = np.resize(np.abs(values), len(ends))
+    wall = Obstacle(
+        3, ShapeType.OPEN_POLYGON, "a.0;0", ends, ends[::-1], heights, heights > 1, ("b.0;",) * len(ends)
+    )
+    rows = np.column_stack([ends, ends[::-1], heights]).tolist()
+    told = [[*map(format_number, row), int(row[4] > 1)] for row in rows]
+    lines = ("{};{};\n{};{};\n{};{};b.0\\3b;\n#\n".format(*one) for one in told)
+    assert write_text(RobotMap(Border(0.0, 0.0, 1.0, 1.0), (wall,))).endswith("\n#\n" + "".join(lines))
+
+
+@pytest.mark.parametrize("bad", [float("nan"), float("inf")])
+def test_a_number_that_is_none_is_not_written(bad):
+    ends = np.array([[0.0, 0.0], [bad, 1.0]])
+    wall = Obstacle(1, ShapeType.OPEN_POLYGON, "", ends, ends, np.ones(2), np.ones(2, bool), ("", ""))
+    with pytest.raises(RobotMapError, match="give a finite one"):
+        write_text(RobotMap(Border(0.0, 0.0, 1.0, 1.0), (wall,)))

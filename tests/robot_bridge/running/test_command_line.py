@@ -28,7 +28,7 @@ finally:
 def imported_by(*words):
     """Return what a run of the program imports, and what it prints."""
     command = [sys.executable, "-c", RUN, *words]
-    done = subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)
+    done = subprocess.run(command, capture_output=True, text=True, timeout=240, check=False)
     assert done.returncode == 0, done.stderr
     return set(done.stderr.split()), done.stdout
 
@@ -72,7 +72,7 @@ def test_every_module_that_has_a_command_is_named():
 
 def test_what_there_is_not_is_said_with_a_status_of_2():
     command = [sys.executable, "-m", "robot_bridge", "databse"]
-    done = subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)
+    done = subprocess.run(command, capture_output=True, text=True, timeout=240, check=False)
     assert done.returncode == 2
     assert "No such command 'databse'" in done.stderr
 

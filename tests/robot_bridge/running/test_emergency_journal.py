@@ -145,7 +145,7 @@ def test_a_gateway_that_could_not_note_a_stop_does_not_start(sample_site, new_da
     missing = tmp_path / "missing"
     command = [sys.executable, "-m", "robot_bridge", "serve", "--site", sample_site, "--port", "0"]
     command += ["--database", url, "--state", missing]
-    done = subprocess.run(command, capture_output=True, text=True, timeout=30, check=False)
+    done = subprocess.run(command, capture_output=True, text=True, timeout=240, check=False)
     assert done.returncode == 1
     assert f"emergency stops cannot be noted in folder {missing}, which is missing" in done.stderr
     assert "--state or ROBOT_BRIDGE_STATE" in done.stderr

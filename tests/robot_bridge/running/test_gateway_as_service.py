@@ -43,7 +43,7 @@ def page(bridge, path):
     """Return status and text of a page of the gateway."""
     address = bridge.address.replace("ws://", "http://")
     try:
-        with urllib.request.urlopen(f"{address}{path}", timeout=5) as answer:
+        with urllib.request.urlopen(f"{address}{path}", timeout=60) as answer:
             return answer.status, answer.read().decode()
     except urllib.error.HTTPError as error:
         return error.code, error.read().decode()

@@ -12,10 +12,12 @@ from robot_bridge import gateway
 from robot_bridge.access.gate import Gate
 from robot_bridge.access.visitor import Visitor
 from robot_bridge.fleet import Fleet
+from robot_bridge.link_processes import LinkProcesses
 from robot_bridge.monitoring import garbage
 from robot_bridge.site_maps import SiteMaps
 from robot_bridge.sites.limit_settings import LimitSettings
 from robot_bridge.sites.publication import read_site
+from robot_bridge.sites.settings_tables import LinkOptions
 from robot_bridge.store.database import Database
 
 COMINGS = 12
@@ -27,7 +29,8 @@ async def running(sample_site, tmp_path):
     database = Database(f"sqlite:///{tmp_path}/fleet.db")
     await database.open()
     gate = Gate(database, LimitSettings(), may_be_open=True)
-    made = gateway.Gateway(Fleet(SiteMaps(read_site(sample_site)), database), gate)
+    fleet = Fleet(SiteMaps(read_site(sample_site)), database)
+    made = gateway.Gateway(fleet, gate, LinkProcesses(LinkOptions(), sample_site))
     server = await made.serve("127.0.0.1", 0)
     yield made, server.sockets[0].getsockname()[1]
     server.close()
@@ -53,7 +56,7 @@ async def test_of_robots_that_come_and_go_nothing_is_left(running, no_looks, mon
         async with connect(f"ws://127.0.0.1:{port}/robot?robot=r{number}") as robot:
             await robot.recv()
     assert connections() > before, "they hold themselves: this tests nothing otherwise"
-    clearing = asyncio.create_task(made.works()["garbage"]())
+    clearing = asyncio.create_task(made.works(f"ws://127.0.0.1:{port}")["garbage"]())
     async with asyncio.timeout(60):
         while connections() > before:
             await asyncio.sleep(0.05)

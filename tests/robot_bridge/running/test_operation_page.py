@@ -49,7 +49,7 @@ def test_the_commands_for_sqlite_do_what_they_say(page, root, sample_site, tmp_p
         text=True,
         capture_output=True,
         check=False,
-        timeout=120,
+        timeout=240,
         env={**os.environ, "PATH": f"{program.parent}:{os.environ['PATH']}", "PYTHONPATH": str(root)},
     )
     assert done.returncode == 0, done.stderr

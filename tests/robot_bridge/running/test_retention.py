@@ -9,6 +9,7 @@ from sqlalchemy import func, insert, select
 from robot_bridge import gateway, retention
 from robot_bridge.access.gate import Gate
 from robot_bridge.fleet import Fleet
+from robot_bridge.link_processes import LinkProcesses
 from robot_bridge.messages import SendPos
 from robot_bridge.retention import Retention
 from robot_bridge.site_maps import SiteMaps
@@ -276,13 +277,16 @@ def times():
 
 
 @pytest.mark.parametrize("kind", ["sqlite"], indirect=True)
-async def test_the_gateway_does_it_by_the_settings_of_its_site(database, site, settings, monkeypatch):
+async def test_the_gateway_does_it_by_the_settings_of_its_site(
+    database, site, settings, tmp_path, monkeypatch
+):
     monkeypatch.setattr(gateway, "PRUNE_INTERVAL", 0.01)
     monkeypatch.setattr(gateway.time, "time", lambda: NOW)
     await database.run(fill)
     maps = SiteMaps(replace(site, settings=settings))
     fleet = Fleet(maps, database)
-    work = gateway.Gateway(fleet, Gate(database, LimitSettings(), may_be_open=True)).works()["prune"]
+    gate, links = Gate(database, LimitSettings(), may_be_open=True), LinkProcesses(settings.links, tmp_path)
+    work = gateway.Gateway(fleet, gate, links).works("ws://127.0.0.1:1")["prune"]
     pruning = asyncio.create_task(work())
     async with asyncio.timeout(10):
         while "prune" not in fleet.tally.beats:

@@ -7,14 +7,13 @@ import secrets
 import signal
 import socket
 import ssl
-import subprocess
-import sys
 import time
 import urllib.error
 import urllib.request
 
 import pytest
 from bridge_programs import wait_until
+from command_line import run_command
 from prometheus_client.parser import text_string_to_metric_families
 from stage.patience import BUSY
 
@@ -29,7 +28,7 @@ DAY = 86400.0
 
 def numbers(bridge):
     address = bridge.address.replace("ws://", "http://")
-    with urllib.request.urlopen(f"{address}/metrics", timeout=5) as answer:
+    with urllib.request.urlopen(f"{address}/metrics", timeout=60) as answer:
         families = text_string_to_metric_families(answer.read().decode())
     return {(s.name, *s.labels.values()): s.value for family in families for s in family.samples}
 
@@ -130,7 +129,7 @@ def test_the_gateways_own_account_runs_it_and_backs_it_up_and_no_secret_is_logge
     request_ = urllib.request.Request(
         bridge.address.replace("ws://", "http://") + "/metrics", headers={"Authorization": f"Bearer {token}"}
     )
-    urllib.request.urlopen(request_, timeout=5).read()
+    urllib.request.urlopen(request_, timeout=60).read()
     server.kill()
     wait_until(lambda: "trying again" in bridge.output(), 20)
     server.start()
@@ -146,7 +145,7 @@ def test_the_gateways_own_account_runs_it_and_backs_it_up_and_no_secret_is_logge
 
 def healthy(bridge):
     try:
-        urllib.request.urlopen(bridge.address.replace("ws://", "http://") + "/healthz", timeout=5).read()
+        urllib.request.urlopen(bridge.address.replace("ws://", "http://") + "/healthz", timeout=60).read()
     except (urllib.error.URLError, OSError):
         return False
     return True
@@ -185,8 +184,9 @@ def test_numbers_are_for_those_who_have_a_token_and_tokens_are_not_logged(
     start_bridge, sample_site, tmp_path, own_address
 ):
     def run(*words):
-        command = [sys.executable, "-m", "robot_bridge", *map(str, words)]
-        return subprocess.run(command, capture_output=True, text=True, check=True, timeout=60).stdout.strip()
+        done = run_command(*words)
+        assert done.returncode == 0, done.stderr
+        return done.stdout.strip()
 
     database = f"sqlite:///{tmp_path}/fleet.db"
     run("tls", "create", tmp_path / "tls", "--name", "gateway", "--ip", own_address)
@@ -202,7 +202,7 @@ def test_numbers_are_for_those_who_have_a_token_and_tokens_are_not_logged(
         headers = {"Authorization": f"Bearer {token}"} if token else {}
         request = urllib.request.Request(f"https://{own_address}:{bridge.port}{path}", headers=headers)
         try:
-            return urllib.request.urlopen(request, timeout=5, context=trust).status
+            return urllib.request.urlopen(request, timeout=60, context=trust).status
         except urllib.error.HTTPError as error:
             return error.code
 

@@ -22,6 +22,7 @@ from robot_bridge.messages import (
 )
 from robot_bridge.schemas.definitions import plain_text, schema_of
 from robot_bridge.schemas.documents import documents, served
+from robot_bridge.schemas.links import link_documents
 from robot_bridge.schemas.tables import HEADS, NOTIFICATIONS, RESULTS
 from robot_bridge.wire import decode_request
 
@@ -49,6 +50,7 @@ def test_there_is_one_for_every_message():
         *(f"result/{method}.json" for method in DESK_REQUESTS),
         *(f"news/{method}.json" for method in NOTIFICATIONS),
         *(f"head/{method}.json" for method in HEADS),
+        *link_documents(),
     }
     assert set(RESULTS) == set(DESK_REQUESTS.values())
     assert json.loads(documents()["index.json"])["documents"] == sorted({*paths, "asyncapi.json"})

@@ -37,6 +37,16 @@ def test_the_x_axis_is_turned_counter_clockwise_by_the_rotation():
     assert np.allclose(frame.to_site([[639980.0, 5193000.0]]), [[0.0, 20.0]])
 
 
+@given(st.lists(st.tuples(METRES, METRES), min_size=1, max_size=5))
+def test_a_frame_that_is_not_turned_adds_its_origin_and_leaves_what_it_is_given(points):
+    xy = np.array(points)
+    frame = SiteFrame("EPSG:32633", (640000.0, 5193000.0))
+    there = frame.to_crs(xy)
+    assert there.tolist() == [[640000.0 + x, 5193000.0 + y] for x, y in points]
+    assert frame.to_site(there).tolist() == [[x - 640000.0, y - 5193000.0] for x, y in there.tolist()]
+    assert xy.tolist() == [list(point) for point in points]
+
+
 def test_headings_turn_with_the_frame_and_stay_within_one_turn():
     frame = SiteFrame("EPSG:32633", (0.0, 0.0), math.radians(30))
     assert math.isclose(frame.theta_to_crs(math.radians(170)), math.radians(-160))

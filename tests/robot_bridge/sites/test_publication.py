@@ -63,11 +63,18 @@ SURFACES = [Surface((ring(0, 13, 50, 17), ring(20, 14, 22, 15)), "asphalt", "Mal
 KEEPOUTS = [Area((ring(45, 30, 55, 38),), "Pond")]
 
 
+@pytest.fixture(scope="module")
+def published(tmp_path_factory):
+    """A published site, which nobody changes."""
+    written = tmp_path_factory.mktemp("published") / "site"
+    write_site(written, SETTINGS, OBSTACLES, ROADS, SURFACES, KEEPOUTS)
+    return written
+
+
 @pytest.fixture
-def folder(tmp_path):
-    """The folder of a published site."""
-    write_site(tmp_path / "site", SETTINGS, OBSTACLES, ROADS, SURFACES, KEEPOUTS)
-    return tmp_path / "site"
+def folder(published, tmp_path):
+    """A published site of the test's own."""
+    return shutil.copytree(published, tmp_path / "site")
 
 
 def edit(folder, *statements):
@@ -164,7 +171,8 @@ def test_publishing_again_replaces_both_files_and_leaves_others(folder):
     write_site(folder, replace(SETTINGS, version=2), Outlines.from_rows(ROWS[:1]))
     site = read_site(folder)
     assert (site.version, len(site.outlines)) == (2, 1)
-    assert sorted(path.name for path in folder.iterdir()) == ["photo.tif", "site.gpkg", "site.toml"]
+    names = ["photo.tif", "site.cache", "site.gpkg", "site.toml"]
+    assert sorted(path.name for path in folder.iterdir()) == names
 
 
 def test_a_refused_publication_leaves_the_one_before_it(folder):
@@ -290,4 +298,4 @@ def test_the_site_modules_load_with_numpy_alone(root):
         f"for name in {blocked}: sys.modules[name] = None\n"
         "import robot_bridge.sites.publication, robot_bridge.sites.frame\n"
     )
-    subprocess.run([sys.executable, "-c", code], cwd=root, check=True, timeout=60)
+    subprocess.run([sys.executable, "-c", code], cwd=root, check=True, timeout=240)

@@ -87,7 +87,7 @@ def replaced(key, value):
             "site.orgin is not a setting: did you mean origin? Known are bounds",
         ),
         (TEXT + "colour = 1\n", "liveness.colour is not a setting"),
-        (TEXT + "[map]\n", "map is not a setting: known are audit, commands"),
+        (TEXT + "[chart]\n", "chart is not a setting: known are audit, commands"),
         (TEXT + "[trajectorys]\n", "trajectorys is not a setting: did you mean trajectories?"),
         (
             TEXT + "[trajectories]\nkeep_day = 3\n",

@@ -34,8 +34,10 @@ def test_every_map_says_where_it_belongs(site):
         "rotation": "0.000000000",
         "id": "sample",
     }
-    for robot_map in (site.whole_map(), site.map_around(100.0, 80.0, 400.0)):
-        assert robot_map.meta == expected
+    assert site.whole_map().meta == expected
+    assert site.map_around(100.0, 80.0, 1000.0**2).meta == expected
+    part = {**expected, "part_of": "0.00,0.00,200.00,160.00"}
+    assert site.map_around(100.0, 80.0, 400.0).meta == part
     assert "EPSG:32633" in write_text(site.whole_map()).partition("border;")[0]
 
 

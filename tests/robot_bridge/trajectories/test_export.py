@@ -1,11 +1,11 @@
 """Trajectories as a GeoPackage, read with GDAL: CRS of the site, its rotation, UTC times, lines with M."""
 
+import asyncio
 import math
 import re
-import subprocess
-import sys
 
 import pytest
+from command_line import run_command
 from osgeo import ogr
 
 from robot_bridge.commands.database_option import database_address
@@ -23,13 +23,7 @@ BEGIN = 1_790_000_000.125
 
 
 def run(*options):
-    return subprocess.run(
-        [sys.executable, "-m", "robot_bridge", *map(str, options)],
-        capture_output=True,
-        text=True,
-        timeout=60,
-        check=False,
-    )
+    return run_command(*options)
 
 
 @pytest.fixture
@@ -168,7 +162,9 @@ async def test_a_robot_that_is_not_known_is_named_and_nothing_is_written(driven,
         stored_robots.save, [stored_robots.row(Robot(name, 1, "sql", 0.0)) for name in ("r1", "r2")]
     )
     where = ["--site", turned_site, "--database", f"sqlite:///{tmp_path}/fleet.db"]
-    done = run("trajectories", "export", tmp_path / "out.gpkg", *where, *more, "--robot", "r11")
+    words = "trajectories", "export", tmp_path / "out.gpkg", *where, *more, "--robot", "r11"
+    # The command has an event loop of its own.
+    done = await asyncio.to_thread(run, *words)
     assert done.returncode == 1
     assert "no position of robot 'r11' is stored in this database" in done.stderr
     assert "known in it: r1, r2." in done.stderr

@@ -9,7 +9,7 @@ import threading
 import pytest
 from sqlalchemy import select
 
-from robot_bridge.errors import StoreError
+from robot_bridge.errors import DataRefusedError, StoreError
 from robot_bridge.messages import SendPos
 from robot_bridge.robots import Robots
 from robot_bridge.sites.settings import TrajectorySettings
@@ -54,7 +54,7 @@ class Yard:
         for t in times:
             pose = pose_at(t)
             assert self.robots.observe("r1", pose, "sql", t)
-            self.saving.observe("r1", t, pose)
+            self.saving.observe(t, [("r1", pose)])
 
     async def stored(self):
         """Return the times of the stored positions, and that of the robot's own row."""
@@ -225,3 +225,18 @@ async def test_a_robot_whose_turn_failed_is_stored_in_the_next_ones(yard, databa
     )
     assert (type(first), second) == (StoreError, None)
     assert await run(stored_robots.names) == ["r1", "r2"]
+
+
+async def test_answers_that_are_refused_with_positions_are_written_without_and_each_position_alone(yard):
+    yard.tell(1.0, 2.0)
+    written = []
+
+    def write(_connection, fixes):
+        if fixes:
+            raise DataRefusedError("one of the positions is refused")
+        written.append("answers")
+
+    await yard.saving.jot_with(write)
+    assert written == ["answers"]
+    await yard.saving.save()
+    assert await yard.stored() == ([1.0, 2.0], 2.0)

@@ -82,7 +82,8 @@ def test_no_position_is_farther_from_a_stored_one_than_set_unless_it_is_too_soon
         assert elapsed < SETTINGS.max_interval_s
         if elapsed >= SETTINGS.min_interval_s:
             assert abs(x - last.pose.x) < SETTINGS.min_distance_m
-            assert abs(theta - last.pose.theta) < math.radians(SETTINGS.min_turn_deg)
+            turned = math.remainder(theta - last.pose.theta, math.tau)
+            assert abs(turned) < math.radians(SETTINGS.min_turn_deg)
 
 
 # --- on the way to the database -----------------------------------------------------------------------------
@@ -95,9 +96,9 @@ def recorder():
 
 def test_what_could_not_be_stored_waits_in_its_order(recorder):
     for n in range(3):
-        recorder.observe(fix(n, x=n))
+        recorder.observe([fix(n, x=n)])
     taken = recorder.take(3.0)
-    recorder.observe(fix(3, x=3.0))
+    recorder.observe([fix(3, x=3.0)])
     assert recorder.waiting == 1
     recorder.give_back(taken)
     assert recorder.take(4.0) == [pack(fix(n, x=n)) for n in range(4)]
@@ -105,10 +106,10 @@ def test_what_could_not_be_stored_waits_in_its_order(recorder):
 
 def test_what_waits_is_bounded_and_the_newest_stay(recorder, caplog):
     for n in range(1000):
-        recorder.observe(fix(n, x=n))
+        recorder.observe([fix(n, x=n)])
     for n in range(1000, 1200):
         taken = recorder.take(n)
-        recorder.observe(fix(n, x=n))
+        recorder.observe([fix(n, x=n)])
         recorder.give_back(taken)
     assert (recorder.waiting, recorder.given_up) == (1000, 200)
     assert recorder.take(1200.0)[0] == pack(fix(200, x=200))
@@ -119,7 +120,7 @@ def test_what_waits_is_bounded_and_the_newest_stay(recorder, caplog):
 def test_what_waits_is_bounded_where_the_database_is_slow_and_nothing_fails(recorder, caplog):
     """Nothing is given back by then: it is being written, for however long."""
     for n in range(1200):
-        recorder.observe(fix(n, x=n))
+        recorder.observe([fix(n, x=n)])
     assert (recorder.waiting, recorder.given_up) == (1000, 200)
     assert recorder.take(1200.0)[0] == pack(fix(200, x=200))
     assert "takes them more slowly than they come" in caplog.text
@@ -128,7 +129,7 @@ def test_what_waits_is_bounded_where_the_database_is_slow_and_nothing_fails(reco
 def test_what_is_given_up_later_is_told_again(recorder, caplog):
     for begin in (0, 2000):
         for n in range(begin, begin + 1100):
-            recorder.observe(fix(n, x=n))
+            recorder.observe([fix(n, x=n)])
         while recorder.take(begin + 1100.0):
             continue
     assert recorder.given_up == 200
@@ -136,7 +137,7 @@ def test_what_is_given_up_later_is_told_again(recorder, caplog):
 
 
 def test_what_waits_is_nothing_that_pythons_search_for_garbage_has_to_look_at(recorder):
-    recorder.observe(fix(0))
+    recorder.observe([fix(0)])
     gc.collect()
     assert not any(map(gc.is_tracked, recorder.take(1.0)))
 
@@ -150,21 +151,21 @@ def test_a_position_that_waits_takes_less_than_200_bytes():
 def test_a_batch_is_limited(recorder, monkeypatch):
     monkeypatch.setattr(recording, "BATCH", 2)
     for n in range(3):
-        recorder.observe(fix(n, x=n))
+        recorder.observe([fix(n, x=n)])
     assert [len(recorder.take(3.0)) for _ in range(3)] == [2, 1, 0]
 
 
 def test_at_the_end_the_actual_place_is_stored(recorder):
-    recorder.observe(fix(0))
-    recorder.observe(fix(1, x=0.3))
+    recorder.observe([fix(0)])
+    recorder.observe([fix(1, x=0.3)])
     assert len(recorder.take(1.0)) == 1
     recorder.finish()
     assert recorder.take(1.0) == [pack(fix(1, x=0.3))]
 
 
 def test_the_last_place_of_a_silent_robot_is_stored_after_the_longest_interval(recorder):
-    recorder.observe(fix(100))
-    recorder.observe(fix(101, x=0.3))
+    recorder.observe([fix(100)])
+    recorder.observe([fix(101, x=0.3)])
     assert recorder.take(101.5) == [pack(fix(100))]
     assert recorder.take(105.9) == []
     assert recorder.take(107.0) == [pack(fix(101, x=0.3))]

@@ -21,6 +21,7 @@ class Watch(QObject):
     """Tells of the alarms that it is given."""
 
     happened = pyqtSignal(list)
+    changed = pyqtSignal()
 
     def __init__(self):
         super().__init__()
@@ -30,6 +31,11 @@ class Watch(QObject):
     def begin(self, *alarms: Alarm) -> None:
         self.alarms = [*alarms, *self.alarms]
         self.happened.emit([AlarmEvent(alarm.began, AlarmChange.BEGAN, alarm) for alarm in alarms])
+
+    def drop_all(self) -> None:
+        """As when the link leads to other robots: no event is told."""
+        self.alarms = []
+        self.changed.emit()
 
     def acknowledge_all(self) -> None:
         seen, self.alarms = self.alarms, []
@@ -67,15 +73,17 @@ def test_in_front_it_becomes_more_pressing_and_less_so_in_place(bar, watch, alar
     assert bar.currentItem() is item and item.level() == WARNING
 
 
-def test_behind_another_notice_it_comes_to_the_front_when_it_becomes_more_pressing(bar, watch, alarm_bar):
+def test_behind_another_notice_it_comes_to_the_front_with_each_new_alarm(bar, watch, alarm_bar):
     watch.begin(LOW)
     behind = bar.currentItem()
     bar.pushItem(QgsMessageBarItem("somebody else's", WARNING, 0))
     watch.begin(LOW._replace(robot="r3"))
-    assert bar.currentItem() is not behind and bar.currentItem().level() == WARNING, "it waits its turn"
+    assert bar.currentItem() is not behind and bar.currentItem().level() == WARNING
+    assert "2 alarms" in alarm_bar.text()
+    bar.pushItem(QgsMessageBarItem("somebody else's", WARNING, 0))
     watch.begin(LOST)
     assert bar.currentItem().level() == CRITICAL and "r2 is lost" in alarm_bar.text()
-    assert len(bar.items()) == 2
+    assert len(bar.items()) == 3
 
 
 def test_it_goes_when_everything_was_seen_and_comes_back_with_the_next_alarm(bar, watch, alarm_bar):
@@ -84,3 +92,9 @@ def test_it_goes_when_everything_was_seen_and_comes_back_with_the_next_alarm(bar
     assert bar.currentItem() is None and alarm_bar.text() == ""
     watch.begin(LOW)
     assert bar.currentItem().level() == WARNING and "1 alarm: r1 has 12%" in alarm_bar.text()
+
+
+def test_it_goes_with_robots_that_are_there_no_more(bar, watch, alarm_bar):
+    watch.begin(LOST)
+    watch.drop_all()
+    assert bar.currentItem() is None and alarm_bar.text() == ""

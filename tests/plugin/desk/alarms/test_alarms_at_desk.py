@@ -13,6 +13,7 @@ from qgis.core import QgsFeature, QgsGeometry, QgsProject, QgsRectangle, QgsSett
 from qgis.PyQt.QtCore import Qt, QTimer
 from qgis.PyQt.QtTest import QTest
 from qgis.PyQt.QtWidgets import (
+    QAbstractButton,
     QApplication,
     QCheckBox,
     QDialogButtonBox,
@@ -21,6 +22,7 @@ from qgis.PyQt.QtWidgets import (
     QPushButton,
     QTableView,
     QToolButton,
+    QWidget,
 )
 from stage.patience import BUSY
 
@@ -73,6 +75,16 @@ def test_a_lost_robot(at_alarms, gateway, make_robot, wait):
     wait(lambda: alarms(at_alarms) == [("r1 is lost: nothing is heard of it; last at 50.0, 40.0 m", "new")])
 
 
+def test_a_robot_that_does_not_know_its_place(at_alarms, gateway, make_robot, wait):
+    gateway.show(
+        make_robot("r1", 50, 40, accuracy=2.5), make_robot("phone", 20, 20, accuracy=8.0, abilities="")
+    )
+    text = "r1 does not know its place: ± 2.5 m at 50.0, 40.0 m"
+    wait(lambda: alarms(at_alarms) == [(text, "new")])
+    gateway.show(make_robot("r1", 50, 40, accuracy=0.06))
+    wait(lambda: alarms(at_alarms) == [(text, "over")])
+
+
 def test_a_robot_outside_the_site(at_alarms, gateway, make_robot, wait):
     gateway.show(make_robot("r1", 203, 40))
     wait(lambda: alarms(at_alarms) == [("r1 is outside the site at 203.0, 40.0 m", "new")])
@@ -81,6 +93,144 @@ def test_a_robot_outside_the_site(at_alarms, gateway, make_robot, wait):
 def test_two_robots_too_close(at_alarms, gateway, make_robot, wait):
     gateway.show(make_robot("r1", 79.5, 60))
     wait(lambda: alarms(at_alarms) == [("r1 and r2 are 0.5 m apart at 79.5, 60.0 m", "new")])
+
+
+def tell_of_fences(gateway, *alarms, **more):
+    """Tell the desk who is in a keepout or at an obstacle, as gateways do."""
+    watched = {"keepouts": 2, "obstacles": 46, "unjudged": [], **more}
+    gateway.tell("geofence", {"t": time.time(), "alarms": list(alarms), **watched})
+
+
+def fence_alarm(kind="keepout", name="Water basin", **more):
+    return {"robot": "r1", "kind": kind, "name": name, "since": time.time(), "x": 50.0, "y": 40.0, **more}
+
+
+def test_a_robot_in_a_keepout_and_at_an_obstacle_while_it_is_there(at_alarms, gateway, iface, wait):
+    asked = fence_alarm(action="pause", outcome="asked")
+    tell_of_fences(gateway, asked, fence_alarm("obstacle", "Control tower"))
+    basin, tower = "r1 is in the keepout Water basin", "r1 is at the obstacle Control tower"
+    wait(lambda: alarms(at_alarms) == [(f"{basin}: it is being paused", "new"), (tower, "new")])
+    hung = "Fleet Supervisor: 2 alarms:"
+    wait(lambda: bar_texts(iface) == [f"{hung} {basin}: it is being paused; {tower}"])
+    tell_of_fences(gateway, {**asked, "outcome": "paused"})
+    basin += ": the gateway has paused it"
+    wait(lambda: alarms(at_alarms) == [(basin, "new"), (tower, "over")])
+    wait(lambda: bar_texts(iface) == [f"{hung} {basin}; {tower}"])
+    press(at_alarms.dock, "fleet_acknowledge_all")
+    wait(lambda: alarms(at_alarms) == [(basin, "seen")])
+    tell_of_fences(gateway)
+    wait(lambda: alarms(at_alarms) == [])
+
+
+@pytest.mark.parametrize(
+    ("how", "text"),
+    [
+        ({"action": "abort", "outcome": "aborted"}, "the gateway has aborted its task"),
+        ({"action": "abort", "outcome": "asked"}, "it is being aborted"),
+        ({"action": "abort", "outcome": "stopped"}, "the emergency stop holds it"),
+        (
+            {"action": "abort", "outcome": "failed", "reason": "no disk"},
+            "it could NOT be stopped yet: no disk",
+        ),
+    ],
+)
+def test_what_the_gateway_does_about_it_is_said(at_alarms, gateway, wait, how, text):
+    tell_of_fences(gateway, fence_alarm(**how))
+    wait(lambda: alarms(at_alarms) == [(f"r1 is in the keepout Water basin: {text}", "new")])
+
+
+def test_what_the_gateway_cannot_judge_is_said(at_alarms, gateway, wait):
+    note = at_alarms.dock.findChild(QLabel, "fleet_alarm_note")
+    names = [f"r{number}" for number in range(3, 8)]
+    tell_of_fences(gateway, keepouts=0, obstacles=0, unjudged=names, unjudged_more=4)
+    wait(lambda: "it is not known where they are: r3, r4, r5, 6 more." in note.text())
+    assert "The published site has no keepouts." in note.text()
+    assert "no obstacles, so nobody is told to be at one" in note.text()
+    tell_of_fences(gateway, fault="no ring")
+    wait(lambda: "Keepouts and obstacles are not watched: no ring." in note.text())
+    tell_of_fences(gateway)
+    wait(lambda: "eepouts" not in note.text())
+
+
+def test_a_gateway_that_tells_nothing_of_keepouts_is_named_as_older(at_alarms, wait, monkeypatch):
+    note = at_alarms.dock.findChild(QLabel, "fleet_alarm_note")
+    assert "older" not in note.text()
+    monkeypatch.setattr("fleet_supervisor.plugin.desk.geofence_state.SILENT_AFTER", 0.5)
+    wait(lambda: "The gateway tells nothing of them".lower() in note.text())
+    assert "It may be older than this plugin." in note.text()
+
+
+def meeting(seconds, **more):
+    now = time.time()
+    where = {"x": 60.0, "y": 40.0, "metres": 0.7, "clearance": 1.5, **more}
+    times = {"begins": now + seconds, "nearest_at": now + seconds + 1}
+    return {"t": now, "conflicts": [{"robot": "r1", "other": "r2", "kind": "standing", **times, **where}]}
+
+
+def test_robots_that_will_pass_too_near_before_they_do(at_alarms, gateway, wait):
+    gateway.tell("conflicts", meeting(60.0))
+    wait(lambda: len(at_alarms.desk.roads.conflicts.conflicts) == 1)
+    QTest.qWait(1200)
+    assert alarms(at_alarms) == []
+    gateway.tell("conflicts", meeting(29.0))
+    text = "r1 will pass r2 at 0.7 m (clearance 1.5 m) at 60.0, 40.0 m"
+    wait(lambda: alarms(at_alarms) == [(text, "new")])
+    gateway.tell("conflicts", {"t": time.time(), "conflicts": []})
+    wait(lambda: alarms(at_alarms) == [(text, "over")])
+
+
+def test_two_robots_are_one_alarm_whichever_of_them_is_told_first(at_alarms, gateway, wait):
+    gateway.tell("conflicts", meeting(5.0))
+    wait(lambda: [state for _, state in alarms(at_alarms)] == ["new"])
+    told = meeting(4.0)
+    # r1 has come to its end, and stands in the way of r2.
+    told["conflicts"][0] |= {"robot": "r2", "other": "r1"}
+    gateway.tell("conflicts", told)
+    roads = at_alarms.desk.roads
+    wait(lambda: roads.conflicts.conflicts[0].robot == "r2", what="the news of it")
+    watch = at_alarms.dock.findChild(QTableView, "fleet_alarms").parent()._watch
+    watch.look()
+    assert [(alarm.robot, alarm.other, alarm.times) for alarm in watch.board.alarms()] == [("r1", "r2", 1)]
+
+
+def test_an_older_gateway_tells_no_clearance(at_alarms, gateway, wait):
+    told = meeting(5.0)
+    del told["conflicts"][0]["clearance"]
+    gateway.tell("conflicts", told)
+    wait(lambda: alarms(at_alarms) == [("r1 will pass r2 at 0.7 m at 60.0, 40.0 m", "new")])
+
+
+def test_a_phone_that_comes_near_a_robot_and_is_near_names_both(at_alarms, gateway, wait):
+    def tell(*alarms, **more):
+        at = {"t": time.time(), "metres": 5.0, "within_s": 10.0, **more}
+        gateway.tell("nearness", {**at, "alarms": list(alarms)})
+
+    anna = {"seen": "anna", "robot": "r1", "since": time.time(), "x": 50.0, "y": 40.0}
+    tell({**anna, "metres": 5.0, "seconds": 6.2})
+    coming = "anna comes within 5.0 m of r1 in 6 s"
+    wait(lambda: alarms(at_alarms) == [(coming, "new")])
+    tell({**anna, "metres": 3.4, "seconds": 0.0})
+    near = "anna is 3.4 m from r1"
+    wait(lambda: alarms(at_alarms) == [(near, "new"), (coming, "over")])
+    tell()
+    wait(lambda: alarms(at_alarms) == [(near, "over"), (coming, "over")])
+    tell(fault="it cannot be judged")
+    panel = at_alarms.dock.findChild(QTableView, "fleet_alarms").parent()
+    wait(lambda: "People near robots are not watched: it cannot be judged." in panel._watch.why_not())
+
+
+def test_kinds_that_the_gateway_judges_can_be_switched_off(at_alarms, gateway, wait):
+    panel = at_alarms.dock.findChild(QTableView, "fleet_alarms").parent()
+
+    def states():
+        # It goes on telling of them: what it tells no more would be over in any case.
+        tell_of_fences(gateway, fence_alarm())
+        gateway.tell("conflicts", meeting(5.0))
+        return [state for _, state in alarms(at_alarms)]
+
+    wait(lambda: states() == ["new", "new"])
+    panel._watch.set_limits(Thresholds(kinds=frozenset()))
+    wait(lambda: states() == ["over", "over"])
 
 
 def test_a_robot_that_stands_with_a_task(at_alarms, gateway, make_robot, iface, wait):
@@ -113,7 +263,7 @@ def test_a_robot_off_the_road_of_the_project(at_alarms, gateway, make_robot, wai
     wait(lambda: "no layer of the project has the role road surface" in note.text())
     QgsProject.instance().addMapLayer(road)
     gateway.show(make_robot("r2", 80, 62.3))
-    wait(lambda: not note.text(), 10)
+    wait(lambda: "road" not in note.text(), 10)
     QTest.qWait(1600)
     assert alarms(at_alarms) == []
     gateway.show(make_robot("r2", 80, 63))
@@ -225,7 +375,10 @@ def test_the_bar_shows_the_panel_and_goes_when_all_is_seen(at_desk, gateway, mak
     wait(lambda: bar_texts(iface))
     press(iface.bar, "fleet_show_alarms", QToolButton)
     assert at_desk.dock.tabs.currentIndex() == alarm_tab(at_desk)
-    press(iface.bar, "fleet_bar_acknowledge", QToolButton)
+    body = iface.bar.findChild(QWidget, "fleet_alarm_bar")
+    assert [button.objectName() for button in body.findChildren(QAbstractButton)] == ["fleet_show_alarms"]
+    wait(lambda: at_desk.dock.findChild(QPushButton, "fleet_acknowledge_all").isEnabled())
+    press(at_desk.dock, "fleet_acknowledge_all")
     wait(lambda: not bar_texts(iface))
     assert [state for _, state in alarms(at_desk)] == ["seen"]
 

@@ -23,9 +23,11 @@ def situation(count=2, **more) -> Situation:
         "xy": np.column_stack([np.arange(count) * 10.0 + 5, np.full(count, 5.0)]),
         "v": np.full(count, 1.0),
         "battery": np.full(count, 0.9),
+        "accuracy": np.full(count, 0.05),
         "state": np.full(count, FRESH),
         "stopped": np.zeros(count, dtype=bool),
         "driving": np.zeros(count, dtype=bool),
+        "only_seen": np.zeros(count, dtype=bool),
         "bounds": (0.0, 0.0, 200.0, 100.0),
     }
     return Situation(**{**values, **{name: np.array(v) for name, v in more.items() if name != "bounds"}})
@@ -62,6 +64,12 @@ def test_all_is_well(desk):
     ("kind", "wrong", "between", "right"),
     [
         (AlarmKind.LOST, {"state": [LOST, FRESH]}, {"state": [STALE, FRESH]}, {}),
+        (
+            AlarmKind.UNSURE,
+            {"accuracy": [2.0, 0.05]},
+            {"accuracy": [1.6, 0.05]},
+            {"accuracy": [1.4, 0.05]},
+        ),
         (AlarmKind.LOW_BATTERY, {"battery": [0.19, 0.9]}, {"battery": [0.24, 0.9]}, {"battery": [0.25, 0.9]}),
         (
             AlarmKind.OUTSIDE_SITE,
@@ -98,6 +106,7 @@ def test_an_alarm_begins_beyond_its_threshold_and_ends_well_within(desk, kind, w
     [
         {"state": [LOST, FRESH]},
         {"battery": [0.05, 0.9]},
+        {"accuracy": [40.0, 0.05]},
         {"xy": [(-50, 5), (15, 5)]},
         {"off_road": [True, False], "on_road": [False, True]},
     ],
@@ -116,7 +125,9 @@ def test_every_side_of_the_site_counts(desk, bounds_side):
 
 def test_a_robot_without_place_battery_or_speed_is_no_alarm(desk):
     nothing = [np.nan, np.nan]
-    unknown = situation(xy=[nothing, nothing], battery=nothing, v=nothing, driving=[True, True])
+    unknown = situation(
+        xy=[nothing, nothing], battery=nothing, accuracy=nothing, v=nothing, driving=[True, True]
+    )
     assert desk.look(unknown, 30) == []
 
 
@@ -124,6 +135,23 @@ def test_a_robot_that_went_in_good_order_is_not_lost(desk):
     assert desk.look(situation(state=[LOST, FRESH])) == [(BEGAN, AlarmKind.LOST, "r1")]
     assert desk.look(situation(state=[OFFLINE, FRESH])) == [(ENDED, AlarmKind.LOST, "r1")]
     assert desk.look(situation(state=[OFFLINE, FRESH]), 20) == []
+
+
+@pytest.mark.parametrize(
+    "later", [{"accuracy": [np.nan, 0.05]}, {"accuracy": [9.0, 0.05], "state": [OFFLINE, FRESH]}]
+)
+def test_a_robot_that_says_no_more_of_its_accuracy_or_goes_is_not_unsure(desk, later):
+    assert desk.look(situation(accuracy=[9.0, 0.05])) == [(BEGAN, AlarmKind.UNSURE, "r1")]
+    # What was said before it fell silent is neither news nor over.
+    assert desk.look(situation(accuracy=[9.0, 0.05], state=[STALE, FRESH])) == []
+    assert desk.look(situation(**later)) == [(ENDED, AlarmKind.UNSURE, "r1")]
+
+
+def test_a_margin_as_large_as_the_limit_still_lets_the_alarm_end():
+    desk = Looking(unsure=2.0, unsure_margin=5.0)
+    assert desk.look(situation(accuracy=[2.5, 0.05])) == [(BEGAN, AlarmKind.UNSURE, "r1")]
+    assert desk.look(situation(accuracy=[1.1, 0.05])) == []
+    assert desk.look(situation(accuracy=[0.9, 0.05])) == [(ENDED, AlarmKind.UNSURE, "r1")]
 
 
 def test_standing_is_an_alarm_after_its_time_with_a_task_only(desk):
@@ -195,13 +223,28 @@ def test_thresholds_are_settings():
     ]
 
 
-@pytest.mark.parametrize("kind", list(AlarmKind))
+def test_who_is_only_seen_is_too_close_to_nobody_here(desk):
+    assert desk.look(situation(xy=[(5, 5), (5.3, 5)], only_seen=[False, True])) == []
+
+
+BY_THE_GATEWAY = {
+    AlarmKind.IN_KEEPOUT,
+    AlarmKind.AT_OBSTACLE,
+    AlarmKind.WILL_PASS,
+    AlarmKind.NEAR_ROBOT,
+    AlarmKind.COMES_NEAR,
+}
+HERE = [kind for kind in AlarmKind if kind not in BY_THE_GATEWAY]
+
+
+@pytest.mark.parametrize("kind", HERE)
 def test_what_is_switched_off_is_not_watched_and_ends(kind):
     desk = Looking(kinds=frozenset(AlarmKind) - {kind})
     wrong = situation(
         3,
         xy=[(-9, 5), (-9.5, 5), (50, 50)],
         battery=[0.1, 0.9, 0.9],
+        accuracy=[3.0, 0.1, 0.1],
         state=[FRESH, FRESH, LOST],
         v=[0.0, 1.0, 1.0],
         driving=[True, False, False],
@@ -209,7 +252,7 @@ def test_what_is_switched_off_is_not_watched_and_ends(kind):
         on_road=[False, False, False],
     )
     found = {found for _, found, _ in desk.look(wrong, 20)}
-    assert found == set(AlarmKind) - {kind}
+    assert found == set(HERE) - {kind}
     desk.board.set_limits(Thresholds(kinds=frozenset()))
     desk.look(wrong)
     assert all(alarm.ended is not None for alarm in desk.board.alarms())

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import random
+from dataclasses import replace
 
 import pytest
-from fleet_supervisor.plugin.desk.command_log.entries import Filter, Which
+from fleet_supervisor.plugin.desk.command_log.entries import Filter, Which, cells, step_cells
 from fleet_supervisor.plugin.desk.command_log.log_model import COMMAND_ROLE, PAGE, LogModel
+from fleet_supervisor.plugin.desk.robots.detail_rows import command_rows
 from fleet_supervisor.robot_bridge.messages import CommandReport, CommandState, CommandStep
 from qgis.PyQt.QtCore import QModelIndex, QPersistentModelIndex
 from qgis.PyQt.QtTest import QAbstractItemModelTester
@@ -47,6 +49,16 @@ def names(numbers):
 def fetch_all(model):
     while model.canFetchMore(ROOT):
         model.fetchMore(ROOT)
+
+
+@pytest.mark.parametrize(("op", "word"), [("Abort", "done"), ("SetPosEnd", "reached")])
+def test_an_abort_leads_nowhere_and_is_done(op, word):
+    """Neither its row nor its step says that it was reached."""
+    target = {"x": 1.0, "y": 2.0} if op == "SetPosEnd" else {}
+    one = replace(report(1, REACHED), op=op, params=target)
+    assert cells(one)[2] == word
+    assert [step_cells(step, one)[2] for step in one.steps] == ["queued", word]
+    assert command_rows([one])[0][1].endswith(f": {word}, by anna")
 
 
 def test_a_view_is_told_of_the_newest_and_of_the_others_when_it_asks(model):

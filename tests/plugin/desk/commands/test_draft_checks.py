@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 import pytest
-from fleet_supervisor.robot_bridge.messages import CommandState
+from fleet_supervisor.robot_bridge.messages import CommandState, RobotState
 from qgis.core import QgsCoordinateReferenceSystem, QgsProject, QgsVectorLayer
 from qgis.PyQt.QtCore import Qt
 from qgis.PyQt.QtTest import QTest
@@ -30,7 +30,7 @@ def test_a_target_on_an_obstacle_is_refused_and_the_feature_named(cone, layer_of
     cone.key(Qt.Key.Key_Return)
     assert cone.nothing_sent()
     assert cone.points is not None
-    cone.click((70, 70))
+    cone.click((50, 70))
     assert "Not to be sent" not in cone.told
 
 
@@ -79,11 +79,11 @@ def test_a_target_beside_a_wall_is_too_near_by_metres_whatever_the_layers_crs(co
     layer_of("LineString", f"LineString ({ends})", crs="EPSG:4326", role="obstacle", names=["Fence"])
     cone.click((70, 55))
     assert cone.complained("from Fence", "is on Fence")
-    cone.click((71, 55))
+    cone.click((69, 55))
     assert "Not to be sent" not in cone.told
 
 
-@pytest.mark.parametrize(("x", "is_free"), [(69.8, False), (70.2, False), (70.3, True)])
+@pytest.mark.parametrize(("x", "is_free"), [(69.8, False), (70.2, False), (69.7, True)])
 def test_half_a_robot_has_to_fit_beside_a_wall(cone, layer_of, x, is_free):
     layer_of("LineString", "LineString (70 40, 70 70)", role="obstacle", names=["Wall"])
     cone.iface.canvas.mapTool().take((x, 55.0))
@@ -287,3 +287,14 @@ def test_a_refused_override_comes_back_as_a_draft(cone, layer_of, gateway):
     cone.key(Qt.Key.Key_Return)
     assert cone.complained("an override takes supervisor")
     assert cone.points[0] == pytest.approx((70, 55), abs=0.3)
+
+
+def test_a_draft_for_a_robot_of_which_nothing_is_heard_says_so(hand, gateway, make_robot):
+    cone = hand.take("cone")
+    cone.click((20, 20))
+    assert "last heard" not in cone.told
+    gateway.show(make_robot("r1", 50, 40, age=125.0, state=RobotState.LOST))
+    hand.wait(lambda: hand.window.desk.picture.view("r1", hand.window.desk.clock()).state is RobotState.LOST)
+    cone.click((22, 20))
+    assert "r1 is lost, last heard 2 min ago: it is told this when it is heard again" in cone.told
+    assert not hand.drafts.draft.findings.refused

@@ -99,6 +99,7 @@ def test_a_step_of_the_keys_that_cannot_be_checked_is_told_and_the_draft_stays(t
         tool.type(">")
     draft = tool.drafts.draft
     layer.setCustomProperty("fleet/filter", "1 +")
+    QTest.qWait(1000)  # until the desk has noticed: nothing is said of that
     tool.key(Qt.Key.Key_Right, CTRL)
     assert tool.complained("The filter expression '1 +' for the layer Yard is not one")
     assert tool.points == draft.points

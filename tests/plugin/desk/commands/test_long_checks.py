@@ -11,6 +11,7 @@ from fleet_supervisor.plugin.errors import NotSentError
 from qgis.core import QgsFeature, QgsGeometry
 from qgis.PyQt.QtCore import Qt
 from qgis.PyQt.QtTest import QTest
+from qgis.PyQt.QtWidgets import QApplication, QToolButton
 
 SQUARE = "Polygon ((60 50, 80 50, 80 60, 60 60, 60 50))"
 ENTER, ESCAPE = Qt.Key.Key_Return, Qt.Key.Key_Escape
@@ -79,11 +80,11 @@ def test_a_draft_that_was_moved_meanwhile_has_nothing_of_the_check_before(slow, 
     slow.key(ENTER)
     slow.click((20, 20))
     assert not slow.window.desk.checks.has_order
-    assert slow.complained("was not sent: the draft was changed before it had been checked")
+    slow.wait(lambda: not len(slow.window.desk.sending.outgoing), what="the check of what was sent")
+    assert slow.complained("(70.00, 55.00)", "was not sent: ")
     settle(slow)
     assert slow.nothing_sent()
     assert slow.drafts.draft.findings.faults == ()
-    assert not slow.is_told("enters the keepout Bay")
     slow.click((70, 55))
     settle(slow)
     assert "enters the keepout Bay" in slow.told
@@ -100,17 +101,92 @@ def test_a_cancelled_draft_is_not_sent_by_its_check(slow, layer_of):
     assert not slow.is_told("was not sent")
 
 
-def test_who_sets_a_cone_for_another_robot_before_the_first_is_checked_is_told(slow, layer_of):
-    layer_of("Polygon", SQUARE, role="keepout", names=["Bay"])
+def ends(slow, count=1):
+    """Wait for so many commands; return robot and x of each, in the order in which they were sent."""
+    slow.sent(count)
+    return [(sent["robot"], round(sent["params"]["x"])) for sent in slow.gateway.asked("send")]
+
+
+def test_a_cone_for_another_robot_does_not_undo_the_send_of_the_first(slow, layer_of):
+    # Not at r2's feet, nor between it and its target.
+    layer_of("Polygon", "Polygon ((60 40, 78 40, 78 50, 60 50, 60 40))", role="keepout", names=["Bay"])
     slow.take("cone").click((20, 20))
     first = slow.drafts.draft.in_words()
     slow.key(ENTER)
     slow.window.desk.select("r2")
-    assert not slow.is_told("was not sent")
-    slow.click((20, 40))
-    assert slow.complained(f"{first} was not sent: the draft was changed")
+    slow.click((30, 70))
+    told = slow.window.dock.draft_panel._text.text()
+    assert told.startswith(f"{first} is being checked: ")
+    assert slow.drafts.draft.robot == "r2"
+    assert ends(slow) == [("r1", 20)]
     settle(slow)
-    assert slow.nothing_sent()
+    assert not slow.is_told("was not sent")
+    assert slow.drafts.draft.robot == "r2" and slow.drafts.draft.is_checked
+    slow.key(ENTER)
+    assert ends(slow, 2) == [("r1", 20), ("r2", 30)]
+
+
+def test_what_was_sent_goes_out_in_the_order_of_the_presses(slow, layer_of):
+    layer_of("Polygon", SQUARE, role="keepout", names=["Bay"])
+    slow.take("cone")
+    for x in (20, 25, 30):
+        slow.click((x, 20))
+        slow.key(ENTER)
+    assert ends(slow, 3) == [("r1", 20), ("r1", 25), ("r1", 30)]
+    QTest.qWait(150)
+    assert len(slow.gateway.asked("send")) == 3
+    assert slow.points is None
+
+
+def test_a_route_that_was_sent_gets_no_further_leg(slow, layer_of):
+    layer_of("Polygon", SQUARE, role="keepout", names=["Bay"])
+    slow.take("route").click((20, 20), (30, 20))
+    slow.key(ENTER)
+    slow.click((40, 30))
+    sent = slow.sent()["params"]["points"]
+    assert len(sent) == 2
+    assert len(slow.points) == 1
+
+
+@pytest.mark.parametrize("how", ["abort_all", "emergency"])
+def test_a_stop_keeps_back_what_is_checked_beside_the_draft_too(slow, layer_of, how):
+    layer_of("Polygon", SQUARE, role="keepout", names=["Bay"])
+    slow.take("cone").click((20, 20))
+    slow.key(ENTER)
+    slow.window.desk.select("r2")
+    slow.click((20, 40))
+    getattr(slow.window.actions, how).trigger()
+    settle(slow)
+    QTest.qWait(150)
+    assert slow.gateway.asked("send") == []
+    assert slow.complained("was not sent: robots were told to stop")
+
+
+@pytest.mark.parametrize("how", ["keys", "button", "toolbar"])
+def test_a_double_click_or_enter_twice_sends_once(hand, how):
+    QApplication.setDoubleClickInterval(60_000)
+    hand.gateway.refuse["send"] = "not now"
+    hand.take("cone").click((20, 20))
+    if how == "keys":
+        hand.key(ENTER)
+        wait_until_back(hand)
+        hand.key(ENTER)
+    else:
+        where = hand.window.dock if how == "button" else hand.window.toolbar
+        button = (
+            where.findChild(QToolButton, "fleet_send_button")
+            if how == "button"
+            else where.widgetForAction(hand.window.actions.send)
+        )
+        QTest.mouseClick(button, Qt.MouseButton.LeftButton)
+        wait_until_back(hand)
+        QTest.mouseDClick(button, Qt.MouseButton.LeftButton)
+    QTest.qWait(100)
+    assert len(hand.gateway.asked("send")) == 1
+
+
+def wait_until_back(hand):
+    hand.wait(lambda: hand.points is not None and hand.gateway.asked("send"), what="the refused draft")
 
 
 @pytest.mark.parametrize("how", ["abort", "abort_all", "emergency"])
@@ -162,8 +238,8 @@ def test_only_what_has_changed_of_a_route_is_looked_at_again(hand, layer_of, loo
     assert "4 of 5 points are not on a road surface" not in hand.told
     assert len(hand.drafts.draft.findings.overridable) == 2
     hand.key(ENTER)
-    # What goes out is looked at afresh, all of it.
-    assert looked_at[3:] == [("KeepoutCheck", 4), ("ObstacleCheck", 4), ("SurfaceCheck", 9)]
+    # What goes out is looked at afresh, all of it, with the way of the robot to its beginning.
+    assert looked_at[3:] == [("KeepoutCheck", 5), ("ObstacleCheck", 5), ("SurfaceCheck", 10)]
     assert hand.nothing_sent()
 
 
@@ -178,7 +254,8 @@ def test_a_layer_that_changes_is_looked_at_anew(hand, layer_of, looked_at):
     layer.dataChanged.emit()
     looked_at.clear()
     hand.drag((20, 20), (20, 25))
-    assert looked_at == [("ObstacleCheck", 2)]
+    # The first leg, the one behind the layer's change, and the way of the robot to where they begin.
+    assert looked_at == [("ObstacleCheck", 3)]
     assert "is on things" in hand.told
 
 

@@ -100,6 +100,15 @@ def test_what_is_pasted_and_is_no_place_is_named(hand):
     assert hand.complained("'meet me at noon' is no place: write latitude, longitude")
 
 
+def test_pasted_longitude_and_latitude_are_refused_and_the_right_order_named(hand):
+    hand.take("cone")
+    lat, lon = earth(70, 55)
+    QApplication.clipboard().setText(f"{lon:.8f}, {lat:.8f}")
+    hand.key(Qt.Key.Key_V, CTRL)
+    assert hand.points is None
+    assert hand.complained(f"with its two numbers swapped it is. Write latitude, longitude: {lat:.8f}, ")
+
+
 @pytest.fixture
 def dialog(hand, iface):
     hand.window.desk.select("r1")
@@ -145,7 +154,8 @@ def test_coordinates_are_asked_for_anew_by_keyboard_alone(hand, dialog):
 
 
 def test_coordinates_of_another_datum_name_the_operation_and_how_exact_it_is(dialog):
-    enter(dialog, "1234.5, 339912.7", "EPSG:31257")
+    to_gauss = Transformer.from_crs("EPSG:32633", "EPSG:31257", always_xy=True)
+    enter(dialog, "{:.1f}, {:.1f}".format(*to_gauss.transform(X + 70, Y + 55)), "EPSG:31257")
     text = told(dialog)
     assert "MGI to WGS 84" in text
     assert "accura" in text
@@ -163,6 +173,30 @@ def test_the_dialog_adds_to_the_route_when_that_is_in_hand(hand, dialog):
     enter(dialog, "488070 5190055", "EPSG:32633")
     QTest.mouseClick(dialog.findChild(QPushButton, "fleet_coordinates_set"), Qt.MouseButton.LeftButton)
     assert list(hand.points) == [pytest.approx((40, 30), abs=0.3), pytest.approx((70, 55), abs=1e-6)]
+
+
+@pytest.mark.parametrize(
+    ("text", "crs", "why"),
+    [
+        ("{lon:.8f}, {lat:.8f}", "EPSG:4326", "two numbers swapped it is. Write latitude, longitude: "),
+        ("5190055 488070", "EPSG:32633", "swapped it is. Write x, y: 488070, 5190055."),
+        ("48.2, 2.35", "EPSG:4326", "km outside the site Yard. Write latitude, longitude, and check"),
+        ("48.2, 120", "EPSG:4326", "Yard"),
+        ("70, 55", "EPSG:32633", "km outside the site Yard. Write x, y, and check the numbers"),
+    ],
+)
+def test_a_place_that_is_nowhere_near_the_site_cannot_be_set(dialog, text, crs, why):
+    lat, lon = earth(70, 55)
+    enter(dialog, text.format(lat=lat, lon=lon), crs)
+    assert why in told(dialog)
+    assert not dialog.findChild(QPushButton, "fleet_coordinates_set").isEnabled()
+
+
+def test_a_place_beside_the_site_can_still_be_set_and_is_checked_as_any_other(hand, dialog):
+    enter(dialog, "{:.8f}, {:.8f}".format(*earth(300, 55)))
+    QTest.mouseClick(dialog.findChild(QPushButton, "fleet_coordinates_set"), Qt.MouseButton.LeftButton)
+    assert hand.points == (pytest.approx((300, 55), abs=0.01),)
+    assert "is outside the site Yard" in hand.told
 
 
 def test_what_is_no_place_cannot_be_set(dialog):

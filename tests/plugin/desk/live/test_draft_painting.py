@@ -9,7 +9,7 @@ import pytest
 from fleet_supervisor.plugin.desk.colours import CONE as CONE_COLOUR
 from fleet_supervisor.plugin.desk.colours import PAPER, REFUSED
 from fleet_supervisor.plugin.desk.colours import ROUTE as ROUTE_COLOUR
-from fleet_supervisor.plugin.desk.drafts import CONE, ROUTE, TARGETS, Draft, Findings
+from fleet_supervisor.plugin.desk.drafts import CONE, ROUTE, TARGETS, Draft, Findings, Way, WayKind
 from fleet_supervisor.plugin.desk.live.scene import Placer
 from fleet_supervisor.robot_bridge.messages import RobotState
 from qgis.PyQt.QtGui import QColor
@@ -27,6 +27,14 @@ def test_a_draft_is_painted_and_a_refused_one_is_red(canvas, site):
     draft = Draft("r1", CONE, ((40.0, 70.0),), Findings(refused=("outside",)))
     show(canvas, site, scene_of((60, 50, 0.0, RobotState.FRESH), draft=draft))
     assert len(spots(canvas, REFUSED)) > 30
+
+
+@pytest.mark.parametrize(("kind", "is_drawn"), [(WayKind.STRAIGHT, True), (WayKind.SOUGHT, False)])
+def test_no_straight_line_leads_to_a_target_whose_way_is_still_sought(canvas, site, kind, is_drawn):
+    draft = Draft("r1", CONE, ((40.0, 70.0),), Findings(refused=("outside",)), way=Way(kind))
+    show(canvas, site, scene_of((60, 50, 0.0, RobotState.FRESH), draft=draft))
+    away = spots(canvas, REFUSED) - expected(canvas, site, 50.0, 60.0)
+    assert bool((np.hypot(*away.T) < 15.0).any()) is is_drawn
 
 
 def test_a_draft_of_many_targets_is_painted_where_they_are_and_a_refused_one_is_red(canvas, site):

@@ -89,7 +89,7 @@ def test_an_hour_of_updates_takes_no_more_memory(canvas, site):
     canvas.setExtent(QgsRectangle(*site.origin, site.origin[0] + 120, site.origin[1] + 100))
     desk = Desk(canvas, QgsProject.instance(), clock=lambda: now[0])
     view = LiveView(desk)
-    desk._take_site(site, is_greeting=True)
+    desk._take_site(site, "")
     used = []
     for step in range(1200):
         now[0] += 3.0

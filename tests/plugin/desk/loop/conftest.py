@@ -3,12 +3,17 @@
 from __future__ import annotations
 
 import shutil
+import sqlite3
 import sys
+from contextlib import closing
 
 import pytest
 from inside_qgis.operator_at_desk import OperatorAtDesk
 from stage.patience import BUSY
 from stage.processes import Processes
+
+from robot_bridge.store import revisions
+from robot_bridge.store.database import run_once
 
 CRS = "EPSG:32633"
 
@@ -35,13 +40,25 @@ class Loop:
     def start_robot(self, name, pose, *, sql=False, speed=2.5, more=()):
         way = ["--database", self._database] if sql else ["--url", f"{self.address}/robot"]
         where = ",".join(str(number) for number in pose)
-        options = ["--name", name, f"--pose={where}", "--speed", str(speed), "--rate", "10", *more]
+        nimble = ["--speed", str(speed), "--turn-rate", "6", "--acceleration", "8", "--rate", "10"]
+        options = ["--name", name, f"--pose={where}", *nimble, *more]
         return self._processes.start(name, [sys.executable, "-m", "robot_bridge", "robot", *way, *options])
 
 
+@pytest.fixture(scope="session")
+def empty_database(tmp_path_factory):
+    """A file with the gateway's tables: to make them takes a gateway longer than to copy it takes a test."""
+    file = tmp_path_factory.mktemp("database") / "fleet.db"
+    run_once(f"sqlite:///{file}", revisions.create)
+    with closing(sqlite3.connect(file)) as connection:
+        connection.execute("pragma wal_checkpoint(truncate)")
+    return file
+
+
 @pytest.fixture
-def start_loop(tmp_path):
+def start_loop(tmp_path, empty_database):
     """Start a gateway on a site; everything ends with the test."""
+    shutil.copy(empty_database, tmp_path / "fleet.db")
     with Processes(tmp_path / "logs") as processes:
 
         def start(site):
@@ -113,7 +130,22 @@ class Operator(OperatorAtDesk):
         self.click_site(x, y)
         self.press("fleet_send")
         # Who goes on to another robot before it was checked is told that nothing was sent.
-        self.wait("the check of the target", lambda: not self.desk.checks.is_under_way, 20)
+        self.wait("the check of the target", lambda: not self.is_looking, 20)
+
+    def wait_for_draft(self, what):
+        """Wait until there is a draft that has been looked at, as an operator who reads before sending."""
+        self.wait(what, lambda: self.desk.drafts.draft and not self.is_looking, 20)
+
+    def press(self, action):
+        # Who presses before the draft was checked is told that nothing was sent, if there is a warning.
+        if action == "fleet_send":
+            self.wait("the check of the draft", lambda: not self.is_looking, 20)
+        super().press(action)
+
+    @property
+    def is_looking(self):
+        """Whether what was drafted is looked at, or its way sought."""
+        return self.desk.checks.is_under_way or self.desk.sending.awaits_way
 
     def sent_to(self, robot):
         return [command for command in self._reports.values() if command.robot == robot]

@@ -171,7 +171,7 @@ def test_without_a_link_a_review_is_refused_and_nothing_written_is_lost(seen, do
     dock.form.reason.setText("keep me")
     operator.desk.close_link()
     said = []
-    operator.desk.failed.connect(said.append)
+    operator.desk.messages.posted.connect(lambda text, _: said.append(text))
     click(dock.form.accept)
     assert "NOT reviewed" in said[0]
     assert dock.form.reason.text() == "keep me"

@@ -21,19 +21,25 @@ def test_a_robot_that_was_sent_directly_stands_and_places_its_cone_after_that_on
     operator.set_cone("r1", 110.0, 8.0)
     operator.wait("r1 driving", lambda: (operator.report("r1").v or 0) > 1.0, 20)
     QTest.keyClick(iface, Qt.Key.Key_F10, ALT)
-    aborted = operator.wait_for_state("r1", "SetPosEnd", CommandState.ABORTED)
+    aborted = operator.wait_for_state("r1", "SetPath", CommandState.ABORTED)
     assert aborted.steps[-1].by == "anna" and "paused" in aborted.steps[-1].reason
     operator.wait("the desk seeing r1 stand", lambda: operator.report("r1").v < 0.05, 10)
     assert operator.report("r1").x < 109
     operator.wait("something to continue", plugin.window.actions.go_on.isEnabled, 10)
     QTest.keyClick(iface, Qt.Key.Key_F10, ALT | SHIFT)
     operator.wait("the cone", lambda: len(operator.desk.placements) == 1, 60)
-    x, y = aborted.params["x"], aborted.params["y"]
+    x, y = aborted.params["points"][-1]
     operator.wait(
         "r1 at its place",
         lambda: math.dist((operator.report("r1").x, operator.report("r1").y), (x, y)) <= TOLERANCE,
         10,
     )
     ends = [(one.op, one.state.value) for one in operator.sent_to("r1")]
-    assert sorted(ends) == [("Abort", "reached"), ("SetPosEnd", "aborted"), ("SetPosEnd", "reached")]
+    # What was left of the path, and the cone at its end, are one task of the queue.
+    assert sorted(ends) == [
+        ("Abort", "reached"),
+        ("SetPath", "aborted"),
+        ("SetPath", "reached"),
+        ("SetPosEnd", "reached"),
+    ]
     assert operator.desk.queues.get("r1").tasks == []

@@ -72,12 +72,12 @@ def test_an_override_stands_in_the_log_that_everybody_sees(loop, operator, plugi
     operator.choose("fleet_cone_target")
     operator.click_site(32, 8)
     operator.press("fleet_send")
-    operator.wait("the check", lambda: not operator.desk.checks.is_under_way, 20)
+    operator.wait("the check", lambda: not operator.is_looking, 20)
     QTest.qWait(500)
     assert operator.sent_to("r1") == []
     draft = operator.desk.drafts.draft
     assert draft.can_be_overridden
     operator.desk.drafts.renew(replace(draft, override=WHY))
     operator.press("fleet_send")
-    command = operator.wait_for_state("r1", "SetPosEnd", CommandState.REACHED)
+    command = operator.wait_for_state("r1", "SetPath", CommandState.REACHED)
     assert command.steps[0].reason == f"override: {WHY}"

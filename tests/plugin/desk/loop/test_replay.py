@@ -214,8 +214,7 @@ def test_only_selected_robots(driven, dock, operator):
 
 def test_what_cannot_be_loaded_is_said(driven, dock, operator):
     said = []
-    operator.desk.complained.connect(said.append)
-    operator.desk.failed.connect(said.append)
+    operator.desk.messages.posted.connect(lambda text, _: said.append(text))
     dock.form.since.setDateTime(dock.form.until.dateTime().addSecs(60))
     click(dock.form.load)
     assert "ends before it begins" in said[-1]

@@ -2,13 +2,25 @@
 
 from __future__ import annotations
 
+import math
+import re
+
 import pytest
 from fleet_supervisor.robot_bridge.messages import CommandState
 from inside_qgis.mouse import move_mouse
 from qgis.core import QgsPointXY, QgsProject
 from qgis.PyQt.QtCore import Qt
 from qgis.PyQt.QtTest import QTest
-from qgis.PyQt.QtWidgets import QAction, QCheckBox, QComboBox, QLabel, QLineEdit, QPushButton, QToolButton
+from qgis.PyQt.QtWidgets import (
+    QAction,
+    QCheckBox,
+    QComboBox,
+    QLabel,
+    QLineEdit,
+    QPushButton,
+    QTableView,
+    QToolButton,
+)
 
 CRS = "EPSG:32633"
 SOUTH = (60.0, 8.0)
@@ -66,7 +78,7 @@ def test_the_way_along_the_roads_follows_the_mouse_and_a_click_takes_it(at_roads
     operator.wait("the other way", lambda: preview(operator) and preview(operator)[-1][1] > 60, 10)
     assert operator.sent_to("r1") == []
     operator.click_site(100.0, 8.0)
-    operator.wait("the route", lambda: operator.desk.drafts.draft, 10)
+    operator.wait_for_draft("the route")
     operator.click_site(126.0, 8.0)
     operator.wait("the second leg", lambda: len(operator.desk.drafts.draft.legs) == 2, 10)
     text = part(operator, QLabel, "fleet_draft_text").text()
@@ -86,7 +98,7 @@ def test_a_road_is_closed_by_a_click_the_robot_on_it_sent_round_and_opened_again
     operator.select("r1")
     operator.choose("fleet_road_route")
     operator.click_site(126.0, 8.0)
-    operator.wait("the route", lambda: operator.desk.drafts.draft, 10)
+    operator.wait_for_draft("the route")
     operator.press("fleet_send")
     first = operator.wait_for_state("r1", "SetPath", CommandState.ACKNOWLEDGED)
     close_road(operator, *SOUTH, "tree on the road")
@@ -115,7 +127,7 @@ def test_a_route_keeps_off_the_road_of_another_robot_where_the_operator_wants_it
     operator.choose("fleet_road_route")
     operator.select("r2")
     operator.click_site(100.0, 8.0)
-    operator.wait("the route", lambda: operator.desk.drafts.draft, 10)
+    operator.wait_for_draft("the route")
     operator.press("fleet_send")
     operator.wait_for_state("r2", "SetPath", CommandState.ACKNOWLEDGED)
     operator.select("r1")
@@ -134,7 +146,8 @@ def test_a_route_keeps_off_the_road_of_another_robot_where_the_operator_wants_it
 
 
 def test_a_conflict_is_shown_with_place_and_time_and_one_gives_way(loop, operator):
-    loop.start_robot("r1", (10, 8, 0), speed=1)
+    # So slow that it has not come to where its ways part, however late the operator is.
+    loop.start_robot("r1", (10, 8, 0), speed=0.2)
     loop.start_robot("r2", (119, 8, 3.14), speed=1)
     operator.connect_to(loop, ["r1", "r2"])
     operator.show_site()
@@ -142,7 +155,7 @@ def test_a_conflict_is_shown_with_place_and_time_and_one_gives_way(loop, operato
     for robot, goal in (("r1", (126.0, 8.0)), ("r2", (20.0, 8.0))):
         operator.select(robot)
         operator.click_site(*goal)
-        operator.wait("the route", lambda: operator.desk.drafts.draft, 10)
+        operator.wait_for_draft("the route")
         operator.press("fleet_send")
         operator.wait_for_state(robot, "SetPath", CommandState.ACKNOWLEDGED)
 
@@ -157,3 +170,56 @@ def test_a_conflict_is_shown_with_place_and_time_and_one_gives_way(loop, operato
     operator.wait("no conflict", lambda: layer("Conflicts").featureCount() == 0, 15)
     points = operator.sent_to("r1")[-1].params["points"]
     assert max(y for x, y in points if 20 < x < 110) == pytest.approx(22.0, abs=1.0)
+
+
+def test_a_robot_that_stands_in_the_way_is_foretold_and_sent_aside_and_the_other_is_stopped(loop, operator):
+    # Half a minute away, for the operator of a busy machine; who is sent aside is quick.
+    loop.start_robot("r1", (14, 8, 0), speed=1.5)
+    loop.start_robot("r3", (60, 8.6, 0), speed=5)
+    operator.connect_to(loop, ["r1", "r3"])
+    window = operator.desk.parent()
+    window.dock.tabs.setCurrentWidget(window.dock.conflict_panel)
+    apart = []
+    operator.desk.pulled.connect(lambda: apart.append(metres_apart(operator, "r1", "r3")))
+    operator.select("r1")
+    operator.choose("fleet_road_route")
+    operator.click_site(66.0, 8.0)
+    operator.wait_for_draft("the route")
+    operator.press("fleet_send")
+    table = part(operator, QTableView, "fleet_alarms").model()
+
+    def alarms():
+        return [table.index(row, 1).data() for row in range(table.rowCount())]
+
+    foretold = re.compile(r"r1 will pass r3 at 0\.[67] m \(clearance 1\.2 m\)")
+    operator.wait("the alarm", lambda: any(foretold.match(text) for text in alarms()), 15)
+    # It comes before they are near.
+    assert min(apart) > 1.3
+    press(operator, "fleet_stop_r1")
+    operator.wait(
+        "r1 paused", lambda: operator.desk.queues.get("r1") and not operator.report("r1").command, 15
+    )
+    operator.wait("nobody in the way", lambda: not operator.desk.roads.conflicts.conflicts, 15)
+    part(operator, QAction, "fleet_continue").trigger()
+    operator.wait("a free place", lambda: part(operator, QToolButton, "fleet_aside_r3"), 15)
+    operator.wait("its button", lambda: part(operator, QToolButton, "fleet_aside_r3").isEnabled(), 15)
+    for name in ("fleet_give_way_r3", "fleet_give_way_r1", "fleet_aside_r1"):
+        assert not part(operator, QToolButton, name).isEnabled()
+    press(operator, "fleet_aside_r3")
+    operator.wait(
+        "its route", lambda: operator.desk.drafts.draft and operator.desk.drafts.draft.robot == "r3", 10
+    )
+    assert operator.sent_to("r3") == []
+    operator.press("fleet_send")
+    operator.wait_for_state("r3", "SetPath", CommandState.REACHED)
+    operator.wait("r1 there", lambda: operator.report("r1").x > 65.5, 60)
+    assert min(apart) > 1.1
+
+
+def press(operator, name):
+    QTest.mouseClick(part(operator, QToolButton, name), Qt.MouseButton.LeftButton)
+
+
+def metres_apart(operator, one, another):
+    places = [(report.x, report.y) for report in map(operator.report, (one, another))]
+    return math.dist(*places)

@@ -28,7 +28,7 @@ def test_clicked_cone_targets_are_reached_over_websocket_and_over_sql(loop, oper
     for robot, place in targets.items():
         operator.set_cone(robot, *place)
     for robot in targets:
-        command = operator.wait_for_state(robot, "SetPosEnd", CommandState.REACHED)
+        command = operator.wait_for_state(robot, "SetPath", CommandState.REACHED)
         assert [step.state.value for step in command.steps] == LIFE
         assert [step.by for step in command.steps] == ["anna", "gateway", robot, "gateway"]
         assert command.params["cone"] is True
@@ -36,7 +36,7 @@ def test_clicked_cone_targets_are_reached_over_websocket_and_over_sql(loop, oper
         # The click lands within half a pixel of the place, and the robot within the tolerance of the click.
         pixel = operator.canvas.mapUnitsPerPixel()
         assert off(operator.report(robot), *targets[robot]) <= TOLERANCE + pixel
-        goal = command.params["x"], command.params["y"]
+        goal = command.params["points"][-1]
         assert off(operator.report(robot), *goal) <= TOLERANCE
 
 
@@ -46,7 +46,7 @@ def test_abort_stops_a_driving_robot(loop, operator):
     operator.set_cone("r1", 110.0, 8.0)
     operator.wait("r1 driving", lambda: (operator.report("r1").v or 0) > 1.0, 20)
     operator.press("fleet_abort")
-    ended = operator.wait_for_state("r1", "SetPosEnd", CommandState.ABORTED)
+    ended = operator.wait_for_state("r1", "SetPath", CommandState.ABORTED)
     operator.wait_for_state("r1", "Abort", CommandState.REACHED)
     assert ended.steps[-1].by == "anna"
     operator.wait("the desk seeing r1 stand", lambda: operator.report("r1").v < 0.05, 5)
@@ -67,7 +67,7 @@ def test_abort_all_stops_every_robot(loop, operator):
     operator.press("fleet_abort_all")
     for robot in ("r1", "r2"):
         operator.wait_for_state(robot, "Abort", CommandState.REACHED)
-        operator.wait_for_state(robot, "SetPosEnd", CommandState.ABORTED)
+        operator.wait_for_state(robot, "SetPath", CommandState.ABORTED)
         operator.wait(f"the desk seeing {robot} stand", lambda r=robot: operator.report(r).v < 0.05, 5)
 
 
@@ -89,17 +89,17 @@ def test_a_killed_gateway_ages_the_robots_and_its_return_repeats_nothing(impatie
     loop.start_robot("r1", (20, 8, 0), speed=5)
     operator.connect_to(loop, ["r1"])
     operator.set_cone("r1", 60.0, 8.0)
-    operator.wait_for_state("r1", "SetPosEnd", CommandState.ACKNOWLEDGED)
+    operator.wait_for_state("r1", "SetPath", CommandState.ACKNOWLEDGED)
     loop.gateway.send_signal(signal.SIGKILL)
     loop.gateway.wait()
     operator.wait("r1 turning stale", lambda: operator.states()["r1"] == "stale", 10)
     operator.wait("r1 turning lost", lambda: operator.states()["r1"] == "lost", 15)
     loop.start_gateway(loop.port)
     operator.wait("r1 coming back", lambda: operator.states()["r1"] == "fresh", 30)
-    command = operator.wait_for_state("r1", "SetPosEnd", CommandState.REACHED)
+    command = operator.wait_for_state("r1", "SetPath", CommandState.REACHED)
     assert len(operator.sent_to("r1")) == 1
     operator.wait("where r1 is", lambda: operator.report("r1").x is not None, 10)
-    assert off(operator.report("r1"), command.params["x"], command.params["y"]) <= TOLERANCE
+    assert off(operator.report("r1"), *command.params["points"][-1]) <= TOLERANCE
 
 
 def test_a_target_outside_the_site_sends_nothing(loop, operator):
@@ -119,7 +119,7 @@ def test_unload_takes_everything_out_while_robots_drive(loop, operator, plugin, 
     loop.start_robot("r1", (20, 8, 0))
     operator.connect_to(loop, ["r1"])
     operator.set_cone("r1", 60.0, 8.0)
-    operator.wait_for_state("r1", "SetPosEnd", CommandState.ACKNOWLEDGED)
+    operator.wait_for_state("r1", "SetPath", CommandState.ACKNOWLEDGED)
     items = len(iface.canvas.scene().items())
     plugin.unload()
     QTest.qWait(100)

@@ -1,8 +1,12 @@
 """What a layer and the review of observations show, without a gateway."""
 
+import dataclasses
+
 import pytest
 from fleet_supervisor.plugin.desk.observations.observation_layer import FIELDS, style
+from fleet_supervisor.plugin.desk.observations.observation_model import in_words
 from fleet_supervisor.plugin.desk.observations.review_form import PICTURE, ReviewForm
+from fleet_supervisor.robot_bridge.messages import ObservationReport, ObservationState
 from qgis.core import QgsExpression, QgsExpressionContext, QgsFeature, QgsVectorLayer
 from qgis.PyQt.QtGui import QColor, QImage
 
@@ -54,5 +58,23 @@ def test_no_image_makes_the_form_broader_than_it_may_be(qgis_app, tmp_path, size
     assert shown.width() / shown.height() == pytest.approx(size[0] / size[1], rel=0.05)
     assert "image.png" in form.picture.toolTip()
     form.show_picture("")
-    assert form.picture.isHidden()
+    assert form.picture.pixmap() is None or form.picture.pixmap().isNull()
     assert form.picture.toolTip() == ""
+
+
+def test_what_is_missing_is_told_and_accepted_as_such(qgis_app):
+    doubt = ObservationReport(
+        *(7, "r1", "SetObject", "missing-1", 3.0, 4.0, 0.0, ObservationState.PENDING),
+        label="bench",
+        radius=0.8,
+        doubts="furniture:14",
+    )
+    assert "not there any more: bench" in in_words(doubt)
+    form = ReviewForm()
+    form.show_report(doubt, (), asked=False)
+    assert "looks through bench (furniture:14) of its map" in form.about.text()
+    assert form.accept.toolTip().startswith("It is gone")
+    request = form.request(accept=True)
+    assert (request.semantics, request.height, request.radius) == (None, None, None)
+    form.show_report(dataclasses.replace(doubt, doubts=None), (), asked=False)
+    assert form.accept.toolTip().startswith("It stands there")

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import threading
 
+import numpy as np
 import pytest
 from fleet_supervisor.plugin.desk import time_slices
-from fleet_supervisor.plugin.desk.plans.closed_ways import closed_ways
+from fleet_supervisor.plugin.desk.plans.closed_ways import _Road, closed_ways
+from fleet_supervisor.robot_bridge.messages import ClosureReport
 from qgis.PyQt import sip
 
 from tests.plugin.desk.plans.panel_parts import (
@@ -69,6 +71,21 @@ def test_a_road_that_is_opened_again_is_no_trouble_any_more(far_cones, gateway, 
     gateway.tell("closures", closing())
     wait(lambda: not far_cones.driven.trouble, 5)
     assert not any("closed" in text for text in iface.texts())
+
+
+@pytest.mark.parametrize(
+    ("way", "leads"),
+    [
+        ([(0, 40), (60, 40), (60, 90)], False),
+        ([(0, 40), (60, 40)], False),
+        ([(60, 0), (60, 90)], False),
+        ([(0, 40), (64, 40)], True),
+        ([(60, 90), (60, 40), (75, 40)], True),
+    ],
+)
+def test_a_way_that_only_touches_the_end_of_a_closed_road_does_not_lead_along_it(way, leads):
+    road = _Road(ClosureReport("c", SHORT, 0.0, "bert"))
+    assert road.is_along(np.array(way, float)) is leads
 
 
 class Held:

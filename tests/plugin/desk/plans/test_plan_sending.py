@@ -104,7 +104,7 @@ def test_what_can_be_overridden_waits_and_is_told_once_with_where_that_is_done(f
     assert "The cone plan is not sent any further" in text and QUEUE_OF_R2 in text
     assert "Override… in the panel Cone plan" in text
     assert QUEUE_OF_R2 in fenced.bar.trouble.text() and "where your role may" in fenced.bar.trouble.text()
-    assert not fenced.bar.send.isVisible() and not fenced.bar.clear.isVisible()
+    assert not fenced.bar.send.isEnabled() and not fenced.bar.clear.isEnabled()
     assert len(sent_to(gateway, "r2")) == 1
 
 
@@ -119,7 +119,7 @@ def test_an_override_sends_the_same_tasks_with_what_was_found_and_why(fenced, ga
     assert len(sent_to(gateway, "r1")) == 1
     wait(lambda: hung(iface, "Water basin") == [], what="the text of what is over")
     assert hung(iface, "as a whole") == []
-    assert not fenced.bar.override.isVisible() and fenced.bar.send.isVisible()
+    assert not fenced.bar.override.isEnabled()
 
 
 def test_a_plan_that_is_not_to_be_overridden_stays_as_far_as_it_was_sent(fenced, gateway, wait, iface):
@@ -129,6 +129,32 @@ def test_a_plan_that_is_not_to_be_overridden_stays_as_far_as_it_was_sent(fenced,
     (text,) = hung(iface, "Water basin")
     assert "was not sent as a whole" in text and "Done before: the queue of r1" in text
     assert len(sent_to(gateway, "r2")) == 1
+
+
+def test_what_was_not_sent_is_told_until_a_plan_is_sent_or_watched_no_more(fenced, gateway, wait, iface):
+    gateway.answers["set_queue"] = lambda params: {"error": {"code": -32000, "message": "no such robot"}}
+    press(fenced, "fleet_plan_leave")
+    wait(lambda: hung(iface, "was not sent as a whole"), what="the text")
+    press(fenced, "fleet_plan_clear")
+    wait(lambda: not hung(iface, "was not sent as a whole"), what="the end of it")
+    planned(fenced, wait)
+    answer(question(fenced), send=True)
+    wait(lambda: len(hung(iface, "no such robot")) == 2, what="the refusal, and what was not done therefore")
+    gateway.answers["set_queue"] = lambda params: {"result": {}}
+    press(fenced, "fleet_plan_clear")
+    planned(fenced, wait)
+    answer(question(fenced), send=True)
+    wait(lambda: not hung(iface, "no such robot"), what="the end of both")
+
+
+def test_a_plan_that_waits_for_the_end_of_a_stop_says_so_until_that_is_cleared(panel, gateway, wait, iface):
+    planned(panel, wait)
+    gateway.stand(in_force=True, stop="s1", at=1.0, by="bob")
+    wait(lambda: panel._desk.emergency.in_force, what="the stop")
+    answer(question(panel), send=True)
+    wait(lambda: hung(iface, "An emergency stop is in force"), what="the refusal")
+    gateway.stand(in_force=False)
+    wait(lambda: not hung(iface, "An emergency stop is in force"), what="the end of it")
 
 
 def test_an_override_that_the_role_does_not_reach_is_refused_as_that_of_a_draft_is(

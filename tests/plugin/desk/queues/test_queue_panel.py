@@ -9,6 +9,8 @@ from qgis.PyQt.QtGui import QDragEnterEvent, QDragMoveEvent, QDropEvent
 from qgis.PyQt.QtTest import QTest
 from qgis.PyQt.QtWidgets import QApplication, QLabel, QToolButton
 
+from tests.plugin.desk.button_places import Watched
+
 ALT = Qt.KeyboardModifier.AltModifier
 CTRL = Qt.KeyboardModifier.ControlModifier
 NAMES = ["K1", "K2", "K3", "K4"]
@@ -177,6 +179,32 @@ def test_a_change_that_comes_too_late_is_not_done_and_the_newer_queue_is_shown(p
     press(panel, Qt.Key.Key_Delete)
     wait(lambda: shown(panel) == ["K1", "K2", "K3", "K9"])
     assert text(panel, "fleet_queue_conflict") == ""
+
+
+def test_no_button_moves_whatever_becomes_of_the_queue(panel, at_desk, gateway, wait):
+    watched = Watched(panel)
+    for row in (0, 3):
+        choose(panel, row)
+        watched.check(f"task {row} is chosen")
+    push(panel, "fleet_queue_hold")
+    watched.check("a pause is asked for")
+    wait(lambda: "PAUSED" in text(panel, "fleet_queue_head"))
+    watched.check("it is paused")
+    push(panel, "fleet_queue_hold")
+    wait(lambda: "running" in text(panel, "fleet_queue_head"))
+    gateway.queues.fail("r1", "a wall where the map has none, and no way round it " * 5)
+    wait(lambda: "PAUSED" in text(panel, "fleet_queue_head"))
+    watched.check("a task has failed")
+    gateway.queues.quiet = True
+    gateway.queues.give("r1", [task("K9", 70.0)], by="ben")
+    choose(panel, 3)
+    press(panel, Qt.Key.Key_Delete)
+    wait(lambda: text(panel, "fleet_queue_conflict"), what="a change that came too late")
+    watched.check("a change came too late")
+    at_desk.desk.select("r2")
+    watched.check("another robot is selected, which has none")
+    at_desk.desk.select(None)
+    watched.check("none is selected")
 
 
 def test_while_an_answer_is_awaited_nothing_else_is_asked_but_to_pause(panel, gateway, wait):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pytest
+from fleet_supervisor.plugin.desk.robots.columns import TITLES
 from fleet_supervisor.robot_bridge.jsonrpc import FORBIDDEN
 from fleet_supervisor.robot_bridge.messages import QueueState, QueueTask, TaskKind
 from qgis.PyQt.QtCore import Qt
@@ -108,3 +109,21 @@ def test_without_a_link_it_says_that_nothing_was_sent(plugin, iface):
     plugin.window.desk.select("r1")
     plugin.window.actions.pause.trigger()
     assert any("Pause of r1 was NOT sent" in text for text in iface.texts())
+
+
+def test_a_paused_robot_is_shown_as_paused_and_found_by_that(driving, gateway, make_robot, wait):
+    table = driving.dock.table
+    model = table.model()
+    task = TITLES.index("Task")
+
+    def shown():
+        return {model.name_at(row): model.index(row, task).data() for row in range(model.rowCount())}
+
+    gateway.show(make_robot("r1", stopped=True), make_robot("r2", stopped=True))
+    wait(lambda: shown() == {"r1": "stopped", "r2": "stopped"}, what="both standing")
+    driving.desk.select_all(["r1"])
+    driving.actions.pause.trigger()
+    wait(lambda: shown() == {"r1": "paused", "r2": "stopped"}, what="the pause")
+    model.text = "paused"
+    table.refresh()
+    assert list(shown()) == ["r1"]

@@ -11,6 +11,7 @@ from fleet_supervisor.plugin.desk import time_slices
 from fleet_supervisor.plugin.desk.live import ways_image
 from fleet_supervisor.plugin.desk.replay import replay_layer
 from qgis.core import QgsProject
+from qgis.gui import QgsLayerTreeMapCanvasBridge
 from qgis.PyQt import sip
 from qgis.PyQt.QtCore import QTimer
 from qgis.PyQt.QtWidgets import QApplication
@@ -48,6 +49,16 @@ def test_where_the_panel_is_low_and_narrow_the_map_gives_way_to_the_time_line(lo
     assert loaded.height() == LOW
     assert loaded.map.geometry().bottom() < loaded.line.geometry().top()
     assert loaded.line.geometry().bottom() <= loaded.widget().height()
+
+
+def test_what_was_driven_is_on_the_replays_map_and_not_on_the_live_one(loaded, iface):
+    bridge = QgsLayerTreeMapCanvasBridge(QgsProject.instance().layerTreeRoot(), iface.canvas)
+    bridge.setCanvasLayers()
+    (layer,) = lines()
+    assert layer not in iface.canvas.layers()
+    assert layer in loaded.map.layers()
+    loaded.layer.clear()
+    assert loaded.map.layers() == []
 
 
 def test_the_map_turns_with_the_live_one(loaded, at_desk):
@@ -149,6 +160,8 @@ def test_a_command_that_comes_late_is_shown_while_time_is_held(loaded, gateway, 
 def test_lines_that_are_shown_no_more_are_given_back_bit_by_bit(loaded, monkeypatch, wait):
     monkeypatch.setattr(replay_layer, "AT_ONCE", 1)
     monkeypatch.setattr(time_slices, "SLICE_SECONDS", time_slices.ONE_STEP)
+    # Each step is seen by itself, however busy the machine is.
+    loaded.layer._freeing._timer.setInterval(1000)
     (layer,) = lines()
     count = layer.featureCount()
     assert count > 1

@@ -7,6 +7,7 @@ from fleet_supervisor.plugin.desk.robots.columns import COLUMNS, TITLES, number_
 from fleet_supervisor.plugin.desk.robots.deviations import Deviations, beside
 from fleet_supervisor.plugin.desk.robots.fleet_rows import Which
 from fleet_supervisor.plugin.desk.robots.robot_panel import AROUND_SEARCH, WHICH
+from fleet_supervisor.plugin.desk.robots.robot_table import WIDEST_NAME
 from fleet_supervisor.plugin.desk.state_words import ROBOT_STATES
 from fleet_supervisor.robot_bridge.messages import CommandReport, CommandState, CommandStep, RobotState
 from qgis.core import (
@@ -16,9 +17,18 @@ from qgis.core import (
     QgsProject,
     QgsSettings,
 )
-from qgis.PyQt.QtCore import QPoint, Qt
+from qgis.PyQt.QtCore import QEvent, QPoint, QPointF, Qt
+from qgis.PyQt.QtGui import QMouseEvent
 from qgis.PyQt.QtTest import QTest
-from qgis.PyQt.QtWidgets import QComboBox, QLabel, QLineEdit, QToolButton
+from qgis.PyQt.QtWidgets import (
+    QApplication,
+    QComboBox,
+    QLabel,
+    QLineEdit,
+    QStyle,
+    QStyleOptionViewItem,
+    QToolButton,
+)
 
 LEFT = Qt.MouseButton.LeftButton
 
@@ -392,3 +402,62 @@ def test_a_number_is_not_cut_off_in_its_column(table, title, value, text):
     assert number_in_words(title, value) == text
     # Qt leaves three pixels free at either side.
     assert table.fontMetrics().horizontalAdvance(text) + 6 <= table.columnWidth(TITLES.index(title))
+
+
+# --- names have room first ---
+
+
+def drag_head(table, column, pixels):
+    """Drag the right edge of a column's head."""
+    head = table.horizontalHeader()
+    edge = QPoint(head.sectionViewportPosition(column) + head.sectionSize(column) - 1, head.height() // 2)
+    QTest.mousePress(head.viewport(), LEFT, pos=edge)
+    for step in (0.5, 1.0):
+        at = edge + QPoint(round(step * pixels), 0)
+        move = QMouseEvent(
+            QEvent.Type.MouseMove, QPointF(at), QPointF(head.viewport().mapToGlobal(at)),
+            Qt.MouseButton.NoButton, LEFT, Qt.KeyboardModifier.NoModifier,
+        )  # fmt: skip
+        QApplication.sendEvent(head.viewport(), move)
+    QTest.mouseRelease(head.viewport(), LEFT, pos=edge + QPoint(pixels, 0))
+
+
+def room_for_text(table, row=0):
+    """Return the pixels that the style leaves a name beside its icon."""
+    index = table.model().index(row, 0)
+    option = QStyleOptionViewItem()
+    option.initFrom(table)
+    option.rect = table.visualRect(index)
+    option.features |= QStyleOptionViewItem.ViewItemFeature.HasDecoration
+    option.features |= QStyleOptionViewItem.ViewItemFeature.HasDisplay
+    option.decorationSize = table.iconSize()
+    option.text = index.data()
+    return table.style().subElementRect(QStyle.SubElement.SE_ItemViewItemText, option, table).width()
+
+
+def test_of_many_robots_each_name_is_read_whole(table, at_desk, gateway, make_robot, wait):
+    names = [f"robot-north-{k:04}" for k in range(1000)]
+    gateway.show(*(make_robot(name, k % 100, k // 100) for k, name in enumerate(names)))
+    wait(lambda: table.model().rowCount() == 1004, what="the robots in the table")
+    row = column(table, "Robot").index("robot-north-0777")
+    wanted = table.fontMetrics().horizontalAdvance("robot-north-0777")
+    # Where a text needs a fraction of a pixel more, Qt cuts it.
+    assert room_for_text(table, row) >= wanted + 2
+    assert table.columnViewportPosition(0) == 0
+
+
+def test_a_very_long_name_is_cut_in_its_middle_and_leaves_room_for_the_others(
+    table, gateway, make_robot, wait
+):
+    gateway.show(make_robot("a-name-that-nobody-can-want-to-read-" * 3 + "7", 10, 10))
+    wait(lambda: table.model().rowCount() == 5, what="the robot in the table")
+    assert table.columnWidth(0) == WIDEST_NAME
+    assert table.textElideMode() == Qt.TextElideMode.ElideMiddle
+
+
+def test_a_width_that_a_hand_gave_the_names_stays(table, gateway, make_robot, wait):
+    drag_head(table, 0, 20)
+    given = table.columnWidth(0)
+    gateway.show(make_robot("a-robot-of-a-longer-name-than-the-others", 10, 10))
+    wait(lambda: table.model().rowCount() == 5, what="the robot in the table")
+    assert table.columnWidth(0) == given

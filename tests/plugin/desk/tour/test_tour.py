@@ -224,3 +224,14 @@ def test_its_address_is_not_kept_for_the_next_session(tour):
     tour.action._connect("ws://127.0.0.1:9/desk")
     assert QgsSettings().value("fleet_supervisor/url") is None
     tour.desk.close_link()
+
+
+def test_its_offer_is_read_whole_beside_its_button(iface, plugin, wait):
+    label = iface.findChild(QLabel, "fleet_tour_offer_text")
+    button = iface.findChild(QPushButton, "fleet_tour_start")
+    wait(lambda: label.isVisible() and button.isVisible(), what="the offer")
+    assert label.text() == "Fleet Supervisor: A five-minute tour shows how it works."
+    assert label.height() >= label.heightForWidth(label.width())
+    # QGIS's own bar is as high as what hangs in it.
+    iface.bar.resize(700, 80)
+    wait(lambda: label.visibleRegion().boundingRect() == label.rect(), what="room for the offer")

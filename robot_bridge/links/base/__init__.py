@@ -1,0 +1,1 @@
+"""What all adapters share: settings, frames, the connection to the gateway, and what outlives a restart."""

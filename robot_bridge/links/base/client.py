@@ -1,0 +1,491 @@
+"""The link's connection to the gateway: it comes back, tells nothing old, and has nothing done twice."""
+
+from __future__ import annotations
+
+import asyncio
+import itertools
+import logging
+import random
+from collections import deque
+from collections.abc import Callable, Sequence
+from typing import Any
+from urllib.parse import quote
+
+import msgspec
+from websockets.asyncio.client import ClientConnection, connect
+from websockets.exceptions import ConnectionClosed, InvalidHandshake, InvalidStatus, InvalidURI
+
+from ... import jsonrpc
+from ...access.credentials import Credentials
+from ...messages import (
+    Ability,
+    Abort,
+    Alive,
+    MessageError,
+    OpAck,
+    Ready,
+    Request,
+    SendGPS,
+    SendPos,
+    SiteReport,
+    Start,
+    Stopped,
+    check_robot_name,
+    to_json,
+)
+from ...messages.links import LINK_PROTOCOL, GetAreas, LinkHello, LinkStatus, Released, SiteAreas
+from ...messages.plain import site_report
+from ...sites.frame import SiteFrame
+from ...wire import decode_answer, params_of
+from .adapter import Adapter
+from .commanding import Commanding
+from .errors import CommandRefusedError, LinkError
+from .frames import LinkFrame
+from .linked_robot import Kept, LinkedRobot
+from .memory import LinkMemory
+from .positions import frame_of, gps_call
+from .settings import LinkSettings
+
+log = logging.getLogger(__name__)
+
+FIRST_WAIT, LONGEST_WAIT = 0.5, 10.0
+"""seconds between two attempts to connect."""
+TOGETHER = 0.05
+"""seconds within which positions are told in one frame."""
+SAY_AGAIN = 1.0
+"""seconds after which is said once more what the gateway could not store."""
+MEMORY_EVERY = 2.0
+"""seconds after which it is tried once more to write what a full disk did not take."""
+LARGEST_FRAME = 64 << 20
+
+
+class LinkClient:
+    """A connection to the gateway that comes back: the :class:`.link.Link` of an adapter."""
+
+    def __init__(self, settings: LinkSettings, adapter: Adapter, memory: LinkMemory) -> None:
+        self.name = settings.name
+        self._settings = settings
+        self._adapter = adapter
+        self._memory = memory
+        folder, gateway = settings.folder, settings.gateway
+        self._credentials = Credentials(
+            None if gateway.token_file is None else folder / gateway.token_file,
+            None if gateway.ca is None else folder / gateway.ca,
+        )
+        self._robots: dict[str, LinkedRobot] = {}
+        self._commanding = Commanding(adapter, memory, settings.answer_within_s, self._post)
+        self._ids = itertools.count(1)
+        self._asked: dict[int, Callable[[jsonrpc.Reply], None]] = {}
+        self._urgent: deque[str] = deque()
+        self._outgoing: deque[str] = deque()
+        self._wake = asyncio.Event()
+        self._waking: asyncio.TimerHandle | None = None
+        self._is_welcome = False
+        self._status = LinkStatus(ok=True)
+        self._said_fault: str | None = None
+        self._site: SiteReport | None = None
+        self._frame: LinkFrame | None = None
+        self._is_known = asyncio.Event()
+        self._areas: dict[asyncio.Future[SiteAreas], tuple[float, float, float, float]] = {}
+        """What was asked of the site, and not answered yet."""
+        self.largest_image_bytes = 0
+
+    # --- what an adapter is told ----------------------------------------------------------------------------
+
+    @property
+    def settings(self) -> LinkSettings:
+        """The settings that every link has."""
+        return self._settings
+
+    @property
+    def site(self) -> SiteReport:
+        """The site: its bounds, CRS, origin and rotation."""
+        assert self._site is not None, "known once site_known has returned"
+        return self._site
+
+    @property
+    def frame(self) -> LinkFrame:
+        """The frame of the link's robots on this site."""
+        assert self._frame is not None, "known once site_known has returned"
+        return self._frame
+
+    @property
+    def is_connected(self) -> bool:
+        """Whether the gateway listens."""
+        return self._is_welcome
+
+    @property
+    def robots(self) -> list[str]:
+        """The robots that it speaks for."""
+        return list(self._robots)
+
+    async def site_known(self) -> None:
+        """Return when the gateway has told which site it serves."""
+        await self._is_known.wait()
+
+    # --- what it tells of robots ----------------------------------------------------------------------------
+
+    def add(self, robot: str, abilities: Sequence[Ability] = (), *, path_cones: bool = False) -> None:
+        """Speak for ``robot`` from now on; say Ready once more for one that can do something else now."""
+        known = self._robots.get(robot)
+        if known is not None:
+            if known.change(tuple(abilities), path_cones) and self._is_welcome:
+                known.lose()
+                self._say_ready(known)
+            return
+        check_robot_name(robot)
+        self._robots[robot] = known = LinkedRobot(robot, tuple(abilities), path_cones)
+        self._memory.magic(robot)
+        if self._is_welcome:
+            self._say_ready(known)
+
+    def remove(self, robot: str) -> None:
+        """Speak for ``robot`` no more."""
+        known = self._robots.pop(robot, None)
+        if known is not None:
+            self._commanding.drop(robot)
+            for kept in known.kept:
+                kept.answer.cancel()
+
+    def restarted(self, robot: str) -> None:
+        """Note that the robot has started anew: what is open is sent once more."""
+        known = self._robots[robot]
+        self._memory.renew(robot)
+        self._commanding.drop(robot)
+        if self._is_welcome:
+            known.lose()
+            self._say_ready(known)
+
+    def position(self, robot: str, position: SendPos | SendGPS) -> None:
+        """Tell where ``robot`` is."""
+        known = self._robots[robot]
+        known.place(position)
+        self._wake_soon()
+
+    def alive(self, robot: str) -> None:
+        """Tell that ``robot`` is there."""
+        self._robots[robot].is_alive = True
+        self._wake_soon()
+
+    def stopped(self, robot: str) -> None:
+        """Tell that ``robot`` stands and has nothing to do."""
+        self._keep(robot, Stopped())
+
+    def give_up(self, robot: str, command: int, reason: str) -> None:
+        """Tell that ``robot`` gave up a command that it had taken on."""
+        self._keep(robot, OpAck(id=command, ok=False, reason=reason))
+
+    async def ask(self, robot: str, request: Request) -> OpAck:
+        """Say what is acknowledged; return the acknowledgement."""
+        return await self._keep(robot, request)
+
+    async def areas(self, box: tuple[float, float, float, float]) -> SiteAreas:
+        """Ask for the site's keepouts and roads in a box."""
+        answer: asyncio.Future[SiteAreas] = asyncio.get_running_loop().create_future()
+        self._areas[answer] = box
+        if self._is_welcome:
+            self._ask_areas(answer)
+        try:
+            return await answer
+        finally:
+            del self._areas[answer]
+
+    def report(self, *, ok: bool, text: str | None = None, counts: dict[str, float] | None = None) -> None:
+        """Tell how the link's own side is."""
+        status = LinkStatus(ok, text, counts or {})
+        if status != self._status:
+            self._status = status
+            if self._is_welcome:
+                self._say_status()
+
+    # --- the connection -------------------------------------------------------------------------------------
+
+    async def run(self) -> None:
+        """Carry messages until cancelled; raises LinkError for what a person has to put right."""
+        watching = asyncio.create_task(self._watch_memory())
+        try:
+            await self._connect_for_ever()
+        finally:
+            watching.cancel()
+
+    async def _connect_for_ever(self) -> None:
+        wait = FIRST_WAIT
+        url = f"{self._settings.gateway.url}?link={quote(self.name)}"
+        while True:
+            try:
+                options = self._credentials.options(url)
+                async with connect(url, max_size=LARGEST_FRAME, close_timeout=1, **options) as connection:
+                    await self._carry(connection)
+                reason = "the gateway closed the connection"
+            except InvalidURI as error:
+                raise LinkError(f"{self._settings.file}: gateway.url: {error}") from None
+            except ConnectionClosed as error:
+                reason = str(error)
+            except (OSError, InvalidHandshake) as error:
+                reason = _reason(error)
+            wait = FIRST_WAIT if self._is_welcome else wait
+            self._lose()
+            log.warning("%s: %s; trying again in %.1f s", url, reason, wait)
+            await asyncio.sleep(wait * random.uniform(0.8, 1.2))
+            wait = min(wait * 2, LONGEST_WAIT)
+
+    async def _carry(self, connection: ClientConnection) -> None:
+        self._urgent.clear()
+        self._outgoing.clear()
+        self._asked.clear()
+        writing = asyncio.create_task(self._write(connection))
+        try:
+            async for frame in connection:
+                self._receive(frame)
+        finally:
+            writing.cancel()
+            await asyncio.gather(writing, return_exceptions=True)
+
+    def _lose(self) -> None:
+        self._is_welcome = False
+        for robot in self._robots.values():
+            robot.lose()
+
+    async def _write(self, connection: ClientConnection) -> None:
+        try:
+            while True:
+                await self._wake.wait()
+                self._wake.clear()
+                while self._urgent or self._outgoing:
+                    await connection.send((self._urgent or self._outgoing).popleft())
+                # Made when they can be sent: of what waited for a slow line only the newest is told.
+                for frame in self._news():
+                    await connection.send(frame)
+        except ConnectionClosed:
+            return
+
+    def _news(self) -> list[str | bytes]:
+        """Return what is new of the robots' places."""
+        if not self._is_welcome:
+            return []
+        frames: list[str | bytes] = []
+        placed, fresh = [], [robot for robot in self._robots.values() if robot.admitted and robot.fresh]
+        for robot in fresh:
+            robot.fresh = robot.is_alive = False
+            if isinstance(robot.position, SendPos):
+                placed.append((robot.name, robot.position))
+            elif robot.position is not None:
+                frames.append(gps_call(robot.name, robot.position))
+        if placed:
+            frames.append(frame_of(placed))
+        for robot in self._robots.values():
+            if robot.admitted and robot.is_alive:
+                robot.is_alive = False
+                frames.append(jsonrpc.call(Alive.__name__, {"robot": robot.name}))
+        return frames
+
+    def _wake_soon(self) -> None:
+        if self._waking is None:
+            self._waking = asyncio.get_running_loop().call_later(TOGETHER, self._woken)
+
+    def _woken(self) -> None:
+        self._waking = None
+        self._wake.set()
+
+    def _post(self, frame: str, *, urgent: bool = False) -> None:
+        """Send a frame; those that tell what became of an Abort before all others."""
+        (self._urgent if urgent else self._outgoing).append(frame)
+        self._wake.set()
+
+    def _call(self, method: str, params: Any, answered: Callable[[jsonrpc.Reply], None]) -> int:
+        id = next(self._ids)
+        self._asked[id] = answered
+        self._post(jsonrpc.call(method, params, id))
+        return id
+
+    # --- what comes in --------------------------------------------------------------------------------------
+
+    def _receive(self, frame: str | bytes) -> None:
+        try:
+            message = jsonrpc.decode(frame)
+            if isinstance(message, jsonrpc.Call):
+                self._take_call(message)
+            else:
+                self._take_reply(message)
+        except (jsonrpc.FrameError, MessageError) as error:
+            log.error("the gateway said what cannot be understood: %s", error)
+
+    def _take_reply(self, reply: jsonrpc.Reply) -> None:
+        answered = self._asked.pop(reply.id, None) if isinstance(reply.id, int) else None
+        if answered is not None:
+            answered(reply)
+        elif reply.error is not None:
+            log.warning("the gateway refuses: %s", reply.error)
+
+    def _take_call(self, call: jsonrpc.Call) -> None:
+        params = dict(call.params) if isinstance(call.params, dict) else {}
+        robot = params.pop("robot", None)
+        if call.method == Start.__name__:
+            hello = to_json(LinkHello(LINK_PROTOCOL, self._adapter.kind))
+            self._call(LinkHello.method, hello, self._welcomed)
+        elif call.method == Released.__name__:
+            self._released(str(robot), str(params.get("reason")))
+        elif call.method == Abort.__name__ and robot is None:
+            for name, known in self._robots.items():
+                if not known.is_only_seen:
+                    self._stop(name, f"{name}/{params.get('call')}", emergency=True)
+        elif robot in self._robots:
+            self._take_answer(robot, call, params)
+        elif call.id is not None:
+            text = f"this link does not speak for robot {robot!r}"
+            self._post(jsonrpc.error(call.id, jsonrpc.REFUSED, text))
+
+    def _take_answer(self, robot: str, call: jsonrpc.Call, params: dict[str, Any]) -> None:
+        try:
+            answer = decode_answer(call.method, params)
+        except MessageError as error:
+            # Of a newer gateway, which would send it for ever if nobody refused it.
+            log.error("robot %s: the gateway said what this link does not know: %s", robot, error)
+            if call.id is not None:
+                self._post(jsonrpc.error(call.id, jsonrpc.REFUSED, f"this link does not know it: {error}"))
+            return
+        if isinstance(answer, Abort):
+            self._stop(robot, call.id, emergency=answer.emergency)
+        else:
+            self._commanding.enqueue(robot, call.id, answer)
+
+    def _stop(self, robot: str, call: int | str | None, *, emergency: bool) -> None:
+        if self._robots[robot].is_only_seen:
+            self._post(jsonrpc.result(call, to_json(OpAck())), urgent=True)
+        else:
+            self._commanding.stop(robot, call, emergency=emergency)
+
+    def _welcomed(self, reply: jsonrpc.Reply) -> None:
+        if reply.error is not None or not isinstance(reply.result, dict):
+            log.error("the gateway does not take this link: %s", reply.error)
+            return
+        site = site_report(reply.result["site"])
+        self._memory.use_database(str(reply.result["database"]))
+        self.largest_image_bytes = int(reply.result.get("largest_image_bytes", 0))
+        if self._site is None or (site.crs, site.origin, site.rotation) != (
+            self._site.crs,
+            self._site.origin,
+            self._site.rotation,
+        ):
+            frame = SiteFrame(site.crs, site.origin, site.rotation)
+            self._frame = LinkFrame(self._settings.frame, frame, str(self._settings.file))
+            if self._frame.fit is not None:
+                log.warning("%s", self._frame.fit.text)
+        self._site = site
+        self._is_welcome = True
+        self._is_known.set()
+        self._say_status()
+        for robot in list(self._robots.values()):
+            self._say_ready(robot)
+        for answer in self._areas:
+            self._ask_areas(answer)
+
+    def _ask_areas(self, answer: asyncio.Future[SiteAreas]) -> None:
+        params = to_json(GetAreas(self._areas[answer]))
+        self._call(GetAreas.method, params, lambda reply: _areas_came(answer, reply))
+
+    def _released(self, robot: str, reason: str) -> None:
+        known = self._robots.get(robot)
+        if known is None:
+            return
+        log.warning("robot %s: %s", robot, reason)
+        known.lose()
+        self._adapter.refused(robot, reason)
+        self._ready_later(known)
+
+    # --- robots ---------------------------------------------------------------------------------------------
+
+    def _say_status(self) -> None:
+        status, self._said_fault = self._status, self._memory.fault
+        if self._said_fault is not None:
+            text = f"{self._said_fault}; its robots take on nothing, and can be stopped"
+            status = LinkStatus(False, "; ".join(filter(None, (text, status.text))), status.counts)
+        self._post(jsonrpc.call(LinkStatus.method, to_json(status) | {"counts": status.counts}))
+
+    async def _watch_memory(self) -> None:
+        while True:
+            await asyncio.sleep(MEMORY_EVERY)
+            await self._memory.recover()
+            if self._is_welcome and self._memory.fault != self._said_fault:
+                self._say_status()
+
+    def _say_ready(self, robot: LinkedRobot) -> None:
+        if not self._is_welcome or self._robots.get(robot.name) is not robot or robot.admitted:
+            return
+        params = {"robot": robot.name, **to_json(robot.ready(self._memory.magic(robot.name)))}
+        self._call(Ready.__name__, params, lambda reply: self._readied(robot, reply))
+
+    def _readied(self, robot: LinkedRobot, reply: jsonrpc.Reply) -> None:
+        ack = reply.result if isinstance(reply.result, dict) else {}
+        if reply.error is None and ack.get("ok", True):
+            robot.admit()
+            self._adapter.admitted(robot.name)
+            self._wake_soon()
+            for kept in robot.untold():
+                self._say(robot, kept)
+            return
+        reason = reply.error or str(ack.get("reason"))
+        log.warning("robot %s is not let in: %s", robot.name, reason)
+        self._adapter.refused(robot.name, reason)
+        self._ready_later(robot)
+
+    def _ready_later(self, robot: LinkedRobot) -> None:
+        asyncio.get_running_loop().call_later(robot.next_wait(), self._say_ready, robot)
+
+    def _keep(self, robot: str, request: Request) -> asyncio.Future[OpAck]:
+        known = self._robots[robot]
+        answer: asyncio.Future[OpAck] = asyncio.get_running_loop().create_future()
+        # Nobody may wait for it: what went wrong is in the log all the same.
+        answer.add_done_callback(lambda done: done.cancelled() or done.exception())
+        kept = Kept(request, answer)
+        known.keep(kept)
+        if known.admitted:
+            self._say(known, kept)
+        return answer
+
+    def _say(self, robot: LinkedRobot, kept: Kept) -> None:
+        if not robot.admitted or kept not in robot.kept:
+            return
+        # What was told of its place before goes before it.
+        if robot.fresh and isinstance(robot.position, SendPos):
+            robot.fresh = False
+            self._post(jsonrpc.call("SendPos", {"robot": robot.name, **to_json(robot.position)}))
+        method, params = type(kept.request).__name__, {"robot": robot.name, **params_of(kept.request)}
+        kept.call = self._call(method, params, lambda reply: self._answered(robot, kept, reply))
+
+    def _answered(self, robot: LinkedRobot, kept: Kept, reply: jsonrpc.Reply) -> None:
+        if reply.code in (jsonrpc.INTERNAL_ERROR, jsonrpc.TOO_MANY):
+            kept.call = None
+            asyncio.get_running_loop().call_later(SAY_AGAIN, self._say, robot, kept)
+            return
+        if kept in robot.kept:
+            robot.kept.remove(kept)
+        if kept.answer.done():
+            return
+        if reply.error is not None:
+            what = type(kept.request).__name__
+            log.warning("robot %s: the gateway refuses %s: %s", robot.name, what, reply.error)
+            kept.answer.set_exception(CommandRefusedError(reply.error))
+            return
+        ack = decode_answer(OpAck.__name__, reply.result)
+        kept.answer.set_result(ack if isinstance(ack, OpAck) else OpAck())
+
+
+def _areas_came(answer: asyncio.Future[SiteAreas], reply: jsonrpc.Reply) -> None:
+    if answer.done():
+        return
+    if reply.error is not None:
+        answer.set_exception(CommandRefusedError(reply.error))
+        return
+    try:
+        answer.set_result(msgspec.convert(reply.result, SiteAreas))
+    except msgspec.ValidationError as error:
+        answer.set_exception(CommandRefusedError(f"the gateway's areas cannot be read: {error}"))
+
+
+def _reason(error: OSError | InvalidHandshake) -> str:
+    """Return why there is no connection, in the gateway's own words where it gave some."""
+    if isinstance(error, InvalidStatus):
+        said = bytes(error.response.body or b"").decode("utf-8", "replace").strip()
+        return f"the gateway refuses (HTTP {error.response.status_code}): {said[:300]}"
+    return str(error)

@@ -1,0 +1,13 @@
+"""The exception family of links."""
+
+from __future__ import annotations
+
+from ...errors import BridgeError
+
+
+class LinkError(BridgeError):
+    """A link that cannot be set up, or cannot go on; the text names file and key, and what to do."""
+
+
+class CommandRefusedError(Exception):
+    """What a robot was told and will not do: the text is the reason that operators read."""

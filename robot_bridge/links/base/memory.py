@@ -1,0 +1,241 @@
+"""What a link keeps on the disk, so that a process that is started anew does nothing twice."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import errno
+import json
+import logging
+import os
+import secrets
+from collections import OrderedDict
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from ...core.decoding import SHORT, DecodingError, decode_json
+from .errors import LinkError
+
+log = logging.getLogger(__name__)
+
+MOST_DONE = 1000
+"""messages of one robot that are remembered: many more than a gateway ever has on their way to it."""
+LONGEST_FILE = 256 << 20
+"""bytes."""
+PASSING = frozenset({errno.ENOSPC, errno.EDQUOT, errno.EROFS, errno.EIO})
+"""errors of a file that was set up well: its disk is full or broken. A link stops its robots all the same."""
+
+
+@dataclass(frozen=True)
+class Done:
+    """What came of a message: ``refusal`` is None where the robot took it on."""
+
+    refusal: str | None = None
+
+
+@dataclass
+class _Robot:
+    magic: int
+    begun: OrderedDict[int, Done | None] = field(default_factory=OrderedDict)
+    """what came of each message, None while that is not known."""
+
+
+class LinkMemory:
+    """The runs of robots, and what came of their messages: a file that is only ever added to.
+
+    Without a file it lasts as long as the process. While its disk is full or broken no message is begun, as
+    another process would do it once more; what stops robots needs no memory.
+    """
+
+    def __init__(self, file: Path | None = None) -> None:
+        self._file = file
+        self._database: str | None = None
+        self._robots: dict[str, _Robot] = {}
+        self._writing = asyncio.Lock()
+        self._fault: OSError | None = None
+        self._revision = 0
+        if file is not None:
+            self._load(file)
+            self._begin_file(file)
+
+    @property
+    def fault(self) -> str | None:
+        """Why nothing can be written now, None where all that is known is in the file."""
+        if self._fault is None:
+            return None
+        return f"memory {self._file} cannot be written: {self._fault.strerror or self._fault}"
+
+    def magic(self, robot: str) -> int:
+        """Return the number of the robot's run; it is a new one for a robot that is not known."""
+        known = self._robots.get(robot)
+        return known.magic if known is not None else self.renew(robot)
+
+    def renew(self, robot: str) -> int:
+        """Return a new number for a robot that has started anew and forgotten its tasks."""
+        magic = secrets.randbits(53)
+        begun = self._robots[robot].begun if robot in self._robots else OrderedDict()
+        self._robots[robot] = _Robot(magic, begun)
+        self._append_if_possible({"robot": robot, "magic": magic})
+        return magic
+
+    def use_database(self, database: str) -> None:
+        """Forget the messages of another database: their ids begin anew."""
+        if database == self._database:
+            return
+        self._database = database
+        for robot in self._robots.values():
+            robot.begun.clear()
+        self._append_if_possible({"database": database})
+
+    def find(self, robot: str, id: int) -> Done | None:
+        """Return what came of a message, None where it was never finished."""
+        known = self._robots.get(robot)
+        return None if known is None else known.begun.get(id)
+
+    async def begin(self, robot: str, id: int) -> bool:
+        """Note that a message is about to be done; return whether it was begun before.
+
+        :raises LinkError: when that cannot be written; it must not be done then.
+        """
+        begun = self._robots[robot].begun
+        if id in begun:
+            return True
+        self._note(robot, id, None)
+        try:
+            await self._append_surely({"robot": robot, "begun": id})
+        except LinkError:
+            begun.pop(id, None)
+            raise
+        return False
+
+    async def finish(self, robot: str, id: int, done: Done) -> None:
+        """Note what came of a message; it is on the disk when this returns, if the disk takes anything."""
+        self._note(robot, id, done)
+        refusal = {} if done.refusal is None else {"refusal": done.refusal}
+        with contextlib.suppress(LinkError):
+            await self._append_surely({"robot": robot, "done": id, **refusal})
+
+    def _note(self, robot: str, id: int, done: Done | None) -> None:
+        begun = self._robots[robot].begun
+        begun[id] = done
+        while len(begun) > MOST_DONE:
+            begun.popitem(last=False)
+
+    # --- the file -------------------------------------------------------------------------------------------
+
+    async def recover(self) -> None:
+        """Write what could not be written, if that is possible by now."""
+        if self._fault is not None:
+            with contextlib.suppress(LinkError):
+                await self._append_surely({})
+
+    def _append_if_possible(self, line: dict[str, Any]) -> None:
+        self._revision += 1
+        if self._fault is None:
+            with contextlib.suppress(LinkError):
+                self._append(line)
+
+    async def _append_surely(self, line: dict[str, Any]) -> None:
+        """Add a line, or all that is known where an earlier one could not be added; raises LinkError."""
+        if self._file is None:
+            return
+        self._revision += 1
+        async with self._writing:
+            if self._fault is None:
+                await asyncio.shield(asyncio.to_thread(self._append, line, surely=True))
+            else:
+                # Made here: robots come and go in this thread.
+                lines = list(self._lines())
+                await asyncio.shield(asyncio.to_thread(self._write_anew, lines, self._revision))
+
+    def _append(self, line: dict[str, Any], *, surely: bool = False) -> None:
+        if self._file is None:
+            return
+        try:
+            with self._file.open("a", encoding="utf-8") as out:
+                out.write(json.dumps(line) + "\n")
+                if surely:
+                    out.flush()
+                    os.fsync(out.fileno())
+        except OSError as error:
+            raise self._failed(error) from None
+
+    def _write_anew(self, lines: Sequence[dict[str, Any]], revision: int) -> None:
+        assert self._file is not None
+        try:
+            _replace(self._file, lines)
+        except OSError as error:
+            raise self._failed(error) from None
+        if revision == self._revision:
+            log.warning("memory %s can be written again", self._file)
+            self._fault = None
+
+    def _failed(self, error: OSError) -> LinkError:
+        if self._fault is None:
+            log.error("memory %s cannot be written: %s", self._file, error.strerror or error)
+        self._fault = error
+        return LinkError(f"{self.fault}; robots can be stopped, and take on nothing until it can")
+
+    def _load(self, file: Path) -> None:
+        try:
+            if file.stat().st_size > LONGEST_FILE:
+                raise LinkError(f"memory {file} has more than {LONGEST_FILE} bytes; delete it")
+            text = file.read_bytes()
+        except FileNotFoundError:
+            return
+        except OSError as error:
+            raise LinkError(f"memory {file} cannot be read: {error.strerror or error}") from None
+        for number, line in enumerate(text.splitlines(), 1):
+            try:
+                self._take_line(decode_json(line, SHORT))
+            except (DecodingError, KeyError, TypeError, ValueError) as error:
+                # The last line of a process that was killed while it wrote.
+                log.warning("memory %s, line %d is left out: %s", file, number, error)
+
+    def _take_line(self, line: dict[str, Any]) -> None:
+        if "database" in line:
+            self._database = str(line["database"])
+            for robot in self._robots.values():
+                robot.begun.clear()
+        elif "magic" in line:
+            known = self._robots.get(line["robot"])
+            self._robots[line["robot"]] = _Robot(int(line["magic"]), known.begun if known else OrderedDict())
+        elif "done" in line:
+            self._note(line["robot"], int(line["done"]), Done(line.get("refusal")))
+        else:
+            self._note(line["robot"], int(line["begun"]), None)
+
+    def _begin_file(self, file: Path) -> None:
+        """Write the file anew with what is still known: it shows that it can be written, too."""
+        try:
+            _replace(file, list(self._lines()))
+        except OSError as error:
+            if error.errno not in PASSING:
+                raise LinkError(
+                    f"memory {file} cannot be written: {error.strerror or error}; give a folder that can "
+                    "with state_folder in the link's settings, or in ROBOT_BRIDGE_STATE"
+                ) from None
+            self._failed(error)
+
+    def _lines(self) -> Iterator[dict[str, Any]]:
+        if self._database is not None:
+            yield {"database": self._database}
+        for name, robot in self._robots.items():
+            yield {"robot": name, "magic": robot.magic}
+            for id, done in robot.begun.items():
+                if done is None:
+                    yield {"robot": name, "begun": id}
+                else:
+                    refusal = {} if done.refusal is None else {"refusal": done.refusal}
+                    yield {"robot": name, "done": id, **refusal}
+
+
+def _replace(file: Path, lines: Sequence[dict[str, Any]]) -> None:
+    new = file.with_name(f"{file.name}.new")
+    with new.open("w", encoding="utf-8") as out:
+        out.writelines(json.dumps(line) + "\n" for line in lines)
+        out.flush()
+        os.fsync(out.fileno())
+    new.replace(file)

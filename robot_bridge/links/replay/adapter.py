@@ -1,0 +1,216 @@
+"""The adapter of recordings: tells where robots were, when the recording's clock is there."""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+import math
+import time
+from collections import Counter
+from pathlib import Path
+from typing import ClassVar
+
+from ...messages import SendPos
+from ...messages.bounds import SPEED
+from ...recordings.errors import RecordingError
+from ...recordings.movement import ORIGINS
+from ...recordings.opening import read_recording
+from ...recordings.tracks import Recording
+from ...sites.frame import SiteFrame
+from ..base.adapter import Adapter, Command
+from ..base.errors import CommandRefusedError, LinkError
+from ..base.frames import FrameSettings, LinkFrame
+from ..base.link import Link
+from ..base.settings import LinkSettings, read_settings
+from .clock import PlayClock
+from .player import Player, Presence, Told
+from .settings import ReplaySettings
+
+log = logging.getLogger(__name__)
+
+LEAST_STEP = 0.05
+"""seconds between two looks at what is due: a connection tells no more often."""
+LOOK_EVERY = 1.0
+"""seconds between two signs of life, and two looks at the file of settings."""
+ONLY_SEEN = "this is a recording that is played: it can be seen and not commanded"
+
+
+class ReplayAdapter(Adapter):
+    """Robots of a recording, under names that begin with ``replay-``."""
+
+    kind: ClassVar[str] = "replay"
+
+    def __init__(self, recording: Recording, settings: ReplaySettings, file: Path) -> None:
+        self._recording, self._settings, self._file = recording, settings, file
+        self._names = settings.names([track.robot for track in recording.tracks], file)
+        self._player = Player(recording, settings.largest_gap_s)
+        self._stamp = _stamp(file)
+        self._complaint: str | None = None
+        self._frames: tuple[LinkFrame, LinkFrame] | None = None
+        self._outside: Counter[str] = Counter()
+        self._latest = 0.0
+        """seconds that a position was told too late, at most, since the last report."""
+        self._has_sought = True
+        self._looked_at = 0.0
+        self._told = 0
+
+    async def run(self, link: Link) -> None:
+        """Play until cancelled; what is at its end stays until the settings are changed."""
+        settings = self._settings
+        begin = self._recording.begin + settings.start_s
+        clock = PlayClock(begin, settings.speed, time.monotonic(), paused=settings.paused)
+        told_at = -math.inf
+        while True:
+            now = time.monotonic()
+            is_look = now - self._looked_at >= LOOK_EVERY
+            if is_look:
+                self._look_at_settings(clock, now)
+            if self._settings.loop and clock.place(now) > self._player.end:
+                # It begins anew at the very moment it ended, however late this is noticed.
+                clock.seek(self._player.begin, clock.when(self._player.end))
+            if self._tell(link, clock, now, again=is_look):
+                told_at = now
+            if is_look:
+                self._looked_at = now
+                self._report(link, clock, now)
+            due = max(clock.when(self._player.next_place()), told_at + LEAST_STEP)
+            await asyncio.sleep(min(due, self._looked_at + LOOK_EVERY) - time.monotonic())
+
+    async def command(self, command: Command) -> None:
+        """Refuse it: the gateway does not send any."""
+        raise CommandRefusedError(ONLY_SEEN)
+
+    async def stop(self, robot: str, *, emergency: bool) -> None:
+        """Do nothing: who is only seen cannot be stopped."""
+
+    def _tell(self, link: Link, clock: PlayClock, now: float, *, again: bool) -> bool:
+        """Tell where robots are that are somewhere else, with ``again`` that the others are there, too.
+
+        Return whether any was somewhere else.
+        """
+        told_before = self._told
+        known = set(link.robots)
+        status = self._status(clock)
+        for told in self._player.advance(clock.place(now)):
+            name = self._names[told.track.robot]
+            if told.presence is Presence.HERE and (told.is_new or (again and clock.is_paused)):
+                if name not in known:
+                    link.add(name)
+                if told.is_new:
+                    self._told += 1
+                    self._note_delay(now - clock.when(float(told.track.t[told.at])))
+                self._place(link, name, told, status, stands=clock.is_paused)
+            elif told.presence is Presence.HERE and again:
+                link.alive(name)
+            elif told.presence in (Presence.BEFORE, Presence.OVER) and name in known:
+                link.stopped(name)
+                link.remove(name)
+        self._has_sought = False
+        return self._told > told_before
+
+    def _note_delay(self, seconds: float) -> None:
+        # After a jump the last position before that place is told: it is as old as it is.
+        if not self._has_sought:
+            self._latest = max(self._latest, seconds)
+
+    def _place(self, link: Link, name: str, told: Told, status: str, *, stands: bool) -> None:
+        track, at = told.track, told.at
+        try:
+            place = self._frame(link).pose_to_site(
+                float(track.x[at]), float(track.y[at]), float(track.theta[at])
+            )
+        except ValueError as error:
+            self._outside[name] += 1
+            if self._outside[name] == 1:
+                log.warning("robot %s is left out where it cannot be shown: %s", name, error)
+            return
+        v = 0.0 if stands else min(max(float(track.v[at]), SPEED[0]), SPEED[1])
+        origin = ORIGINS[track.theta_from[at]]
+        link.position(name, SendPos(*place, v, status=status, theta_from=origin))
+
+    def _status(self, clock: PlayClock) -> str:
+        paused = ", paused" if clock.is_paused else ""
+        return f"replay of {self._recording.file.name} ×{clock.speed:g}{paused}"
+
+    def _frame(self, link: Link) -> LinkFrame:
+        """Return the frame of the file where it says one, else that of the link's settings."""
+        crs, site = self._recording.crs, link.site
+        if crs is None:
+            return link.frame
+        if self._frames is None or self._frames[0] is not link.frame:
+            own = LinkFrame(FrameSettings(crs=crs), SiteFrame(site.crs, site.origin, site.rotation))
+            self._frames = link.frame, own
+        return self._frames[1]
+
+    def _look_at_settings(self, clock: PlayClock, now: float) -> None:
+        stamp = _stamp(self._file)
+        if stamp == self._stamp:
+            return
+        self._stamp = stamp
+        try:
+            _, new = read_settings(self._file, "replay", ReplaySettings)
+            new.check(self._file)
+        except LinkError as error:
+            self._complain(f"played on as before: {error}")
+            return
+        if not self._settings.is_same_recording(new):
+            self._complain(
+                f"{self._file}: only replay.speed, start_s, loop and paused change what is being played; "
+                "start the link anew for the rest"
+            )
+            return
+        self._complaint = None
+        clock.change(now, speed=new.speed, paused=new.paused)
+        if new.start_s != self._settings.start_s:
+            clock.seek(self._recording.begin + new.start_s, now)
+            self._has_sought = True
+        self._settings = new
+
+    def _complain(self, text: str) -> None:
+        self._complaint = text
+        log.error("%s", text)
+
+    def _report(self, link: Link, clock: PlayClock, now: float) -> None:
+        recording, place = self._recording, clock.place(now) - self._recording.begin
+        length = recording.end - recording.begin
+        text = f"{self._status(clock)}, at its end" if place > length else self._status(clock)
+        if recording.remarks.count:
+            text = f"{text}; {recording.remarks.count} rows left out, the first: {recording.remarks.texts[0]}"
+        counts = {
+            "told": float(self._told),
+            "place_s": round(min(place, length), 1),
+            "length_s": round(length, 1),
+            "latest_ms": round(1e3 * self._latest, 1),
+            "left_out": float(recording.remarks.count),
+            "outside": float(self._outside.total()),
+        }
+        self._latest = 0.0
+        link.report(ok=self._complaint is None, text=(self._complaint or text)[:500], counts=counts)
+
+
+def _stamp(file: Path) -> tuple[int, int] | None:
+    try:
+        found = file.stat()
+    except OSError:
+        return None
+    return found.st_mtime_ns, found.st_size
+
+
+def load(file: Path) -> tuple[LinkSettings, Adapter]:
+    """Return the settings in ``file`` and the adapter that plays what they name; raises LinkError."""
+    settings, own = read_settings(file, "replay", ReplaySettings)
+    own.check(file)
+    try:
+        recording = read_recording(settings.beside(own.file), own.reading)
+    except RecordingError as error:
+        raise LinkError(f"{file}: replay.file: {error}") from None
+    for text in recording.remarks.texts:
+        log.warning("%s", text)
+    if recording.remarks.count > len(recording.remarks.texts):
+        log.warning("%s: %d rows are left out in all", recording.file, recording.remarks.count)
+    if own.start_s > recording.end - recording.begin:
+        raise LinkError(
+            f"{file}: replay.start_s = {own.start_s:g}: the recording is "
+            f"{recording.end - recording.begin:.1f} s long"
+        )
+    return settings, ReplayAdapter(recording, own, file)

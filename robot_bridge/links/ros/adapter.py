@@ -1,0 +1,122 @@
+"""What adapters of ROS robots share: robots are found, each is led by itself, and told of together."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Callable
+from functools import partial
+from typing import Generic, TypeVar
+
+from ...messages import MessageError, check_robot_name
+from ..base.adapter import Adapter, Command
+from ..base.errors import CommandRefusedError, LinkError
+from ..base.link import Link
+from .notes import RobotNotes
+from .robot import RosRobot
+from .settings import RobotSettings
+
+log = logging.getLogger(__name__)
+
+MOST_ROBOTS = 5000
+MOST_FAULTS = 3
+"""that are told in words."""
+
+Network = TypeVar("Network")
+Make = Callable[[str], RosRobot[Network]]
+UNKNOWN = "no robot of this name was found on the ROS network"
+
+
+class RosAdapter(Adapter, Generic[Network]):
+    """The robots of one network; with ``keeps_servers`` its notes are of who has their tasks."""
+
+    def __init__(self, settings: RobotSettings, notes: RobotNotes, *, keeps_servers: bool = True) -> None:
+        self._patterns = settings.patterns
+        self._named = settings.robots
+        self._notes = notes
+        self._keeps_servers = keeps_servers
+        self._robots: dict[str, RosRobot[Network]] = {}
+        self._servers: dict[str, str] = notes.read(_server) if keeps_servers else {}
+        self._refused: set[str] = set()
+        self._failed: set[str] = set()
+
+    async def command(self, command: Command) -> None:
+        """Have a robot take on a command."""
+        robot = self._robots.get(command.robot)
+        if robot is None:
+            raise CommandRefusedError(UNKNOWN)
+        await robot.command(command)
+
+    async def stop(self, robot: str, *, emergency: bool) -> None:
+        """Stop a robot."""
+        known = self._robots.get(robot)
+        if known is None:
+            raise CommandRefusedError(UNKNOWN)
+        await known.stop()
+
+    def admitted(self, robot: str) -> None:
+        """Tell where a robot is that was let in."""
+        if robot in self._robots:
+            self._robots[robot].admitted()
+
+    def _find(self, topics: list[str], network: Network, make: Make[Network]) -> None:
+        """Meet the robots whose position topic is one of ``topics``, and have all meet who is there."""
+        if not self._named:
+            for topic in topics:
+                name = self._patterns["position"].robot_of(topic)
+                if name is not None and name not in self._robots and name not in self._refused:
+                    self._meet(name, make)
+        for robot in self._robots.values():
+            self._lead(robot, partial(robot.connect, network))
+        self._note_servers()
+
+    def _lead(self, robot: RosRobot[Network], work: Callable[[], None]) -> None:
+        """Do some work for a robot; what nobody foresaw concerns that robot alone, and is logged once."""
+        try:
+            work()
+        except LinkError:
+            raise
+        except Exception:
+            if robot.name not in self._failed:
+                self._failed.add(robot.name)
+                log.exception("robot %s: the link fails here, and goes on with the others", robot.name)
+
+    def _meet(self, name: str, make: Make[Network]) -> None:
+        try:
+            check_robot_name(name)
+            if len(self._robots) >= MOST_ROBOTS:
+                raise MessageError(f"more than {MOST_ROBOTS} robots were found; name yours in robots")
+        except MessageError as error:
+            self._refused.add(name)
+            log.error("%s", error)
+            return
+        robot = self._robots[name] = make(name)
+        known = self._servers.get(name)
+        robot.expect_server(bytes.fromhex(known) if known else None)
+
+    def _report(self, link: Link) -> None:
+        faults = self._network_faults()
+        faults += [f"{robot.name}: {text}" for robot in self._robots.values() for text in robot.faults]
+        faults += [f"{name}: the link failed; its log says more" for name in sorted(self._failed)]
+        faults += [] if self._notes.fault is None else [self._notes.fault]
+        more = f" (and {len(faults) - MOST_FAULTS} more)" if len(faults) > MOST_FAULTS else ""
+        text = "; ".join(faults[:MOST_FAULTS]) + more
+        link.report(ok=not faults, text=text or None, counts={"found": float(len(self._robots))})
+
+    def _network_faults(self) -> list[str]:
+        """Return what is wrong with the way to all robots, in words."""
+        return []
+
+    def _note_servers(self) -> None:
+        """Keep who has the robots' tasks, so that the next process of this link sees who has started anew."""
+        if not self._keeps_servers:
+            return
+        servers = {name: robot.server.hex() for name, robot in self._robots.items() if robot.server}
+        if servers.items() <= self._servers.items() and self._notes.fault is None:
+            return
+        self._servers |= servers
+        self._notes.write(self._servers)
+
+
+def _server(key: str) -> str:
+    """Return a participant's key as it is noted; raises ValueError or TypeError for what is none."""
+    return bytes.fromhex(key).hex()

@@ -1,0 +1,127 @@
+"""What is to be done for one robot, decided without I/O and carried out by :mod:`.robot`."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import Enum
+
+from ...messages import SetPath, SetPosEnd
+
+
+class Action(str, Enum):
+    """Nav2's actions that drive a robot."""
+
+    TO_POSE = "NavigateToPose"
+    THROUGH_POSES = "NavigateThroughPoses"
+    FOLLOW_PATH = "FollowPath"
+    WAYPOINTS = "FollowWaypoints"
+
+
+PATH_ACTIONS = (Action.FOLLOW_PATH, Action.THROUGH_POSES, Action.WAYPOINTS)
+"""Those that drive a path, the one that keeps to it best first."""
+
+
+@dataclass(frozen=True)
+class Abilities:
+    """What somebody on the robot's side listens to at the moment, found by discovery."""
+
+    actions: frozenset[Action] = frozenset()
+    foreign: frozenset[Action] = frozenset()
+    """Those of another distribution: goals sent to them could not be read, and theirs can be canceled."""
+    goal_topic: bool = False
+    path_topic: bool = False
+    velocity: bool = False
+    stop_service: bool = False
+    cone_service: bool = False
+
+    @property
+    def driving(self) -> frozenset[Action]:
+        """The actions that goals may be sent to."""
+        return self.actions - self.foreign
+
+
+@dataclass(frozen=True)
+class Answered:
+    """The robot took on the gateway's ``message``; with a ``refusal`` it did not, or gave it up since."""
+
+    message: int
+    refusal: str | None = None
+
+
+@dataclass(frozen=True)
+class StopEnded:
+    """The robot's side has confirmed the stop; with a ``refusal`` nobody has in time."""
+
+    refusal: str | None = None
+
+
+@dataclass(frozen=True)
+class Idle:
+    """The robot has nothing to do."""
+
+
+@dataclass(frozen=True)
+class Remark:
+    """Log a line."""
+
+    text: str
+
+
+@dataclass(frozen=True)
+class SendGoal:
+    """Send the goal for a ``message`` to an action server, and ask for its result."""
+
+    action: Action
+    goal_id: bytes
+    task: SetPosEnd | SetPath
+    message: int
+
+
+@dataclass(frozen=True)
+class CancelGoals:
+    """Ask an action server to cancel one goal; without ``goal_id`` all, whoever sent them."""
+
+    action: Action
+    goal_id: bytes | None = None
+
+
+@dataclass(frozen=True)
+class PublishTask:
+    """Publish a target or path on its topic, for robots without actions."""
+
+    task: SetPosEnd | SetPath
+
+
+@dataclass(frozen=True)
+class PublishHere:
+    """Publish the place where the robot is as its target: who drives to targets on a topic stays there."""
+
+
+@dataclass(frozen=True)
+class ZeroTwist:
+    """Publish speed 0."""
+
+
+@dataclass(frozen=True)
+class CallStop:
+    """Call the robot's stop service."""
+
+
+@dataclass(frozen=True)
+class CallCone:
+    """Call the service that places a cone, or picks one up."""
+
+
+Effect = (
+    Answered
+    | StopEnded
+    | Idle
+    | Remark
+    | SendGoal
+    | CancelGoals
+    | PublishTask
+    | PublishHere
+    | ZeroTwist
+    | CallStop
+    | CallCone
+)

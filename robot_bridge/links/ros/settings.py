@@ -1,0 +1,135 @@
+"""What the settings of ROS robots have in common: the robots, and what their topics are called."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Literal
+
+import msgspec
+
+from ..base.errors import LinkError
+from .effects import Action
+from .errors import RosError
+from .names import TopicPattern
+
+PathAction = Literal["FollowPath", "NavigateThroughPoses", "FollowWaypoints"]
+DISTRIBUTIONS = ("foxy", "humble", "jazzy", "kilted", "lyrical")
+
+LARGEST_IMAGE = 8_000_000
+"""bytes that a site may take at most."""
+
+
+class TopicSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """Table ``topics``: names of topics, actions and services, each with ``{robot}`` or one for all.
+
+    ``position`` may be Odometry, PoseStamped, PoseWithCovarianceStamped, NavSatFix or TFMessage: its type is
+    found out. What is left out, or is no topic of a robot, is not used.
+    """
+
+    position: str = "/{robot}/odom"
+    imu: str | None = "/{robot}/imu"
+    tf: str | None = "/{robot}/tf"
+    battery: str | None = "/{robot}/battery_state"
+    diagnostics: str | None = "/{robot}/diagnostics"
+    image: str | None = None
+    navigate_to_pose: str | None = "/{robot}/navigate_to_pose"
+    navigate_through_poses: str | None = "/{robot}/navigate_through_poses"
+    follow_path: str | None = "/{robot}/follow_path"
+    follow_waypoints: str | None = "/{robot}/follow_waypoints"
+    goal_pose: str | None = "/{robot}/goal_pose"
+    path: str | None = None
+    initial_pose: str | None = "/{robot}/initialpose"
+    cmd_vel: str | None = "/{robot}/cmd_vel"
+    stop: str | None = None
+    place_cone: str | None = None
+    map: str | None = None
+    get_map: str | None = None
+    keepout_mask: str | None = None
+    keepout_info: str | None = None
+    speed_mask: str | None = None
+    speed_info: str | None = None
+
+
+class RobotSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """What is said of the robots. Without ``robots`` those are led whose position topic is found.
+
+    A path goes to the first of ``path_actions`` that the robot offers. An image is an observation every
+    ``image_every_s`` seconds at most.
+    """
+
+    distribution: str = "jazzy"
+    robots: tuple[str, ...] = ()
+    map_frame: str = "map"
+    base_frame: str = "base_link"
+    map_resolution_m: float = 0.1
+    image_every_s: float = 60.0
+    largest_image_bytes: int = 500_000
+    path_actions: tuple[PathAction, ...] = ("FollowPath", "NavigateThroughPoses", "FollowWaypoints")
+    topics: TopicSettings = TopicSettings()
+
+    @property
+    def patterns(self) -> dict[str, TopicPattern]:
+        """The topics that are used, by the names of their settings."""
+        named = {field: getattr(self.topics, field) for field in self.topics.__struct_fields__}
+        return {field: TopicPattern(pattern) for field, pattern in named.items() if pattern is not None}
+
+    @property
+    def actions_for_paths(self) -> tuple[Action, ...]:
+        """The actions that may drive a path, the first that is there does."""
+        return tuple(map(Action, self.path_actions))
+
+    @property
+    def maps(self) -> bool:
+        """Whether anything is made of the site's map for the robots."""
+        topics = self.topics
+        return any((topics.map, topics.get_map, topics.keepout_mask, topics.speed_mask))
+
+    def base_frame_of(self, robot: str) -> str:
+        """Return the frame that is the robot itself."""
+        return self.base_frame.replace("{robot}", robot)
+
+
+def distribution_names() -> str:
+    """Return the distributions whose types are known, for messages to people."""
+    return ", ".join(DISTRIBUTIONS)
+
+
+def check_robots(settings: RobotSettings, table: str, file: Path) -> None:
+    """Raise LinkError, naming file and key of ``table``, for what the types alone do not refuse."""
+    where = f"{file}: {table}"
+    if settings.distribution not in DISTRIBUTIONS:
+        raise LinkError(
+            f"{where}.distribution = {settings.distribution!r}: give one of {distribution_names()}"
+        )
+    _check_numbers(settings, where)
+    for field in settings.topics.__struct_fields__:
+        pattern = getattr(settings.topics, field)
+        try:
+            if pattern is None:
+                continue
+            known = TopicPattern(pattern)
+            for robot in settings.robots:
+                known.topic_of(robot)
+        except RosError as error:
+            raise LinkError(f"{where}.topics.{field}: {error}") from None
+        mask = field.replace("_info", "_mask")
+        if getattr(settings.topics, mask) is None:
+            raise LinkError(f"{where}.topics.{field} = {pattern!r}: name its mask, too, as topics.{mask}")
+        if field == "position" and known.is_shared:
+            raise LinkError(
+                f"{where}.topics.position = {pattern!r}: write '{{robot}}' where each robot's name is"
+            )
+
+
+def _check_numbers(settings: RobotSettings, where: str) -> None:
+    if not 0.01 <= settings.map_resolution_m <= 10.0:
+        raise LinkError(
+            f"{where}.map_resolution_m = {settings.map_resolution_m}: give metres from 0.01 to 10"
+        )
+    if not 1.0 <= settings.image_every_s <= 86_400.0:
+        raise LinkError(f"{where}.image_every_s = {settings.image_every_s}: give seconds from 1 to 86400")
+    if not 1024 <= settings.largest_image_bytes <= LARGEST_IMAGE:
+        raise LinkError(
+            f"{where}.largest_image_bytes = {settings.largest_image_bytes}: give bytes from 1024 to "
+            f"{LARGEST_IMAGE}"
+        )

@@ -1,0 +1,336 @@
+"""The tasks of one robot: from the gateway's message to a Nav2 goal, to its end, to a stop; no I/O.
+
+Time is given, in seconds of a steady clock. What is to be done is returned as effects.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+from ...messages import SetPath, SetPosEnd
+from .effects import (
+    PATH_ACTIONS,
+    Abilities,
+    Action,
+    Answered,
+    CallCone,
+    CancelGoals,
+    Effect,
+    Idle,
+    PublishTask,
+    SendGoal,
+)
+from .goals import ACTIVE, GoalStatus, Statuses, failure_of, goal_id, message_of, missed_text
+from .stopping import Stop
+
+ACCEPTED_WITHIN = 5.0
+"""seconds for an action server to take a goal on or refuse it."""
+REJECTED_FOR = 0.3
+"""seconds after which a goal that was said to be rejected, and is on no status topic, is."""
+ENDED_WITHIN = 2.0
+"""seconds for the goal before to end, when the next one goes to another action server."""
+DETAILS_WITHIN = 2.0
+"""seconds for the result of a goal that has failed, which says why."""
+CONE_WITHIN = 60.0
+"""seconds for a cone to be placed or picked up."""
+
+_NO_PATHS = (
+    "nobody on the robot's side follows paths: no server of FollowPath, NavigateThroughPoses or "
+    "FollowWaypoints that the settings allow, nobody listens to its path topic. Are its nodes running?"
+)
+_NO_TARGETS = (
+    "nobody on the robot's side drives to targets: no server of NavigateToPose, nobody listens to its goal "
+    "topic. Are its nodes running?"
+)
+
+
+@dataclass(frozen=True)
+class Task:
+    """What the robot was asked by ``message``, as a goal or on a topic, and how far that is."""
+
+    message: int
+    order: SetPosEnd | SetPath | None
+    goal: bytes
+    action: Action | None
+    sent_at: float | None = None
+    taken: bool = False
+    rejected_at: float | None = None
+    failed_at: float | None = None
+    ended: GoalStatus = GoalStatus.UNKNOWN
+    failure: str = ""
+    """Why it has failed, as its result says; empty before that has come."""
+    cone_at: float | None = None
+    has_result: bool = False
+    succeeded_at: float | None = None
+    """When its server said so, where only the result says whether all points were driven to."""
+
+
+class Tasks:
+    """Decides what one robot is told.
+
+    ``cones`` tells whether the settings name a service for cones; a path goes to the first of
+    ``path_actions`` that is there.
+    """
+
+    def __init__(self, *, cones: bool, path_actions: Sequence[Action] = PATH_ACTIONS) -> None:
+        self._cones = cones
+        self._path_actions = path_actions
+        self._task: Task | None = None
+        self._waiting: Task | None = None
+        """The task that is sent when the one before, or a stop, has ended."""
+        self._wait_until = 0.0
+        self._stop: Stop | None = None
+        self._goals: dict[Action, dict[bytes, GoalStatus]] = {}
+
+    @property
+    def is_busy(self) -> bool:
+        """Whether the robot has something to do, or is being stopped."""
+        return self._task is not None or self._waiting is not None or self._stop is not None
+
+    @property
+    def goal(self) -> bytes | None:
+        """The id of the goal that the robot has, None where it has none."""
+        return self._task.goal if self._task is not None else None
+
+    def order(
+        self,
+        message: int,
+        order: SetPosEnd | SetPath,
+        abilities: Abilities,
+        now: float,
+        *,
+        again: bool = False,
+    ) -> list[Effect]:
+        """Begin a task; it takes the place of the one before.
+
+        ``again``: a process before this one may have begun it, so a goal of this message is that one.
+        """
+        if self._task is not None and self._task.message == message and again:
+            return [Answered(message)] if self._task.taken else []
+        refusal = self._refusal(order, abilities)
+        if refusal is not None:
+            return [Answered(message, refusal)]
+        effects: list[Effect] = []
+        if self._waiting is not None:
+            effects.append(_refused(self._waiting, "another task came before it was begun"))
+        task = Task(message, order, goal_id(message), self._action_for(order, abilities))
+        known = self._known(task)
+        if known is not None and again:
+            self._task = replace(task, sent_at=now)
+            return [*effects, *self._judge(self._task, known, now)]
+        if known is not None:
+            # Ids begin anew with another database: this goal was for another message.
+            task = replace(task, goal=goal_id(message, 1 + int(now * 1000) % (2**32 - 1)))
+        self._waiting, self._wait_until = task, now + ENDED_WITHIN
+        return [*effects, *self._leave(task), *self.step(abilities, now)]
+
+    def abort(self, abilities: Abilities, now: float) -> list[Effect]:
+        """Stop the robot, whatever it does and whoever asked for that."""
+        effects: list[Effect] = []
+        if self._waiting is not None:
+            effects.append(_refused(self._waiting, "it was aborted before it was begun"))
+        self._task = self._waiting = None
+        if self._stop is None:
+            self._stop = Stop(now)
+        elif self._stop.is_refused:
+            self._stop.restart(now)
+        return [*effects, *self.step(abilities, now)]
+
+    def goal_answered(self, action: Action, accepted: bool, now: float) -> None:
+        """Take in a reply to ``send_goal``, maybe to another client: the status topic says more."""
+        task = self._task
+        if task is not None and task.action == action and not task.taken and not accepted:
+            self._task = replace(task, rejected_at=now)
+
+    def statuses_came(self, action: Action, statuses: Statuses, now: float) -> list[Effect]:
+        """Take in what the status topic of an action server says of its goals."""
+        self._goals[action] = dict(statuses)
+        if self._task is None and self._stop is None and self._waiting is None:
+            self._adopt(action, statuses, now)
+        task = self._task
+        status = statuses.get(task.goal) if task is not None else None
+        if task is None or status is None or task.action != action:
+            return []
+        return self._judge(task, status, now)
+
+    def _judge(self, task: Task, status: GoalStatus, now: float) -> list[Effect]:
+        effects = self._take_on(task) if not task.taken and status != GoalStatus.UNKNOWN else []
+        task = self._task or task
+        if status == GoalStatus.SUCCEEDED:
+            effects += self._succeed(now)
+        elif status in (GoalStatus.ABORTED, GoalStatus.CANCELED) and task.failed_at is None:
+            self._task = replace(task, failed_at=now, ended=status)
+        return effects
+
+    def result_came(
+        self,
+        action: Action,
+        status: int,
+        error_code: int | None,
+        text: str | None,
+        missed: Sequence[int] = (),
+    ) -> None:
+        """Take in a reply to ``get_result``: it says why a goal has failed, or which points it has missed."""
+        task = self._task
+        if task is None or task.action != action:
+            return
+        if status in (GoalStatus.ABORTED, GoalStatus.CANCELED):
+            self._task = replace(task, failure=failure_of(GoalStatus(status), error_code, text))
+        elif status == GoalStatus.SUCCEEDED and action is Action.WAYPOINTS:
+            self._task = replace(task, failure=missed_text(missed) if missed else "", has_result=True)
+
+    def cone_answered(self, success: bool, text: str) -> list[Effect]:
+        """Take in what the service for cones said."""
+        task, self._task = self._task, None
+        if task is None or task.cone_at is None:
+            self._task = task
+            return []
+        if success:
+            return [Idle()]
+        return [_refused(task, f"it stands there, and its cone service said {text[:120]!r}")]
+
+    def cancel_answered(self, action: Action, code: int) -> None:
+        """Take in what an action server said to canceling all its goals."""
+        if self._stop is not None:
+            self._stop.cancel_answered(action, code, self._goals.get(action, {}))
+
+    def stop_answered(self, success: bool, text: str) -> None:
+        """Take in what the stop service said."""
+        if self._stop is not None:
+            self._stop.stop_answered(success, text)
+
+    def seen(self, speed: float | None) -> None:
+        """Take in the robot's speed, m/s, None where it is not known."""
+        if self._stop is not None:
+            self._stop.seen(speed)
+
+    def forget(self) -> None:
+        """Take it that the robot has started anew and knows of nothing; a stop goes on."""
+        self._task = self._waiting = None
+        self._goals.clear()
+
+    def server_left(self, action: Action) -> None:
+        """Forget the goals of an action server that is gone."""
+        self._goals.pop(action, None)
+
+    def step(self, abilities: Abilities, now: float) -> list[Effect]:
+        """Let time pass: repeat a stop, send what waits, give up what nobody answers."""
+        if self._stop is not None:
+            effects = self._stop.step(abilities, self._goals, now)
+            if self._stop.is_over:
+                self._stop = None
+            elif self._stop.is_refused and self._waiting is not None:
+                waiting, self._waiting = self._waiting, None
+                effects.append(
+                    _refused(waiting, "the stop before it was not confirmed; stop the robot on site")
+                )
+            return effects
+        if self._waiting is not None:
+            return self._send(abilities, now)
+        return self._overdue(now)
+
+    def _action_for(self, order: SetPosEnd | SetPath, abilities: Abilities) -> Action | None:
+        """Return the action that carries out an order, None where the robot has none for it."""
+        wanted = self._path_actions if isinstance(order, SetPath) else (Action.TO_POSE,)
+        return next((action for action in wanted if action in abilities.driving), None)
+
+    def _refusal(self, order: SetPosEnd | SetPath, abilities: Abilities) -> str | None:
+        if (order.cone or order.collect) and not (self._cones and abilities.cone_service):
+            why = "nobody offers its cone service" if self._cones else "the settings name no cone service"
+            return f"the robot can place and collect no cones: {why}"
+        if self._action_for(order, abilities) is not None:
+            return None
+        heard = abilities.path_topic if isinstance(order, SetPath) else abilities.goal_topic
+        return None if heard else (_NO_PATHS if isinstance(order, SetPath) else _NO_TARGETS)
+
+    def _leave(self, following: Task) -> list[Effect]:
+        """Return what ends the task before, where the action server does not see to that by itself."""
+        task, self._task = self._task, None
+        if task is None or task.action is None or task.action == following.action:
+            self._wait_until = 0.0
+            return []
+        return [CancelGoals(task.action, task.goal)]
+
+    def _send(self, abilities: Abilities, now: float) -> list[Effect]:
+        task = self._waiting
+        if task is None or task.order is None:
+            return []
+        if now < self._wait_until and self._active():
+            return []
+        self._waiting = None
+        if task.action is None:
+            self._task = replace(task, sent_at=now, taken=True)
+            return [PublishTask(task.order), Answered(task.message)]
+        if task.action not in abilities.driving:
+            return [_refused(task, f"the robot's server of {task.action.value} has gone")]
+        self._task = replace(task, sent_at=now)
+        return [SendGoal(task.action, task.goal, task.order, task.message)]
+
+    def _take_on(self, task: Task) -> list[Effect]:
+        self._task = replace(task, taken=True)
+        return [Answered(task.message), *[goal for goal in self._active() if goal.goal_id != task.goal]]
+
+    def _active(self) -> list[CancelGoals]:
+        """Return how each goal of ours that is not over would be canceled."""
+        return [
+            CancelGoals(action, goal)
+            for action, statuses in self._goals.items()
+            for goal, status in statuses.items()
+            if status in ACTIVE and message_of(goal) is not None
+        ]
+
+    def _known(self, task: Task) -> GoalStatus | None:
+        return self._goals.get(task.action, {}).get(task.goal) if task.action else None
+
+    def _adopt(self, action: Action, statuses: Statuses, now: float) -> None:
+        """Take up a goal of ours that this program sent before it was started anew."""
+        for goal, status in statuses.items():
+            message = message_of(goal)
+            if message is not None and status in ACTIVE:
+                self._task = Task(message, None, goal, action, sent_at=now, taken=True)
+
+    def _succeed(self, now: float) -> list[Effect]:
+        task = self._task
+        if task is not None and task.action is Action.WAYPOINTS and task.order is not None:
+            since = now if task.succeeded_at is None else task.succeeded_at
+            task = self._task = replace(task, succeeded_at=since)
+            if task.failure:
+                self._task = None
+                return [_refused(task, task.failure), Idle()]
+            if not task.has_result and now - since < DETAILS_WITHIN:
+                return []
+        if task is not None and task.order is not None and (task.order.cone or task.order.collect):
+            if task.cone_at is not None:
+                return []
+            self._task = replace(task, cone_at=now)
+            return [CallCone()]
+        self._task = None
+        return [Idle()]
+
+    def _overdue(self, now: float) -> list[Effect]:
+        task = self._task
+        if task is None or task.sent_at is None:
+            return []
+        if task.failed_at is not None and (task.failure or now - task.failed_at >= DETAILS_WITHIN):
+            self._task = None
+            return [_refused(task, task.failure or failure_of(task.ended, None, None)), Idle()]
+        if task.succeeded_at is not None and task.cone_at is None:
+            return self._succeed(now)
+        if task.cone_at is not None and now - task.cone_at >= CONE_WITHIN:
+            self._task = None
+            return [_refused(task, f"its cone service did not answer within {CONE_WITHIN:g} s")]
+        if task.taken or task.action is None:
+            return []
+        rejected = task.rejected_at is not None and now - task.rejected_at >= REJECTED_FOR
+        if not rejected and now - task.sent_at < ACCEPTED_WITHIN:
+            return []
+        self._task = None
+        how = "rejected the goal" if rejected else f"did not answer within {ACCEPTED_WITHIN:g} s"
+        reason = f"the robot's server of {task.action.value} {how}"
+        # It may have heard the goal all the same.
+        return [CancelGoals(task.action, task.goal), _refused(task, reason)]
+
+
+def _refused(task: Task, reason: str) -> Answered:
+    return Answered(task.message, reason)

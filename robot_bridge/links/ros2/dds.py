@@ -1,0 +1,307 @@
+"""DDS by cyclonedds: what others offer and want, and readers and writers of bytes under any type's name.
+
+cyclonedds is native code and knows types at compile time. Here every topic has a type that is one octet and
+the name of the real one: cyclonedds compares names alone once it ignores the type information of the vendors
+that send some, and hands over and takes the bytes of a message as they are.
+"""
+
+from __future__ import annotations
+
+import logging
+import re
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from typing import Any, Literal
+from xml.sax.saxutils import quoteattr
+
+from ..ros.errors import RosError
+from ..ros.names import LONGEST_NAME
+from .interfaces import LARGEST_MESSAGE
+
+log = logging.getLogger(__name__)
+
+Range = Literal["localhost", "subnet", "off"]
+RANGES: tuple[Range, ...] = ("localhost", "subnet", "off")
+LARGEST_DOMAIN = 232
+MOST_ENDPOINTS = 50_000
+"""of others that are remembered; a robot with Nav2 has about 500."""
+MOST_PARTICIPANTS = 120
+"""participants on one computer that are looked for without multicast."""
+AT_ONCE = 64
+"""messages that are read from one topic at a time."""
+IGNORED_TYPES = "1.15,1.16"
+"""Fast DDS and Cyclone DDS: whose descriptions of types are not held against one octet."""
+_TYPE_HASH = re.compile(rb"typehash=(RIHS01_[0-9a-f]{64})")
+_BLOCK = 100_000_000
+"""nanoseconds that a write waits for room at most."""
+
+
+@dataclass(frozen=True)
+class DdsSettings:
+    """A DDS domain: its number, how far others are looked for, and where.
+
+    ``interfaces`` are names or addresses of this computer's; none: loopback for ``localhost``, else the one
+    that cyclonedds takes. ``peers`` are addresses asked one by one, for networks without multicast.
+    """
+
+    domain: int = 0
+    range: Range = "subnet"
+    interfaces: tuple[str, ...] = ()
+    peers: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        if not 0 <= self.domain <= LARGEST_DOMAIN:
+            raise RosError(f"domain is {self.domain}; give ROS_DOMAIN_ID, from 0 to {LARGEST_DOMAIN}")
+        if self.range not in RANGES:
+            raise RosError(f"range is {str(self.range)[:40]!r}; give one of {', '.join(RANGES)}")
+
+    def xml(self) -> str:
+        """Return cyclonedds's configuration of the domain."""
+        peers = (["127.0.0.1"] if self.range == "localhost" else []) + list(self.peers)
+        interfaces = self.interfaces or (("127.0.0.1",) if self.range == "localhost" else ())
+        multicast = "default" if self.range == "subnet" else "false"
+        return (
+            '<CycloneDDS><Domain Id="any"><General>'
+            f"<Interfaces>{''.join(map(_interface, interfaces))}</Interfaces>"
+            f"<AllowMulticast>{multicast}</AllowMulticast></General>"
+            f"<Discovery>{_asked(peers)}</Discovery>"
+            f"<Compatibility><IgnoreTypeInformation>{IGNORED_TYPES}</IgnoreTypeInformation></Compatibility>"
+            f"<Internal><MaxSampleSize>{LARGEST_MESSAGE} B</MaxSampleSize></Internal>"
+            "</Domain></CycloneDDS>"
+        )
+
+
+@dataclass(frozen=True)
+class Endpoint:
+    """Somebody's reader (``wants``) or writer of a DDS topic; ``key`` and ``participant`` have 16 bytes."""
+
+    key: bytes
+    participant: bytes
+    topic: str
+    type_name: str
+    wants: bool
+    reliable: bool
+    latched: bool
+    type_hash: str | None = None
+    """Of the type's definition (REP 2016), as nodes since iron tell it."""
+
+
+@dataclass(frozen=True)
+class Quality:
+    """Reliable or best effort; ``latched`` is transient local: late joiners get the newest message."""
+
+    reliable: bool = True
+    latched: bool = False
+    depth: int = 10
+
+
+def quality_for(offers: Iterable[Endpoint], depth: int = 10) -> Quality:
+    """Return the best that a reader can ask so that each of those who offer the topic is heard."""
+    known = list(offers)
+    return Quality(
+        all(one.reliable for one in known), bool(known) and all(one.latched for one in known), depth
+    )
+
+
+class RawReader:
+    """Reads the bytes of one DDS topic; made by :meth:`Participant.reader`."""
+
+    def __init__(self, entity: Any) -> None:
+        self._entity = entity
+
+    def read_samples(self) -> list[bytes]:
+        """Return the messages that have come, oldest first, without waiting."""
+        return [sample.data for sample in self._entity.take(AT_ONCE) if sample.sample_info.valid_data]
+
+    @property
+    def matched(self) -> int:
+        """How many writers it hears."""
+        return len(self._entity.get_matched_publications())
+
+    def close(self) -> None:
+        """Hear nobody any more."""
+        self._entity.__del__()
+
+
+class RawWriter:
+    """Writes the bytes of one DDS topic; made by :meth:`Participant.writer`."""
+
+    def __init__(self, entity: Any, sample_type: Any) -> None:
+        self._entity = entity
+        self._sample_type = sample_type
+
+    def write(self, data: bytes) -> bool:
+        """Write a message; false where there is no room for it: readers do not keep up."""
+        from cyclonedds.core import DDSException
+
+        try:
+            self._entity.write(self._sample_type(data))
+        except DDSException as error:
+            log.warning("a message of %d bytes was not written: %s", len(data), error)
+            return False
+        return True
+
+    @property
+    def matched(self) -> int:
+        """How many readers hear it."""
+        return len(self._entity.get_matched_subscriptions())
+
+
+class Participant:
+    """This program in a DDS domain. Not for several threads.
+
+    :raises RosError: where cyclonedds is not installed or does not take the settings.
+    """
+
+    def __init__(self, settings: DdsSettings) -> None:
+        try:
+            from cyclonedds import builtin, core, domain
+        except ModuleNotFoundError as error:
+            raise RosError(
+                f"{error.name} is not installed; pip install 'fleet-supervisor-robot-bridge[ros2]'"
+            ) from None
+        try:
+            self._domain = domain.Domain(settings.domain, settings.xml())
+            self._participant = domain.DomainParticipant(settings.domain)
+        except core.DDSException as error:
+            raise RosError(
+                f"DDS domain {settings.domain} cannot be joined ({error}); look at domain, range and "
+                "interfaces of the settings: are the interfaces there, is there room for another participant?"
+            ) from None
+        self._offers = builtin.BuiltinDataReader(self._participant, builtin.BuiltinTopicDcpsPublication)
+        self._wants = builtin.BuiltinDataReader(self._participant, builtin.BuiltinTopicDcpsSubscription)
+        self._own = self._participant.guid.bytes
+        self._topics: dict[tuple[str, str], Any] = {}
+        self._types: dict[str, Any] = {}
+        """By name: cyclonedds 11.0.1 eats all memory after some 150 types of one name."""
+        self._endpoints: dict[bytes, Endpoint] = {}
+        self._full = False
+
+    @property
+    def endpoints(self) -> Iterator[Endpoint]:
+        """What others offer and want."""
+        return iter(list(self._endpoints.values()))
+
+    def discover(self) -> bool:
+        """Take in who has come and gone; tell whether anything changed."""
+        changed = False
+        for reader, wants in ((self._offers, False), (self._wants, True)):
+            for sample in reader.take(1000):
+                changed |= self._note(sample, wants)
+        return changed
+
+    def reader(self, topic: str, type_name: str, quality: Quality) -> RawReader:
+        """Return a reader of a DDS topic; both names are those of DDS."""
+        from cyclonedds.sub import DataReader
+
+        return RawReader(DataReader(self._participant, self._topic(topic, type_name), qos=_qos(quality)))
+
+    def writer(self, topic: str, type_name: str, quality: Quality) -> RawWriter:
+        """Return a writer of a DDS topic; both names are those of DDS."""
+        from cyclonedds.pub import DataWriter
+
+        made = self._topic(topic, type_name)
+        return RawWriter(DataWriter(self._participant, made, qos=_qos(quality)), made.data_type)
+
+    def _topic(self, name: str, type_name: str) -> Any:
+        from cyclonedds.topic import Topic
+
+        key = (name, type_name)
+        if key not in self._topics:
+            if type_name not in self._types:
+                self._types[type_name] = _octet_type(type_name)
+            self._topics[key] = Topic(self._participant, name, self._types[type_name])
+        return self._topics[key]
+
+    def _note(self, sample: Any, wants: bool) -> bool:
+        from cyclonedds.core import InstanceState
+
+        key = sample.key.bytes
+        if not sample.sample_info.valid_data or sample.sample_info.instance_state != InstanceState.Alive:
+            return self._endpoints.pop(key, None) is not None
+        if sample.participant_key.bytes == self._own or len(sample.topic_name) > LONGEST_NAME:
+            return False
+        if len(self._endpoints) >= MOST_ENDPOINTS:
+            if not self._full:
+                log.error(
+                    "more than %d topics are offered and wanted; further ones are not seen", MOST_ENDPOINTS
+                )
+            self._full = True
+            return False
+        self._endpoints[key] = _endpoint(sample, wants)
+        return True
+
+
+def _endpoint(sample: Any, wants: bool) -> Endpoint:
+    from cyclonedds.core import Policy
+
+    reliability = _policy(sample.qos, Policy.Reliability)
+    durability = _policy(sample.qos, Policy.Durability)
+    return Endpoint(
+        sample.key.bytes,
+        sample.participant_key.bytes,
+        sample.topic_name,
+        sample.type_name,
+        wants,
+        reliability is not None and reliability != Policy.Reliability.BestEffort,
+        durability is not None and durability != Policy.Durability.Volatile,
+        _type_hash(_policy(sample.qos, Policy.Userdata)),
+    )
+
+
+def _type_hash(told: Any) -> str | None:
+    found = _TYPE_HASH.search(b"" if told is None else told.data)
+    return None if found is None else found[1].decode("ascii")
+
+
+def _policy(qos: Any, policy: Any) -> Any:
+    """Return one policy of cyclonedds's Qos, which has no get(); None where it is left out."""
+    return qos[policy] if policy in qos else None  # noqa: SIM401
+
+
+def _qos(quality: Quality) -> Any:
+    from cyclonedds.core import Policy, Qos
+
+    return Qos(
+        Policy.Reliability.Reliable(_BLOCK) if quality.reliable else Policy.Reliability.BestEffort,
+        Policy.Durability.TransientLocal if quality.latched else Policy.Durability.Volatile,
+        Policy.History.KeepLast(quality.depth),
+    )
+
+
+def _octet_type(type_name: str) -> Any:
+    """Return a type of cyclonedds that is one octet, under ``type_name``, whose samples are bytes."""
+    from cyclonedds.idl import make_idl_struct, types
+
+    made: Any = make_idl_struct("Octet", type_name, {"first": types.uint8}, dataclassify=False)
+    made.__init__ = _keep
+    made.serialize = _data
+    made.deserialize = made.deserialize_key = classmethod(_made_of)
+    return made
+
+
+def _keep(sample: Any, data: bytes = b"") -> None:
+    sample.data = data
+
+
+def _data(sample: Any, *_of: Any, **_more: Any) -> Any:
+    return sample.data
+
+
+def _made_of(cls: Any, data: bytes, *_of: Any, **_more: Any) -> Any:
+    return cls(data)
+
+
+def _interface(name: str) -> str:
+    by = "address" if name.replace(".", "").isdigit() or ":" in name else "name"
+    return f"<NetworkInterface {by}={quoteattr(name)}/>"
+
+
+def _asked(peers: list[str]) -> str:
+    if not peers:
+        return "<ParticipantIndex>auto</ParticipantIndex>"
+    asked = "".join(f"<Peer address={quoteattr(peer)}/>" for peer in peers)
+    return (
+        f"<ParticipantIndex>auto</ParticipantIndex><MaxAutoParticipantIndex>{MOST_PARTICIPANTS}"
+        f"</MaxAutoParticipantIndex><Peers>{asked}</Peers>"
+    )

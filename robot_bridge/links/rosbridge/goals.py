@@ -1,0 +1,284 @@
+"""The goals of one robot's action servers over rosbridge: sent, found on the status topic, lost and told of.
+
+The status topic decides what a goal is, as it does over DDS; results and feedback, which the server tells to
+who sent the goal, are details, and stand in where that topic cannot be read.
+"""
+
+from __future__ import annotations
+
+import logging
+import time
+from collections import deque
+from collections.abc import Callable
+from functools import partial
+from typing import Any
+
+from ..ros.effects import Action, Answered, CancelGoals, Effect, Idle, SendGoal
+from ..ros.errors import FaultError
+from ..ros.goals import ACTIVE, GoalStatus, failure_of, feedback_text, message_of, statuses_of
+from ..ros.tasks import Tasks
+from ..ros.types import GOAL_STATUSES, action_type
+from .connection import Answer, Inbox, RosbridgeConnection, Subscription
+from .decoding import ActionFeedback, ActionResult, convert
+from .goal_book import Entry, GoalBook
+from .graph import Graph
+from .messages import GoalStatusArray, NavigationFeedback, NavigationResult
+
+log = logging.getLogger(__name__)
+
+SETTLED_AFTER = 2.0
+"""seconds of a connection until a latched message of each status topic has come, if there is one."""
+CANCELED = (GoalStatus.CANCELED, GoalStatus.CANCELING)
+MOST_ANSWERS = 1000
+LOST = "its goal ended while rosbridge was away, and how is not known; look where it is"
+LEFT = "its goal was canceled while rosbridge was away; some servers do that to the goals of who leaves"
+
+
+class ActionGoals:
+    """Sends goals and says what becomes of them; ``note`` writes the book down."""
+
+    def __init__(
+        self, robot: str, connection: RosbridgeConnection, book: GoalBook, note: Callable[[], None]
+    ) -> None:
+        self._robot = robot
+        self._connection = connection
+        self._book = book
+        self._note = note
+        self._earlier = {one.goal for one in book.entries}
+        """Goals that an earlier process of this link sent."""
+        self._topics: dict[Action, str] = {}
+        self._statuses: dict[Action, Inbox] = {}
+        self._known: dict[Action, dict[bytes, GoalStatus]] = {}
+        """The newest status of each goal, by the id on the robot."""
+        self._answers: deque[tuple[Entry, Answer]] = deque(maxlen=MOST_ANSWERS)
+        self._held: tuple[SendGoal, Any] | None = None
+        self._session = 0
+        self._since: dict[Action, float] = {}
+        """When a status topic was first read over this connection."""
+        self._sent_in: dict[bytes, int] = {}
+        self._seen_over: dict[Action, int] = {}
+        """The connection over which a server was last seen there."""
+        self._gone: set[Action] = set()
+        self._publishers: dict[Action, int] = {}
+        """How many published a status topic when that was last counted."""
+        self._epoch = 0
+        self.actions: frozenset[Action] = frozenset()
+        self.feedback: str | None = None
+
+    @property
+    def server(self) -> bytes | None:
+        """Who has the robot's goals: another one when servers were seen to have started anew."""
+        return self._epoch.to_bytes(8, "big") if self.actions else None
+
+    @property
+    def watched(self) -> list[str]:
+        """The status topics whose publishers are to be counted: those of goals that are open."""
+        open_ones = {one.action for one in self._book.entries if not one.is_over}
+        return [f"{self._topics[one]}/_action/status" for one in open_ones if one in self._topics]
+
+    def meet(self, action: Action, topic: str, network: Graph) -> None:
+        """Note whether an action's server is there now, and whether it is another one than before."""
+        # Over a new connection the server may not have met the robots yet: that tells nothing.
+        is_same = self._seen_over.get(action) == network.session
+        if topic not in network.actions:
+            if is_same:
+                self._gone.add(action)
+                self.actions -= {action}
+            return
+        status = f"{topic}/_action/status"
+        count = network.publishers.get(status, 0)
+        if (action in self._gone or count > self._publishers.get(action, count)) and is_same:
+            self._renew()
+        self._gone.discard(action)
+        if count:
+            self._publishers[action] = count
+        elif not is_same:
+            self._publishers.pop(action, None)
+        self._seen_over[action] = network.session
+        self.actions |= {action}
+        self._topics[action] = topic
+        if action not in self._statuses:
+            self._statuses[action] = self._connection.subscribe(status, Subscription(GOAL_STATUSES))
+        elif not is_same:
+            self._connection.renew(status)
+        if not is_same:
+            self._since[action] = time.monotonic()
+
+    def send(self, asked: SendGoal, goal: Any) -> None:
+        """Send a goal as soon as those are known that are there; one that was sent is not sent again."""
+        entry = self._book.find(asked.goal_id)
+        if entry is None or entry.is_over or entry.doomed:
+            self._held = (asked, goal)
+
+    def cancel(self, asked: CancelGoals) -> dict[str, Any] | None:
+        """Return what its service is to be asked, None where that says nothing to it."""
+        if self._held is not None and asked.goal_id in (None, self._held[0].goal_id):
+            self._held = None
+        if asked.goal_id is None:
+            return {}
+        entry = self._book.find(asked.goal_id)
+        if entry is None:
+            return None
+        if entry.real is None:
+            entry.doomed = True
+            self._connection.cancel_goal(self._id(entry.goal), self._topics[asked.action])
+            return None
+        return {"goal_info": {"goal_id": {"uuid": list(entry.real)}}}
+
+    def poll(self, tasks: Tasks, now: float, fault: Callable[[str, str], None]) -> list[Effect]:
+        """Take in what has come; return the effects."""
+        if self._connection.away is not None:
+            return []
+        if self._session != self._connection.session:
+            self._begin()
+        effects: list[Effect] = []
+        for action, inbox in self._statuses.items():
+            for content in inbox.drain():
+                try:
+                    told = convert(content, GoalStatusArray, f"the status of {action.value}")
+                except FaultError as error:
+                    fault(action.value, str(error))
+                else:
+                    effects += self._statuses_came(action, statuses_of(told), tasks, now)
+        effects += self._read_answers(tasks, now, fault)
+        effects += self._missing(tasks, now)
+        self._send_held(now)
+        return effects
+
+    def _begin(self) -> None:
+        """Begin with a connection: nothing has been said over it yet."""
+        self._session = self._connection.session
+        self._known.clear()
+        self._answers.clear()
+        self.feedback = None
+        for entry in self._book.entries:
+            entry.was_shown = False
+
+    def _renew(self) -> None:
+        """Take it that the servers have started anew and know no goal."""
+        self._epoch += 1
+        self._book.forget()
+        self._known.clear()
+        self._held = None
+        self._note()
+
+    def _statuses_came(
+        self, action: Action, statuses: dict[bytes, GoalStatus], tasks: Tasks, now: float
+    ) -> list[Effect]:
+        is_first = action not in self._known
+        self._known[action] = statuses
+        open_before = [one for one in self._book.entries if one.action is action and not one.is_over]
+        translated, was_found = self._book.translate(action, statuses)
+        if was_found or any(one.is_over for one in open_before):
+            self._note()
+        if GoalStatus.EXECUTING not in statuses.values():
+            self.feedback = None
+        effects: list[Effect] = []
+        for entry in open_before:
+            status = translated.get(entry.goal, GoalStatus.UNKNOWN)
+            if entry.doomed and status in ACTIVE:
+                effects.append(CancelGoals(action, entry.goal))
+            elif is_first and entry.goal == tasks.goal and status in CANCELED:
+                tasks.result_came(action, GoalStatus.CANCELED, None, LEFT)
+            if entry.is_over and entry.goal != tasks.goal and entry.goal in self._earlier:
+                effects += self._ended(entry, status, LEFT)
+        return effects + tasks.statuses_came(action, translated, now)
+
+    def _ended(self, entry: Entry, status: GoalStatus, why: str) -> list[Effect]:
+        """Return what is to be said of a goal of an earlier process that is over."""
+        message = message_of(entry.goal)
+        if status is GoalStatus.SUCCEEDED or message is None:
+            return [Idle()]
+        reason = failure_of(status, None, None) if status is GoalStatus.ABORTED else why
+        return [Answered(message, reason), Idle()]
+
+    def _missing(self, tasks: Tasks, now: float) -> list[Effect]:
+        """Return what is to be said of goals that were sent over an earlier connection and are on no list."""
+        effects: list[Effect] = []
+        for entry in self._book.entries:
+            sent_now = self._sent_in.get(entry.goal) == self._session
+            if entry.is_over or entry.was_shown or sent_now or not self._is_settled(entry.action, now):
+                continue
+            entry.is_over = True
+            self._note()
+            if entry.goal == tasks.goal:
+                tasks.result_came(entry.action, GoalStatus.ABORTED, None, LOST)
+                statuses = {**self._translated(entry.action), entry.goal: GoalStatus.ABORTED}
+                effects += tasks.statuses_came(entry.action, statuses, now)
+            elif entry.goal in self._earlier:
+                effects += self._ended(entry, GoalStatus.UNKNOWN, LOST)
+        return effects
+
+    def _is_settled(self, action: Action, now: float) -> bool:
+        """Tell whether a latched status would have come by now."""
+        is_read = self._seen_over.get(action) == self._session
+        return is_read and now - self._since[action] >= SETTLED_AFTER
+
+    def _translated(self, action: Action) -> dict[bytes, GoalStatus]:
+        return self._book.translate(action, self._known.get(action, {}))[0]
+
+    def _send_held(self, now: float) -> None:
+        """Send the goal that waits: one that is new afterwards must be told from those before it."""
+        if self._held is None:
+            return
+        asked, goal = self._held
+        if asked.action not in self._known and not self._is_settled(asked.action, now):
+            return
+        self._held = None
+        entry = self._book.add(asked.action, asked.goal_id, frozenset(self._known.get(asked.action, {})))
+        self._sent_in[asked.goal_id] = self._session
+        while len(self._sent_in) > len(self._book.entries):
+            self._sent_in.pop(next(iter(self._sent_in)))
+        self._note()
+        self._connection.send_goal(
+            self._id(asked.goal_id),
+            self._topics[asked.action],
+            action_type(asked.action),
+            goal,
+            partial(self._keep, entry),
+        )
+
+    def _keep(self, entry: Entry, came: Answer) -> None:
+        self._answers.append((entry, came))
+
+    def _id(self, goal: bytes) -> str:
+        return f"goal:{self._robot}:{goal.hex()}"
+
+    def _read_answers(self, tasks: Tasks, now: float, fault: Callable[[str, str], None]) -> list[Effect]:
+        effects: list[Effect] = []
+        while self._answers:
+            entry, came = self._answers.popleft()
+            if entry.goal != tasks.goal:
+                continue
+            try:
+                if isinstance(came, ActionFeedback):
+                    told = convert(came.values, NavigationFeedback, f"feedback of {entry.action.value}")
+                    self.feedback = feedback_text(told)
+                    effects += self._stand_in(entry, GoalStatus.EXECUTING, tasks, now)
+                elif isinstance(came, ActionResult):
+                    effects += self._result_came(entry, came, tasks, now)
+            except FaultError as error:
+                fault(entry.action.value, str(error))
+        return effects
+
+    def _result_came(self, entry: Entry, came: ActionResult, tasks: Tasks, now: float) -> list[Effect]:
+        ended = (GoalStatus.SUCCEEDED, GoalStatus.CANCELED, GoalStatus.ABORTED)
+        if came.status not in ended or (isinstance(came.values, str) and not entry.was_shown):
+            # A text in place of a result: the goal was not taken on, or could not be sent.
+            log.warning("robot %s: %s: %s", self._robot, entry.action.value, str(came.values)[:200])
+            entry.is_over = True
+            tasks.goal_answered(entry.action, False, now)
+            return []
+        told = NavigationResult()
+        if isinstance(came.values, dict):
+            told = convert(came.values, NavigationResult, f"result of {entry.action.value}")
+        missed = told.missed_waypoints
+        tasks.result_came(entry.action, came.status, told.error_code, told.error_msg, missed)
+        return self._stand_in(entry, GoalStatus(came.status), tasks, now)
+
+    def _stand_in(self, entry: Entry, status: GoalStatus, tasks: Tasks, now: float) -> list[Effect]:
+        """Take a goal's status from what was told of it, while its status topic does not name it."""
+        if entry.was_shown:
+            return []
+        entry.is_over |= status not in ACTIVE
+        return tasks.statuses_came(entry.action, {**self._translated(entry.action), entry.goal: status}, now)

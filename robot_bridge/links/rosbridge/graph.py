@@ -1,0 +1,132 @@
+"""Who is there on the robots' network, as the services of rosapi tell it."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import logging
+from collections.abc import Callable, Collection
+from dataclasses import dataclass, field
+from typing import TypeVar
+
+from ..ros.errors import FaultError
+from .connection import Answer, RosbridgeConnection
+from .decoding import ServiceResponse, convert
+from .messages import (
+    ActionServersReply,
+    PublishersReply,
+    ServicesReply,
+    SubscribersReply,
+    TopicsReply,
+)
+
+log = logging.getLogger(__name__)
+
+EVERY = 1.0
+"""seconds between two looks at the network."""
+ANSWER_WITHIN = 10.0
+"""seconds for rosapi to answer."""
+SUBSCRIBERS_EVERY = 5
+"""looks at the network for one at who listens to the topics that are written."""
+
+Reply = TypeVar("Reply")
+
+
+@dataclass
+class Graph:
+    """Topics with their types, services, actions; how many listen to a topic, how many publish one.
+
+    ``session`` is the connection over which it was learnt. ``listeners`` and ``publishers`` know only what
+    was asked for.
+    """
+
+    session: int = 0
+    topics: dict[str, str] = field(default_factory=dict)
+    services: frozenset[str] = frozenset()
+    actions: frozenset[str] = frozenset()
+    listeners: dict[str, int] = field(default_factory=dict)
+    publishers: dict[str, int] = field(default_factory=dict)
+
+
+class GraphWatch:
+    """Asks rosapi again and again. ``fault`` says why nothing is known."""
+
+    def __init__(
+        self,
+        connection: RosbridgeConnection,
+        written: Callable[[], Collection[str]],
+        watched: Callable[[], Collection[str]],
+    ) -> None:
+        self._connection = connection
+        self._written = written
+        self._watched = watched
+        self.graph = Graph()
+        self.looks = 0
+        """How often the network has been looked at."""
+        self.fault: str | None = None
+        self._soon = asyncio.Event()
+
+    def look_soon(self) -> None:
+        """Look again without waiting: something has to be asked that nobody knew of at the last look."""
+        self._soon.set()
+
+    async def run(self) -> None:
+        """Look again and again, until cancelled."""
+        while True:
+            if self._connection.away is None:
+                try:
+                    await self._look()
+                    self.fault = None
+                except FaultError as error:
+                    if self.fault is None:
+                        log.warning("%s", error)
+                    self.fault = str(error)
+            with contextlib.suppress(TimeoutError):
+                async with asyncio.timeout(EVERY):
+                    await self._soon.wait()
+            self._soon.clear()
+
+    async def _look(self) -> None:
+        session = self._connection.session
+        topics = await self._ask("topics", {}, TopicsReply)
+        services = await self._ask("services", {}, ServicesReply)
+        actions = await self._ask("action_servers", {}, ActionServersReply)
+        known = self.graph
+        graph = Graph(
+            session,
+            dict(zip(topics.topics, topics.types, strict=False)),
+            frozenset(services.services),
+            frozenset(actions.action_servers),
+        )
+        is_same = session == known.session and graph.topics == known.topics
+        if is_same and self.looks % SUBSCRIBERS_EVERY:
+            graph.listeners = dict(known.listeners)
+        for topic in self._written():
+            if topic in graph.topics and topic not in graph.listeners:
+                heard = await self._ask("subscribers", {"topic": topic}, SubscribersReply)
+                graph.listeners[topic] = len(heard.subscribers)
+        for topic in self._watched():
+            told = await self._ask("publishers", {"topic": topic}, PublishersReply)
+            graph.publishers[topic] = len(told.publishers)
+        self.looks += 1
+        self.graph = graph
+
+    async def _ask(self, service: str, args: dict[str, str], wanted: type[Reply]) -> Reply:
+        """Return what a service of rosapi says; raises FaultError."""
+        reply: asyncio.Future[Answer] = asyncio.get_running_loop().create_future()
+
+        def answered(came: Answer) -> None:
+            if not reply.done():
+                reply.set_result(came)
+
+        self._connection.call(f"/rosapi/{service}", args, answered)
+        try:
+            async with asyncio.timeout(ANSWER_WITHIN):
+                came = await reply
+        except TimeoutError:
+            raise FaultError(
+                f"/rosapi/{service} does not answer; start the node rosapi beside the rosbridge server"
+            ) from None
+        if not isinstance(came, ServiceResponse) or not came.result:
+            raise FaultError(f"/rosapi/{service} failed: {str(came.values)[:200]}")
+        return convert(came.values, wanted, f"/rosapi/{service}")

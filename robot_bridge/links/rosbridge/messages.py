@@ -1,0 +1,352 @@
+"""ROS messages as rosbridge writes them, each with the fields that are read; NaN comes as null.
+
+ROS has no null, so where a number is null it was NaN or infinite. Arrays of bytes are base64.
+"""
+
+from __future__ import annotations
+
+import base64
+import binascii
+import math
+from typing import Annotated, Any
+
+import msgspec
+import numpy as np
+from msgspec import Meta
+
+from ..ros import types
+
+NOTHING = math.nan
+Number = float | None
+Text = Annotated[str, Meta(max_length=4096)]
+Covariance6 = Annotated[list[Number], Meta(min_length=36, max_length=36)]
+Covariance3 = Annotated[list[Number], Meta(min_length=9, max_length=9)]
+MOST_STATUSES = 10_000
+MOST_TRANSFORMS = 10_000
+MOST_NAMES = 200_000
+
+
+class _Message(msgspec.Struct):
+    """A message whose numbers are floats and whose texts can be stored."""
+
+    def __post_init__(self) -> None:
+        for name in self.__struct_fields__:
+            value = getattr(self, name)
+            if value is None:
+                setattr(self, name, NOTHING)
+            elif isinstance(value, str) and "\0" in value:
+                setattr(self, name, value.replace("\0", "\N{REPLACEMENT CHARACTER}"))
+            elif isinstance(value, list) and None in value:
+                setattr(self, name, [NOTHING if one is None else one for one in value])
+
+
+class Time(msgspec.Struct):
+    """Seconds and nanoseconds since 1970."""
+
+    sec: int = 0
+    nanosec: int = 0
+
+
+class Header(_Message):
+    """When, and in which frame."""
+
+    stamp: Time = msgspec.field(default_factory=Time)
+    frame_id: Text = ""
+
+
+class Vector(_Message):
+    """A point or a vector."""
+
+    x: Number
+    y: Number
+    z: Number = 0.0
+
+
+class Quaternion(_Message):
+    """A rotation."""
+
+    x: Number
+    y: Number
+    z: Number
+    w: Number
+
+
+class Pose(msgspec.Struct):
+    """A place and a rotation."""
+
+    position: Vector
+    orientation: Quaternion
+
+
+class PoseWithCovariance(_Message):
+    """A pose, and how sure it is."""
+
+    pose: Pose
+    covariance: Covariance6
+
+
+class Twist(msgspec.Struct):
+    """A speed."""
+
+    linear: Vector
+
+
+class TwistWithCovariance(msgspec.Struct):
+    """A speed; how sure it is, is not read."""
+
+    twist: Twist
+
+
+class Odometry(msgspec.Struct):
+    """nav_msgs/Odometry."""
+
+    header: Header
+    pose: PoseWithCovariance
+    twist: TwistWithCovariance
+
+
+class PoseStamped(msgspec.Struct):
+    """geometry_msgs/PoseStamped."""
+
+    header: Header
+    pose: Pose
+
+
+class PoseWithCovarianceStamped(msgspec.Struct):
+    """geometry_msgs/PoseWithCovarianceStamped."""
+
+    header: Header
+    pose: PoseWithCovariance
+
+
+class NavSatStatus(msgspec.Struct):
+    """Whether a receiver has a fix."""
+
+    status: int
+
+
+class NavSatFix(_Message):
+    """sensor_msgs/NavSatFix."""
+
+    header: Header
+    status: NavSatStatus
+    latitude: Number
+    longitude: Number
+    altitude: Number
+    position_covariance: Covariance3
+    position_covariance_type: int
+
+
+class Imu(_Message):
+    """sensor_msgs/Imu."""
+
+    orientation: Quaternion
+    orientation_covariance: Covariance3
+
+
+class BatteryState(_Message):
+    """sensor_msgs/BatteryState."""
+
+    percentage: Number
+
+
+class DiagnosticStatus(_Message):
+    """diagnostic_msgs/DiagnosticStatus; its level is a byte, which some servers write as base64."""
+
+    level: Any
+    name: Text
+    message: Text = ""
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        self.level = _bytes_of(self.level)[0] if not isinstance(self.level, int) else self.level
+
+
+class DiagnosticArray(msgspec.Struct):
+    """diagnostic_msgs/DiagnosticArray."""
+
+    status: Annotated[list[DiagnosticStatus], Meta(max_length=MOST_STATUSES)]
+
+
+class Transform(msgspec.Struct):
+    """Where a frame is in its parent."""
+
+    translation: Vector
+    rotation: Quaternion
+
+
+class TransformStamped(_Message):
+    """geometry_msgs/TransformStamped."""
+
+    header: Header
+    child_frame_id: Text
+    transform: Transform
+
+
+class TFMessage(msgspec.Struct):
+    """tf2_msgs/TFMessage."""
+
+    transforms: Annotated[list[TransformStamped], Meta(max_length=MOST_TRANSFORMS)]
+
+
+class GoalId(msgspec.Struct):
+    """unique_identifier_msgs/UUID as 16 bytes."""
+
+    uuid: Any
+
+    def __post_init__(self) -> None:
+        self.uuid = _bytes_of(self.uuid)
+        if len(self.uuid) != 16:
+            raise ValueError(f"uuid has {len(self.uuid)} bytes, and 16 are right")
+
+
+class GoalInfo(msgspec.Struct):
+    """action_msgs/GoalInfo."""
+
+    goal_id: GoalId
+
+
+class GoalStatus(msgspec.Struct):
+    """action_msgs/GoalStatus."""
+
+    goal_info: GoalInfo
+    status: int
+
+
+class GoalStatusArray(msgspec.Struct):
+    """action_msgs/GoalStatusArray."""
+
+    status_list: Annotated[list[GoalStatus], Meta(max_length=MOST_STATUSES)]
+
+
+class CancelReply(msgspec.Struct):
+    """action_msgs/CancelGoal's response."""
+
+    return_code: int
+
+
+class TriggerReply(_Message):
+    """std_srvs/Trigger's response."""
+
+    success: bool
+    message: Text = ""
+
+
+class NavigationResult(_Message):
+    """The result of one of Nav2's actions; older ones say nothing."""
+
+    error_code: int = 0
+    error_msg: Text = ""
+    missed_waypoints: Annotated[list[Any], Meta(max_length=MOST_STATUSES)] = msgspec.field(
+        default_factory=list
+    )
+    """Their numbers; newer ones write a nav2_msgs/WaypointStatus, or a MissedWaypoint, of each."""
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        self.missed_waypoints = [_waypoint_number(one) for one in self.missed_waypoints]
+
+
+class NavigationFeedback(msgspec.Struct):
+    """The feedback of one of Nav2's actions; None is what an action has no field for."""
+
+    distance_remaining: Number = None
+    distance_to_goal: Number = None
+    number_of_recoveries: int = 0
+    current_waypoint: int | None = None
+
+    def __post_init__(self) -> None:
+        if self.distance_remaining is None:
+            self.distance_remaining = self.distance_to_goal
+
+
+class Image(msgspec.Struct):
+    """sensor_msgs/Image."""
+
+    header: Header
+    height: int
+    width: int
+    encoding: Text
+    step: int
+    data: bytes
+
+    def __post_init__(self) -> None:
+        self.data = np.frombuffer(self.data, dtype=np.uint8)  # type: ignore[assignment]
+
+
+class CompressedImage(msgspec.Struct):
+    """sensor_msgs/CompressedImage."""
+
+    header: Header
+    format: Text
+    data: bytes
+
+
+Names = Annotated[list[Annotated[str, Meta(max_length=1000)]], Meta(max_length=MOST_NAMES)]
+
+
+class TopicsReply(msgspec.Struct):
+    """rosapi's topics."""
+
+    topics: Names
+    types: Names
+
+
+class ServicesReply(msgspec.Struct):
+    """rosapi's services."""
+
+    services: Names
+
+
+class ActionServersReply(msgspec.Struct):
+    """rosapi's action_servers."""
+
+    action_servers: Names
+
+
+class SubscribersReply(msgspec.Struct):
+    """rosapi's subscribers of a topic: names of nodes."""
+
+    subscribers: Names
+
+
+class PublishersReply(msgspec.Struct):
+    """rosapi's publishers of a topic: names of nodes."""
+
+    publishers: Names
+
+
+READABLE: dict[str, type[msgspec.Struct]] = {
+    types.ODOMETRY: Odometry,
+    types.POSE: PoseStamped,
+    types.POSE_WITH_COVARIANCE: PoseWithCovarianceStamped,
+    types.FIX: NavSatFix,
+    types.TF: TFMessage,
+    types.IMU: Imu,
+    types.BATTERY: BatteryState,
+    types.DIAGNOSTICS: DiagnosticArray,
+    types.GOAL_STATUSES: GoalStatusArray,
+    types.IMAGE: Image,
+    types.COMPRESSED_IMAGE: CompressedImage,
+}
+"""What a message of each type is read as."""
+
+
+def _bytes_of(value: Any) -> bytes:
+    """Return an array of bytes, which comes as base64, as bytes or as numbers; raises ValueError."""
+    if isinstance(value, str) and len(value) <= 64:
+        try:
+            return base64.b64decode(value, validate=True) or b"\0"
+        except binascii.Error as error:
+            raise ValueError(f"{value[:40]!r} is no base64: {error}") from None
+    if isinstance(value, (bytes, list)) and 0 < len(value) <= 64:
+        return bytes(value)
+    raise ValueError(f"{str(value)[:40]!r} are no bytes")
+
+
+def _waypoint_number(missed: Any) -> int:
+    """Return the number of a waypoint that was missed; raises ValueError."""
+    number = missed.get("waypoint_index", missed.get("index")) if isinstance(missed, dict) else missed
+    if not isinstance(number, int):
+        raise ValueError(f"{str(missed)[:40]!r} is no waypoint")
+    return number

@@ -1,0 +1,355 @@
+"""The adapter: vehicles at a broker on one side, the gateway on the other."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import logging
+import secrets
+import time
+from collections.abc import Mapping
+from pathlib import Path
+from typing import ClassVar
+
+from ...messages import Ability, Alive, SendPos, SetPath, SetPosEnd, SetPosIni, Stopped
+from ...monitoring.repeated_lines import RepeatedLines
+from ...sites.frame import SiteFrame
+from ..base.adapter import Adapter, Command
+from ..base.errors import CommandRefusedError
+from ..base.frames import LinkFrame
+from ..base.link import Link
+from ..base.settings import LinkSettings, read_settings
+from .broker import Broker
+from .effects import Effect, Halted, Keep, Publish, Report, Settled
+from .errors import Vda5050Error, VehicleMessageError
+from .inbound import Header, decode_message
+from .memory import Memory, Remembered
+from .outbound import MessageWriter, Order, Topics, VehicleId
+from .presence import MapFrame
+from .settings import (
+    AnyMap,
+    Vda5050Settings,
+    VehicleNames,
+    broker_address,
+    check,
+    placed_maps,
+    topics,
+    vehicle_settings,
+)
+from .vehicle import VehicleController
+
+log = logging.getLogger(__name__)
+
+TICK = 0.25
+"""seconds between two looks at what is due."""
+FACTSHEET_WITHIN = 2.0
+"""seconds for which a vehicle's factsheet is waited for before the gateway is told what it can do."""
+
+
+class Vehicle:
+    """One vehicle with what is open for it: commands that wait, and a stop that waits."""
+
+    def __init__(self, robot: str, controller: VehicleController, now: float) -> None:
+        self.robot = robot
+        self.controller = controller
+        self.writer = MessageWriter(controller.vehicle)
+        self.heard_at = now
+        self.is_told = False
+        self._commands: dict[int, asyncio.Future[str | None]] = {}
+        self._halts: list[asyncio.Future[None]] = []
+
+    def await_settled(self, command: int) -> asyncio.Future[str | None]:
+        """Return what comes of a command: None, or why it is refused."""
+        future: asyncio.Future[str | None] = asyncio.get_running_loop().create_future()
+        self._commands[command] = future
+        return future
+
+    def settle(self, settled: Settled) -> bool:
+        """Hand on what came of a command; return whether anybody waited for it."""
+        future = self._commands.pop(settled.command_id, None)
+        if future is None or future.done():
+            return False
+        future.set_result(settled.reason)
+        return True
+
+    def await_halt(self) -> asyncio.Future[None]:
+        """Return what is done once the vehicle shows that it stands."""
+        future: asyncio.Future[None] = asyncio.get_running_loop().create_future()
+        self._halts.append(future)
+        return future
+
+    def halted(self) -> None:
+        """Note that the vehicle stands."""
+        waiting, self._halts = self._halts, []
+        for future in waiting:
+            if not future.done():
+                future.set_result(None)
+
+
+class Vda5050Adapter(Adapter):
+    """Leads the vehicles of one interface."""
+
+    kind: ClassVar[str] = "vda5050"
+
+    def __init__(self, settings: LinkSettings, own: Vda5050Settings) -> None:
+        check(settings, own)
+        self._settings = settings
+        self._own = own
+        self._topics: Topics = topics(own)
+        self._names = VehicleNames(own)
+        self._led = vehicle_settings(settings, own)
+        self._memory = Memory(settings.state_folder / f"{settings.name}.vehicles")
+        self._vehicles: dict[VehicleId, Vehicle] = {}
+        self._robots: dict[str, Vehicle] = {}
+        self._refused: set[VehicleId] = set()
+        self._maps: Mapping[str, MapFrame] = {}
+        self._repeated = RepeatedLines()
+        self._faults = 0
+        self._link: Link | None = None
+        self._broker = Broker(
+            broker_address(settings, own), self._topics.subscriptions(), self.receive, self._broker_changed
+        )
+
+    # --- the gateway ----------------------------------------------------------------------------------
+
+    async def run(self, link: Link) -> None:
+        """Carry messages between the broker and the gateway until cancelled."""
+        self._link = link
+        self._maps = self._placed(link)
+        ticking = asyncio.create_task(self._tick())
+        carrying = asyncio.create_task(self._broker.run())
+        try:
+            done, _ = await asyncio.wait({ticking, carrying}, return_when=asyncio.FIRST_COMPLETED)
+            for task in done:
+                task.result()
+        finally:
+            for task in (ticking, carrying):
+                task.cancel()
+            await asyncio.gather(ticking, carrying, return_exceptions=True)
+
+    async def command(self, command: Command) -> None:
+        """Have the vehicle take on a command; return when it shows that."""
+        vehicle, message = self._vehicle(command.robot), command.message
+        if not isinstance(message, SetPosEnd | SetPath | SetPosIni):
+            return  # maps are the vehicles' own
+        settled = vehicle.await_settled(command.id)
+        try:
+            vehicle.controller.command(message, command.id, time.monotonic(), again=command.again)
+            self._carry_out(vehicle)
+            reason = await settled
+        except asyncio.CancelledError:
+            vehicle.controller.withdraw(command.id)
+            self._carry_out(vehicle)
+            raise
+        if reason is not None:
+            raise CommandRefusedError(reason)
+
+    async def stop(self, robot: str, *, emergency: bool) -> None:
+        """Stop a vehicle; return when it shows that it stands."""
+        vehicle = self._vehicle(robot)
+        vehicle.controller.halt(time.monotonic(), emergency=emergency)
+        halted = vehicle.await_halt()
+        self._carry_out(vehicle)
+        try:
+            async with asyncio.timeout(0.8 * self._settings.answer_within_s):
+                await halted
+        except TimeoutError:
+            status = vehicle.controller.status(time.monotonic())
+            raise CommandRefusedError(status or "the vehicle does not show that it stands") from None
+
+    def admitted(self, robot: str) -> None:
+        """Tell where the vehicle is."""
+        if (vehicle := self._robots.get(robot)) is not None:
+            vehicle.controller.set_admitted(True, time.monotonic())
+            self._carry_out(vehicle)
+
+    def refused(self, robot: str, reason: str) -> None:
+        """Release nothing for a vehicle that no desk could stop."""
+        if (vehicle := self._robots.get(robot)) is not None:
+            vehicle.controller.set_admitted(False, time.monotonic())
+
+    def _vehicle(self, robot: str) -> Vehicle:
+        vehicle = self._robots.get(robot)
+        if vehicle is None:
+            raise CommandRefusedError(f"no vehicle is called {robot!r}")
+        return vehicle
+
+    def _placed(self, link: Link) -> Mapping[str, MapFrame]:
+        if not self._own.maps:
+            return AnyMap(link.frame)
+        site = SiteFrame(link.site.crs, link.site.origin, link.site.rotation)
+        frames = {}
+        for map_id, frame in self._own.maps.items():
+            frames[map_id] = LinkFrame(frame, site, f"{self._settings.file}: vda5050.maps.{map_id}")
+        return placed_maps(frames)
+
+    # --- the vehicles ---------------------------------------------------------------------------------
+
+    @property
+    def vehicles(self) -> list[str]:
+        """The names of the vehicles that were heard."""
+        return list(self._robots)
+
+    def receive(self, topic: str, payload: bytes, retained: bool = False) -> None:
+        """Deal with one message of the broker; what is wrong with it concerns its vehicle alone."""
+        parsed = self._topics.parse(topic)
+        if parsed is None:
+            return
+        identity, kind = parsed
+        try:
+            message = decode_message(kind, payload)
+            if isinstance(message, Header) and identity != VehicleId(
+                message.manufacturer, message.serial_number
+            ):
+                raise VehicleMessageError(
+                    f"{kind}: it says to be of {message.manufacturer[:40]!r}/{message.serial_number[:40]!r}"
+                )
+            vehicle = self._known(identity)
+            if vehicle is None:
+                return
+            vehicle.controller.receive_message(message, time.monotonic(), retained=retained)
+            self._carry_out(vehicle)
+        except Vda5050Error as error:
+            self._warn(identity, str(error))
+        except Exception:
+            self._note_unforeseen(identity)
+
+    def _known(self, identity: VehicleId) -> Vehicle | None:
+        vehicle = self._vehicles.get(identity)
+        if vehicle is not None or identity in self._refused:
+            return vehicle
+        if len(self._vehicles) + len(self._refused) >= 2 * self._own.most_vehicles:
+            return None
+        try:
+            robot = self._names.name(identity)
+            if len(self._vehicles) >= self._own.most_vehicles:
+                raise Vda5050Error(f"vda5050.most_vehicles = {self._own.most_vehicles} are there already")
+            if robot in self._robots:
+                raise Vda5050Error(f"robot {robot!r} is {self._robots[robot].controller.vehicle} already")
+        except Vda5050Error:
+            self._refused.add(identity)
+            raise
+        if robot is None:
+            self._refused.add(identity)
+            return None
+        now = time.monotonic()
+        vehicle = Vehicle(robot, self._controller(identity, now), now)
+        self._vehicles[identity] = self._robots[robot] = vehicle
+        return vehicle
+
+    def _controller(self, identity: VehicleId, now: float) -> VehicleController:
+        def made(remembered: Remembered | None) -> VehicleController:
+            return VehicleController(
+                identity, self._led, self._maps, remembered, lambda: secrets.token_hex(6), now
+            )
+
+        try:
+            return made(self._memory.recall(str(identity)))
+        except Vda5050Error as error:
+            log.error("vehicle %s begins without what was kept: %s", identity, error)
+            return made(None)
+
+    def _broker_changed(self, reason: str | None) -> None:
+        if reason is not None:
+            for vehicle in self._vehicles.values():
+                vehicle.controller.lose_broker()
+        self._report(reason)
+
+    async def _tick(self) -> None:
+        while True:
+            await asyncio.sleep(TICK)
+            now = time.monotonic()
+            connected = self._link is not None and self._link.is_connected
+            for vehicle in list(self._vehicles.values()):
+                if not connected:
+                    vehicle.controller.set_admitted(False, now)
+                try:
+                    vehicle.controller.advance(now)
+                    self._tell(vehicle, now)
+                    self._carry_out(vehicle)
+                except Exception:
+                    self._note_unforeseen(vehicle.controller.vehicle)
+            self._repeated.summarise()
+
+    def _tell(self, vehicle: Vehicle, now: float) -> None:
+        """Have the gateway know a vehicle once it is known what it can do."""
+        controller, link = vehicle.controller, self._link
+        if vehicle.is_told or link is None or not controller.is_known:
+            return
+        if controller.factsheet is None and now - vehicle.heard_at < FACTSHEET_WITHIN:
+            return
+        vehicle.is_told = True
+        abilities: list[Ability] = ["targets", "paths"]
+        if controller.factsheet is None or controller.factsheet.supports("initPosition"):
+            abilities.append("start")
+        link.add(vehicle.robot, abilities)
+        self._report(None)
+
+    # --- effects --------------------------------------------------------------------------------------
+
+    def _carry_out(self, vehicle: Vehicle) -> None:
+        """Carry out what has come of a call; an order is not published that could not be kept."""
+        is_kept = True
+        for effect in vehicle.controller.drain():
+            if isinstance(effect, Keep):
+                is_kept = self._keep(vehicle, effect)
+            elif isinstance(effect, Publish):
+                self._publish(vehicle, effect, is_kept=is_kept)
+            else:
+                self._tell_effect(vehicle, effect)
+
+    def _keep(self, vehicle: Vehicle, effect: Keep) -> bool:
+        try:
+            self._memory.keep(str(vehicle.controller.vehicle), effect.remembered)
+        except Vda5050Error as error:
+            self._warn(vehicle.controller.vehicle, str(error))
+            return False
+        return True
+
+    def _publish(self, vehicle: Vehicle, effect: Publish, *, is_kept: bool) -> None:
+        controller, message = vehicle.controller, effect.message
+        is_order = isinstance(message, Order)
+        if is_order and not is_kept:
+            return
+        orders = self._topics.outbound(controller.vehicle, "order")
+        if not isinstance(message, Order) and any(a.action_type == "cancelOrder" for a in message.actions):
+            self._broker.withdraw(orders)
+        topic = orders if is_order else self._topics.outbound(controller.vehicle, "instantActions")
+        payload = vehicle.writer.encode(message, controller.version, time.time())
+        self._broker.publish(topic, payload, urgent=not is_order)
+
+    def _tell_effect(self, vehicle: Vehicle, effect: Effect) -> None:
+        link = self._link
+        if isinstance(effect, Settled):
+            if not vehicle.settle(effect) and effect.reason is not None and link is not None:
+                link.give_up(vehicle.robot, effect.command_id, effect.reason)
+        elif isinstance(effect, Halted):
+            vehicle.halted()
+        elif isinstance(effect, Report) and link is not None and vehicle.is_told:
+            if isinstance(effect.request, SendPos):
+                link.position(vehicle.robot, effect.request)
+            elif isinstance(effect.request, Alive):
+                link.alive(vehicle.robot)
+            elif isinstance(effect.request, Stopped):
+                link.stopped(vehicle.robot)
+
+    def _warn(self, identity: VehicleId, text: str) -> None:
+        self._faults += 1
+        self._repeated.warn(log, ("vda5050:", str(identity)), f"vehicle {identity}: {text}")
+
+    def _note_unforeseen(self, identity: VehicleId) -> None:
+        """Log what nobody foresaw, in an except block; it concerns that vehicle alone."""
+        self._faults += 1
+        self._repeated.note_unforeseen(log, ("vda5050:", str(identity)), f"vehicle {identity}")
+
+    def _report(self, trouble: str | None) -> None:
+        if self._link is not None:
+            counts = {"vehicles": float(len(self._vehicles)), "faults": float(self._faults)}
+            with contextlib.suppress(ValueError):
+                self._link.report(ok=trouble is None, text=trouble, counts=counts)
+
+
+def load(file: Path) -> tuple[LinkSettings, Adapter]:
+    """Return the settings in ``file`` and the adapter that goes by them; raises LinkError."""
+    settings, own = read_settings(file, "vda5050", Vda5050Settings)
+    return settings, Vda5050Adapter(settings, own)

@@ -1,0 +1,167 @@
+"""The connection to the MQTT broker: it comes back, and carries nothing that has become old meanwhile."""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+import random
+from collections import deque
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import aiomqtt
+
+from .errors import Vda5050Error
+from .settings import BrokerAddress
+
+log = logging.getLogger(__name__)
+
+FIRST_WAIT, LONGEST_WAIT = 0.5, 10.0
+"""seconds between two attempts to connect."""
+STABLE_AFTER = 5.0
+"""seconds after which a connection counts as one that holds."""
+CONNECT_WITHIN = 5.0
+KEEPALIVE = 10
+"""seconds after which the broker is pinged; one that does not answer is gone after half as much again."""
+MOST_WAITING = 20_000
+"""messages of vehicles that wait to be read; the newest are thrown away beyond them."""
+LARGEST = 1 << 20
+"""bytes of a message that is read."""
+REFUSED = 0x80
+"""and above: what a broker answers to a subscription that it does not allow."""
+TOGETHER = 200
+"""messages that are read before others get a turn."""
+
+
+class Broker:
+    """Publishes and receives at QoS 0, as VDA 5050 asks; connections are told at QoS 1.
+
+    What is published while there is no connection is thrown away: whoever published it does so again while
+    it is due. ``received`` is called with topic, payload and whether the broker had retained it; ``changed``
+    with None when the broker is there and with the reason when it is not.
+    """
+
+    def __init__(
+        self,
+        address: BrokerAddress,
+        subscriptions: Sequence[str],
+        received: Callable[[str, bytes, bool], None],
+        changed: Callable[[str | None], None],
+    ) -> None:
+        self._address = address
+        self._subscriptions = subscriptions
+        self._received = received
+        self._changed = changed
+        self._urgent: deque[tuple[str, bytes]] = deque()
+        self._outgoing: deque[tuple[str, bytes]] = deque()
+        self._wake = asyncio.Event()
+        self._is_connected = False
+
+    @property
+    def is_connected(self) -> bool:
+        """Whether the broker takes messages."""
+        return self._is_connected
+
+    def publish(self, topic: str, payload: bytes, *, urgent: bool) -> None:
+        """Publish a message, one that is ``urgent`` before the others; nothing waits for a connection."""
+        if self._is_connected:
+            (self._urgent if urgent else self._outgoing).append((topic, payload))
+            self._wake.set()
+
+    def withdraw(self, topic: str) -> None:
+        """Publish nothing that still waits for a topic: an order that a stop has overtaken."""
+        self._outgoing = deque(waiting for waiting in self._outgoing if waiting[0] != topic)
+
+    async def run(self) -> None:
+        """Carry messages until cancelled."""
+        wait = FIRST_WAIT
+        loop = asyncio.get_running_loop()
+        while True:
+            begun = loop.time()
+            try:
+                async with self._client() as client:
+                    await self._carry(client)
+                reason = "it closed the connection"
+            except aiomqtt.MqttError as error:
+                reason = _reason(error)
+            except Vda5050Error as error:
+                reason = str(error)
+            except OSError as error:
+                reason = error.strerror or str(error)
+            finally:
+                self._lose()
+            if loop.time() - begun > STABLE_AFTER:
+                wait = FIRST_WAIT
+            self._changed(f"broker {self._address}: {reason}")
+            log.warning("broker %s: %s; trying again in %.1f s", self._address, reason, wait)
+            await asyncio.sleep(wait * random.uniform(0.8, 1.2))
+            wait = min(wait * 2, LONGEST_WAIT)
+
+    def _client(self) -> aiomqtt.Client:
+        address = self._address
+        return aiomqtt.Client(
+            address.host,
+            address.port,
+            username=address.user,
+            password=address.password(),
+            identifier=address.client_id,
+            clean_session=True,
+            keepalive=KEEPALIVE,
+            timeout=CONNECT_WITHIN,
+            tls_context=address.tls,
+            max_queued_incoming_messages=MOST_WAITING,
+        )
+
+    async def _carry(self, client: aiomqtt.Client) -> None:
+        writing = asyncio.create_task(self._write(client))
+        reading = asyncio.create_task(self._read(client))
+        try:
+            for topic in self._subscriptions:
+                granted = await client.subscribe(topic, qos=1 if topic.endswith("/connection") else 0)
+                check_granted(topic, granted)
+            self._is_connected = True
+            self._changed(None)
+            done, _ = await asyncio.wait({writing, reading}, return_when=asyncio.FIRST_COMPLETED)
+            for task in done:
+                task.result()
+        finally:
+            for task in (writing, reading):
+                task.cancel()
+            await asyncio.gather(writing, reading, return_exceptions=True)
+
+    async def _read(self, client: aiomqtt.Client) -> None:
+        read = 0
+        async for message in client.messages:
+            payload = message.payload
+            if isinstance(payload, bytes | bytearray):
+                self._received(message.topic.value, bytes(payload[: LARGEST + 1]), bool(message.retain))
+            read += 1
+            if read % TOGETHER == 0:
+                await asyncio.sleep(0)
+
+    async def _write(self, client: aiomqtt.Client) -> None:
+        while True:
+            await self._wake.wait()
+            self._wake.clear()
+            while self._urgent or self._outgoing:
+                topic, payload = (self._urgent or self._outgoing).popleft()
+                await client.publish(topic, payload, qos=0)
+
+    def _lose(self) -> None:
+        self._is_connected = False
+        self._urgent.clear()
+        self._outgoing.clear()
+
+
+def check_granted(topic: str, granted: Sequence[Any]) -> None:
+    """Raise MqttError for a subscription that the broker does not allow: nothing would ever come of it."""
+    if any(getattr(code, "value", code) >= REFUSED for code in granted):
+        raise aiomqtt.MqttError(f"it does not allow to subscribe to {topic}; allow that to this client")
+
+
+def _reason(error: aiomqtt.MqttError) -> str:
+    """Return why there is no connection, in the broker's words where it gave some."""
+    code = getattr(error, "rc", None)
+    if error.args and isinstance(code, int):
+        return str(error.args[0])
+    return str(error)

@@ -1,0 +1,279 @@
+"""What vehicles publish: state, visualization, connection and factsheet of VDA 5050 2.0 and 2.1.
+
+Anybody who reaches the broker can write them: size, depth and count are bounded before anything is built,
+numbers are finite, and fields that nothing here reads are passed over.
+"""
+
+from __future__ import annotations
+
+import math
+from datetime import datetime, timezone
+from typing import Annotated, Literal
+
+import msgspec
+from msgspec import Meta, Struct, field
+
+from ...core.decoding import Bounds, DecodingError, decode_json
+from .errors import VehicleMessageError
+
+BOUNDS = Bounds(depth=16, length=1 << 20, values=60_000)
+"""A state with a thousand nodes, each with its position, is half as large."""
+MOST_LISTED = 10_000
+LONGEST_TEXT = 4_096
+SUPPORTED_MAJOR = "2"
+
+Text = Annotated[str, Meta(max_length=LONGEST_TEXT)]
+Identifier = Annotated[str, Meta(max_length=512)]
+Number = Annotated[float, Meta(ge=-1e9, le=1e9)]
+Count = Annotated[int, Meta(ge=0, le=2**63 - 1)]
+
+
+class Header(Struct, frozen=True, rename="camel", kw_only=True):
+    """The head of every message; ``timestamp`` is ISO 8601 in UTC by the vehicle's clock."""
+
+    header_id: Count
+    timestamp: Identifier
+    version: Identifier
+    manufacturer: Identifier
+    serial_number: Identifier
+
+    @property
+    def sent_at(self) -> float | None:
+        """Seconds since 1970 when it was sent, by the vehicle's clock; None where that cannot be read."""
+        return seconds_of(self.timestamp)
+
+
+class Position(Struct, frozen=True, rename="camel", kw_only=True):
+    """Where the vehicle is on map ``map_id``: metres, and radians counter-clockwise from the map's x axis."""
+
+    x: Number
+    y: Number
+    theta: Number
+    map_id: Identifier
+    position_initialized: bool
+    deviation_range: Annotated[float, Meta(ge=0, le=1e6)] | None = None
+
+
+class Velocity(Struct, frozen=True, rename="camel", kw_only=True):
+    """In the vehicle's frame: m/s forwards and to the left, rad/s."""
+
+    vx: Annotated[float, Meta(ge=-100, le=100)] | None = None
+    vy: Annotated[float, Meta(ge=-100, le=100)] | None = None
+
+    @property
+    def speed(self) -> float:
+        """m/s, below 0 backwards."""
+        forwards, sideways = self.vx or 0.0, self.vy or 0.0
+        return math.copysign(math.hypot(forwards, sideways), forwards or 1.0)
+
+
+class NodeState(Struct, frozen=True, rename="camel", kw_only=True):
+    """A node that is still to be passed; ``released`` where it belongs to the base."""
+
+    node_id: Identifier
+    sequence_id: Count
+    released: bool
+
+
+class EdgeState(Struct, frozen=True, rename="camel", kw_only=True):
+    """An edge that is still to be driven."""
+
+    edge_id: Identifier
+    sequence_id: Count
+    released: bool
+
+
+class ActionState(Struct, frozen=True, rename="camel", kw_only=True):
+    """How an action of an order, or an instant action, stands."""
+
+    action_id: Identifier
+    action_status: Literal["WAITING", "INITIALIZING", "RUNNING", "PAUSED", "FINISHED", "FAILED"]
+    action_type: Identifier | None = None
+    result_description: Text | None = None
+
+    @property
+    def has_ended(self) -> bool:
+        """Whether it has no step to come."""
+        return self.action_status in ("FINISHED", "FAILED")
+
+
+class ErrorReference(Struct, frozen=True, rename="camel", kw_only=True):
+    """What an error is about: say ``orderId`` and its value."""
+
+    reference_key: Identifier
+    reference_value: Text
+
+
+class VehicleFault(Struct, frozen=True, rename="camel", kw_only=True):
+    """An error of the vehicle; FATAL ones need a person there."""
+
+    error_type: Identifier
+    error_level: Identifier
+    error_description: Text | None = None
+    error_hint: Text | None = None
+    error_references: Annotated[list[ErrorReference], Meta(max_length=1_000)] = field(default_factory=list)
+
+    @property
+    def is_fatal(self) -> bool:
+        """Whether the vehicle cannot go on by itself."""
+        return self.error_level == "FATAL"
+
+    def refers(self, key: str, value: str) -> bool:
+        """Tell whether it is about ``value`` of ``key``."""
+        return any(one.reference_key == key and one.reference_value == value for one in self.error_references)
+
+    @property
+    def summary(self) -> str:
+        """The error in the vehicle's own words."""
+        text = f"{self.error_type}: {self.error_description}" if self.error_description else self.error_type
+        return f"{text} ({self.error_hint})" if self.error_hint else text
+
+
+class Battery(Struct, frozen=True, rename="camel", kw_only=True):
+    """``battery_charge`` is in per cent."""
+
+    battery_charge: Number
+    charging: bool = False
+
+
+class SafetyState(Struct, frozen=True, rename="camel", kw_only=True):
+    """``e_stop`` is NONE, or how the stop is to be reset; the protective field is violated or not."""
+
+    e_stop: Identifier
+    field_violation: bool
+
+
+class State(Header, frozen=True, rename="camel", kw_only=True):
+    """All that the vehicle says of itself: its order, what is left of it, its place, its faults."""
+
+    order_id: Identifier
+    order_update_id: Count
+    last_node_id: Identifier
+    last_node_sequence_id: Count
+    driving: bool
+    operating_mode: Identifier
+    node_states: Annotated[list[NodeState], Meta(max_length=MOST_LISTED)]
+    edge_states: Annotated[list[EdgeState], Meta(max_length=MOST_LISTED)]
+    action_states: Annotated[list[ActionState], Meta(max_length=MOST_LISTED)]
+    battery_state: Battery
+    errors: Annotated[list[VehicleFault], Meta(max_length=1_000)]
+    safety_state: SafetyState
+    paused: bool = False
+    new_base_request: bool = False
+    agv_position: Position | None = None
+    velocity: Velocity | None = None
+
+    @property
+    def has_active_order(self) -> bool:
+        """Whether anything of its order is left to be done; instant actions do not count."""
+        return bool(self.node_states or self.edge_states)
+
+    def action(self, action_id: str) -> ActionState | None:
+        """Return how an action stands, None where the state does not name it."""
+        return next((one for one in self.action_states if one.action_id == action_id), None)
+
+
+class Visualization(Struct, frozen=True, rename="camel", kw_only=True):
+    """Where the vehicle is, more often than its state; VDA 5050 asks for no header here."""
+
+    header_id: Count | None = None
+    timestamp: Identifier | None = None
+    agv_position: Position | None = None
+    velocity: Velocity | None = None
+
+    @property
+    def sent_at(self) -> float | None:
+        """As in :class:`Header`."""
+        return None if self.timestamp is None else seconds_of(self.timestamp)
+
+
+class Connection(Header, frozen=True, rename="camel", kw_only=True):
+    """Whether the vehicle is there; CONNECTIONBROKEN is its last will, told by the broker."""
+
+    connection_state: Literal["ONLINE", "OFFLINE", "CONNECTIONBROKEN"]
+
+
+class ArrayLimits(Struct, frozen=True, kw_only=True):
+    """The most nodes that an order to this vehicle may hold; None or 0 where it does not say."""
+
+    order_nodes: Count | None = field(default=None, name="order.nodes")
+
+
+class ProtocolLimits(Struct, frozen=True, rename="camel", kw_only=True):
+    """What messages to this vehicle may be."""
+
+    max_array_lens: ArrayLimits | None = None
+
+
+class SupportedAction(Struct, frozen=True, rename="camel", kw_only=True):
+    """An action that the vehicle can do."""
+
+    action_type: Identifier
+
+
+class ProtocolFeatures(Struct, frozen=True, rename="camel", kw_only=True):
+    """What of the protocol the vehicle does."""
+
+    agv_actions: Annotated[list[SupportedAction], Meta(max_length=1_000)] = field(default_factory=list)
+
+
+class TypeSpecification(Struct, frozen=True, rename="camel", kw_only=True):
+    """What kind of vehicle it is."""
+
+    series_name: Identifier = ""
+
+
+class Factsheet(Struct, frozen=True, rename="camel", kw_only=True):
+    """What the vehicle is and can do; all parts optional, as vehicles leave them out."""
+
+    type_specification: TypeSpecification | None = None
+    protocol_limits: ProtocolLimits | None = None
+    protocol_features: ProtocolFeatures | None = None
+
+    @property
+    def most_nodes(self) -> int | None:
+        """The most nodes of an order, None where the vehicle sets no limit."""
+        lengths = self.protocol_limits and self.protocol_limits.max_array_lens
+        return (lengths.order_nodes or None) if lengths else None
+
+    def supports(self, action_type: str) -> bool:
+        """Tell whether the vehicle can do an action; a factsheet that lists none does not speak of it."""
+        listed = self.protocol_features.agv_actions if self.protocol_features else []
+        return not listed or any(one.action_type == action_type for one in listed)
+
+
+Inbound = State | Visualization | Connection | Factsheet
+
+_KINDS: dict[str, type[Inbound]] = {
+    "state": State,
+    "visualization": Visualization,
+    "connection": Connection,
+    "factsheet": Factsheet,
+}
+
+
+def seconds_of(timestamp: str) -> float | None:
+    """Return ISO 8601 as seconds since 1970, UTC where it names no zone; None where it cannot be read."""
+    try:
+        moment = datetime.fromisoformat(timestamp)
+        if moment.tzinfo is None:
+            moment = moment.replace(tzinfo=timezone.utc)
+        return moment.timestamp()
+    except (ValueError, OverflowError):
+        return None
+
+
+def decode_message(topic: str, payload: bytes) -> Inbound:
+    """Return the message of the last level of ``topic``; raises VehicleMessageError naming the field."""
+    kind = _KINDS.get(topic)
+    if kind is None:
+        raise VehicleMessageError(f"topic {topic[:40]!r} is none that a vehicle publishes")
+    try:
+        message = msgspec.convert(decode_json(payload, BOUNDS), kind, strict=True)
+    except (DecodingError, msgspec.ValidationError) as error:
+        raise VehicleMessageError(f"{topic}: {error}") from None
+    if isinstance(message, Header) and message.version.split(".")[0] != SUPPORTED_MAJOR:
+        raise VehicleMessageError(
+            f"{topic}: version {message.version[:20]!r} is not spoken here; versions 2.0 and 2.1 are"
+        )
+    return message

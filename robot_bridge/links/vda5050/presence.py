@@ -1,0 +1,207 @@
+"""Whether a vehicle is there and where: its connection, its last state, its position in the site frame."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import Protocol
+
+from ...messages import SendPos
+from ...messages.bounds import LONGEST_STATUS, one_line
+from .inbound import Connection, Factsheet, Position, State, Velocity, Visualization
+from .serials import SerialWatch
+
+_OPERATED = ("AUTOMATIC", "SEMIAUTOMATIC")
+ANSWERS_WITHIN = 5.0
+"""seconds after which a vehicle that was asked for its state and says nothing counts as gone."""
+MOST_FAULTS = 5
+"""Faults that are named in a status."""
+
+
+class MapFrame(Protocol):
+    """How the coordinates of a vehicle's map lie in the site frame; metres and radians."""
+
+    def to_site(self, x: float, y: float, theta: float) -> tuple[float, float, float]:
+        """Return a pose of the map in the site frame."""
+
+    def from_site(self, x: float, y: float, theta: float) -> tuple[float, float, float]:
+        """Return a pose of the site frame in the map."""
+
+
+class Presence:
+    """What is known of one vehicle; times are seconds of a steady clock."""
+
+    def __init__(self, maps: Mapping[str, MapFrame], silent_after: float) -> None:
+        self._maps = maps
+        self._silent_after = silent_after
+        self._serials = SerialWatch()
+        self._connection: str | None = None
+        self._heard_at = self._asked_at = -math.inf
+        self.state: State | None = None
+        """the last one that was not retained by the broker."""
+        self.state_at = -math.inf
+        self.factsheet: Factsheet | None = None
+        self.position: Position | None = None
+        self.pose: SendPos | None = None
+        self.version = "2.1.0"
+        self._placed_at = -math.inf
+        self._misplaced: str | None = None
+
+    def note_connection(self, message: Connection, now: float, *, retained: bool) -> None:
+        """Note whether the vehicle is there; a retained ONLINE may be older than the broker."""
+        self._connection, self.version = message.connection_state, message.version
+        if not retained:
+            self._serials.note_connection(message, now)
+            if message.connection_state == "ONLINE":
+                self._heard_at = now
+
+    def note_state(self, message: State, now: float) -> None:
+        """Note a state; it shows that the vehicle is there.
+
+        Also after a CONNECTIONBROKEN: that is told late of a connection which the vehicle has replaced.
+        """
+        self._serials.note_state(message.header_id, now)
+        self.state, self.state_at, self.version = message, now, message.version
+        self._connection, self._heard_at = "ONLINE", now
+        self._place(message.agv_position, message.velocity, message.sent_at, now)
+
+    def note_visualization(self, message: Visualization, now: float) -> None:
+        """Note a position between two states."""
+        self._heard_at = now
+        self._place(message.agv_position, message.velocity, message.sent_at, now)
+
+    def note_factsheet(self, message: Factsheet) -> None:
+        """Note what the vehicle says that it is; a retained one counts."""
+        self.factsheet = message
+
+    def lose_broker(self) -> None:
+        """Note that nothing is known of the vehicle until the broker is back."""
+        self._connection, self._heard_at = None, -math.inf
+
+    @property
+    def connection(self) -> str | None:
+        """ONLINE, OFFLINE, CONNECTIONBROKEN; None where nothing is known."""
+        return self._connection
+
+    def note_asked(self, now: float) -> None:
+        """Note that the vehicle was asked for its state; the first question without an answer counts."""
+        if self._asked_at <= self._heard_at:
+            self._asked_at = now
+
+    def is_there(self, now: float) -> bool:
+        """Tell whether the vehicle is connected, was heard lately, and answers what it was asked."""
+        unanswered = self._asked_at > self._heard_at and now - self._asked_at > ANSWERS_WITHIN
+        silent = now - self._heard_at > self._silent_after
+        return self._connection == "ONLINE" and not (unanswered or silent)
+
+    def frame(self) -> MapFrame | None:
+        """Return the frame of the map that the vehicle is on; None where there is none."""
+        return None if self.position is None else self._maps.get(self.position.map_id)
+
+    def default_map(self) -> str | None:
+        """Return the map that the vehicle is on, or the only one that is known."""
+        if self.position is not None and self.position.map_id in self._maps:
+            return self.position.map_id
+        return next(iter(self._maps)) if len(self._maps) == 1 else None
+
+    def frame_of(self, map_id: str) -> MapFrame:
+        """Return the frame of a map that the settings name."""
+        return self._maps[map_id]
+
+    def serial_complaint(self, now: float) -> str | None:
+        """Return what speaks against its being one vehicle, None where nothing does."""
+        return self._serials.complaint(now)
+
+    def obstacle(self, now: float) -> str | None:
+        """Return why the vehicle cannot be given an order, None where it can."""
+        if (double := self.serial_complaint(now)) is not None:
+            return double
+        state = self.state
+        if not self.is_there(now):
+            if self._connection == "ONLINE":
+                return "the vehicle is connected, but says nothing"
+            return f"the vehicle is not connected ({self._connection or 'never heard'})"
+        if state is None:
+            return "the vehicle has published no state yet"
+        if state.operating_mode not in _OPERATED:
+            return f"the vehicle is in operating mode {state.operating_mode[:40]}"
+        if state.safety_state.e_stop != "NONE":
+            return f"the vehicle's own emergency stop is active ({state.safety_state.e_stop[:40]})"
+        return self._missing_place()
+
+    def status(self, now: float, more: str | None) -> str | None:
+        """Return what operators are to know, worst first, as one line; None where all is well."""
+        parts = [more, self.serial_complaint(now), *self._safety(), self._missing_place(), *self._faults()]
+        text = "; ".join(part for part in parts if part)
+        return one_line(text, LONGEST_STATUS) if text else None
+
+    def _safety(self) -> list[str]:
+        state, parts = self.state, []
+        if state is None:
+            return []
+        if state.safety_state.e_stop != "NONE":
+            parts.append(f"emergency stop at the vehicle ({state.safety_state.e_stop[:40]})")
+        if state.safety_state.field_violation:
+            parts.append("protective field violated")
+        if state.operating_mode not in _OPERATED:
+            parts.append(f"operating mode {state.operating_mode[:40]}")
+        if state.paused:
+            parts.append("paused")
+        return parts
+
+    def _faults(self) -> list[str]:
+        if self.state is None:
+            return []
+        worst_first = sorted(self.state.errors, key=lambda fault: not fault.is_fatal)
+        return [f"{fault.error_level} {fault.summary}" for fault in worst_first[:MOST_FAULTS]]
+
+    def _missing_place(self) -> str | None:
+        if self.position is None:
+            return None if self.state is None else "the vehicle says no position"
+        if not self.position.position_initialized:
+            return "the vehicle does not know where it is (positionInitialized is false)"
+        if self.frame() is None:
+            known = "[vda5050.maps] names those that are"
+            return f"map {self.position.map_id[:60]!r} is not in the settings, {known}"
+        return self._misplaced
+
+    def _place(
+        self, position: Position | None, velocity: Velocity | None, sent_at: float | None, now: float
+    ) -> None:
+        if position is None:
+            return
+        before, self.position = self.position, position
+        frame = self.frame()
+        if frame is None or not position.position_initialized:
+            return
+        v = self._speed(before, position, velocity, now)
+        self._placed_at = now
+        battery = None if self.state is None else self.state.battery_state.battery_charge / 100
+        try:
+            x, y, theta = frame.to_site(position.x, position.y, position.theta)
+            self.pose = SendPos(
+                x=x,
+                y=y,
+                theta=theta,
+                v=v,
+                t=sent_at,
+                fix_t=sent_at,
+                battery=None if battery is None else min(1.0, max(0.0, battery)),
+                accuracy=position.deviation_range,
+            )
+            self._misplaced = None
+        except ValueError as error:
+            self._misplaced = f"its position has no place on the site: {error}"
+
+    def _speed(
+        self, before: Position | None, position: Position, velocity: Velocity | None, now: float
+    ) -> float:
+        """Return m/s: as the vehicle says, else by how far it came since its last position."""
+        if velocity is not None:
+            return velocity.speed
+        if self.state is not None and not self.state.driving:
+            return 0.0
+        passed = now - self._placed_at
+        if before is None or before.map_id != position.map_id or passed <= 0:
+            return 0.0
+        return min(100.0, math.dist((before.x, before.y), (position.x, position.y)) / passed)

@@ -1,0 +1,141 @@
+"""A recording in memory: for each robot its positions as columns, their times going forward."""
+
+from __future__ import annotations
+
+from array import array
+from bisect import bisect_left
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import numpy.typing as npt
+
+from .errors import RecordingError
+from .movement import filled
+from .samples import MOST_ROBOTS, MOST_SAMPLES, WGS84, Remarks, Source
+
+Column = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Track:
+    """Where one robot was: (n,) columns, ``t`` rising.
+
+    ``theta`` is known everywhere; ``theta_from`` (n,) says where it is from, as numbers of
+    :data:`.movement.ORIGINS`. ``v`` is m/s.
+    """
+
+    robot: str
+    t: Column
+    x: Column
+    y: Column
+    theta: Column
+    theta_from: npt.NDArray[np.int8]
+    v: Column
+
+
+@dataclass(frozen=True)
+class Recording:
+    """The tracks of a file; ``crs`` is what their coordinates are, None where the file does not say it."""
+
+    file: Path
+    crs: str | None
+    tracks: tuple[Track, ...]
+    remarks: Remarks
+
+    @property
+    def begin(self) -> float:
+        """The time of the first position, seconds."""
+        return min(float(track.t[0]) for track in self.tracks)
+
+    @property
+    def end(self) -> float:
+        """The time of the last position, seconds."""
+        return max(float(track.t[-1]) for track in self.tracks)
+
+    @property
+    def count(self) -> int:
+        """How many positions there are."""
+        return sum(len(track.t) for track in self.tracks)
+
+
+def gather(file: Path, source: Source, remarks: Remarks) -> Recording:
+    """Return the recording that ``source`` reads from ``file``.
+
+    Of positions whose time goes back as few as possible are left out, and noted in ``remarks``.
+
+    :raises RecordingError: for a file without a position, and one with too many.
+    """
+    columns: dict[str, array[float]] = {}
+    count = 0
+    for count, sample in enumerate(source.samples, 1):
+        known = columns.get(sample.robot)
+        if known is None:
+            known = columns[sample.robot] = array("d")
+            if len(columns) > MOST_ROBOTS:
+                raise RecordingError(
+                    f"{file}: row {sample.row}: more than {MOST_ROBOTS} robots; is their column right?"
+                )
+        if count > MOST_SAMPLES:
+            raise RecordingError(
+                f"{file}: row {sample.row}: more than {MOST_SAMPLES} positions; part the file"
+            )
+        known.extend((sample.row, sample.t, sample.x, sample.y, sample.theta, sample.v))
+    if not count:
+        raise RecordingError(f"{file}: no position can be used{_because(remarks)}")
+    tracks = [_track(file, name, column, source.crs, remarks) for name, column in columns.items()]
+    return Recording(file, source.crs, tuple(tracks), remarks)
+
+
+def _because(remarks: Remarks) -> str:
+    return f"; the first of {remarks.count} remarks: {remarks.texts[0]}" if remarks.texts else ""
+
+
+def _track(file: Path, robot: str, values: array[float], crs: str | None, remarks: Remarks) -> Track:
+    rows = np.frombuffer(values, dtype=np.float64).reshape(-1, 6)
+    times = rows[:, 1]
+    if (np.diff(times) <= 0).any():
+        kept = longest_rising(times.tolist())
+        left_out = np.setdiff1d(np.arange(len(rows)), kept)
+        for one in left_out.tolist():
+            remarks.add(
+                f"{file}: row {rows[one, 0]:.0f}",
+                f"the time of robot {robot} does not go on: {times[one]:.3f} s",
+            )
+        rows = rows[kept]
+    _, t, x, y, theta, v = (np.ascontiguousarray(column) for column in rows.T)
+    headings, origins, speeds = filled(t, x, y, theta, v, is_earth=crs == WGS84)
+    return Track(robot, t, x, y, headings, origins, speeds)
+
+
+def longest_rising(values: Sequence[float]) -> npt.NDArray[np.int64]:
+    """Return the numbers of as many values as possible that rise one after the other.
+
+    Of values of which one is too many the earlier ones are taken.
+    """
+    count = len(values)
+    falling = _rising([-value for value in reversed(values)])
+    return (count - 1 - falling)[::-1]
+
+
+def _rising(values: Sequence[float]) -> npt.NDArray[np.int64]:
+    # Patience sorting: of values that could be taken for one another it takes the later ones.
+    ends: list[float] = []
+    """the smallest last value of a run of each length."""
+    at: list[int] = []
+    before: list[int] = []
+    for n, value in enumerate(values):
+        length = bisect_left(ends, value)
+        before.append(at[length - 1] if length else -1)
+        if length == len(ends):
+            ends.append(value)
+            at.append(n)
+        else:
+            ends[length], at[length] = value, n
+    found = np.empty(len(ends), dtype=np.int64)
+    n = at[-1] if at else -1
+    for place in range(len(ends) - 1, -1, -1):
+        found[place] = n
+        n = before[n]
+    return found

@@ -1,0 +1,1 @@
+"""The road network as the programs of other robots read it; writers of bytes, without I/O."""

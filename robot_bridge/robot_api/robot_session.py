@@ -1,0 +1,238 @@
+"""One robot behind a channel: its requests, its acknowledgements, and its outbox."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import logging
+from collections.abc import Callable, Coroutine
+from typing import Any
+
+from websockets.exceptions import ConnectionClosed
+
+from .. import jsonrpc
+from ..errors import BridgeError, DataRefusedError, NotReadyError, StoreError
+from ..exchange import Outcome
+from ..fleet import Fleet
+from ..messages import REQUESTS, MessageError, OpAck, Ready, Request, SendPos, to_json
+from ..wire import decode_request, error_code
+from .channel import Channel
+from .delivery import Delivery
+
+log = logging.getLogger(__name__)
+
+_OTHERS = ("frames", "replies")
+"""What else than calls of an operation is refused."""
+POSITION = jsonrpc.Call("SendPos", None)
+ANEW = "the robot has connected anew"
+
+
+class RobotSession:
+    """One robot on one channel; ``admit`` is called when the robot has said Ready on it."""
+
+    def __init__(
+        self,
+        fleet: Fleet,
+        channel: Channel,
+        robot: str,
+        admit: Callable[[RobotSession], None],
+    ) -> None:
+        self.robot = robot
+        self._fleet = fleet
+        self._channel = channel
+        self._admit = admit
+        self._admitted = False
+        self._delivery = Delivery(fleet, channel, robot)
+        self._closing: asyncio.Task[None] | None = None
+        self._due: asyncio.Task[None] | None = None
+
+    # --- what its connection asks of it -----------------------------------------------------------------
+
+    @property
+    def is_replaced(self) -> bool:
+        """Whether the robot has connected anew elsewhere: what still comes in is passed over."""
+        return self._closing is not None
+
+    @property
+    def is_admitted(self) -> bool:
+        """Whether the robot has said Ready on this channel, and was let in."""
+        return self._admitted
+
+    def replace(self) -> None:
+        """Carry nothing more, because the robot has connected anew."""
+        self._delivery.end()
+        # A connection whose robot is gone takes seconds to close, and the new one must not wait for it.
+        self._closing = asyncio.create_task(self._channel.release(ANEW))
+
+    def end(self) -> None:
+        """Deliver nothing more: the channel is gone."""
+        self._delivery.end()
+
+    def stop_now(self, call_id: str, *, emergency: bool = True) -> None:
+        """Send the robot an Abort under the id ``call_id`` that waits for nothing."""
+        self._delivery.stop_now(call_id, emergency=emergency)
+
+    def outdate(self) -> None:
+        """Send nothing of what waits as it was read: the robot is told to stop with others of its link."""
+        self._delivery.outdate()
+
+    def ask_again(self) -> None:
+        """Send in a moment what it has not acknowledged: a reply of it was not dealt with."""
+        if self._admitted:
+            self._delivery.begin_later()
+
+    def measure(self) -> None:
+        """Note how long the last ping took there and back."""
+        if self._admitted and self._channel.round_trip is not None:
+            self._fleet.robots.measured(self.robot, self._channel.round_trip)
+
+    async def answers(self) -> bool:
+        """Tell whether the robot is there, as far as its channel knows."""
+        return await self._channel.answers()
+
+    # --- what comes in ------------------------------------------------------------------------------------
+
+    def take_pose(self, pose: SendPos) -> bool:
+        """Take in a position at once; false where something must be waited for, and nothing was done."""
+        if not self.listens():
+            return False
+        rest: Coroutine[Any, Any, None] | Exception | None
+        try:
+            rest = self._fleet.take_pose(self.robot, self._channel.name, pose)
+        except Exception as error:
+            rest = error
+        if rest is not None:
+            self.follow_up(rest)
+        return True
+
+    def listens(self) -> bool:
+        """Tell whether nothing has to be waited for before a position can be taken in."""
+        return self._admitted and self._closing is None and self._due is None
+
+    def follow_up(self, rest: Coroutine[Any, Any, None] | Exception) -> None:
+        """Store what a position brought about, or tell what is wrong with it; what comes after it waits."""
+        work = _failed(rest) if isinstance(rest, Exception) else rest
+        self._due = asyncio.create_task(self._store(work))
+
+    async def receive_pose(self, pose: SendPos) -> None:
+        """Take in a position behind what is still to be stored."""
+        await self._settled()
+        await self._answer(POSITION, self._ask(pose, None))
+
+    async def receive(self, message: jsonrpc.Call | jsonrpc.Reply) -> None:
+        """Deal with a call, or with the reply to one, behind what is still to be stored."""
+        await self._settled()
+        if isinstance(message, jsonrpc.Call):
+            await self._answer(message, self._receive_call(message))
+        else:
+            await self._receive_reply(message)
+
+    async def refuse_frame(self, error: jsonrpc.FrameError, *, large: bool = False) -> None:
+        """Tell the robot that a frame cannot be read, and operators too where it was too ``large``."""
+        await self._settled()
+        if large and self._admitted:
+            self._fleet.refuse_large(self.robot, self._channel.name, str(error))
+        self._warn("frames", f"{self._who}: {error}")
+        await self._channel.send(self._channel.error(error.id, error.code, str(error)))
+
+    async def _settled(self) -> None:
+        if self._due is not None:
+            await self._due
+
+    @property
+    def _who(self) -> str:
+        return f"link {self._channel.name}: robot {self.robot!r}"
+
+    async def _store(self, rest: Coroutine[Any, Any, None]) -> None:
+        """Store what a position brought about; what comes after it waits."""
+        try:
+            with contextlib.suppress(ConnectionClosed):
+                await self._answer(POSITION, self._outcome(rest))
+        finally:
+            self._due = None
+
+    async def _outcome(self, rest: Coroutine[Any, Any, None]) -> Outcome:
+        await rest
+        return Outcome(self.robot)
+
+    async def _receive_call(self, call: jsonrpc.Call) -> Outcome:
+        request = decode_request(call.method, call.params)
+        return await self._ask(request, call.id if isinstance(call.id, int) else None)
+
+    async def _answer(self, call: jsonrpc.Call, work: Coroutine[Any, Any, Outcome]) -> None:
+        """Await what comes of a call and tell the robot: acknowledged is only what has its answer stored."""
+        channel = self._channel
+        try:
+            outcome = await work
+            if outcome.answer is not None or outcome.admitted:
+                await self._fleet.mailboxes.finish([outcome], [], acks=False)
+        except (MessageError, BridgeError) as error:
+            self._warn(call.method, f"{self._who}: {error}")
+            await channel.send(channel.error(call.id, error_code(error), str(error)))
+            return
+        except ConnectionClosed:
+            raise
+        except Exception:
+            text = self._note_unforeseen(call.method, self._who)
+            await channel.send(channel.error(call.id, jsonrpc.INTERNAL_ERROR, text))
+            return
+        if call.id is not None:
+            await channel.send(channel.result(call.id, to_json(outcome.ack or OpAck())))
+        if call.method == Ready.__name__ and outcome.admitted:
+            self._delivery.begin()
+
+    async def _ask(self, request: Request, id: int | None) -> Outcome:
+        if not isinstance(request, Ready):
+            if not self._admitted:
+                raise NotReadyError(
+                    f"robot {self.robot!r} has not said Ready on this connection; send Ready first"
+                )
+            return await self._fleet.receive(self.robot, self._channel.name, request, id)
+        # A robot that starts anew inside its own connection is no second one.
+        self._fleet.reception.holds.free(self.robot, self)
+        outcome = await self._fleet.receive(self.robot, self._channel.name, request, id)
+        if outcome.admitted:
+            self._admitted = True
+            self._admit(self)
+        return outcome
+
+    async def _receive_reply(self, reply: jsonrpc.Reply) -> None:
+        if not self._admitted:
+            return
+        try:
+            await self._take_reply(reply)
+        except DataRefusedError as error:
+            # Asked again it would say the same again, and for ever.
+            log.error("%s: %s; what it said is left out", self._who, error)
+        except StoreError as error:
+            log.warning("%s: %s; it will be asked again", self._who, error)
+            self.ask_again()
+        except (MessageError, BridgeError) as error:
+            self._warn("replies", f"{self._who}: {error}")
+        except Exception:
+            # There is no answer to an answer: what went wrong is between the log and whoever reads it.
+            self._note_unforeseen("replies", f"{self._who}, acknowledgement {reply.id}")
+
+    async def _take_reply(self, reply: jsonrpc.Reply) -> None:
+        if isinstance(reply.id, str):
+            self._fleet.emergency.answered(self.robot, reply.id, refused=reply.error is not None)
+            return
+        ack = OpAck(id=reply.id, ok=reply.error is None, reason=reply.error)
+        await self._fleet.receive(self.robot, self._channel.name, ack, None)
+
+    def _warn(self, method: str, line: str) -> None:
+        """Count a refusal, and write it into the log unless it comes again and again."""
+        self._fleet.tally.refused[self._channel.name] += 1
+        self._fleet.repeated.warn(log, self._key_of(method), line)
+
+    def _note_unforeseen(self, method: str, who: str) -> str:
+        return self._fleet.repeated.note_unforeseen(log, self._key_of(method), who)
+
+    def _key_of(self, method: str) -> tuple[str, ...]:
+        what = method if method in REQUESTS or method in _OTHERS else "unknown operations"
+        return f"link {self._channel.name}:", "robot", repr(self.robot), what
+
+
+async def _failed(error: Exception) -> None:
+    """Raise what went wrong where every other error is told of."""
+    raise error

@@ -1,0 +1,152 @@
+"""Calls that are nearly right: the protocol's names, with values too deep, too long or of another kind."""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+from collections.abc import Mapping
+from typing import Any
+
+from hypothesis import strategies as st
+
+DEPTHS = (20, 500, 2_000, 5_000, 50_000)
+TEXTS = (
+    "",
+    "\x00",
+    "a\x00b",
+    "\ud800",
+    "\udfff low",
+    "x" * 600,
+    "y" * 70_000,
+    "9" * 400,
+    "\n\x1b[31m",
+    "\u202e",
+)
+TEXTS += ("' or 1=1 --", "$$; drop table sa; --", "1970-01-01", "NaN", "true", "[[", "{}")
+NUMBERS = (10**400, -(10**400), 2**31, 2**63, 2**64, -1, 0, 1e308, -1e308, 5e-324, 1e300, -0.0)
+RAW = (
+    "NaN",
+    "Infinity",
+    "-Infinity",
+    "1e400",
+    "9" * 5000,
+    "0x1",
+    "01",
+    "'a'",
+    "\ud7ff",
+    '"\\ud800"',
+    '"\\u0000"',
+)
+RAW += ('{"id": true}', '{"id": 1e0}', '{"id": "1"}', '{"id": 1, "id": 2}', "[" * 3 + '"' + "]" * 3)
+
+_text = st.sampled_from(TEXTS) | st.text(max_size=30)
+_number = st.sampled_from(NUMBERS) | st.integers() | st.floats(allow_nan=False, allow_infinity=False)
+_leaf = st.none() | st.booleans() | _number | _text
+_value = st.recursive(
+    _leaf,
+    lambda inner: st.lists(inner, max_size=4) | st.dictionaries(_text, inner, max_size=3),
+    max_leaves=6,
+)
+
+
+def _nested(kind: str, depth: int, closed: bool) -> str:
+    begin, end = {"list": ("[", "]"), "object": ('{"a":', "}"), "pair": ("[1,", "]")}[kind]
+    return begin * depth + "1" + (end * depth if closed else "")
+
+
+deep_texts = st.builds(
+    _nested, st.sampled_from(["list", "object", "pair"]), st.sampled_from(DEPTHS), st.booleans()
+)
+"""JSON, complete or cut off, of more levels than anybody needs."""
+json_texts = _value.map(json.dumps) | deep_texts | st.sampled_from(RAW)
+"""The text of one value, as it may stand in a call: JSON, and what looks like it."""
+
+_place = st.floats(0.0, 150.0)
+_name = st.sampled_from(["bad-ws", "bad-sql", "nobody"])
+_RIGHT: Mapping[str, st.SearchStrategy[Any]] = {
+    "robot": _name,
+    "other": _name,
+    "by": st.sampled_from(["waiting", "way"]),
+    "robots": st.lists(_name, max_size=2),
+    "operator": st.just("somebody"),
+    "role": st.sampled_from(["viewer", "operator", "supervisor"]),
+    "command": st.integers(0, 200).map(lambda number: f"fuzzed-{number:04}"),
+    "aborts": st.integers(0, 200).map(lambda number: f"fuzzed-{number:04}"),
+    "op": st.sampled_from(["SetPosEnd", "SetPath", "Abort", "SetPosIni"]),
+    "params": st.fixed_dictionaries({"x": _place, "y": _place})
+    | st.lists(st.tuples(_place, _place), min_size=2, max_size=4).map(lambda points: {"points": points})
+    | st.just({})
+    | st.just({"emergency": True}),
+    "revision": st.integers(0, 20),
+    "tasks": st.lists(
+        st.builds(
+            lambda n, x, y: {"task": f"task-{n:04}", "x": x, "y": y}, st.integers(0, 99), _place, _place
+        ),
+        max_size=3,
+    ),
+    "task": st.integers(0, 99).map(lambda number: f"task-{number:04}"),
+    "positions": st.lists(
+        st.builds(lambda robot, x, y: {"robot": robot, "x": x, "y": y}, _name, _place, _place), max_size=2
+    ),
+    "points": st.lists(st.tuples(_place, _place), max_size=3),
+    "reason": st.just("because") | st.none(),
+    "ok": st.booleans(),
+    "id": st.integers(0, 300),
+    "magic": st.integers(0, 3),
+    "x": _place,
+    "y": _place,
+    "theta": st.floats(-3.0, 3.0),
+    "v": st.floats(0.0, 2.0),
+    "lat": st.floats(46.0, 47.0),
+    "lon": st.floats(16.0, 17.0),
+    "limit": st.integers(1, 5),
+    "rate": st.floats(0.1, 20.0),
+    "image": st.just("AAAA"),
+    "t": st.floats(0.0, 2e9),
+}
+
+
+def _values_of(name: str) -> st.SearchStrategy[str]:
+    right = _RIGHT.get(name, _leaf).map(json.dumps)
+    return right | right | right | json_texts
+
+
+def _params_of(cls: type[Any]) -> st.SearchStrategy[str]:
+    names = [field.name for field in dataclasses.fields(cls)]
+    values = st.fixed_dictionaries({}, optional={name: _values_of(name) for name in names})
+    every = st.fixed_dictionaries({name: _RIGHT.get(name, _leaf).map(json.dumps) for name in names})
+    return (values | every).map(_object)
+
+
+def _object(values: Mapping[str, str]) -> str:
+    return "{" + ", ".join(f'"{name}": {value}' for name, value in values.items()) + "}"
+
+
+def calls(methods: Mapping[str, type[Any]]) -> st.SearchStrategy[tuple[str, str]]:
+    """Return methods and the text of their params, each method as often as any other."""
+    return st.one_of(
+        [
+            st.tuples(st.just(name), _params_of(cls) | _params_of(cls) | _params_of(cls) | json_texts)
+            for name, cls in methods.items()
+        ]
+    )
+
+
+def frames(methods: Mapping[str, type[Any]]) -> st.SearchStrategy[str]:
+    """Return frames of a WebSocket: calls, notifications, answers to what nobody asked, and less."""
+    id_text = st.integers(0, 300).map(str) | json_texts
+    call = st.builds(
+        lambda call, id: f'{{"jsonrpc": "2.0", "method": "{call[0]}", "params": {call[1]}, "id": {id}}}',
+        calls(methods),
+        id_text,
+    )
+    notice = calls(methods).map(
+        lambda call: f'{{"jsonrpc": "2.0", "method": "{call[0]}", "params": {call[1]}}}'
+    )
+    reply = st.builds(
+        lambda id, kind, value: f'{{"jsonrpc": "2.0", "id": {id}, "{kind}": {value}}}',
+        id_text,
+        st.sampled_from(["result", "error"]),
+        json_texts,
+    )
+    return call | call | call | notice | reply | json_texts

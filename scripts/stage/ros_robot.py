@@ -1,0 +1,268 @@
+"""A ROS 2 robot for tests and demonstrations: a real rclpy node that drives where Nav2's actions send it.
+
+Run by the Python of :mod:`.ros_peer`, which knows nothing of this project. Each thing that happens is one
+line of JSON. What it is to do wrong is asked for by ``--odd``.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import math
+import threading
+import time
+from functools import partial
+from typing import Any
+
+import rclpy
+from action_msgs.srv import CancelGoal  # noqa: F401 - its type support is loaded before threads begin
+from geometry_msgs.msg import PoseStamped, Twist
+from nav2_msgs.action import FollowPath, FollowWaypoints, NavigateThroughPoses, NavigateToPose
+from nav2_msgs.msg import CostmapFilterInfo, WaypointStatus
+from nav_msgs.msg import OccupancyGrid, Odometry
+from rclpy.action import ActionServer, CancelResponse, GoalResponse
+from rclpy.executors import MultiThreadedExecutor
+from rclpy.node import Node
+from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
+from sensor_msgs.msg import BatteryState, CompressedImage, Image
+from std_srvs.srv import Trigger
+
+ODD = (
+    "nan",
+    "rejects",
+    "stubborn",
+    "fails",
+    "old-clock",
+    "other-frame",
+    "no-actions",
+    "deaf-stop",
+    "silent",
+    "misses",
+)
+ACTIONS: dict[str, tuple[Any, Any]] = {
+    "navigate_to_pose": (NavigateToPose, lambda goal: [goal.pose]),
+    "navigate_through_poses": (NavigateThroughPoses, lambda goal: goal.poses.goals),
+    "follow_path": (FollowPath, lambda goal: goal.path.poses),
+    "follow_waypoints": (FollowWaypoints, lambda goal: goal.poses),
+}
+TICK = 0.05
+MASK_PLACES = {"road": (20.0, 8.0), "excavation": (95.0, 151.0)}
+"""Metres in the map frame, whose grid begins at 0, 0."""
+
+
+def say(event: str, **more: object) -> None:
+    """Print what has happened."""
+    print(json.dumps({"event": event, **more}), flush=True)
+
+
+class Robot(Node):
+    """Stands until a goal comes, then drives straight to it, or from point to point of a path."""
+
+    def __init__(self, options: argparse.Namespace) -> None:
+        super().__init__("robot", namespace=options.name)
+        self.options = options
+        self.x, self.y, self.theta, self.v = options.x, options.y, 0.0, 0.0
+        self.points: list[tuple[float, float]] = []
+        self.driving = threading.Lock()
+        self.newest: object = None
+        latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+        fast = QoSProfile(depth=5, reliability=ReliabilityPolicy.BEST_EFFORT)
+        self.create_timer(TICK, self.drive)
+        if "silent" not in options.odd:
+            self.odom = self.create_publisher(Odometry, "odom", fast)
+            self.battery = self.create_publisher(BatteryState, "battery_state", 10)
+            self.create_timer(1.0 / options.rate, self.report)
+            self.create_timer(1.0, self.report_battery)
+        self.create_subscription(OccupancyGrid, "map", self.map_came, latched)
+        for name in ("keepout", "speed"):
+            self.create_subscription(OccupancyGrid, f"{name}_mask", partial(self.mask_came, name), latched)
+            self.create_subscription(CostmapFilterInfo, f"{name}_info", self.filter_came, latched)
+        if options.image:
+            kind = Image if options.image == "raw" else CompressedImage
+            self.camera = self.create_publisher(kind, "camera", fast)
+            self.create_timer(0.2, self.report_image)
+        if "no-actions" in options.odd:
+            self.create_subscription(PoseStamped, "goal_pose", self.goal_came, 10)
+        else:
+            for name in options.actions or ("navigate_to_pose", "follow_path"):
+                self.serve(ACTIONS[name][0], name, ACTIONS[name][1])
+        if "deaf-stop" not in options.odd:
+            self.create_subscription(Twist, "cmd_vel", self.twist_came, 10)
+            self.create_service(Trigger, "stop", self.stop_called)
+        self.create_service(Trigger, "place_cone", self.cone_called)
+
+    def serve(self, kind: Any, name: str, points_of: Any):
+        """Offer an action whose goals are driven."""
+        ActionServer(
+            self,
+            kind,
+            name,
+            lambda goal: self.execute(kind, goal, points_of(goal.request)),
+            goal_callback=self.goal_asked,
+            cancel_callback=self.cancel_asked,
+        )
+
+    def goal_asked(self, goal: Any):
+        """Take a goal on, or not."""
+        refuses = "rejects" in self.options.odd
+        say("goal asked", refuses=refuses)
+        return GoalResponse.REJECT if refuses else GoalResponse.ACCEPT
+
+    def cancel_asked(self, goal: Any):
+        """Give a goal up, or not."""
+        refuses = "stubborn" in self.options.odd
+        say("cancel asked", refuses=refuses)
+        return CancelResponse.REJECT if refuses else CancelResponse.ACCEPT
+
+    def execute(self, kind: Any, goal: Any, poses: Any):
+        """Drive a goal to its end, as Nav2 does: a newer one takes its place."""
+        self.newest = goal
+        self.points = [(pose.pose.position.x, pose.pose.position.y) for pose in poses]
+        say("goal", kind=kind.__name__, id=bytes(goal.goal_id.uuid).hex(), points=self.points)
+        result = kind.Result()
+        while rclpy.ok():
+            if "fails" in self.options.odd:
+                result.error_code, result.error_msg = 9003, "a test asked for it"
+                goal.abort()
+                break
+            if goal.is_cancel_requested:
+                if self.newest is goal:
+                    self.points, self.v = [], 0.0
+                goal.canceled()
+                break
+            if self.newest is not goal:
+                goal.abort()
+                break
+            if not self.points:
+                if kind is FollowWaypoints and "misses" in self.options.odd:
+                    result.missed_waypoints = [WaypointStatus(waypoint_index=1)]
+                goal.succeed()
+                break
+            goal.publish_feedback(self.feedback(kind))
+            time.sleep(TICK)
+        say("goal ended", id=bytes(goal.goal_id.uuid).hex(), status=int(goal.status))
+        return result
+
+    def feedback(self, kind: Any):
+        """Return how far it is yet."""
+        told = kind.Feedback()
+        left = math.hypot(self.points[-1][0] - self.x, self.points[-1][1] - self.y) if self.points else 0.0
+        if kind is FollowPath:
+            told.distance_to_goal = left
+        elif kind is not FollowWaypoints:
+            told.distance_remaining = left
+        return told
+
+    def drive(self):
+        """Go on for one tick."""
+        with self.driving:
+            points = self.points
+            if not points:
+                self.v = 0.0
+                return
+            x, y = points[0]
+            left, step = math.hypot(x - self.x, y - self.y), self.options.speed * TICK
+            if left <= step:
+                self.x, self.y, self.points = x, y, points[1:]
+                return
+            self.theta, self.v = math.atan2(y - self.y, x - self.x), self.options.speed
+            self.x += step * math.cos(self.theta)
+            self.y += step * math.sin(self.theta)
+
+    def report(self):
+        """Say where it is."""
+        told = Odometry()
+        told.header.frame_id = "elsewhere" if "other-frame" in self.options.odd else "map"
+        told.child_frame_id = "base_link"
+        told.header.stamp = self.get_clock().now().to_msg()
+        if "old-clock" in self.options.odd:
+            told.header.stamp.sec -= 86_400
+        told.pose.pose.position.x = math.nan if "nan" in self.options.odd else self.x
+        told.pose.pose.position.y = self.y
+        told.pose.pose.orientation.z, told.pose.pose.orientation.w = (
+            math.sin(self.theta / 2),
+            math.cos(self.theta / 2),
+        )
+        told.twist.twist.linear.x = self.v
+        self.odom.publish(told)
+
+    def report_battery(self):
+        """Say how full its battery is."""
+        told = BatteryState()
+        told.percentage = 0.75
+        self.battery.publish(told)
+
+    def report_image(self):
+        """Say what it sees: two red pixels and a blue one, or bytes that begin as a JPEG does."""
+        if self.options.image == "raw":
+            told = Image(height=1, width=3, encoding="bgr8", step=9, data=[0, 0, 255, 0, 0, 255, 255, 0, 0])
+        else:
+            begin = b"\xff\xd8\xff\xe0" if self.options.image == "jpeg" else b"depth"
+            told = CompressedImage(format=self.options.image, data=begin + bytes(100))
+        told.header.frame_id = "front_camera"
+        told.header.stamp = self.get_clock().now().to_msg()
+        self.camera.publish(told)
+
+    def map_came(self, grid: Any):
+        """Note a map."""
+        say("map", columns=grid.info.width, rows=grid.info.height, frame=grid.header.frame_id)
+
+    def mask_came(self, name: str, grid: Any):
+        """Note a mask of a costmap filter, and what is at some places."""
+        info = grid.info
+        cells = {
+            place: grid.data[int(y / info.resolution) * info.width + int(x / info.resolution)]
+            for place, (x, y) in MASK_PLACES.items()
+        }
+        say("mask", name=name, columns=info.width, rows=info.height, cells=cells)
+
+    def filter_came(self, info: Any):
+        """Note what a mask is for."""
+        say("filter", type=info.type, mask=info.filter_mask_topic, multiplier=info.multiplier)
+
+    def goal_came(self, pose: Any):
+        """Drive to a target that came on a topic."""
+        self.points = [(pose.pose.position.x, pose.pose.position.y)]
+        say("goal pose", points=self.points)
+
+    def twist_came(self, twist: Any):
+        """Stand when told so."""
+        if twist.linear.x == 0.0 and twist.angular.z == 0.0:
+            say("zero twist")
+
+    def stop_called(self, _: Any, answer: Any):
+        """Stop."""
+        refuses = "stubborn" in self.options.odd
+        say("stop", refuses=refuses)
+        self.points = self.points if refuses else []
+        answer.success, answer.message = not refuses, "the brake is stuck" if refuses else ""
+        return answer
+
+    def cone_called(self, _: Any, answer: Any):
+        """Place a cone."""
+        say("cone", x=self.x, y=self.y)
+        answer.success = True
+        return answer
+
+
+def main() -> None:
+    """Run one robot until the program is ended."""
+    parser = argparse.ArgumentParser()
+    parser.add_argument("name")
+    parser.add_argument("--x", type=float, default=20.0)
+    parser.add_argument("--y", type=float, default=8.0)
+    parser.add_argument("--speed", type=float, default=2.0)
+    parser.add_argument("--rate", type=float, default=10.0)
+    parser.add_argument("--odd", action="append", default=[], choices=ODD)
+    parser.add_argument("--image", choices=["raw", "jpeg", "depth"])
+    parser.add_argument("--actions", action="append", choices=list(ACTIONS))
+    options = parser.parse_args()
+    rclpy.init()
+    executor = MultiThreadedExecutor(8)
+    executor.add_node(Robot(options))
+    say("up")
+    executor.spin()
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,132 @@
+"""What docs/benchmarks.md says comes out of the run: no template of a part has a figure typed into it."""
+
+from __future__ import annotations
+
+import ast
+import re
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from benchmarks.clock import spread
+from benchmarks.endurance_findings import Run, Sample, Unloaded
+from benchmarks.endurance_page import report
+from benchmarks.page import Beginning, Part, goal, with_part
+
+SCRIPTS = Path(__file__).resolve().parents[2] / "scripts"
+INSTANCE = "e_n51_k5.py"
+"""Numbers of a public instance, which are not said but computed with."""
+MODULES = [
+    SCRIPTS / "mutation" / "report.py",
+    *(path for path in sorted((SCRIPTS / "benchmarks").glob("*.py")) if path.name != INSTANCE),
+]
+PLACEHOLDER, CODE = re.compile(r"\{[^{}]*\}"), re.compile(r"`[^`]*`")
+NAMES = re.compile(r"E-n51-k5|\b1969\b|\bcodec \d|\bp\d\d\b|EPSG:\d+|10\*\*|ROS 2|VDA 5050|\bNav2\b")
+"""What has a digit and is no figure: a public instance and its year, formats, percentiles, standards."""
+UNIT = r"(?:ms|s|min|h|Hz|[kKMG]i?B|bytes|m|cm|mm|km|%|×|times|(?:milli)?seconds?|minutes?|hours?)"
+FIGURE = re.compile(rf"(?<![\w.])\d[\d .,]*\s?{UNIT}(?![\w/])")
+WORD = r"(?:two|three|four|five|six|seven|eight|nine|ten|twenty|thirty|forty|fifty|hundred|thousand|half an?)"
+IN_WORDS = re.compile(
+    rf"\b{WORD} (?:milliseconds|seconds?|minutes?|hours?|MB|percent|times a second)\b", re.I
+)
+
+
+def test_no_template_has_a_figure_typed_into_it():
+    found = [f"{path.name}: {text}" for path in MODULES for text in typed_figures(path.read_text("utf-8"))]
+    assert found == [], "\n" + "\n".join(found)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "the process goes from {a} MB to 39 MB of it",
+        "They took 0.5 s each.",
+        "delivered at 147 % of a core",
+        "it is 2.5 times as fast",
+        "looked at every ten seconds",
+        "5 000 obstacles",
+    ],
+)
+def test_a_typed_figure_is_found(text):
+    assert list(typed_figures(f'TEXT = """\\\nOne line.\n{text}\n"""'))
+
+
+def test_what_comes_from_the_run_is_no_typed_figure():
+    text = "{took:.1f} ms in `2 s`, the p99 of codec 2 on E-n51-k5; the last two rows, {a[0]:+.0f} MB."
+    assert list(typed_figures(f'TEXT = """\\\nOne line.\n{text}\n"""')) == []
+
+
+def test_a_typed_figure_in_a_sentence_is_found():
+    assert list(typed_figures("def told(a):\n    '''In 2 s.'''\n    return f'{a} within 0.1 m of it'"))
+    assert (
+        list(typed_figures("def told(a):\n    '''In 2 s.'''\n    return f'{a} within {NEAR} m of it'")) == []
+    )
+
+
+def typed_figures(source: str) -> Iterator[str]:
+    """Yield what of a module's texts is a figure that was typed.
+
+    In a template, which is a text of several lines that a name of the module stands for, that is every digit
+    that is no part of a name; elsewhere a number with its unit.
+    """
+    tree = ast.parse(source)
+    templates = {id(node.value) for node in tree.body if isinstance(node, ast.Assign) and is_template(node)}
+    for node, text in texts_of(tree):
+        said = NAMES.sub("", CODE.sub("", PLACEHOLDER.sub("", text)))
+        pattern = re.compile(r"\d") if id(node) in templates else FIGURE
+        yield from (around(said, match) for match in [*pattern.finditer(said), *IN_WORDS.finditer(said)])
+
+
+def is_template(node: ast.Assign) -> bool:
+    text = node.value.value if isinstance(node.value, ast.Constant) else ""
+    return isinstance(text, str) and "\n" in text and not text.lstrip().startswith(("import ", "["))
+
+
+def texts_of(tree: ast.Module) -> Iterator[tuple[ast.expr, str]]:
+    """Yield every string that is no docstring, an f-string with what it puts in as placeholders."""
+    inside: set[int] = set()
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Expr):
+            inside.add(id(node.value))
+        elif isinstance(node, ast.JoinedStr):
+            inside |= {id(part) for part in ast.walk(node)} - {id(node)}
+            yield node, "".join(one.value if isinstance(one, ast.Constant) else "{}" for one in node.values)
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Constant) and isinstance(node.value, str) and id(node) not in inside:
+            yield node, node.value
+
+
+def around(text: str, match: re.Match[str]) -> str:
+    return " ".join(text[max(0, match.start() - 30) : match.end() + 30].split())
+
+
+def test_a_part_says_what_it_ran_under(monkeypatch):
+    monkeypatch.setenv("MALLOC_ARENA_MAX", "2")
+    table = "| " + " | ".join(["a long cell that no line may break"] * 5) + " |\n| --- |"
+    part = Part("Maps", f"A paragraph.\n\n{table}", settings={"GDAL_CACHEMAX": "16"})
+    page = with_part("", "maps", part, ["maps"], Beginning.now())
+    assert "Made by `make bench PARTS=maps`" in page
+    words = " ".join(page.split())
+    assert "load of the machine in the minute before it began" in words
+    assert "`GDAL_CACHEMAX=16`" in words and "`MALLOC_ARENA_MAX=2`" in words
+    assert table in page
+    again = with_part(page, "maps", part, ["maps"], Beginning.now())
+    assert again.count("## Maps") == 1
+
+
+def test_a_goal_that_is_missed_is_marked():
+    assert goal("at most 3 ms", True) == "goal: at most 3 ms, met"
+    assert goal("at most 3 ms", False) == "goal: at most 3 ms, **missed**"
+
+
+def test_a_median_is_told_with_its_spread():
+    assert f"{spread([3.0, 1.0, 2.0]):.1f}" == "2.0 [1.0–3.0]"
+    assert f"{spread(map(float, range(101))):.0f}" == "50 [25–75]", "of many the quartiles"
+
+
+def test_a_shift_that_is_too_large_misses_its_goal():
+    samples = [Sample(10.0 * k, 500.0 + k, 200.0, 100.0 + k, 16.0, 0, 0, 10, 2, 24, 0) for k in range(180)]
+    end = {"told": {}, "seconds": 1800.0, "longer": {"0.01": 3}, "work_at": {}, "gaps_at": {}, "worst": []}
+    run = Run(samples, [Unloaded([], 100.0, 16.0, 600_000)] * 2, end, {"reset": 3}, [])
+    text = report(run, 30.0, [], robots=10, raster_cache=16, window=(800, 600))
+    assert "goal: at most 60 MB more, **missed**" in text and "looked at every 10 s" in " ".join(text.split())

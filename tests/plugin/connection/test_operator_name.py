@@ -1,0 +1,23 @@
+"""The name that a desk says hello with: one that the gateway takes, whatever the login is called."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+from fleet_supervisor.plugin.wire.mailbox import Mailbox
+from fleet_supervisor.plugin.wire.protocol import DeskProtocol
+
+
+@pytest.mark.parametrize(
+    ("name", "said"),
+    [
+        ("Ada", "Ada"),
+        (" Ada\n", "Ada"),
+        ("Ada\nforged\x1b[2J", "Ada forged [2J"),
+        ("A" * 200, "A" * 127 + "…"),
+    ],
+)
+def test_it_is_one_line_that_is_not_too_long(name, said):
+    (hello,) = DeskProtocol(name, 5.0, "ws://127.0.0.1:1", Mailbox(), lambda: 0.0).begin()
+    assert json.loads(hello)["params"]["operator"] == said

@@ -1,0 +1,28 @@
+"""Links to robots of another kind that are down, as operators are told of them."""
+
+from __future__ import annotations
+
+from fleet_supervisor.plugin.desk.messages import LinkNotices
+from fleet_supervisor.robot_bridge.messages import LinkReport, Links, links_report, to_json
+
+
+def report(**more):
+    return Links([LinkReport("cars", "tracker", True), LinkReport("agvs", "vda5050", False, **more)])
+
+
+def test_a_link_that_is_down_is_told_once_with_its_robots_until_it_is_back():
+    notices = LinkNotices()
+    began, over = [], []
+    notices.began.connect(began.append)
+    notices.over.connect(over.append)
+    down = report(text="it is not connected", robots=[f"agv-{n}" for n in range(7)], count=9)
+    notices.show(links_report(to_json(down)))
+    notices.show(down)
+    assert began == [
+        "Link agvs is down: it is not connected. "
+        "Nothing reaches agv-0, agv-1, agv-2, agv-3, agv-4 and 4 more."
+    ]
+    notices.show(Links())
+    assert over == began
+    notices.show(report(text="the broker refuses the password"))
+    assert began[1] == "Link agvs is down: the broker refuses the password."

@@ -1,0 +1,38 @@
+"""Commands of robot r1, each step at a time of its own."""
+
+from __future__ import annotations
+
+import dataclasses
+
+from robot_bridge.command_life.open_command import OpenCommand, Order, drafted
+from robot_bridge.messages import Abort, CommandState, SendPos, SetPath, SetPosEnd
+
+TARGET = SetPosEnd(10.0, 5.0)
+PATH = SetPath([(0.0, 0.0), (10.0, 0.0)])
+ABORT = Abort()
+EMERGENCY = Abort(emergency=True)
+QUEUED, DELIVERED, ACKNOWLEDGED = (
+    CommandState.QUEUED,
+    CommandState.DELIVERED,
+    CommandState.ACKNOWLEDGED,
+)
+
+
+def command(sa_id, message=TARGET, *states, reason=None, **fields) -> OpenCommand:
+    """Return command ``c-<sa_id>`` by Ada, issued at 100 s, with steps a second apart."""
+    made = drafted(Order(f"c-{sa_id}", "r1", message, "Ada", reason), 100.0)
+    made = dataclasses.replace(made, sa_id=sa_id, **fields)
+    for number, state in enumerate(states, 1):
+        made = made.step(state, 100.0 + number, "r1")
+    return made
+
+
+def pose(x=0.0, y=0.0, theta=0.0, v=0.0) -> SendPos:
+    """Return a position of the robot."""
+    return SendPos(x, y, theta, v)
+
+
+def last(step) -> tuple:
+    """Return state, time, name and reason of the newest step of a command."""
+    step = step.report.steps[-1]
+    return step.state.value, step.at, step.by, step.reason

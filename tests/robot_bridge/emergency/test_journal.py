@@ -1,0 +1,219 @@
+"""The file of stops that are not stored yet: written before anything else, read by every later gateway."""
+
+from __future__ import annotations
+
+import asyncio
+import hashlib
+import json
+import os
+import stat
+import threading
+import time
+from pathlib import Path
+
+import pytest
+from sqlalchemy import make_url
+
+from robot_bridge.emergency.journal import StopJournal, journal_file
+from robot_bridge.errors import BridgeError
+from robot_bridge.store.emergency_stops import StopRow
+
+FIRST = StopRow("stop-0001", 1000.5, "Ada", "child on the track")
+SECOND = StopRow("stop-0002", 1001.0, "Ben", None)
+TEXT = (
+    '[{"id": "stop-0001", "at": 1000.5, "by": "Ada", "reason": "child on the track"}, '
+    '{"id": "stop-0002", "at": 1001.0, "by": "Ben", "reason": null}]'
+)
+
+
+@pytest.fixture
+def file(tmp_path):
+    return tmp_path / "fleet.db.stop"
+
+
+async def test_the_file_reads_as_gateways_before_and_after_this_one_write_it(file):
+    await StopJournal(file).write([FIRST, SECOND])
+    assert file.read_text(encoding="ascii") == TEXT
+    assert StopJournal(file).read() == [FIRST, SECOND]
+
+
+def test_the_file_of_a_server_s_database_is_found_again_by_later_gateways(tmp_path):
+    url = make_url("postgresql://ada:secret@db.example.org:5432/fleet")
+    number = hashlib.sha256(b"db.example.org:5432/fleet").hexdigest()[:12]
+    assert journal_file(url, tmp_path) == tmp_path / f"emergency-stop-{number}.json"
+    assert journal_file(make_url("sqlite:////tmp/a.db"), tmp_path) == Path("/tmp/a.db.stop")
+    assert journal_file(make_url("sqlite://"), tmp_path) is None
+
+
+@pytest.mark.parametrize("wrong", [{"id": 1}, {"at": 1000}, {"at": "noon"}, {"by": None}])
+def test_a_stop_of_which_one_thing_cannot_be_understood_is_a_stop_by_the_gateway(file, wrong):
+    stop = {"id": "stop-0001", "at": 1000.5, "by": "Ada", "reason": None}
+    file.write_text(json.dumps([{**stop, **wrong}]), encoding="utf-8")
+    before = time.time()
+    (found,) = StopJournal(file).read()
+    assert found.by == "gateway"
+    assert found.id.startswith("damaged-") and found.id != StopJournal(file).read()[0].id
+    assert before <= found.at <= time.time()
+    assert found.reason == f"{file} could not be understood; look at every robot before this is cleared"
+
+
+@pytest.mark.parametrize("text", ["", "[{", "3", "{}", "[" * 5000])
+def test_a_file_that_is_no_list_of_stops_is_one_stop_and_in_the_log_where_it_is_no_json(file, text, caplog):
+    file.write_text(text, encoding="utf-8")
+    (found,) = StopJournal(file).read()
+    assert found.reason == f"{file} could not be understood; look at every robot before this is cleared"
+    told = [record.getMessage() for record in caplog.records]
+    if text in ("3", "{}"):
+        assert told == []
+    else:
+        (line,) = told
+        assert line.startswith(f"{file} could not be understood: ") and not line.endswith(("None", "XX"))
+
+
+def test_what_is_no_text_as_a_reason_keeps_no_stop_from_being_one(file):
+    file.write_text('[{"id": "stop-0001", "at": 1000.5, "by": "Ada", "reason": 7}]', encoding="utf-8")
+    assert StopJournal(file).read() == [FIRST._replace(reason=None)]
+
+
+def test_a_file_of_which_a_byte_is_damaged_is_read_as_far_as_it_goes(file):
+    file.write_bytes(TEXT.encode().replace(b"child", b"ch\xffld"))
+    assert StopJournal(file).read() == [FIRST._replace(reason="ch\ufffdld on the track"), SECOND]
+
+
+def test_a_file_that_cannot_be_read_is_a_stop_and_the_log_says_what_to_do(file, caplog):
+    file.mkdir()
+    (stop,) = StopJournal(file).read()
+    assert stop.by == "gateway"
+    assert stop.reason == (
+        f"{file} could not be read (Is a directory); look at every robot before this is cleared"
+    )
+    assert (
+        f"{file} cannot be read: Is a directory; an emergency stop is noted there: "
+        "give this account the right to read and write it"
+    ) in caplog.text
+
+
+@pytest.mark.parametrize("bad", ["[" * 2000, "null", '{"id": "stop-0001"}', "[1e400]", '"' + "x" * 100])
+def test_whatever_stands_there_is_a_stop_and_ends_no_gateway(file, bad):
+    file.write_text(bad, encoding="utf-8")
+    assert [stop.by for stop in StopJournal(file).read()] == ["gateway"]
+
+
+@pytest.mark.parametrize(
+    "bad", ["7", '{"id": "x", "at": 1.0, "by": "A"}', '{"id": "%s"}' % ("x" * 65), "[[]]"]
+)
+def test_one_stop_that_cannot_be_understood_hides_no_other(file, bad):
+    file.write_text(f"{TEXT[:-1]}, {bad}]", encoding="utf-8")
+    first, second, third = StopJournal(file).read()
+    assert (first, second, third.by) == (FIRST, SECOND, "gateway")
+
+
+async def test_what_a_gateway_left_that_died_while_it_wrote_is_written_over(file):
+    partial = file.with_name(".fleet.db.stop.new")
+    partial.write_text("x" * 10_000, encoding="utf-8")
+    await StopJournal(file).write([FIRST, SECOND])
+    assert file.read_text(encoding="ascii") == TEXT
+    assert not partial.exists()
+
+
+async def test_nobody_else_on_this_computer_may_read_or_change_it(file):
+    umask = os.umask(0)
+    try:
+        await StopJournal(file).write([FIRST])
+    finally:
+        os.umask(umask)
+    assert stat.S_IMODE(file.stat().st_mode) == 0o600
+
+
+async def test_what_is_written_later_waits_for_what_is_on_its_way(file):
+    order = []
+    # Who opens a pipe for writing waits until somebody reads.
+    pipe = file.with_name(".fleet.db.stop.new")
+    os.mkfifo(pipe)
+    journal = StopJournal(file)
+    writes = [journal.write([FIRST]), journal.write([])]
+    for number, write in enumerate(writes):
+        write.add_done_callback(lambda _, number=number: order.append(number))
+    await asyncio.sleep(0.05)
+    reader = os.open(pipe, os.O_RDONLY | os.O_NONBLOCK)
+    try:
+        await asyncio.gather(*writes)
+    finally:
+        os.close(reader)
+    assert order == [0, 1]
+    assert "emergency stops_0" in {thread.name for thread in threading.enumerate()}
+
+
+async def test_to_write_nothing_where_nothing_is_is_no_trouble(file, caplog):
+    await StopJournal(file).write([])
+    assert caplog.records == []
+
+
+async def test_a_disk_that_takes_nothing_is_in_the_log_by_its_name(file, caplog, monkeypatch):
+    file.with_name(".fleet.db.stop.new").mkdir()
+    await StopJournal(file).write([FIRST])
+    file.with_name(".fleet.db.stop.new").rmdir()
+
+    def fail(_descriptor):
+        raise OSError("the disk is gone")
+
+    monkeypatch.setattr(os, "fsync", fail)
+    await StopJournal(file).write([FIRST])
+    assert [record.getMessage() for record in caplog.records] == [
+        f"emergency stops cannot be noted in {file}: {why}; they go out all the same"
+        for why in ("Is a directory", "the disk is gone")
+    ]
+    assert not file.exists()
+
+
+async def test_a_file_system_that_cannot_write_down_a_folder_keeps_no_stop_from_being_noted(
+    file, caplog, monkeypatch
+):
+    fsync, written = os.fsync, []
+
+    def fsync_of_files(descriptor):
+        if stat.S_ISDIR(os.fstat(descriptor).st_mode):
+            written.append(Path(f"/proc/self/fd/{descriptor}").readlink())
+            raise OSError("not of folders")
+        fsync(descriptor)
+
+    monkeypatch.setattr(os, "fsync", fsync_of_files)
+    await StopJournal(file).write([FIRST])
+    assert StopJournal(file).read() == [FIRST]
+    assert (written, caplog.records) == ([file.parent], [])
+
+
+def open_descriptors():
+    return {path.name for path in Path("/proc/self/fd").iterdir()}
+
+
+async def test_no_descriptor_is_left_open(file):
+    journal = StopJournal(file)
+    await journal.write([FIRST])
+    before = open_descriptors()
+    for _ in range(3):
+        await journal.write([FIRST, SECOND])
+    assert open_descriptors() == before
+
+
+@pytest.mark.parametrize("which", ["missing", "file", "shut"])
+def test_a_folder_in_which_nothing_can_be_noted_is_found_before_it_is_needed(tmp_path, monkeypatch, which):
+    folder = tmp_path / which
+    if which == "file":
+        folder.write_text("", encoding="utf-8")
+        folder.chmod(0o700)
+    if which == "shut":
+        folder.mkdir()
+        # Root may write everywhere: what the tests run as often is.
+        monkeypatch.setattr(os, "access", lambda path, mode: path != folder or mode != os.W_OK | os.X_OK)
+    with pytest.raises(BridgeError) as caught:
+        StopJournal(folder / "fleet.db.stop").check()
+    assert str(caught.value) == (
+        f"emergency stops cannot be noted in folder {folder}, which is missing or not to be written: one "
+        "that is made while the database is away would be forgotten with this gateway; make the folder, or "
+        "give another one with --state or ROBOT_BRIDGE_STATE"
+    )
+
+
+def test_a_folder_in_which_stops_can_be_noted_is_right(file):
+    StopJournal(file).check()

@@ -1,0 +1,130 @@
+"""An Abort that the database did not take is stored when it does, before its robot is told anything else."""
+
+from __future__ import annotations
+
+import pytest
+
+from robot_bridge.commanding.writing import write_drafts
+from robot_bridge.errors import DataRefusedError, StoreError, UncertainError
+from robot_bridge.messages import AbortTask, EmergencyStop
+
+LOST = pytest.mark.parametrize(
+    ("error", "done"),
+    [(StoreError, False), (UncertainError, False), (UncertainError, True)],
+    ids=["refused", "in doubt", "in doubt and done"],
+)
+
+
+@pytest.fixture
+async def driving(two):
+    """A yard whose robots r1 and r2 drive to a target each."""
+    for robot in ("r1", "r2"):
+        await two.at(20.0, 40.0, robot=robot)
+        await two.send(f"far-{robot}", robot=robot)
+        await two.take(robot)
+    return two
+
+
+async def abort_in_vain(yard, lose, error=StoreError, done=False, **what):
+    lose(yard, write_drafts, done, error)
+    request = AbortTask("command-abort", **(what or {"robot": "r1"}))
+    with pytest.raises(StoreError) as caught:
+        await yard.fleet.orders.abort(request, "Ada")
+    return str(caught.value)
+
+
+@LOST
+async def test_it_ends_what_the_robot_does(driving, lose, error, done):
+    told = await abort_in_vain(driving, lose, error, done)
+    assert told.endswith("it was sent to no robot; it is stored and sent as soon as the database takes it")
+    await driving.fleet.save()
+    assert driving.waiting("r1") == ["Abort"]
+    await driving.take()
+    assert await driving.states() == {
+        "far-r1": "aborted", "abort": "acknowledged", "far-r2": "acknowledged"
+    }  # fmt: skip
+    before = await driving.steps("abort")
+    await driving.fleet.save()
+    assert await driving.steps("abort") == before and driving.waiting("r1") == []
+
+
+@LOST
+async def test_what_the_robot_is_told_afterwards_comes_behind_it(driving, lose, error, done):
+    await abort_in_vain(driving, lose, error, done)
+    await driving.send("next")
+    assert driving.waiting("r1") == ["Abort", "SetPosEnd"]
+    await driving.fleet.save()
+    assert driving.waiting("r1") == ["Abort", "SetPosEnd"]
+    await driving.take()
+    assert await driving.states() == {
+        "far-r1": "superseded", "abort": "acknowledged", "next": "acknowledged", "far-r2": "acknowledged"
+    }  # fmt: skip
+
+
+async def test_what_was_not_fetched_is_taken_back(driving, lose):
+    await driving.send("next")
+    assert driving.waiting("r1") == ["SetPosEnd"]
+    await abort_in_vain(driving, lose)
+    await driving.fleet.save()
+    assert driving.waiting("r1") == ["Abort"]
+
+
+async def test_asked_for_again_it_is_one(driving, lose):
+    await abort_in_vain(driving, lose)
+    report = await driving.fleet.orders.abort(AbortTask("command-abort", robot="r1"), "Ada")
+    await driving.fleet.save()
+    assert report.state == "queued" and driving.waiting("r1") == ["Abort"]
+
+
+async def test_one_of_a_command_that_has_ended_by_then_is_forgotten(driving, lose, caplog):
+    await abort_in_vain(driving, lose, aborts="command-far-r1")
+    await driving.at(50.0, 40.0)
+    assert (await driving.states())["far-r1"] == "reached"
+    await driving.fleet.save()
+    assert (
+        "Abort command-abort of robot 'r1': command command-far-r1 is no longer what robot 'r1' is doing"
+        in [record.getMessage().split(";")[0] for record in caplog.records]
+    )
+    await driving.send("next")
+    assert driving.waiting("r1") == ["SetPosEnd"]
+
+
+async def test_it_is_kept_for_as_long_as_the_database_takes_nothing(driving, lose):
+    await abort_in_vain(driving, lose)
+    for _ in range(2):
+        lose(driving, write_drafts, False, StoreError)
+        with pytest.raises(StoreError):
+            await driving.fleet.save()
+    await driving.fleet.save()
+    assert driving.waiting("r1") == ["Abort"]
+
+
+async def test_one_that_is_refused_as_data_is_not_kept(driving, lose):
+    told = await abort_in_vain(driving, lose, DataRefusedError)
+    assert told.endswith("it was sent to no robot")
+    await driving.fleet.save()
+    assert driving.waiting("r1") == []
+
+
+@pytest.mark.parametrize("error", [RuntimeError, DataRefusedError])
+async def test_one_that_is_refused_later_holds_up_nothing(driving, lose, caplog, error):
+    await abort_in_vain(driving, lose)
+    lose(driving, write_drafts, False, error)
+    await driving.send("next")
+    assert "Abort command-abort" in caplog.text and driving.waiting("r1") == ["SetPosEnd"]
+
+
+async def test_an_emergency_stop_waits_for_none(driving, lose, monkeypatch):
+    await abort_in_vain(driving, lose)
+    run, written = driving.database.run, []
+
+    async def noted(asked, *arguments):
+        if asked is write_drafts:
+            written.append({draft.order.message.emergency for draft in arguments[0]})
+        return await run(asked, *arguments)
+
+    monkeypatch.setattr(driving.database, "run", noted)
+    await driving.fleet.emergency.stop(EmergencyStop("stop-0001"), "Ada")
+    assert written == [{True}]
+    await driving.fleet.save()
+    assert written == [{True}, {False}]

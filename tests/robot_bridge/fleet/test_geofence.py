@@ -1,0 +1,202 @@
+"""What the geofence does when a stop cannot be done at once, is not needed, or cannot be judged."""
+
+from __future__ import annotations
+
+import asyncio
+from dataclasses import replace
+
+import pytest
+
+from robot_bridge.errors import StoreError
+from robot_bridge.geofence import watch
+from robot_bridge.geofence.stays import LEFT_AFTER_S
+from robot_bridge.messages import EmergencyStop, GetObservations, ReviewObservation, SetObject
+from robot_bridge.sites.fences import Fences
+from robot_bridge.sites.settings import GeofenceSettings
+
+IN_THE_BASIN = 66.0, 32.0
+OUTSIDE = 60.0, 22.0
+PATIENCE = 30.0
+"""seconds after which what does not come about has failed."""
+
+
+@pytest.fixture
+async def guarded(roads, monkeypatch):
+    """A yard with r1 on its way outside of every keepout; robots in keepouts are aborted."""
+    monkeypatch.setattr(watch, "RETRY_AFTER_S", 0.01)
+    settings = replace(roads.site.settings, geofence=GeofenceSettings(in_keepout="abort"))
+    roads.site.take_over(replace(roads.site.site, settings=settings))
+    await roads.drive("one", [OUTSIDE, (100.0, 22.0)])
+    await look(roads)
+    yield roads
+    for acting in list(roads.fleet.geofence._acting):
+        acting.cancel()
+
+
+async def look(yard):
+    """Let the geofence judge, act, and tell."""
+    async with asyncio.timeout(PATIENCE):
+        await yard.fleet.geofence.watch()
+        await yard.fleet.geofence.settle()
+    return yard.fleet.geofence.report()
+
+
+async def test_a_robot_outside_is_no_alarm_and_one_inside_is_aborted_once(guarded):
+    assert (await look(guarded)).alarms == []
+    await guarded.at(*IN_THE_BASIN, v=1.0)
+    (alarm,) = (await look(guarded)).alarms
+    assert (alarm.robot, alarm.name, alarm.outcome) == ("r1", "Water basin", "aborted")
+    assert guarded.news["geofence"]["alarms"][0]["name"] == "Water basin"
+    assert await guarded.take() == ["Abort"]
+    for _ in range(3):
+        await guarded.at(66.0, 31.0)
+        await look(guarded)
+    assert await guarded.take() == []
+
+
+async def test_a_stop_that_cannot_be_stored_is_tried_until_it_is(guarded, monkeypatch):
+    database, run = guarded.database, guarded.database.run
+    failures = []
+
+    async def away(work, *arguments):
+        if len(failures) < 3:
+            failures.append(work)
+            raise StoreError("the database is away")
+        return await run(work, *arguments)
+
+    await guarded.at(*IN_THE_BASIN, v=1.0)
+    monkeypatch.setattr(database, "run", away)
+    assert (await look(guarded)).alarms[0].outcome == "aborted"
+    assert len(failures) == 3
+    assert await guarded.take() == ["Abort"]
+
+
+async def test_a_failed_stop_is_told_with_the_reason_and_given_up_when_the_robot_has_left(
+    guarded, monkeypatch
+):
+    async def away(work, *arguments):
+        raise StoreError("the database is away")
+
+    monkeypatch.setattr(guarded.database, "run", away)
+    await guarded.at(*IN_THE_BASIN, v=1.0)
+    geofence = guarded.fleet.geofence
+    async with asyncio.timeout(PATIENCE):
+        await geofence.watch()
+        while geofence.report().alarms[0].outcome != "failed":
+            await geofence.watch()
+    assert "the database is away" in geofence.report().alarms[0].reason
+    await guarded.at(*OUTSIDE, v=1.0)
+    await geofence.watch()
+    guarded.now += 3
+    await look(guarded)
+    assert geofence.report().alarms == []
+    assert not geofence._acting
+
+
+async def test_a_robot_that_cannot_be_paused_is_aborted(guarded, monkeypatch):
+    settings = replace(guarded.site.settings, geofence=GeofenceSettings(in_keepout="pause"))
+    guarded.site.take_over(replace(guarded.site.site, settings=settings))
+
+    async def refused(request, operator):
+        raise watch.MessageError("the path is too long to be kept")
+
+    monkeypatch.setattr(guarded.fleet.pauses, "pause", refused)
+    await guarded.at(*IN_THE_BASIN, v=1.0)
+    (alarm,) = (await look(guarded)).alarms
+    assert (alarm.action, alarm.outcome) == ("pause", "aborted")
+    assert await guarded.take() == ["Abort"]
+
+
+async def test_an_emergency_stop_in_force_is_stop_enough(guarded):
+    await guarded.fleet.emergency.stop(EmergencyStop("stop-0001"), "Eve")
+    await guarded.take()
+    await guarded.at(*IN_THE_BASIN)
+    (alarm,) = (await look(guarded)).alarms
+    assert alarm.outcome == "stopped"
+    assert await guarded.take() == []
+
+
+async def test_a_robot_that_is_not_heard_is_named_and_its_alarm_stays(guarded):
+    await guarded.at(*IN_THE_BASIN)
+    await look(guarded)
+    await guarded.take()
+    guarded.now += 60
+    guarded.fleet.age()
+    report = await look(guarded)
+    assert report.unjudged == ["r1"]
+    assert [(alarm.name, alarm.current) for alarm in report.alarms] == [("Water basin", False)]
+
+
+async def test_a_removed_robot_has_no_alarm(guarded):
+    await guarded.at(*IN_THE_BASIN)
+    await look(guarded)
+    guarded.fleet.robots.remove("r1")
+    assert (await look(guarded)).alarms == []
+
+
+async def test_areas_that_cannot_be_used_are_told_and_robots_are_judged_by_the_next_publication(
+    guarded, monkeypatch
+):
+    def broken(*_everything):
+        raise ValueError("no ring")
+
+    with monkeypatch.context() as patch:
+        patch.setattr(Fences, "of", broken)
+        guarded.site.take_over(replace(guarded.site.site))
+        assert (await look(guarded)).fault == "the site's areas cannot be used: no ring"
+    await guarded.at(*IN_THE_BASIN)
+    guarded.site.take_over(replace(guarded.site.site))
+    report = await look(guarded)
+    assert (report.fault, len(report.alarms)) == (None, 1)
+
+
+async def test_a_settings_change_does_not_stop_a_robot_again(guarded):
+    await guarded.at(*IN_THE_BASIN)
+    await look(guarded)
+    await guarded.take()
+    await look(guarded)
+    guarded.site.take_over(replace(guarded.site.site))
+    await look(guarded)
+    assert await guarded.take() == []
+    assert len(guarded.fleet.geofence.report().alarms) == 1
+
+
+async def see(yard, object, place):
+    """Let another robot see an object at ``place``; return the observation."""
+    await yard.ready("r2")
+    await yard.fleet.receive("r2", "websocket", SetObject(*place, object, label="cone"), None)
+    (seen,) = await yard.fleet.observations.newest(GetObservations(limit=1))
+    return seen.observation
+
+
+async def test_an_object_that_an_operator_accepted_is_an_obstacle_until_it_is_rejected(guarded):
+    settings = replace(guarded.site.settings, geofence=GeofenceSettings(at_obstacle="abort"))
+    guarded.site.take_over(replace(guarded.site.site, settings=settings))
+    before = (await look(guarded)).obstacles
+    seen = await see(guarded, "c7", OUTSIDE)
+    assert (await look(guarded)).alarms == []
+    await guarded.fleet.observations.review(ReviewObservation(seen, accept=True), "Ada")
+    report = await look(guarded)
+    (alarm,) = report.alarms
+    assert (alarm.kind, alarm.name, alarm.outcome) == ("obstacle", "cone c7", "aborted")
+    assert report.obstacles == before + 1
+    assert await guarded.take() == ["Abort"]
+    # Another one elsewhere is no new entry into this one.
+    other = await see(guarded, "c8", (40.0, 40.0))
+    await guarded.fleet.observations.review(ReviewObservation(other, accept=True), "Ada")
+    await guarded.at(*OUTSIDE)
+    assert [one.name for one in (await look(guarded)).alarms] == ["cone c7"]
+    assert await guarded.take() == []
+    await guarded.fleet.observations.review(ReviewObservation(seen, accept=False, revise=True), "Ada")
+    await look(guarded)
+    guarded.now += LEFT_AFTER_S
+    await guarded.at(*OUTSIDE)
+    assert (await look(guarded)).alarms == []
+    guarded.site.show([])
+
+
+async def test_a_robot_that_has_not_said_where_it_is_since_it_connected_is_not_judged_but_named(guarded):
+    await guarded.at(*IN_THE_BASIN)
+    await guarded.ready(magic=2)
+    report = await look(guarded)
+    assert (report.alarms, report.unjudged) == ([], ["r1"])

@@ -1,0 +1,185 @@
+"""What nobody foresaw of one robot is logged, and keeps nothing of the others, nor what comes after it."""
+
+from __future__ import annotations
+
+import re
+from types import SimpleNamespace
+
+import pytest
+
+from robot_bridge.errors import DataRefusedError, StoreError
+from robot_bridge.listeners import Listeners
+from robot_bridge.messages import EmergencyStop, QueueTask, SetObject, SetQueue
+
+
+@pytest.fixture
+async def two(roads):
+    for robot, y in (("r1", 40.0), ("r2", 42.0)):
+        await roads.ready(robot)
+        await roads.take(robot)
+        await roads.at(20.0, y, robot=robot)
+    return roads
+
+
+def fail_once(monkeypatch, owner, method, error, is_meant):
+    """Let ``method`` of ``owner`` raise ``error`` the first time that ``is_meant`` of its first argument."""
+    real, meant = getattr(owner, method), [is_meant]
+
+    async def failing(first, *more):
+        if meant and meant[0](first):
+            meant.clear()
+            raise error
+        return await real(first, *more)
+
+    monkeypatch.setattr(owner, method, failing)
+
+
+@pytest.mark.parametrize(
+    ("error", "said"),
+    [
+        (KeyError("nobody foresaw this"), "queue of r1; it is looked at again: internal error"),
+        (StoreError("the disk is full"), "queue of r1: the disk is full; it is looked at again"),
+    ],
+)
+async def test_a_queue_in_trouble_holds_up_no_other_and_is_looked_at_again(
+    two, monkeypatch, caplog, error, said
+):
+    driving = two.fleet.driving
+    fail_once(monkeypatch, driving._settling, "settle", error, lambda queue: queue.robot == "r1")
+    for robot in ("r1", "r2"):
+        await two.fleet.queues.set(SetQueue(robot, 0, [QueueTask(f"task-{robot}-1", 24.0, 40.0)]), "Ada")
+    await driving.advance()
+    assert (two.waiting("r1"), two.waiting("r2")) == ([], ["SetPath"])
+    assert said in caplog.text
+    driving.look_at_all()
+    await driving.advance()
+    assert two.waiting("r1") == ["SetPath"]
+
+
+@pytest.mark.parametrize(
+    ("error", "said"),
+    [
+        (KeyError("nobody foresaw this"), "robot r1, which waits for r2: internal error"),
+        (StoreError("the disk is full"), "robot r1, which waits for r2, is not sent on: the disk is full"),
+    ],
+)
+async def test_one_that_waits_in_trouble_holds_up_no_other_that_waits(
+    roads, monkeypatch, caplog, error, said
+):
+    await roads.wait_at_the_crossing()
+    waiting, seen_to = roads.fleet.roads.waiting, []
+    monkeypatch.setitem(waiting._rows, "r2", waiting._rows["r1"]._replace(robot="r2", other="r1"))
+
+    async def see_to(row, _seen):
+        if row.robot == "r1":
+            raise error
+        seen_to.append(row.robot)
+
+    monkeypatch.setattr(waiting, "_see_to", see_to)
+    await roads.fleet.watch_roads()
+    assert seen_to == ["r2"]
+    assert said in caplog.text
+
+
+async def test_an_observation_that_cannot_be_told_of_is_stored_and_acknowledged(two, monkeypatch, caplog):
+    def fail(_report):
+        raise KeyError("nobody foresaw this")
+
+    monkeypatch.setattr(two.fleet.observations, "_changed", fail)
+    outcome = await two.fleet.receive("r1", "websocket", SetObject(100.0, 80.0, "cone-7"), 7)
+    assert (outcome.ack.id, outcome.ack.ok) == (7, True)
+    assert two.sql("select object from observations") == [("cone-7",)]
+    assert "telling of observation 1 failed; what comes after it is done all the same" in caplog.text
+
+
+def test_a_desk_that_cannot_be_told_keeps_no_other_from_hearing():
+    class Desk:
+        def __init__(self, error=None):
+            self.heard, self.error = [], error
+
+        def notify(self, method, key, params):
+            self.heard.append(method)
+            if self.error is not None:
+                raise self.error
+
+    desks, listeners = [Desk(), Desk(KeyError("nobody foresaw this")), Desk()], Listeners()
+    for desk in desks:
+        listeners.add(desk)
+    listeners.announce("emergency", "emergency", {})
+    assert [desk.heard for desk in desks] == [["emergency"]] * 3
+
+
+def fail(*_anything):
+    raise KeyError("nobody foresaw this")
+
+
+def no_journal(fleet):
+    fleet.emergency._journal = SimpleNamespace(write=fail)
+
+
+def no_link(fleet):
+    fleet.emergency.reach(fail)
+
+
+def no_operators(fleet):
+    fleet.emergency._tell_operators = fail
+
+
+def no_command_told(fleet):
+    fleet._book._changed = fail
+
+
+@pytest.mark.parametrize(
+    ("part", "said"),
+    [
+        (no_journal, ["noting an emergency stop", "noting that an emergency stop is stored"]),
+        (no_link, ["sending an emergency stop over open connections"]),
+        (no_operators, ["announcing an emergency stop"]),
+        (no_command_told, ["telling of command"]),
+    ],
+)
+async def test_an_emergency_stop_goes_on_whatever_fails_of_it(two, caplog, part, said):
+    part(two.fleet)
+    called = []
+    two.fleet.emergency.reach(called.append)
+    report = await two.fleet.emergency.stop(EmergencyStop("stop-0001"), "Ada")
+    assert (report.in_force, report.stored, called) == (True, True, ["emergency-stop-0001"])
+    assert (two.waiting("r1"), two.waiting("r2")) == (["Abort"], ["Abort"])
+    for what in said:
+        assert re.search(f"{what}.* failed; what comes after it is done all the same", caplog.text)
+
+
+async def test_an_emergency_stop_that_cannot_be_stored_at_once_is_stored_soon(two, monkeypatch, caplog):
+    fail_once(monkeypatch, two.fleet.emergency._writer, "write", KeyError("nobody foresaw this"), bool)
+    report = await two.fleet.emergency.stop(EmergencyStop("stop-0001"), "Ada")
+    assert (report.in_force, report.stored) == (True, False)
+    assert "the emergency stop is in force and not stored yet" in caplog.text
+    await two.fleet.save()
+    assert two.fleet.emergency.report().stored
+    assert two.waiting("r1") == ["Abort"]
+
+
+@pytest.mark.parametrize("error", [KeyError("nobody foresaw this"), DataRefusedError("it is refused")])
+async def test_a_late_acknowledgement_in_trouble_is_forgotten_and_others_have_their_turn(
+    two, monkeypatch, error
+):
+    book, taken = two.fleet._book, []
+    monkeypatch.setattr(book, "_late", {("r1", 1), ("r2", 2), ("r1", 3)})
+
+    async def acknowledged(robot, ack):
+        if robot == "r1":
+            raise error
+        taken.append((robot, ack.id))
+
+    monkeypatch.setattr(book, "acknowledged", acknowledged)
+    await two.fleet.save()
+    assert (taken, book._late) == ([("r2", 2)], set())
+
+
+async def test_a_late_acknowledgement_is_kept_while_the_database_is_away(two, monkeypatch):
+    book = two.fleet._book
+    monkeypatch.setattr(book, "_late", {("r1", 1)})
+    fail_once(monkeypatch, book, "acknowledged", StoreError("the disk is full"), bool)
+    with pytest.raises(StoreError, match="the disk is full"):
+        await two.fleet.save()
+    assert book._late == {("r1", 1)}

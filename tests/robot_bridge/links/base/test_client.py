@@ -1,0 +1,79 @@
+"""A link's connection, at a gateway that says what no gateway of today does."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+from types import SimpleNamespace
+
+from adapter_on_the_line import LinkOnTheLine
+from websockets.asyncio.server import serve
+
+from robot_bridge import jsonrpc
+from robot_bridge.messages.links import LINK_PROTOCOL
+
+SITE = {
+    "id": "s",
+    "name": "s",
+    "version": 1,
+    "crs": "EPSG:25831",
+    "origin": [400000.0, 4600000.0],
+    "rotation": 0.0,
+    "bounds": [0.0, 0.0, 100.0, 100.0],
+    "reached_tolerance": 0.5,
+    "stale_after": 2.0,
+    "lost_after": 10.0,
+}
+WELCOME = {
+    "protocol": LINK_PROTOCOL,
+    "link": "test",
+    "robots": ["*"],
+    "database": "d",
+    "site": SITE,
+    "largest_image_bytes": 0,
+}
+
+
+class NewerGateway:
+    """Lets a link and its robots in, then sends ``calls``; ``replies`` are what the link answers to them."""
+
+    def __init__(self, calls: list[str]) -> None:
+        self._calls = calls
+        self.replies: list[dict] = []
+        self.answered = asyncio.Event()
+
+    async def speak(self, connection) -> None:
+        await connection.send(jsonrpc.call("Start", {"database": "d"}))
+        async for frame in connection:
+            message = json.loads(frame)
+            if message.get("method") == "hello":
+                await connection.send(jsonrpc.result(message["id"], WELCOME))
+            elif message.get("method") == "Ready":
+                await connection.send(jsonrpc.result(message["id"], {"ok": True}))
+                for call in self._calls:
+                    await connection.send(call)
+            elif "method" not in message:
+                self.replies.append(message)
+                if len(self.replies) == len(self._calls):
+                    self.answered.set()
+
+
+async def test_a_message_that_the_link_does_not_know_is_refused_and_the_next_is_done(tmp_path):
+    calls = [
+        jsonrpc.call("Dance", {"robot": "r1", "steps": 3}, "r1/7"),
+        jsonrpc.call("SetPosEnd", {"robot": "r1", "x": "east", "y": 2.0}, "r1/8"),
+        jsonrpc.call("SetPosEnd", {"robot": "r1", "x": 1.0, "y": 2.0}, "r1/9"),
+    ]
+    gateway = NewerGateway(calls)
+    async with serve(gateway.speak, "127.0.0.1", 0) as server:
+        port = server.sockets[0].getsockname()[1]
+        link = LinkOnTheLine(SimpleNamespace(address=f"ws://127.0.0.1:{port}"), tmp_path)
+        try:
+            await asyncio.to_thread(link.do, "add", "r1", ("targets",))
+            await asyncio.wait_for(gateway.answered.wait(), 40)
+        finally:
+            await asyncio.to_thread(link.end)
+    refused = {reply["id"]: reply["error"]["message"] for reply in gateway.replies if "error" in reply}
+    assert sorted(refused) == ["r1/7", "r1/8"]
+    assert "does not know it" in refused["r1/7"] and "Dance" in refused["r1/7"]
+    assert [command.id for command in link.adapter.commands] == [9]

@@ -1,0 +1,102 @@
+"""What a link remembers over the death of its process."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+
+from robot_bridge.links.base.errors import LinkError
+from robot_bridge.links.base.memory import MOST_DONE, Done, LinkMemory
+
+
+@pytest.fixture
+def file(tmp_path):
+    return tmp_path / "agvs.state"
+
+
+async def test_runs_and_what_came_of_messages_are_remembered(file):
+    memory = LinkMemory(file)
+    memory.use_database("db-1")
+    magic = memory.magic("agv-1")
+    assert await memory.begin("agv-1", 7) is False
+    await memory.finish("agv-1", 7, Done())
+    await memory.begin("agv-1", 8)
+    await memory.finish("agv-1", 8, Done("no"))
+    await memory.begin("agv-1", 9)
+
+    again = LinkMemory(file)
+    again.use_database("db-1")
+    assert again.magic("agv-1") == magic
+    assert (again.find("agv-1", 7), again.find("agv-1", 8)) == (Done(), Done("no"))
+    assert again.find("agv-1", 9) is None
+    assert await again.begin("agv-1", 9) is True
+    assert again.renew("agv-1") != magic
+    assert again.find("agv-1", 7) == Done(), "a robot that forgot is told anew under other ids"
+    again.use_database("db-2")
+    assert LinkMemory(file).find("agv-1", 7) is None
+
+
+async def test_a_line_that_was_cut_off_is_left_out(file, caplog):
+    memory = LinkMemory(file)
+    magic = memory.magic("agv-1")
+    file.write_text(file.read_text(encoding="utf-8") + '{"robot": "agv-2", "ma', encoding="utf-8")
+    assert LinkMemory(file).magic("agv-1") == magic
+    assert "line 2 is left out" in caplog.text
+
+
+async def test_it_does_not_grow_for_ever(file):
+    memory = LinkMemory(file)
+    memory.magic("agv-1")
+    lines = [json.dumps({"robot": "agv-1", "done": id}) for id in range(MOST_DONE + 5)]
+    file.write_text(file.read_text(encoding="utf-8") + "\n".join(lines) + "\n", encoding="utf-8")
+    again = LinkMemory(file)
+    assert (again.find("agv-1", 4), again.find("agv-1", 5)) == (None, Done())
+    assert len(file.read_text(encoding="utf-8").splitlines()) == MOST_DONE + 1
+
+
+def test_a_folder_that_cannot_be_written_is_named(tmp_path):
+    with pytest.raises(LinkError, match="state_folder"):
+        LinkMemory(tmp_path / "none" / "agvs.state")
+
+
+async def test_on_a_full_disk_nothing_is_begun_and_all_is_written_once_there_is_room(file, caplog):
+    magic = LinkMemory(file).magic("agv-1")
+    new = file.with_name(f"{file.name}.new")
+    new.symlink_to("/dev/full")
+    memory = LinkMemory(file)
+    assert "No space left" in memory.fault
+    assert memory.magic("agv-1") == magic
+    other = memory.magic("agv-2")
+    for _ in range(2):
+        with pytest.raises(LinkError, match="can be stopped"):
+            await memory.begin("agv-1", 7)
+    await memory.finish("agv-1", 6, Done())
+    await memory.recover()
+    assert memory.fault is not None
+
+    new.unlink()
+    await memory.recover()
+    assert memory.fault is None
+    assert await memory.begin("agv-1", 7) is False
+    again = LinkMemory(file)
+    assert (again.magic("agv-2"), again.find("agv-1", 6)) == (other, Done())
+    assert await again.begin("agv-1", 7) is True
+    assert [r.levelname for r in caplog.records if "agvs.state" in r.message] == ["ERROR", "WARNING"]
+
+
+async def test_a_disk_that_fills_up_under_way_is_noticed_by_the_next_message(file):
+    memory = LinkMemory(file)
+    magic = memory.magic("agv-1")
+    kept = file.read_bytes()
+    file.unlink()
+    file.symlink_to("/dev/full")
+    with pytest.raises(LinkError, match="No space left"):
+        await memory.begin("agv-1", 7)
+    file.unlink()
+    file.write_bytes(kept + b'{"robot": "agv')
+    assert await memory.begin("agv-1", 8) is False
+    again = LinkMemory(file)
+    assert again.magic("agv-1") == magic
+    assert await again.begin("agv-1", 7) is False
+    assert await again.begin("agv-1", 8) is True

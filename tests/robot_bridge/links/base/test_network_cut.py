@@ -1,0 +1,117 @@
+"""The network between a link and its gateway is gone for 10 s: nothing is lost, and nothing done twice."""
+
+from __future__ import annotations
+
+import asyncio
+import threading
+import time
+from types import SimpleNamespace
+
+import pytest
+from adapter_on_the_line import LinkOnTheLine
+from bridge_programs import wait_until
+from cut_line import CutLine
+
+from robot_bridge.messages import SendPos, SetObject
+
+CUT = 10.0
+"""seconds; a robot of this site is lost after 1.6 s."""
+DRIVING, TOLD, ORDERED, STOPPED, SEEING = ROBOTS = ("driving", "told", "ordered", "stopped", "seeing")
+
+
+@pytest.fixture(scope="module")
+def bridge(start_bridge, impatient_site):
+    bridge = start_bridge(impatient_site)
+    yield bridge
+    bridge.end()
+
+
+@pytest.fixture
+def line(bridge):
+    line = CutLine(int(bridge.address.rpartition(":")[2]))
+    yield line
+    line.close()
+
+
+@pytest.fixture
+def link(line, tmp_path):
+    link = LinkOnTheLine(SimpleNamespace(address=line.address), tmp_path)
+    yield link
+    link.end()
+
+
+@pytest.mark.parametrize("reset", [False, True], ids=["bytes come late", "bytes are lost"])
+def test_a_network_that_was_cut_loses_nothing_and_does_nothing_twice(bridge, line, link, reset):
+    kind = "lost" if reset else "late"
+    names = {robot: f"{robot}-{kind}" for robot in ROBOTS}
+    desk = bridge.desk()
+    desk.ask("subscribe", {"rate": 20})
+    began, goes_on = threading.Event(), threading.Event()
+
+    async def during(command):
+        if command.robot == names[TOLD]:
+            began.set()
+            await asyncio.to_thread(goes_on.wait, 30)
+
+    link.adapter.during = during
+    for n, name in enumerate(names.values()):
+        link.do("add", name, ["targets", "paths"])
+        link.do("position", name, SendPos(20.0 + 5 * n, 8.0, 0.0, 0.0))
+    desk.wait_for_robots(*names.values())
+
+    def go(robot):
+        desk.send(f"go-{names[robot]}", names[robot], "SetPosEnd", x=60.0, y=8.0)
+
+    for robot in (DRIVING, STOPPED):
+        go(robot)
+        desk.wait_for_step(f"go-{names[robot]}", "acknowledged")
+    go(TOLD)
+    wait_until(began.is_set)
+
+    line.cut()
+    mended_at = time.monotonic() + CUT
+    # On the robots' side: one takes on what it was told, one arrives, one sees something.
+    goes_on.set()
+    link.do("position", names[DRIVING], SendPos(60.0, 8.0, 0.0, 0.0))
+    link.do("stopped", names[DRIVING])
+    told = begin(link, link.client.ask(names[SEEING], SetObject(30.0, 9.0, "crate", source="crate 1")))
+    areas = begin(link, link.client.areas((0.0, 0.0, 200.0, 160.0)))
+    # At the desk: one is ordered, one is stopped.
+    for name in names.values():
+        desk.until(lambda name=name: desk.robots[name]["state"] == "lost")
+    go(ORDERED)
+    desk.send(f"stop-{names[STOPPED]}", names[STOPPED], "Abort")
+    while (left := mended_at - time.monotonic()) > 0:
+        time.sleep(left)
+    assert [c.robot for c in link.adapter.commands] == [names[DRIVING], names[STOPPED], names[TOLD]]
+    assert link.adapter.stops == [] and not told.done() and not areas.done()
+    line.mend(reset=reset)
+
+    assert told.result(60).ok and areas.result(60).keepouts
+    desk.wait_for_step(f"stop-{names[STOPPED]}", "acknowledged")
+    link.do("position", names[STOPPED], SendPos(36.0, 8.0, 0.0, 0.0))
+    link.do("stopped", names[STOPPED])
+    desk.wait_for_step(f"go-{names[STOPPED]}", "aborted")
+    desk.wait_for_step(f"go-{names[ORDERED]}", "acknowledged")
+    desk.wait_for_step(f"go-{names[TOLD]}", "acknowledged")
+    link.do("position", names[DRIVING], SendPos(60.0, 8.0, 0.0, 0.0))
+    desk.wait_for_step(f"go-{names[DRIVING]}", "reached")
+    # Each was told once what it was told, and stopped because it was asked to.
+    commanded = sorted(command.robot for command in link.adapter.commands)
+    assert commanded == sorted(names[robot] for robot in (DRIVING, STOPPED, TOLD, ORDERED))
+    assert {robot for robot, _ in link.adapter.stops} == {names[STOPPED]}
+    observed = desk.ask("get_observations", {"robot": names[SEEING]})["observations"]
+    assert [one["object"] for one in observed] == ["crate"]
+    for robot in (DRIVING, TOLD, ORDERED):
+        states = [step["state"] for step in steps(desk, f"go-{names[robot]}")]
+        assert len(states) == len(set(states)), states
+
+
+def begin(link, work):
+    """Have the link's own loop do ``work``; return its future."""
+    return asyncio.run_coroutine_threadsafe(work, link._loop)
+
+
+def steps(desk, command):
+    (report,) = [one for one in desk.ask("get_commands", {})["commands"] if one["command"] == command]
+    return report["steps"]

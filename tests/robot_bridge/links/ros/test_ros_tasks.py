@@ -1,0 +1,309 @@
+"""The life of a robot's tasks, and its stops, decided without I/O."""
+
+from __future__ import annotations
+
+import pytest
+
+from robot_bridge.links.ros.effects import (
+    Abilities,
+    Action,
+    Answered,
+    CallCone,
+    CallStop,
+    CancelGoals,
+    Idle,
+    PublishHere,
+    PublishTask,
+    SendGoal,
+    StopEnded,
+    ZeroTwist,
+)
+from robot_bridge.links.ros.goals import GoalStatus, goal_id, message_of
+from robot_bridge.links.ros.tasks import Tasks
+from robot_bridge.messages import SetPath, SetPosEnd
+
+NAV2 = Abilities(actions=frozenset({Action.TO_POSE, Action.FOLLOW_PATH}), velocity=True)
+TOPICS = Abilities(goal_topic=True, path_topic=True, velocity=True)
+TARGET = SetPosEnd(5.0, 6.0)
+PATH = SetPath([(0.0, 0.0), (5.0, 0.0)])
+
+
+@pytest.fixture
+def tasks():
+    return Tasks(cones=True)
+
+
+def statuses(tasks, status, message=7, action=Action.TO_POSE, now=0.0):
+    return tasks.statuses_came(action, {goal_id(message): status}, now)
+
+
+def test_the_id_of_a_goal_names_its_message():
+    assert message_of(goal_id(7)) == 7 and message_of(goal_id(7, 12)) == 7
+    assert message_of(bytes(16)) is None
+
+
+def test_a_target_is_a_goal_taken_on_when_its_status_says_so(tasks):
+    assert tasks.order(7, TARGET, NAV2, 0.0) == [SendGoal(Action.TO_POSE, goal_id(7), TARGET, 7)]
+    tasks.goal_answered(Action.TO_POSE, True, 0.1)  # maybe to another client
+    assert tasks.step(NAV2, 0.2) == []
+    assert statuses(tasks, GoalStatus.EXECUTING) == [Answered(7)]
+    assert statuses(tasks, GoalStatus.EXECUTING) == []
+    assert statuses(tasks, GoalStatus.SUCCEEDED) == [Idle()]
+    assert not tasks.is_busy
+
+
+def test_a_path_goes_to_who_follows_paths(tasks):
+    (sent,) = tasks.order(7, PATH, NAV2, 0.0)
+    assert sent.action is Action.FOLLOW_PATH
+    through = Tasks(cones=False)
+    (sent,) = through.order(7, PATH, Abilities(frozenset({Action.THROUGH_POSES})), 0.0)
+    assert sent.action is Action.THROUGH_POSES
+
+
+EVERY = Abilities(frozenset(Action))
+
+
+@pytest.mark.parametrize("wanted", [Action.FOLLOW_PATH, Action.THROUGH_POSES, Action.WAYPOINTS])
+def test_a_path_goes_to_the_action_that_the_settings_name_first(wanted):
+    tasks = Tasks(cones=False, path_actions=[wanted, Action.FOLLOW_PATH])
+    (sent,) = tasks.order(7, PATH, EVERY, 0.0)
+    assert sent.action is wanted
+
+
+def test_an_action_that_the_settings_leave_out_drives_no_path():
+    tasks = Tasks(cones=False, path_actions=[Action.WAYPOINTS])
+    (answer,) = tasks.order(7, PATH, NAV2, 0.0)
+    assert "FollowWaypoints that the settings allow" in answer.refusal
+
+
+def test_an_action_of_another_distribution_is_sent_nothing_and_is_canceled_all_the_same():
+    able = Abilities(frozenset({Action.TO_POSE, Action.FOLLOW_PATH}), frozenset({Action.FOLLOW_PATH}))
+    tasks = Tasks(cones=False)
+    (answer,) = tasks.order(7, PATH, able, 0.0)
+    assert "nobody on the robot's side follows paths" in answer.refusal
+    assert CancelGoals(Action.FOLLOW_PATH) in tasks.abort(able, 0.0)
+
+
+@pytest.fixture
+def waypoints():
+    tasks = Tasks(cones=False)
+    (sent,) = tasks.order(7, PATH, Abilities(frozenset({Action.WAYPOINTS})), 0.0)
+    assert sent.action is Action.WAYPOINTS
+    return tasks
+
+
+def test_waypoints_are_driven_when_the_result_names_none_that_was_missed(waypoints):
+    assert statuses(waypoints, GoalStatus.SUCCEEDED, action=Action.WAYPOINTS) == [Answered(7)]
+    waypoints.result_came(Action.WAYPOINTS, 4, 0, "", [])
+    assert waypoints.step(EVERY, 0.1) == [Idle()]
+
+
+@pytest.mark.parametrize("result_first", [True, False])
+def test_waypoints_that_were_missed_are_a_failure_that_names_them(waypoints, result_first):
+    def result():
+        waypoints.result_came(Action.WAYPOINTS, 4, 0, "", [0, 3])
+
+    if result_first:
+        result()
+    effects = statuses(waypoints, GoalStatus.SUCCEEDED, action=Action.WAYPOINTS)
+    if not result_first:
+        result()
+    effects += waypoints.step(EVERY, 0.1)
+    refusal = Answered(7, "the robot left out points of the path: 1, 4")
+    assert effects == [Answered(7), refusal, Idle()]
+
+
+def test_waypoints_without_a_result_are_driven_after_a_while(waypoints):
+    assert statuses(waypoints, GoalStatus.SUCCEEDED, action=Action.WAYPOINTS) == [Answered(7)]
+    assert waypoints.step(EVERY, 1.9) == []
+    assert waypoints.step(EVERY, 2.1) == [Idle()]
+
+
+def test_a_rejected_goal_is_refused_and_canceled_for_safety(tasks):
+    tasks.order(7, TARGET, NAV2, 0.0)
+    tasks.goal_answered(Action.TO_POSE, False, 0.1)
+    assert tasks.step(NAV2, 0.2) == []
+    cancel, refused = tasks.step(NAV2, 0.5)
+    assert cancel == CancelGoals(Action.TO_POSE, goal_id(7))
+    assert refused == Answered(7, "the robot's server of NavigateToPose rejected the goal")
+
+
+def test_a_rejection_of_another_clients_goal_refuses_nothing(tasks):
+    tasks.order(7, TARGET, NAV2, 0.0)
+    tasks.goal_answered(Action.TO_POSE, False, 0.1)
+    assert statuses(tasks, GoalStatus.ACCEPTED, now=0.2) == [Answered(7)]
+    assert tasks.step(NAV2, 0.5) == []
+
+
+def test_a_server_that_does_not_answer_is_named(tasks):
+    tasks.order(7, TARGET, NAV2, 0.0)
+    assert tasks.step(NAV2, 4.9) == []
+    assert "did not answer within 5 s" in tasks.step(NAV2, 5.0)[1].refusal
+
+
+def test_a_goal_that_fails_says_why(tasks):
+    tasks.order(7, TARGET, NAV2, 0.0)
+    statuses(tasks, GoalStatus.EXECUTING)
+    statuses(tasks, GoalStatus.ABORTED, now=3.0)
+    assert tasks.step(NAV2, 3.1) == []
+    tasks.result_came(Action.TO_POSE, GoalStatus.ABORTED, 9003, "blocked by a gate")
+    assert tasks.step(NAV2, 3.2) == [
+        Answered(7, "the robot gave up: blocked by a gate (error 9003)"),
+        Idle(),
+    ]
+
+
+def test_a_goal_that_somebody_else_cancels_fails(tasks):
+    tasks.order(7, TARGET, NAV2, 0.0)
+    statuses(tasks, GoalStatus.CANCELED, now=1.0)
+    (failed, _) = tasks.step(NAV2, 3.0)
+    assert failed.refusal == "it was canceled on the robot's side"
+
+
+def test_a_new_target_takes_the_place_of_the_one_before(tasks):
+    tasks.order(7, TARGET, NAV2, 0.0)
+    statuses(tasks, GoalStatus.EXECUTING)
+    assert tasks.order(8, TARGET, NAV2, 1.0) == [SendGoal(Action.TO_POSE, goal_id(8), TARGET, 8)]
+    both = {goal_id(7): GoalStatus.EXECUTING, goal_id(8): GoalStatus.ACCEPTED}
+    assert tasks.statuses_came(Action.TO_POSE, both, 1.1) == [
+        Answered(8),
+        CancelGoals(Action.TO_POSE, goal_id(7)),
+    ]
+    assert statuses(tasks, GoalStatus.ABORTED, message=7) == []
+
+
+def test_another_action_begins_when_the_one_before_has_ended(tasks):
+    tasks.order(7, TARGET, NAV2, 0.0)
+    statuses(tasks, GoalStatus.EXECUTING)
+    assert tasks.order(8, PATH, NAV2, 1.0) == [CancelGoals(Action.TO_POSE, goal_id(7))]
+    assert tasks.step(NAV2, 1.1) == []
+    statuses(tasks, GoalStatus.CANCELED)
+    assert tasks.step(NAV2, 1.2) == [SendGoal(Action.FOLLOW_PATH, goal_id(8), PATH, 8)]
+
+
+def test_a_goal_that_an_earlier_process_sent_is_not_sent_again(tasks):
+    statuses(tasks, GoalStatus.EXECUTING)
+    assert tasks.order(7, TARGET, NAV2, 1.0, again=True) == [Answered(7)]
+    assert statuses(tasks, GoalStatus.SUCCEEDED) == [Idle()]
+
+
+def test_a_goal_of_an_earlier_process_that_fails_is_told(tasks):
+    statuses(tasks, GoalStatus.EXECUTING)
+    statuses(tasks, GoalStatus.ABORTED, now=1.0)
+    assert tasks.step(NAV2, 3.0)[0] == Answered(7, "the robot gave up")
+
+
+def test_an_id_that_another_database_gave_is_made_another_goal(tasks):
+    statuses(tasks, GoalStatus.SUCCEEDED)
+    (sent,) = tasks.order(7, TARGET, NAV2, 1.0)
+    assert sent.goal_id != goal_id(7) and message_of(sent.goal_id) == 7
+
+
+def test_a_robot_without_actions_is_told_on_topics(tasks):
+    assert tasks.order(7, TARGET, TOPICS, 0.0) == [PublishTask(TARGET), Answered(7)]
+    assert tasks.order(8, PATH, TOPICS, 0.0) == [PublishTask(PATH), Answered(8)]
+
+
+def test_a_robot_to_which_nobody_listens_is_refused(tasks):
+    assert "no server of NavigateToPose" in tasks.order(7, TARGET, Abilities(), 0.0)[0].refusal
+    assert "no server of FollowPath" in tasks.order(7, PATH, Abilities(), 0.0)[0].refusal
+
+
+def test_a_cone_is_placed_where_the_goal_ends(tasks):
+    able = Abilities(NAV2.actions, cone_service=True)
+    tasks.order(7, SetPosEnd(5.0, 6.0, cone=True), able, 0.0)
+    statuses(tasks, GoalStatus.EXECUTING)
+    assert statuses(tasks, GoalStatus.SUCCEEDED) == [CallCone()]
+    assert statuses(tasks, GoalStatus.SUCCEEDED) == []
+    assert tasks.cone_answered(True, "") == [Idle()]
+
+
+def test_a_cone_that_is_not_placed_fails_the_task(tasks):
+    able = Abilities(NAV2.actions, cone_service=True)
+    tasks.order(7, SetPosEnd(5.0, 6.0, cone=True), able, 0.0)
+    statuses(tasks, GoalStatus.SUCCEEDED)
+    (failed,) = tasks.cone_answered(False, "empty")
+    assert failed.refusal == "it stands there, and its cone service said 'empty'"
+
+
+def test_a_cone_for_a_robot_that_places_none_is_refused():
+    cone = SetPosEnd(5.0, 6.0, cone=True)
+    assert "name no cone service" in Tasks(cones=False).order(7, cone, NAV2, 0.0)[0].refusal
+
+
+CANCELED = 0
+
+
+def test_a_stop_cancels_everything_and_says_speed_0_until_it_is_answered(tasks):
+    tasks.order(7, TARGET, NAV2, 0.0)
+    statuses(tasks, GoalStatus.EXECUTING)
+    first = tasks.abort(NAV2, 1.0)
+    assert first == [ZeroTwist(), CancelGoals(Action.FOLLOW_PATH), CancelGoals(Action.TO_POSE)]
+    assert tasks.step(NAV2, 1.05) == []
+    assert tasks.step(NAV2, 1.1) == [ZeroTwist()]
+    assert CancelGoals(Action.TO_POSE) in tasks.step(NAV2, 1.6)
+    tasks.cancel_answered(Action.FOLLOW_PATH, CANCELED)
+    tasks.cancel_answered(Action.TO_POSE, CANCELED)
+    assert StopEnded() not in tasks.step(NAV2, 1.7)
+    statuses(tasks, GoalStatus.CANCELED)
+    assert tasks.step(NAV2, 1.8) == [StopEnded()]
+    assert tasks.step(NAV2, 9.0) == []
+
+
+def test_a_stop_that_is_refused_says_who_did_not_answer_and_goes_on(tasks):
+    statuses(tasks, GoalStatus.EXECUTING)
+    tasks.abort(NAV2, 0.0)
+    tasks.cancel_answered(Action.FOLLOW_PATH, CANCELED)
+    tasks.cancel_answered(Action.TO_POSE, 1)
+    ended = [one for one in tasks.step(NAV2, 5.0) if isinstance(one, StopEnded)]
+    assert "its server of NavigateToPose does not answer" in ended[0].refusal
+    assert CancelGoals(Action.TO_POSE) in tasks.step(NAV2, 7.5)
+
+
+def test_nothing_is_begun_behind_a_stop_that_nobody_confirmed(tasks):
+    tasks.abort(NAV2, 0.0)
+    tasks.step(NAV2, 5.0)
+    (refused,) = [one for one in tasks.order(8, TARGET, NAV2, 6.0) if isinstance(one, Answered)]
+    assert "was not confirmed" in refused.refusal
+
+
+def test_what_comes_behind_a_stop_waits_for_its_end(tasks):
+    tasks.abort(NAV2, 0.0)
+    assert not any(isinstance(one, SendGoal) for one in tasks.order(8, TARGET, NAV2, 0.1))
+    for action in NAV2.actions:
+        tasks.cancel_answered(action, CANCELED)
+    assert tasks.step(NAV2, 0.2) == [StopEnded()]
+    assert tasks.step(NAV2, 0.3) == [SendGoal(Action.TO_POSE, goal_id(8), TARGET, 8)]
+
+
+def test_a_stop_service_has_to_confirm(tasks):
+    able = Abilities(stop_service=True)
+    assert tasks.abort(able, 0.0) == [CallStop()]
+    tasks.stop_answered(False, "brake stuck")
+    ended = [one for one in tasks.step(able, 5.0) if isinstance(one, StopEnded)]
+    assert "it said 'brake stuck'" in ended[0].refusal
+    tasks.abort(able, 6.0)
+    tasks.stop_answered(True, "")
+    assert tasks.step(able, 6.1) == [StopEnded()]
+
+
+def test_a_robot_on_topics_has_stopped_when_it_is_seen_to_stand(tasks):
+    first = tasks.abort(TOPICS, 0.0)
+    assert first == [ZeroTwist(), PublishHere()]
+    for speed in (1.0, 0.0, 0.01):
+        assert StopEnded() not in tasks.step(TOPICS, 0.05)
+        tasks.seen(speed)
+    assert tasks.step(TOPICS, 0.2) == [StopEnded()]
+
+
+def test_a_robot_to_which_nobody_listens_is_stopped_by_nobody(tasks):
+    tasks.abort(Abilities(), 0.0)
+    (ended,) = tasks.step(Abilities(), 5.0)
+    assert "nobody listens there to any stop" in ended.refusal
+
+
+def test_a_stop_finds_what_was_waiting(tasks):
+    tasks.order(7, TARGET, NAV2, 0.0)
+    statuses(tasks, GoalStatus.EXECUTING)
+    tasks.order(8, PATH, NAV2, 1.0)
+    assert Answered(8, "it was aborted before it was begun") in tasks.abort(NAV2, 1.1)

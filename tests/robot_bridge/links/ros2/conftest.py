@@ -1,0 +1,34 @@
+"""Real ROS 2 nodes: rclpy in an environment of its own, on loopback, in a DDS domain of this test process."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+from stage.errors import StageError
+from stage.processes import Processes
+from stage.ros_nodes import Nodes
+from stage.ros_peer import ros_python
+
+DOCS = Path(__file__).resolve().parents[4] / "docs"
+
+
+@pytest.fixture(scope="session")
+def guide():
+    """Blocks of settings of the guide: ``guide(name)``."""
+    text = (DOCS / "links-ros2.md").read_text(encoding="utf-8")
+    return lambda name: re.search(rf"```toml {name}\n(.*?)```", text, re.DOTALL)[1]
+
+
+@pytest.fixture(scope="module")
+def nodes(tmp_path_factory):
+    """Real ROS 2 robots of this module; all end with it."""
+    for package in ("cyclonedds", "rosbags"):
+        pytest.importorskip(package, reason=f"{package} is not installed; run make setup")
+    try:
+        python = ros_python()
+    except StageError as error:
+        pytest.skip(str(error))
+    with Processes(tmp_path_factory.mktemp("ros")) as processes:
+        yield Nodes(processes, python)

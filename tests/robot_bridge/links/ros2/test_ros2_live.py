@@ -1,0 +1,417 @@
+"""Real rclpy robots through a real gateway, as operators see them; adapter, node and gateway are killed."""
+
+from __future__ import annotations
+
+import base64
+import io
+import itertools
+import sys
+
+import pytest
+from bridge_programs import wait_until
+from PIL import Image
+from stage.patience import BUSY
+from stage.processes import Processes
+
+SETTINGS = """
+[gateway]
+url = "{address}/link"
+
+[ros2]
+domain = {domain}
+range = "localhost"
+distribution = "{distribution}"
+
+image_every_s = 1
+
+[ros2.topics]
+stop = "/{{robot}}/stop"
+place_cone = "/{{robot}}/place_cone"
+map = "/{{robot}}/map"
+image = "/{{robot}}/camera"
+keepout_mask = "/{{robot}}/keepout_mask"
+keepout_info = "/{{robot}}/keepout_info"
+speed_mask = "/{{robot}}/speed_mask"
+speed_info = "/{{robot}}/speed_info"
+"""
+NUMBERS = itertools.count(1)
+SLOW, FAST = ("--speed", "0.5"), ("--speed", "10")
+
+
+class AdapterProcess:
+    """``robot-bridge link ros2`` as a process of its own."""
+
+    def __init__(self, processes, file):
+        self._processes, self._file = processes, file
+        self.name = ""
+
+    def start(self):
+        """Start it and wait until it is connected."""
+        self.name = f"ros2-{next(NUMBERS)}"
+        command = [
+            "prlimit",
+            "--as=3000000000",
+            sys.executable,
+            "-m",
+            "robot_bridge",
+            "link",
+            "ros2",
+            "--config",
+            self._file,
+        ]
+        self.process = self._processes.start(self.name, command)
+
+    def kill(self):
+        """End it the way a power cut does."""
+        self.process.kill()
+        self.process.wait(5)
+
+    def output(self):
+        """Return what it has printed."""
+        return self._processes.log(self.name).read_text(encoding="utf-8")
+
+
+@pytest.fixture(scope="module")
+def bridge(start_bridge, impatient_site, nodes):
+    bridge = start_bridge(impatient_site)
+    yield bridge
+    bridge.end()
+
+
+@pytest.fixture(scope="module")
+def adapter(bridge, nodes, tmp_path_factory):
+    folder = tmp_path_factory.mktemp("links")
+    file = folder / "nav2.toml"
+    file.write_text(
+        SETTINGS.format(address=bridge.address, domain=nodes.domain, distribution=nodes.distribution)
+    )
+    with Processes(folder / "logs") as processes:
+        adapter = AdapterProcess(processes, file)
+        adapter.start()
+        yield adapter
+
+
+@pytest.fixture
+def desk(bridge):
+    desk = bridge.desk()
+    desk.ask("subscribe", {"rate": 20})
+    return desk
+
+
+@pytest.fixture
+def robot(adapter, nodes, desk):
+    """Start a robot that no other test has: ``robot(*options)`` returns its name when it is seen."""
+    started = []
+
+    def start(*options, seen=True):
+        name = f"robot{next(NUMBERS)}"
+        nodes.start(name, *options)
+        started.append(name)
+        if seen:
+            desk.wait_for_robots(name, seconds=BUSY * 10)
+        return name
+
+    yield start
+    for name in started:
+        nodes.end(name)
+
+
+def events(nodes, name, kind):
+    return [event for event in nodes.events(name) if event["event"] == kind]
+
+
+def steps(desk, command):
+    reports = desk.ask("get_commands", {})["commands"]
+    (report,) = [one for one in reports if one["command"] == command]
+    return report["steps"]
+
+
+def test_a_cone_target_is_driven_reached_and_placed(desk, robot, nodes):
+    name = robot(*FAST)
+    assert desk.robots[name]["x"] == pytest.approx(20.0)
+    desk.until(lambda: desk.robots[name].get("battery") == 0.75, 20)
+    desk.send(f"go-{name}", name, "SetPosEnd", x=40.0, y=8.0, cone=True)
+    desk.wait_for_step(f"go-{name}", "acknowledged", 5)
+    desk.wait_for_step(f"go-{name}", "reached", 8)
+    (cone,) = wait_until(lambda: events(nodes, name, "cone"))
+    assert (cone["x"], cone["y"]) == pytest.approx((40.0, 8.0))
+
+
+def test_a_route_is_followed_point_by_point(desk, robot, nodes):
+    name = robot(*FAST)
+    points = [[20.0, 8.0], [30.0, 8.0], [30.0, 12.0]]
+    desk.send(f"path-{name}", name, "SetPath", points=points)
+    desk.wait_for_step(f"path-{name}", "reached", 8)
+    (goal,) = events(nodes, name, "goal")
+    assert goal["kind"] == "FollowPath" and goal["points"] == points
+
+
+@pytest.mark.parametrize(
+    ("action", "kind"),
+    [("navigate_through_poses", "NavigateThroughPoses"), ("follow_waypoints", "FollowWaypoints")],
+)
+def test_a_route_is_driven_by_what_the_robot_offers(desk, robot, nodes, action, kind):
+    name = robot(*FAST, "--actions", action)
+    points = [[20.0, 8.0], [22.0, 8.0], [22.0, 10.0]]
+    desk.send(f"path-{name}", name, "SetPath", points=points)
+    desk.wait_for_step(f"path-{name}", "reached", 8)
+    (goal,) = events(nodes, name, "goal")
+    assert goal["kind"] == kind and goal["points"] == points
+
+
+def test_a_route_whose_points_were_missed_has_failed(desk, robot):
+    name = robot(*FAST, "--actions", "follow_waypoints", "--odd", "misses")
+    desk.send(f"path-{name}", name, "SetPath", points=[[20.0, 8.0], [22.0, 8.0], [22.0, 10.0]])
+    desk.wait_for_step(f"path-{name}", "failed", 8)
+    assert "left out points of the path: 2" in steps(desk, f"path-{name}")[-1]["reason"]
+
+
+def test_an_image_is_one_observation_at_the_place_of_its_robot(desk, robot, adapter):
+    name, bad = robot("--image", "raw"), robot("--image", "depth")
+    wait_until(lambda: f"robot {bad}: /{bad}/camera: its image is 'depth'" in adapter.output(), 20)
+    (seen,) = wait_until(lambda: desk.ask("get_observations", {"robot": name})["observations"], 20)
+    assert (seen["op"], seen["object"], seen["media_type"]) == ("SendImage", "front_camera", "image/png")
+    assert (seen["x"], seen["y"]) == pytest.approx((20.0, 8.0))
+    content = base64.b64decode(desk.ask("get_image", {"observation": seen["observation"]})["image"])
+    image = Image.open(io.BytesIO(content))
+    assert [image.getpixel((x, 0)) for x in range(3)] == [(255, 0, 0), (255, 0, 0), (0, 0, 255)]
+
+
+def test_nav2_that_is_started_later_makes_its_robot_able(desk, robot, nodes):
+    name = robot("--odd", "no-actions")
+    desk.until(lambda: "paths" not in (desk.robots[name].get("abilities") or ""), 20)
+    nodes.start(f"{name}-nav2", *FAST, "--odd", "silent", node=name)
+    try:
+        desk.until(lambda: "paths" in (desk.robots[name].get("abilities") or ""), 20)
+    finally:
+        nodes.end(f"{name}-nav2")
+
+
+def test_the_map_of_the_site_comes_latched_with_masks_for_the_filters_of_nav2(robot, nodes):
+    name = robot()
+    told = wait_until(lambda: events(nodes, name, "map"), 30)
+    assert (told[0]["columns"], told[0]["rows"], told[0]["frame"]) == (2000, 1600, "map")
+    wait_until(lambda: len(events(nodes, name, "mask")) == 2 and len(events(nodes, name, "filter")) == 2, 40)
+    masks = {one["name"]: one for one in events(nodes, name, "mask")}
+    assert {(one["columns"], one["rows"]) for one in masks.values()} == {(2000, 1600)}
+    assert masks["keepout"]["cells"] == {"road": 0, "excavation": 100}
+    filters = {one["mask"]: one for one in events(nodes, name, "filter")}
+    assert filters[f"/{name}/keepout_mask"]["type"] == 0
+    speeds, speed = masks["speed"]["cells"], filters[f"/{name}/speed_mask"]
+    assert (speed["type"], speeds["excavation"]) == (2, 0)
+    assert speeds["road"] * speed["multiplier"] == pytest.approx(1.0)
+
+
+def test_an_abort_cancels_what_nav2_does_and_the_robot_stands(desk, robot, nodes):
+    name = robot(*SLOW)
+    desk.send(f"go-{name}", name, "SetPosEnd", x=60.0, y=8.0)
+    desk.wait_for_step(f"go-{name}", "acknowledged", 5)
+    desk.send(f"stop-{name}", name, "Abort")
+    desk.wait_for_step(f"stop-{name}", "acknowledged", 5)
+    desk.wait_for_step(f"go-{name}", "aborted")
+    assert events(nodes, name, "cancel asked") and events(nodes, name, "stop")
+    assert events(nodes, name, "zero twist")
+    assert events(nodes, name, "goal ended")[0]["status"] == 5
+
+
+def test_an_emergency_stop_stops_and_is_cleared(desk, robot, nodes):
+    name = robot(*SLOW)
+    desk.send(f"go-{name}", name, "SetPosEnd", x=60.0, y=8.0)
+    desk.wait_for_step(f"go-{name}", "acknowledged", 5)
+    desk.ask("emergency_stop", {"command": f"emergency-{name}"})
+    try:
+        desk.until(lambda: desk.emergency["in_force"] and name not in desk.emergency["waiting"], 10)
+        assert events(nodes, name, "goal ended")[0]["status"] == 5
+    finally:
+        desk.ask("clear_emergency_stop", {})
+    desk.send(f"on-{name}", name, "SetPosEnd", x=desk.robots[name]["x"] + 0.5, y=8.0)
+    desk.wait_for_step(f"on-{name}", "reached", 8)
+
+
+def test_a_robot_that_will_not_stop_is_told_to_operators(desk, robot):
+    name = robot(*SLOW, "--odd", "stubborn")
+    desk.send(f"go-{name}", name, "SetPosEnd", x=60.0, y=8.0)
+    desk.wait_for_step(f"go-{name}", "acknowledged", 5)
+    desk.send(f"stop-{name}", name, "Abort")
+    desk.wait_for_step(f"stop-{name}", "failed", 4)
+    assert "was not confirmed within 5 s" in steps(desk, f"stop-{name}")[-1]["reason"]
+    desk.until(lambda: "Stop it on site" in (desk.robots[name].get("status") or ""), 20)
+
+
+@pytest.mark.parametrize(
+    ("odd", "words"), [("rejects", "rejected the goal"), ("fails", "a test asked for it (error 9003)")]
+)
+def test_why_a_robot_does_not_drive_is_told(desk, robot, odd, words):
+    name = robot("--odd", odd)
+    desk.send(f"go-{name}", name, "SetPosEnd", x=60.0, y=8.0)
+    desk.wait_for_step(f"go-{name}", "failed")
+    assert words in steps(desk, f"go-{name}")[-1]["reason"]
+
+
+def test_a_robot_without_actions_drives_to_what_is_published(desk, robot, nodes):
+    name = robot(*FAST, "--odd", "no-actions")
+    desk.send(f"go-{name}", name, "SetPosEnd", x=25.0, y=8.0)
+    desk.wait_for_step(f"go-{name}", "reached", 8)
+    assert events(nodes, name, "goal pose")[0]["points"] == [[25.0, 8.0]]
+
+
+@pytest.mark.parametrize(
+    ("odd", "words"),
+    [
+        ("nan", "position.x is nan"),
+        ("other-frame", "frame 'elsewhere' is not connected with 'map'"),
+        ("old-clock", "its clock is 86400 s behind"),
+    ],
+)
+def test_what_is_wrong_with_one_robot_is_named_and_the_others_go_on(desk, robot, adapter, odd, words):
+    name = robot("--odd", odd, seen=odd == "old-clock")
+    wait_until(lambda: f"robot {name}: " in adapter.output() and words in adapter.output(), 30)
+    other = robot(*FAST)
+    assert desk.robots[other]["state"] == "fresh"
+
+
+def test_two_nodes_of_one_name_are_named_and_both_are_stopped(desk, robot, nodes, adapter):
+    name = robot(*SLOW)
+    desk.send(f"go-{name}", name, "SetPosEnd", x=60.0, y=8.0)
+    desk.wait_for_step(f"go-{name}", "acknowledged", 5)
+    nodes.start(f"{name}-twin", *SLOW, node=name)
+    try:
+        wait_until(lambda: f"robot {name}: 2 nodes publish /{name}/odom" in adapter.output(), 30)
+        wait_until(lambda: f"2 nodes serve /{name}/navigate_to_pose" in adapter.output(), 30)
+        desk.send(f"stop-{name}", name, "Abort")
+        wait_until(lambda: events(nodes, name, "stop") and events(nodes, f"{name}-twin", "stop"))
+        desk.wait_for_step(f"stop-{name}", "acknowledged", 5)
+        assert events(nodes, name, "goal ended")[0]["status"] == 5
+    finally:
+        nodes.end(f"{name}-twin")
+
+
+def test_actions_of_another_distribution_are_named_and_the_rest_is_used(bridge, nodes, desk, tmp_path):
+    text = SETTINGS.format(address=bridge.address, domain=nodes.domain + 50, distribution="lyrical")
+    file = tmp_path / "other.toml"
+    file.write_text(text, encoding="utf-8")
+    name = f"robot{next(NUMBERS)}"
+    with Processes(tmp_path / "logs") as processes:
+        other = AdapterProcess(processes, file)
+        other.start()
+        nodes.start(name, *FAST, domain=nodes.domain + 50)
+        wait_until(lambda: f"/{name}/follow_path has the FollowPath of jazzy or kilted" in other.output(), 30)
+        desk.until(lambda: "targets" in (desk.robots.get(name, {}).get("abilities") or ""), 20)
+        assert "paths" not in desk.robots[name]["abilities"]
+        desk.send(f"go-{name}", name, "SetPosEnd", x=25.0, y=8.0)
+        desk.wait_for_step(f"go-{name}", "reached", 10)
+        nodes.end(name)
+
+
+def test_a_node_that_is_killed_and_started_anew_is_sent_again_what_is_open(desk, robot, nodes):
+    name = robot(*SLOW)
+    desk.send(f"go-{name}", name, "SetPosEnd", x=24.0, y=8.0)
+    desk.wait_for_step(f"go-{name}", "acknowledged", 5)
+    nodes.end(name)
+    desk.until(lambda: desk.robots[name]["state"] == "lost", 20)
+    nodes.start(name, *FAST)
+    desk.wait_for_step(f"go-{name}", "reached", 8)
+    assert len(events(nodes, name, "goal")) == 1
+
+
+def test_an_adapter_that_is_killed_sends_no_goal_twice(desk, robot, adapter, nodes):
+    name = robot(*SLOW)
+    desk.send(f"go-{name}", name, "SetPosEnd", x=24.0, y=8.0)
+    desk.wait_for_step(f"go-{name}", "acknowledged", 5)
+    adapter.kill()
+    desk.until(lambda: desk.robots[name]["state"] == "lost", 20)
+    adapter.start()
+    desk.wait_for_step(f"go-{name}", "reached", 6)
+    assert len(events(nodes, name, "goal asked")) == 1
+
+
+def test_a_node_that_started_anew_while_the_adapter_was_away_is_sent_again(desk, robot, adapter, nodes):
+    name = robot(*SLOW)
+    desk.send(f"go-{name}", name, "SetPosEnd", x=24.0, y=8.0)
+    desk.wait_for_step(f"go-{name}", "acknowledged", 5)
+    adapter.kill()
+    nodes.end(name)
+    nodes.start(name, *FAST)
+    adapter.start()
+    desk.wait_for_step(f"go-{name}", "reached", 8)
+    assert len(events(nodes, name, "goal asked")) == 1
+
+
+def test_a_gateway_that_is_killed_loses_no_command_and_repeats_none(bridge, desk, robot, nodes):
+    name = robot(*SLOW)
+    desk.send(f"go-{name}", name, "SetPosEnd", x=23.0, y=8.0)
+    desk.wait_for_step(f"go-{name}", "acknowledged", 5)
+    bridge.kill_gateway()
+    bridge.start_gateway()
+    desk = bridge.desk()
+    desk.ask("subscribe", {"rate": 20})
+    desk.wait_for_step(f"go-{name}", "reached", 6)
+    assert len(events(nodes, name, "goal asked")) == 1
+
+
+def test_the_shortest_settings_of_the_guide_show_a_robot_and_send_it(bridge, nodes, desk, tmp_path, guide):
+    # What differs from one network to the next is said besides: the gateway's port, and the domain.
+    text = guide("shortest").replace("domain = 0 ", f'range = "localhost"\ndomain = {nodes.domain + 50}')
+    file = tmp_path / "shortest.toml"
+    file.write_text(f'[gateway]\nurl = "{bridge.address}/link"\n{text}', encoding="utf-8")
+    name = f"robot{next(NUMBERS)}"
+    with Processes(tmp_path / "logs") as processes:
+        AdapterProcess(processes, file).start()
+        nodes.start(name, *FAST, domain=nodes.domain + 50)
+        desk.wait_for_robots(name)
+        desk.send(f"go-{name}", name, "SetPosEnd", x=25.0, y=8.0)
+        desk.wait_for_step(f"go-{name}", "reached", 10)
+        nodes.end(name)
+
+
+def test_a_hostile_node_is_named_and_the_robots_go_on(desk, robot, adapter, nodes):
+    from robot_bridge.links.ros2.dds import DdsSettings, Participant, Quality
+    from robot_bridge.links.ros2.names import type_to_dds
+
+    name = robot(*FAST)
+    hostile = Participant(DdsSettings(nodes.domain, "localhost"))
+    odometry, status = type_to_dds("nav_msgs/msg/Odometry"), type_to_dds("action_msgs/msg/GoalStatusArray")
+    forged = hostile.writer("rt/hostile/odom", odometry, Quality(reliable=False))
+    poison = hostile.writer(f"rt/{name}/navigate_to_pose/_action/status", status, Quality(latched=True))
+    lies = (b"\0\1\0\0" + b"\xff" * 64, b"\0\1\0\0" + bytes(2**20), bytes(8))
+
+    def is_named():
+        # Nobody waits for who is only just being met: it is said again and again.
+        for data in lies:
+            forged.write(data)
+            poison.write(data)
+        said = adapter.output()
+        return (
+            "robot hostile: /hostile/odom: it is no nav_msgs/msg/Odometry" in said
+            and f"robot {name}: the server of NavigateToPose" in said
+        )
+
+    wait_until(is_named)
+    desk.send(f"go-{name}", name, "SetPosEnd", x=25.0, y=8.0)
+    desk.wait_for_step(f"go-{name}", "reached", 10)
+    assert "hostile" not in desk.robots
+
+
+@pytest.mark.parametrize(
+    ("lines", "words"),
+    [
+        ("domain = 400", "ros2.domain is 400; give ROS_DOMAIN_ID"),
+        ('distribution = "melodic"', "ros2.distribution = 'melodic': give one of foxy"),
+        ('topics = { position = "/odom" }', "ros2.topics.position = '/odom': write '{robot}'"),
+        ('topics = { odom = "/odom" }', "ros2.topics.odom is not a setting"),
+        ('topics = { speed_info = "/{robot}/speed_info" }', "name its mask, too, as topics.speed_mask"),
+        ("image_every_s = 0.1", "ros2.image_every_s = 0.1: give seconds from 1 to 86400"),
+        ("largest_image_bytes = 9", "ros2.largest_image_bytes = 9: give bytes from 1024"),
+        ('path_actions = ["Teleport"]', "ros2.path_actions[0]: Invalid enum value 'Teleport'"),
+        ('robots = ["agv-1"]', "ros2.topics.position: '/agv-1/odom' is no full name of a topic"),
+    ],
+)
+def test_settings_that_cannot_be_used_name_file_and_key(tmp_path, lines, words):
+    from robot_bridge.links.base.errors import LinkError
+    from robot_bridge.links.ros2.adapter import load
+
+    file = tmp_path / "nav2.toml"
+    file.write_text(f"[ros2]\n{lines}\n", encoding="utf-8")
+    with pytest.raises(LinkError) as caught:
+        load(file)
+    assert words in str(caught.value) and str(file) in str(caught.value)

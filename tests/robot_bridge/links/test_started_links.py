@@ -1,0 +1,86 @@
+"""Links that a site names: started with the gateway, started again, ended with it, and told of."""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import urllib.request
+
+import pytest
+from bridge_programs import wait_until
+
+SETTINGS = 'kind = "tracker"\n[tracker]\nnmea_udp = "127.0.0.1:0"\n[tracker.names]\n1 = "car-1"\n'
+
+
+@pytest.fixture
+def site(impatient_site, tmp_path):
+    """A site that names two links, of which one has wrong settings."""
+    folder = tmp_path / "site"
+    shutil.copytree(impatient_site, folder)
+    (folder / "links").mkdir()
+    (folder / "links/cars.toml").write_text(SETTINGS, encoding="utf-8")
+    (folder / "links/wrong.toml").write_text("[tracker]\n", encoding="utf-8")
+    text = (folder / "site.toml").read_text(encoding="utf-8")
+    links = '[links]\ntracker = ["links/cars.toml", "links/wrong.toml"]\n'
+    (folder / "site.toml").write_text(f"{text}\n{links}", encoding="utf-8")
+    return folder
+
+
+@pytest.fixture
+def bridge(start_bridge, site):
+    bridge = start_bridge(site)
+    yield bridge
+    bridge.end()
+
+
+def children(bridge):
+    """Return the links' processes by what they run."""
+    listed = os.popen(f"ps -ww -o pid=,args= --ppid {bridge.gateway.pid}").read()
+    return {
+        line.split("links/")[1].split(".")[0]: int(line.split()[0])
+        for line in listed.splitlines()
+        if "links/" in line
+    }
+
+
+def reported(desk, link):
+    return next((one for one in desk.links if one["link"] == link), None)
+
+
+def is_running(pid):
+    try:
+        os.kill(pid, 0)
+    except ProcessLookupError:
+        return False
+    # One that has ended and that nobody has waited for yet is listed as well.
+    return "Z" not in os.popen(f"ps -o stat= -p {pid}").read()
+
+
+def test_links_are_started_again_and_told_of_and_end_with_their_gateway(bridge):
+    desk = bridge.desk()
+    desk.until(lambda: (reported(desk, "cars") or {}).get("up"), 20)
+    desk.until(lambda: "listens to nothing" in str((reported(desk, "wrong") or {}).get("text")), 20)
+    assert reported(desk, "wrong")["up"] is False
+    with urllib.request.urlopen(bridge.address.replace("ws://", "http://") + "/healthz") as page:
+        links = json.load(page)["links"]
+    assert links["cars"] == {"ok": True, "text": None}
+    assert "tracker.toml" not in links and links["wrong"]["ok"] is False
+    with urllib.request.urlopen(bridge.address.replace("ws://", "http://") + "/metrics") as page:
+        text = page.read().decode()
+    assert 'robot_bridge_link_up{link="cars"} 1.0' in text
+    assert 'robot_bridge_link_up{link="wrong"} 0.0' in text
+
+    first = children(bridge)["cars"]
+    os.kill(first, 9)
+    wait_until(lambda: children(bridge).get("cars", first) != first, 20)
+    second = children(bridge)["cars"]
+
+    bridge.kill_gateway()
+    wait_until(lambda: not is_running(second), 10)
+    bridge.start_gateway()
+    wait_until(lambda: "cars" in children(bridge), 20)
+    third = children(bridge)["cars"]
+    bridge.gateway.terminate()
+    assert bridge.gateway.wait(10) == 0
+    assert not is_running(third)

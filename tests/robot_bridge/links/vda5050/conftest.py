@@ -1,0 +1,47 @@
+"""A gateway, a broker, an adapter and vehicles, each a process of its own."""
+
+from __future__ import annotations
+
+import pytest
+
+from .driving import begin
+from .peers import Yard, require_peers
+
+
+@pytest.fixture(scope="module")
+def modules(root):
+    return require_peers(root)
+
+
+@pytest.fixture(scope="module")
+def bridge(start_bridge, impatient_site):
+    bridge = start_bridge(impatient_site)
+    yield bridge
+    bridge.end()
+
+
+@pytest.fixture
+def desk(bridge):
+    desk = bridge.desk()
+    desk.ask("subscribe", {"rate": 20})
+    return desk
+
+
+@pytest.fixture(scope="module")
+def yard(bridge, modules, tmp_path_factory):
+    from stage.processes import Processes
+
+    folder = tmp_path_factory.mktemp("yard")
+    with Processes(folder / "logs") as processes:
+        yard = Yard(processes, folder, modules)
+        yard.start_broker()
+        yard.start_adapter(bridge.address, "unanswered_after_s = 2.0")
+        yield yard
+        yard.end()
+        assert "Traceback" not in yard.output("adapter"), yard.output("adapter")
+
+
+@pytest.fixture
+def vehicle(yard, desk):
+    """A vehicle that stands at (20, 8) of the site and is seen at the desk; its name."""
+    return begin(yard, desk)

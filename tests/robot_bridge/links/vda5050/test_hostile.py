@@ -1,0 +1,126 @@
+"""What anybody who may publish at the broker can do to the adapter, tried."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import logging
+import random
+
+import pytest
+
+from robot_bridge.links.base.settings import read_settings
+from robot_bridge.links.vda5050.adapter import Vda5050Adapter
+from robot_bridge.links.vda5050.settings import Vda5050Settings
+
+from .bench import state
+
+
+@pytest.fixture
+def adapter(tmp_path):
+    return make(tmp_path)
+
+
+def make(folder, *lines):
+    file = folder / "yard.toml"
+    file.write_text("\n".join(["[vda5050]", *lines]), encoding="utf-8")
+    return Vda5050Adapter(*read_settings(file, "vda5050", Vda5050Settings))
+
+
+def head(serial, manufacturer="Acme", **more):
+    return {
+        "headerId": 1,
+        "timestamp": "2026-11-23T12:00:00.00Z",
+        "version": "2.1.0",
+        "manufacturer": manufacturer,
+        "serialNumber": serial,
+        **more,
+    }
+
+
+def online(adapter, serial, manufacturer="Acme"):
+    body = head(serial, manufacturer, connectionState="ONLINE")
+    adapter.receive(f"uagv/v2/{manufacturer}/{serial}/connection", json.dumps(body).encode())
+
+
+def test_thousands_of_serial_numbers_make_no_thousands_of_vehicles(tmp_path, caplog):
+    adapter = make(tmp_path, "most_vehicles = 5")
+    for number in range(2000):
+        online(adapter, f"agv-{number}")
+    assert len(adapter.vehicles) == 5
+    assert len(caplog.records) < 20
+
+
+def test_who_speaks_for_another_vehicle_is_refused(adapter, caplog):
+    adapter.receive("uagv/v2/Acme/1/connection", json.dumps(head("2", connectionState="ONLINE")).encode())
+    assert adapter.vehicles == []
+    assert "vehicle Acme/1: connection: it says to be of 'Acme'/'2'" in caplog.text
+
+
+def test_a_second_manufacturer_takes_no_robots_name(adapter, caplog):
+    online(adapter, "agv-1")
+    online(adapter, "agv-1", "Other")
+    assert adapter.vehicles == ["agv-1"]
+    assert "robot 'agv-1' is Acme/agv-1 already" in caplog.text
+
+
+def test_only_listed_vehicles_are_led(tmp_path):
+    adapter = make(
+        tmp_path, "[[vda5050.vehicles]]", 'manufacturer = "Acme"', 'serial = "7"', 'robot = "agv-7"'
+    )
+    online(adapter, "7")
+    online(adapter, "8")
+    assert adapter.vehicles == ["agv-7"]
+
+
+def test_a_flood_of_nonsense_is_counted_and_not_written(adapter, caplog):
+    caplog.set_level(logging.WARNING)
+    for _ in range(500):
+        adapter.receive("uagv/v2/Acme/1/state", b"[" * 10_000)
+        adapter.receive("uagv/v2/Acme/1/state", b"x" * (2 << 20))
+    assert len(caplog.records) < 20
+
+
+def test_changed_messages_end_nothing(adapter, caplog):
+    """Of 500 states bytes are changed, cut off or put in; those that pass are dealt with."""
+    dice = random.Random(5050)
+    online(adapter, "1")
+    whole = json.dumps(head("1", **state())).encode()
+    adapter.receive("uagv/v2/Acme/1/state", whole)
+    for _ in range(500):
+        bad = bytearray(whole)
+        for _ in range(dice.randint(1, 6)):
+            place = dice.randrange(len(bad))
+            bad[place : place + dice.randint(0, 3)] = dice.randbytes(dice.randint(0, 3))
+        adapter.receive("uagv/v2/Acme/1/state", bytes(bad))
+    assert "Traceback" not in caplog.text and "internal error" not in caplog.text
+    adapter.receive("uagv/v2/Acme/1/state", whole)
+    assert adapter.vehicles == ["1"]
+
+
+@pytest.mark.parametrize("kind", ["state", "connection", "factsheet", "visualization", "order"])
+@pytest.mark.parametrize("payload", [b"", b"null", b"{}", b"[]", b'"x"', b"1e400", b'{"errors": null}'])
+def test_what_is_no_message_ends_nothing(adapter, caplog, kind, payload):
+    adapter.receive(f"uagv/v2/Acme/1/{kind}", payload)
+    assert "internal error" not in caplog.text
+
+
+async def test_what_nobody_foresaw_of_one_vehicle_keeps_no_other_from_its_turn(adapter, monkeypatch, caplog):
+    online(adapter, "first")
+    online(adapter, "second")
+    first, second = adapter._vehicles.values()
+    turns = []
+
+    def fail(now):
+        turns.append("first")
+        raise KeyError("odd")
+
+    monkeypatch.setattr(first.controller, "advance", fail)
+    monkeypatch.setattr(second.controller, "advance", lambda now: turns.append("second"))
+    ticking = asyncio.create_task(adapter._tick())
+    while len(turns) < 4:
+        await asyncio.sleep(0.01)
+        assert not ticking.done(), turns
+    ticking.cancel()
+    assert turns[:4] == ["first", "second"] * 2
+    assert "vehicle Acme/first" in caplog.text

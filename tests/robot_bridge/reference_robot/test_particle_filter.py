@@ -1,0 +1,165 @@
+"""The filter in a yard: it tracks, says how sure it is, finds itself again, and finds itself from nothing."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from robot_bridge.reference_robot.errors import ReferenceRobotError
+from robot_bridge.reference_robot.particle_filter import FIX_WRONG, ParticleFilter
+from robot_bridge.reference_robot.sensors import (
+    Laser,
+    Motion,
+    Odometry,
+    motion_between,
+)
+from robot_bridge.reference_robot.settings import (
+    FilterSettings,
+    LaserSettings,
+    OdometrySettings,
+    WorldSettings,
+)
+from robot_bridge.reference_robot.world import changed, walls_of
+from robot_bridge.robotmap.builder import Window, build_map
+from robot_bridge.robotmap.outlines import Outlines
+
+LASER = LaserSettings(reach=15.0, beams=60, short=0.3)
+SETTINGS = FilterSettings(least=300, most=3000)
+CIRCLE = [
+    (14.5 + 3.5 * math.sin(s), 6.0 - 2.5 * math.cos(s), math.atan2(2.5 * math.sin(s), 3.5 * math.cos(s)))
+    for s in np.linspace(0, 2 * math.pi, 60)
+]
+"""Round the yard's middle."""
+
+
+class Run:
+    """A robot on a path of poses in a world that differs from the map."""
+
+    def __init__(self, yard, seed=1, settings=SETTINGS):
+        rng = np.random.default_rng(seed)
+        seen = walls_of(yard).higher_than(LASER.height)
+        self.laser = Laser(changed(seen, WorldSettings(moved=0.1, missing=0.5), rng), LASER, rng)
+        self.wheels = Odometry(OdometrySettings(), rng)
+        self.filter = ParticleFilter(yard, LASER, settings, np.random.default_rng(seed))
+
+    def drive(self, path):
+        """Yield the error in metres and radians after each pose."""
+        before = path[0]
+        for pose in path:
+            self.filter.move(self.wheels.measure(motion_between(before, pose)))
+            self.filter.observe(self.laser.scan(pose))
+            before = pose
+            x, y, theta = self.filter.belief.pose
+            yield math.dist((x, y), pose[:2]), abs(math.remainder(theta - pose[2], math.tau))
+
+
+@pytest.mark.parametrize("model", ["beam", "field"])
+def test_it_tracks_in_a_world_that_differs_from_the_map(yard, model):
+    run = Run(yard, settings=FilterSettings(model=model, least=300, most=3000))
+    run.filter.place(CIRCLE[0], (0.1, 0.05))
+    away, turned = np.array(list(run.drive(CIRCLE))).T
+    assert away.max() < 0.3 and away.mean() < 0.1
+    assert np.degrees(turned).mean() < 1.0
+    belief = run.filter.belief
+    assert belief.share > 0.99
+    assert 0.003 < belief.accuracy < 0.15
+
+
+def test_the_belief_is_mean_and_covariance_of_the_particles(yard):
+    run = Run(yard)
+    run.filter.place((14.5, 3.5, math.pi), (0.2, 0.1))
+    cloud = run.filter.particles
+    belief = run.filter.belief
+    # Across the turn of π: no mean of angles near +π and −π that is 0.
+    assert belief.pose[:2] == pytest.approx(cloud[:, :2].mean(axis=0), abs=1e-6)
+    assert abs(math.remainder(belief.pose[2] - cloud[:, 2].mean(), math.tau)) < 1e-3
+    np.testing.assert_allclose(belief.covariance, np.cov(cloud.T, bias=True), atol=1e-3)
+    assert belief.accuracy == pytest.approx(0.2, rel=0.15)
+
+
+def test_motion_spreads_the_particles_and_moves_their_mean(yard):
+    tracking = Run(yard).filter
+    tracking.place((5.0, 3.0, 0.0), (0.0, 0.0))
+    for _ in range(10):
+        tracking.move(Motion(0.5, math.radians(9)))
+    x, y, theta = tracking.belief.pose
+    # Ten chords of an arc of 90° that is 5 m long.
+    radius = 5.0 / (math.pi / 2)
+    assert (x, y) == pytest.approx((5 + radius, 3 + radius), abs=0.05)
+    assert theta == pytest.approx(math.pi / 2, abs=0.01)
+    assert 0.02 < tracking.belief.accuracy < 0.3
+
+
+def test_it_finds_itself_after_it_was_carried_away(yard):
+    run = Run(yard)
+    run.filter.place(CIRCLE[0], (0.1, 0.05))
+    assert max(away for away, _ in run.drive(CIRCLE)) < 0.3
+    elsewhere = [(3.0, 2.0 + 0.2 * k, math.pi / 2) for k in range(60)]
+    away = [away for away, _ in run.drive(elsewhere)]
+    assert away[0] > 5
+    assert max(away[-10:]) < 0.3
+
+
+def test_it_finds_itself_from_nothing(yard):
+    run = Run(yard, seed=2)
+    run.filter.search(run.laser.scan(CIRCLE[0]))
+    assert len(run.filter.particles) == SETTINGS.most
+    away = [away for away, _ in run.drive(CIRCLE)]
+    assert max(away[-10:]) < 0.3
+    assert len(run.filter.particles) < SETTINGS.most / 2
+
+
+def test_a_gps_position_weighs_particles_by_their_distance_and_rules_none_out(yard):
+    tracking = Run(yard).filter
+    tracking.place(CIRCLE[0], (1.0, 0.1))
+    tracking.observe_fix(15.0, 5.0, 1.5)
+    away = np.hypot(*(tracking.particles[:, :2] - (15.0, 5.0)).T)
+    direct = np.array([math.exp(-(metres**2) / (2 * 1.5**2)) + FIX_WRONG for metres in away])
+    np.testing.assert_allclose(tracking.weights, direct / direct.sum())
+    assert not tracking.belief.lost
+
+
+def test_gps_positions_far_from_the_belief_bring_it_back(yard):
+    run = Run(yard)
+    run.filter.place((3.0, 18.0, 0.0), (0.1, 0.05))
+    for told in (False, False, True):
+        run.filter.observe_fix(14.5, 3.5, 1.0)
+        assert run.filter.belief.lost == told
+    run.filter.observe(run.laser.scan(CIRCLE[0]))
+    away = [away for away, _ in run.drive(CIRCLE[:12])]
+    assert away[-1] < 0.3
+
+
+def test_another_map_of_the_same_frame_changes_nothing_of_the_belief(yard):
+    run = Run(yard)
+    run.filter.place(CIRCLE[0], (0.1, 0.05))
+    list(run.drive(CIRCLE[:10]))
+    before = run.filter.belief.pose
+    run.filter.use_map(yard)
+    assert run.filter.belief.pose == before
+
+
+def test_the_same_seed_makes_the_same_belief(yard):
+    runs = [Run(yard, seed=4), Run(yard, seed=4)]
+    for run in runs:
+        run.filter.place(CIRCLE[0], (0.1, 0.05))
+    first, again = (list(run.drive(CIRCLE[:8])) for run in runs)
+    assert first == again
+
+
+def test_a_map_with_nothing_to_see_is_refused(yard):
+    empty = build_map(Outlines.from_rows([]), Window.from_bounds(0, 0, 9, 9), {"id": "moor"})
+    with pytest.raises(ReferenceRobotError, match="map moor: nothing on it is higher than the laser"):
+        ParticleFilter(empty, LASER, SETTINGS, np.random.default_rng(1))
+
+
+def test_a_scan_of_another_laser_is_refused_and_an_empty_one_changes_nothing(yard):
+    tracking = Run(yard).filter
+    tracking.place(CIRCLE[0], (0.1, 0.05))
+    before = tracking.weights.copy()
+    tracking.observe(np.full(LASER.beams, np.nan))
+    np.testing.assert_array_equal(tracking.weights, before)
+    with pytest.raises(ReferenceRobotError, match=r"ranges for 60 beams"):
+        tracking.observe(np.ones(59))

@@ -1,0 +1,327 @@
+"""How an outbox goes out over a connection: in order, once each, an emergency stop before all else."""
+
+from __future__ import annotations
+
+import asyncio
+import base64
+import contextlib
+import json
+
+import pytest
+from websockets.exceptions import ConnectionClosedOK
+
+from robot_bridge.errors import StoreError
+from robot_bridge.robot_api import delivery
+from robot_bridge.robot_api.delivery import Delivery
+from robot_bridge.robot_api.own_connection import OwnChannel
+from robot_bridge.store.answers import AnswerRow
+
+TARGET = '{"x": 1.0, "y": 2.0}'
+
+
+def row(id, op="SetPosEnd", params=TARGET, payload=None, urgent=False):
+    return AnswerRow(id, op, params, payload, urgent)
+
+
+class Mailboxes:
+    """The outbox of one robot, and what was noted of it; ``before`` is awaited as one is handed over."""
+
+    def __init__(self):
+        self.rows, self.noted, self.asked = [], [], []
+        self.ended = set()
+        self.signal = asyncio.Event()
+        self.before = None
+        self.fails, self.fault = 0, StoreError("the database is away")
+
+    def event(self, robot):
+        assert robot == "r1"
+        return self.signal
+
+    async def outbox(self, robot, after, after_urgent):
+        assert robot == "r1"
+        self.asked.append((after, after_urgent))
+        if self.fails:
+            self.fails -= 1
+            raise self.fault
+        new = [one for one in self.rows if one.id > (after_urgent if one.urgent else after)]
+        return sorted(new, key=lambda one: (not one.urgent, one.id))
+
+    async def hand_over(self, robot, id):
+        assert robot == "r1"
+        self.noted.append(("handed over", id))
+        if self.before is not None:
+            await self.before()
+        return id not in self.ended
+
+    async def delivered(self, ids):
+        self.noted.append(("delivered", *ids))
+
+
+class Fleet:
+    def __init__(self):
+        self.mailboxes = Mailboxes()
+
+
+class Connection:
+    """Keeps what is sent; once it is shut nothing can be sent any more."""
+
+    def __init__(self):
+        self.frames = []
+        self.is_shut = False
+
+    async def send(self, frame):
+        if self.is_shut:
+            raise ConnectionClosedOK(None, None)
+        self.frames.append(json.loads(frame))
+
+    @property
+    def sent(self):
+        return [(frame["id"], frame["method"]) for frame in self.frames]
+
+
+class Line:
+    """A delivery over a connection."""
+
+    def __init__(self):
+        self.fleet, self.connection = Fleet(), Connection()
+        self.boxes = self.fleet.mailboxes
+        self.delivery = Delivery(self.fleet, OwnChannel(self.connection), "r1")
+
+    async def put(self, *rows):
+        self.boxes.rows += rows
+        self.boxes.signal.set()
+        await rest()
+
+
+async def rest():
+    """Let everything happen that can happen by now."""
+    for _ in range(20):
+        await asyncio.sleep(0)
+
+
+class SharedChannel(OwnChannel):
+    """A channel on which the turn of what is not urgent comes when it is given."""
+
+    def __init__(self, connection):
+        super().__init__(connection)
+        self.asked, self.turn = [], asyncio.Event()
+
+    @contextlib.asynccontextmanager
+    async def lane(self, *, urgent, large):
+        self.asked.append((urgent, large))
+        if not urgent:
+            await self.turn.wait()
+        yield
+
+
+@pytest.fixture
+async def line():
+    line = Line()
+    yield line
+    line.delivery.end()
+
+
+async def test_what_waits_goes_out_once_in_order_and_what_comes_later_after_it(line):
+    await line.put(row(1, "Start", "{}"), row(2))
+    line.delivery.begin()
+    await rest()
+    await line.put(row(3, "Abort", "{}"))
+    assert line.connection.frames == [
+        {"jsonrpc": "2.0", "id": 1, "method": "Start"},
+        {"jsonrpc": "2.0", "id": 2, "method": "SetPosEnd", "params": {"x": 1.0, "y": 2.0}},
+        {"jsonrpc": "2.0", "id": 3, "method": "Abort"},
+    ]
+    assert line.boxes.asked == [(0, 0), (2, 0)]
+
+
+async def test_what_drives_is_noted_before_it_is_sent_and_all_else_afterwards(line):
+    await line.put(row(1), row(2, "SetPath", '{"points": [[1, 2], [3, 4]]}'), row(3, "Abort", None))
+    line.delivery.begin()
+    await rest()
+    assert line.boxes.noted == [("handed over", 1), ("handed over", 2), ("delivered", 3)]
+    assert line.connection.sent == [(1, "SetPosEnd"), (2, "SetPath"), (3, "Abort")]
+
+
+async def test_what_is_urgent_waits_for_no_turn_and_what_a_stop_overtakes_in_its_turn_is_looked_at_again(
+    line, monkeypatch
+):
+    frame = len('{"jsonrpc":"2.0","method":"SetPosEnd","params":{"x":1.0,"y":2.0},"id":1}')
+    monkeypatch.setattr(delivery, "LARGE", frame)
+    channel = SharedChannel(line.connection)
+    line.delivery = Delivery(line.fleet, channel, "r1")
+    await line.put(row(1), row(2, "SetPosEnd", '{"x": 1.0, "y": 22.0}'), row(3, "Abort", "{}", urgent=True))
+    line.delivery.begin()
+    await rest()
+    assert line.connection.sent == [(3, "Abort")] and channel.asked == [(True, False), (False, False)]
+    line.delivery.stop_now("stop-1")
+    line.boxes.ended = {1}
+    channel.turn.set()
+    await rest()
+    assert line.connection.sent == [(3, "Abort"), ("stop-1", "Abort"), (2, "SetPosEnd")]
+    assert channel.asked[2:] == [(False, True)]
+
+
+async def test_what_has_ended_meanwhile_is_not_sent_and_not_asked_for_again(line):
+    line.boxes.ended = {1}
+    await line.put(row(1), row(2))
+    line.delivery.begin()
+    await rest()
+    assert line.connection.sent == [(2, "SetPosEnd")]
+    await line.put()
+    assert line.boxes.asked[-1] == (2, 0)
+
+
+async def test_a_message_that_cannot_be_read_is_left_out_and_in_the_log(line, caplog):
+    await line.put(row(1, params="[" * 2000), row(2))
+    line.delivery.begin()
+    await rest()
+    assert line.connection.sent == [(2, "SetPosEnd")]
+    (record,) = caplog.records
+    assert record.getMessage().startswith("link websocket: message 1 for robot 'r1': SetPosEnd: ")
+
+
+async def test_the_bytes_of_a_map_go_out_as_text(line):
+    await line.put(row(1, "SetMap", "{}", b"\x00map"))
+    line.delivery.begin()
+    await rest()
+    assert line.connection.frames[0]["params"]["map"] == "AG1hcA=="
+
+
+@pytest.mark.parametrize("more", [0, 1, 2])
+async def test_the_bytes_of_a_large_map_are_the_same_whatever_they_are_cut_into(line, monkeypatch, more):
+    monkeypatch.setattr(delivery, "LARGE", 10)
+    monkeypatch.setattr(delivery, "PIECE", 6)
+    content = bytes(range(24 + more))
+    await line.put(row(1, "SetMap", '{"map": "what comes with the row"}', content), row(2))
+    await line.put(row(3, "Alive", "{}", bytes(100)), row(4))
+    line.delivery.begin()
+    async with asyncio.timeout(60):
+        while (4, "SetPosEnd") not in line.connection.sent:
+            await asyncio.sleep(0.01)
+    assert base64.b64decode(line.connection.frames[0]["params"]["map"]) == content
+    assert [id for id, _ in line.connection.sent][:2] == [1, 2]
+
+
+async def test_an_urgent_message_is_sent_before_older_ones_and_what_is_left_is_read_on_for_each_kind(line):
+    await line.put(row(4), row(5, "Abort", '{"emergency": true}', urgent=True))
+    line.delivery.begin()
+    await rest()
+    assert line.connection.sent == [(5, "Abort"), (4, "SetPosEnd")]
+    await line.put(row(6))
+    assert line.boxes.asked[-1] == (4, 5)
+    assert line.connection.sent[2:] == [(6, "SetPosEnd")]
+
+
+async def test_an_emergency_stop_is_called_at_once_under_an_id_of_its_own(line):
+    line.delivery.stop_now("emergency-stop-0001")
+    await rest()
+    assert line.connection.frames == [
+        {"jsonrpc": "2.0", "id": "emergency-stop-0001", "method": "Abort", "params": {"emergency": True}}
+    ]
+
+
+async def test_a_stop_that_comes_as_a_target_is_handed_over_leaves_that_unsent(line):
+    async def stop():
+        line.boxes.before = None
+        line.delivery.stop_now("emergency-stop-0001")
+        # What the stop takes back is gone from the outbox when it is read again.
+        line.boxes.rows.clear()
+
+    line.boxes.before = stop
+    await line.put(row(1), row(2))
+    line.delivery.begin()
+    await rest()
+    assert line.connection.sent == [("emergency-stop-0001", "Abort")]
+    # Read again from where it was, without waiting for anything new; after a second stop too.
+    assert line.boxes.asked == [(0, 0), (0, 0)]
+    line.boxes.before = stop
+    await line.put(row(3))
+    assert line.connection.sent[1:] == [("emergency-stop-0001", "Abort")]
+
+
+async def test_a_stop_over_a_connection_that_is_closed_is_no_trouble(line, caplog):
+    line.connection.is_shut = True
+    line.delivery.stop_now("emergency-stop-0001")
+    await rest()
+    assert line.delivery._stopping == set() and caplog.records == []
+
+
+async def test_a_stop_that_is_on_its_way_is_kept_until_it_is_sent(line):
+    line.delivery.stop_now("emergency-stop-0001")
+    assert len(line.delivery._stopping) == 1
+    await rest()
+    assert line.delivery._stopping == set()
+
+
+async def test_a_connection_that_is_closed_ends_its_delivery(line):
+    line.delivery.begin()
+    await rest()
+    line.connection.is_shut = True
+    await line.put(row(1))
+    assert line.delivery._work.done() and line.delivery._work.exception() is None
+
+
+async def test_a_database_that_is_away_is_asked_again(line, caplog, monkeypatch):
+    monkeypatch.setattr(delivery, "RETRY_AFTER", 0.0)
+    line.boxes.fails = 2
+    await line.put(row(1))
+    line.delivery.begin()
+    await rest()
+    assert line.connection.sent == [(1, "SetPosEnd")]
+    assert [record.getMessage() for record in caplog.records] == [
+        "link websocket: robot 'r1': the database is away"
+    ] * 2
+
+
+async def test_what_nobody_foresaw_keeps_back_nothing_that_comes_after_it(line, caplog, monkeypatch):
+    monkeypatch.setattr(delivery, "RETRY_AFTER", 0.0)
+    line.boxes.fails, line.boxes.fault = 1, KeyError("robot")
+    line.delivery.begin()
+    await line.put(row(1, "Abort", "{}", urgent=True))
+    assert line.connection.sent == [(1, "Abort")]
+    assert "what waits for robot 'r1': internal error" in caplog.text
+
+
+async def test_a_database_that_is_away_is_not_asked_without_a_pause(line, monkeypatch):
+    monkeypatch.setattr(delivery, "RETRY_AFTER", 60.0)
+    line.boxes.fails = 1
+    line.delivery.begin()
+    await line.put(row(1))
+    assert (line.connection.sent, len(line.boxes.asked)) == ([], 1)
+
+
+async def test_begun_again_it_sends_all_again_and_only_once(line):
+    await line.put(row(1))
+    line.delivery.begin()
+    await rest()
+    first = line.delivery._work
+    line.delivery.begin()
+    await rest()
+    assert line.connection.sent == [(1, "SetPosEnd")] * 2
+    assert first.cancelled()
+    await line.put(row(2))
+    assert line.connection.sent[2:] == [(2, "SetPosEnd")]
+
+
+async def test_begun_later_it_sends_all_again_after_a_pause(line, monkeypatch):
+    monkeypatch.setattr(delivery, "RETRY_AFTER", 0.02)
+    await line.put(row(1))
+    line.delivery.begin()
+    await rest()
+    first = line.delivery._work
+    line.delivery.begin_later()
+    await rest()
+    assert first.cancelled() and line.connection.sent == [(1, "SetPosEnd")]
+    async with asyncio.timeout(5):
+        while len(line.connection.sent) < 2:
+            await asyncio.sleep(0.001)
+    assert line.connection.sent == [(1, "SetPosEnd")] * 2
+
+
+async def test_ended_it_sends_nothing_more(line):
+    line.delivery.end()
+    line.delivery.begin()
+    await rest()
+    line.delivery.end()
+    await line.put(row(1))
+    assert line.connection.sent == []

@@ -1,0 +1,119 @@
+"""What goes wrong in the gateway while a robot speaks: the log is told all of it, the robot a number."""
+
+from __future__ import annotations
+
+import json
+import re
+from types import SimpleNamespace
+
+import pytest
+
+from robot_bridge import jsonrpc
+from robot_bridge.errors import DataRefusedError, StoreError
+from robot_bridge.monitoring.repeated_lines import RepeatedLines
+from robot_bridge.monitoring.tally import Tally
+from robot_bridge.robot_api.own_connection import OwnConnection
+from robot_bridge.robot_api.websocket import WebSocketLink
+
+POSITION = json.dumps(
+    {"jsonrpc": "2.0", "method": "SendPos", "params": {"x": 1.0, "y": 2.0, "theta": 0.0, "v": 0.0}}
+).encode()
+NUMBER = re.compile(r"internal error ([0-9a-f]{8})")
+
+
+class Connection:
+    """Keeps what the robot is sent."""
+
+    def __init__(self):
+        self.sent = []
+
+    async def send(self, frame):
+        self.sent.append(json.loads(frame))
+
+
+def fail(*_arguments, **_more):
+    raise RuntimeError("the secret")
+
+
+async def fail_later(*_arguments, **_more):
+    fail()
+
+
+@pytest.fixture
+def connection():
+    return Connection()
+
+
+@pytest.fixture
+def own(connection):
+    """A robot that has said Ready to a gateway in which everything fails."""
+    fleet = SimpleNamespace(
+        take_pose=fail,
+        receive=fail_later,
+        emergency=SimpleNamespace(answered=fail),
+        tally=Tally(),
+        repeated=RepeatedLines(),
+    )
+    own = OwnConnection(fleet, connection, "r1", lambda _session: None)
+    own.session._admitted = True
+    return own
+
+
+def logged(caplog):
+    """Return the number under which the log tells everything."""
+    assert "RuntimeError: the secret" in caplog.text
+    (number,) = set(NUMBER.findall(caplog.text))
+    return number
+
+
+@pytest.mark.parametrize("at_once", [True, False])
+async def test_a_position_in_which_something_goes_wrong_is_answered_with_the_number_in_the_log(
+    own, connection, caplog, at_once
+):
+    if at_once:
+        assert own._take_at_once(POSITION)
+        await own.session._due
+    else:
+        await own._receive(POSITION)
+    (told,) = connection.sent
+    assert told["error"]["code"] == jsonrpc.INTERNAL_ERROR
+    assert NUMBER.match(told["error"]["message"])[1] == logged(caplog)
+    assert "the secret" not in str(told)
+
+
+@pytest.mark.parametrize("id", [7, "emergency-1"])
+async def test_an_acknowledgement_in_which_something_goes_wrong_is_in_the_log_and_ends_no_connection(
+    own, connection, caplog, id
+):
+    await own._receive(json.dumps({"jsonrpc": "2.0", "id": id, "result": {}}))
+    assert logged(caplog)
+    assert f"robot 'r1', acknowledgement {id}" in caplog.text
+    assert connection.sent == []
+
+
+@pytest.mark.parametrize(("error", "again"), [(DataRefusedError("refused"), []), (StoreError("away"), [1])])
+async def test_what_a_robot_said_is_asked_for_again_unless_the_database_refuses_it_as_data(
+    own, monkeypatch, error, again
+):
+    async def receive(*_):
+        raise error
+
+    begun = []
+    own.session._fleet.receive = receive
+    monkeypatch.setattr(own.session._delivery, "begin", lambda: begun.append("at once"))
+    monkeypatch.setattr(own.session._delivery, "begin_later", lambda: begun.append(1))
+    await own._receive(json.dumps({"jsonrpc": "2.0", "id": 7, "error": {"code": 1, "message": "no"}}))
+    assert begun == again
+
+
+def test_a_connection_that_fails_keeps_no_stop_from_the_others(caplog):
+    told = []
+    reached = SimpleNamespace(reach=lambda _link: None)
+    link = WebSocketLink(SimpleNamespace(emergency=reached, orders=reached))
+    good = [SimpleNamespace(robot=f"r{n}", stop_now=told.append) for n in range(3)]
+    bad = [SimpleNamespace(robot=f"b{n}", stop_now=fail) for n in range(3)]
+    # In the order in which they are kept, which nobody knows: some of the good ones come behind a bad one.
+    link._sessions = [bad[0], good[0], bad[1], good[1], bad[2], good[2]]
+    link._stop_all("emergency-stop-0001")
+    assert told == ["emergency-stop-0001"] * 3
+    assert "telling robot 'b2' of an emergency stop failed" in caplog.text

@@ -1,0 +1,128 @@
+"""A batch of poses leaves the robots as the same poses do one by one, whatever is odd about some of them."""
+
+from __future__ import annotations
+
+import random
+from dataclasses import asdict, replace
+from typing import ClassVar
+
+from robot_bridge.errors import BridgeError
+from robot_bridge.messages import RobotState, SendPos
+from robot_bridge.place_checks import PlaceChecks
+from robot_bridge.robots import Robots
+from robot_bridge.sites.limit_settings import LimitSettings
+from robot_bridge.sites.settings import Bounds, SiteSettings
+
+LIMITS = LimitSettings(place_within_m=60.0, leap_m=100.0)
+BOUNDS = Bounds(0.0, 0.0, 100.0, 100.0)
+SITE = SiteSettings("s", "S", 1, "EPSG:32633", (0.0, 0.0), BOUNDS, limits=LIMITS)
+LINK, ROUNDS, STEP = "yard", 250, 0.1
+
+
+class Side:
+    """Robots that take poses one by one, or in batches first."""
+
+    ODD: ClassVar = (
+        *("late", "outside", "leap", "standing", "fix", "magic"),
+        *("silent", "stopped", "other link", "anew"),
+    )
+
+    def __init__(self, names, *, batches):
+        self.robots, self.checks, self.batches = Robots(), PlaceChecks(lambda: SITE), batches
+        self.followed = 0
+        self.back, self.unseen = [], []
+        self.robots.is_back = lambda name, seconds: self.back.append((name, round(seconds, 3)))
+        for number, name in enumerate(names):
+            self.robots.ready(name, number + 1, LINK, 0.0)
+
+    def receive(self, poses, now):
+        moved = []
+        if self.batches:
+            moved, poses = self.robots.follow(poses, LINK, now, self.checks.near())
+            self.followed += len(moved)
+        for name, pose in poses:
+            self._receive_one(name, pose, now)
+
+    def _receive_one(self, name, pose, now):
+        try:
+            self.robots.check_run(name, pose.magic, LINK)
+        except BridgeError:
+            return
+        fault = self.checks.fault(self.robots.get(name), (pose.x, pose.y), now)
+        if fault is not None:
+            self.robots.disbelieve(name, LINK, now, fault)
+            return
+        unseen = self.robots.is_unseen(name, now)
+        if self.robots.observe(name, pose, LINK, now) and unseen:
+            self.unseen.append((name, now))
+
+    def happen(self, odd, name, now):
+        if odd == "stopped":
+            self.robots.heard(name, LINK, now, stopped=True)
+        elif odd == "other link":
+            self.robots.heard(name, "other", now)
+        elif odd == "anew":
+            self.robots.ready(name, round(now * 1000), LINK, now)
+        elif odd == "silent":
+            self.robots.age(now)
+
+    def state(self):
+        names = self.robots.names()
+        return self.back, self.unseen, [{**asdict(self.robots.get(name)), "revision": 0} for name in names]
+
+
+def odd_pose(pose, odd, chance):
+    if odd == "late":
+        return replace(pose, t=pose.t - chance.uniform(0.2, 60))
+    if odd == "outside":
+        return replace(pose, y=-70.0 + pose.y)
+    if odd == "leap":
+        far = chance.choice((-110.0, 110.0))
+        return replace(pose, x=pose.x + far) if chance.random() < 0.5 else replace(pose, y=pose.y + far)
+    if odd == "magic":
+        return replace(pose, magic=chance.choice((1, 5)))
+    if odd == "standing":
+        return replace(pose, v=0.0, t=None)
+    return replace(pose, fix_t=pose.t - chance.uniform(0, 1)) if odd == "fix" else pose
+
+
+def test_a_batch_leaves_robots_as_their_poses_do_one_by_one():
+    chance = random.Random(3)
+    names = [f"r{n}" for n in range(8)]
+    one_by_one, together = Side(names, batches=False), Side(names, batches=True)
+    now = 1000.0
+    for number in range(ROUNDS):
+        now += STEP
+        poses = []
+        for n, name in enumerate([*names, "ghost"]):
+            odd = chance.choice(Side.ODD) if chance.random() < 0.08 else None
+            if odd == "silent":
+                now += chance.choice((0.0, 3.1, 11.0))
+            for side in (one_by_one, together):
+                side.happen(odd, name, now) if name != "ghost" else None
+            if odd != "silent":
+                poses.append((name, odd_pose(SendPos(number * STEP, n + 0.5, 0.0, 1.0, t=now), odd, chance)))
+        one_by_one.receive(poses, now)
+        together.receive(poses, now)
+        assert together.state() == one_by_one.state(), (number, now)
+    # Nearly all poses of a fleet that drives need no second look.
+    assert together.followed > ROUNDS * len(names) / 3
+
+
+def test_every_change_of_a_batch_has_a_revision_of_its_own():
+    side = Side(["a", "b"], batches=True)
+    for now in (1.0, 1.1):
+        since = side.robots.revision
+        side.receive([(name, SendPos(1.0, 1.0, 0.0, 1.0)) for name in "ab"], now)
+        assert sorted(one.revision - since for one in side.robots.changed(since)) == [1, 2]
+    assert side.followed == 2
+
+
+def test_a_robot_that_was_lost_by_shorter_limits_is_back():
+    side = Side(["a"], batches=True)
+    side.receive([("a", SendPos(1.0, 1.0, 0.0, 1.0))], 1.0)
+    side.robots.limit(1.0, 2.0)
+    side.robots.age(4.0)
+    side.robots.limit(30.0, 60.0)
+    side.receive([("a", SendPos(1.0, 1.0, 0.0, 1.0))], 4.0)
+    assert (side.back, side.robots.get("a").state) == ([("a", 3.0)], RobotState.FRESH)
