@@ -77,11 +77,15 @@ class Naming:
     def renamed_words(self, text: str) -> str:
         """Return a text with the renamed classes' names that can mean nothing else: of two words at least."""
         cache = self.__dict__.get("_words")
-        if cache is None:
+        if cache is None:  # FleetSupervisor is the product, too
             kept = {n for m in self.modules.values() for n in defined(m) if self.final_name(m.name, n) == n}
             words: dict[str, set[str]] = defaultdict(set)
             for (_, old), new in self.final.items():
-                if old != new and re.fullmatch(r"(?:[A-Z][a-z0-9]+){2,}", old) and old not in kept:
+                if (
+                    old not in (new, "FleetSupervisor")
+                    and re.fullmatch(r"(?:[A-Z][a-z0-9]+){2,}", old)
+                    and old not in kept
+                ):
                     words[old].add(new)
             cache = self.__dict__["_words"] = {o: n.pop() for o, n in words.items() if len(n) == 1}
             self.__dict__["_pattern"] = (
