@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import json
 import re
 from types import SimpleNamespace
@@ -10,10 +11,14 @@ import pytest
 
 from robot_bridge import jsonrpc
 from robot_bridge.errors import DataRefusedError, StoreError
+from robot_bridge.links.base.positions import frame_of
 from robot_bridge.monitoring.repeated_lines import RepeatedLines
 from robot_bridge.monitoring.tally import Tally
+from robot_bridge.robot_api.link_connection import LinkConnection
+from robot_bridge.robot_api.link_place import LinkPlace
 from robot_bridge.robot_api.own_connection import OwnConnection
 from robot_bridge.robot_api.websocket import WebSocketLink
+from robot_bridge.sites.limit_settings import LimitSettings
 
 POSITION = json.dumps(
     {"jsonrpc": "2.0", "method": "SendPos", "params": {"x": 1.0, "y": 2.0, "theta": 0.0, "v": 0.0}}
@@ -117,3 +122,31 @@ def test_a_connection_that_fails_keeps_no_stop_from_the_others(caplog):
     link._stop_all("emergency-stop-0001")
     assert told == ["emergency-stop-0001"] * 3
     assert "telling robot 'b2' of an emergency stop failed" in caplog.text
+
+
+async def test_what_goes_wrong_over_a_link_has_a_number_and_ends_no_connection(connection, caplog):
+    connection.identity = SimpleNamespace(name="agvs")
+    fleet = SimpleNamespace(take_poses=fail, links=SimpleNamespace(introduce=fail), repeated=RepeatedLines())
+    gate = SimpleNamespace(spoken_for=lambda _visitor: ("*",), limits=None)
+    link = LinkConnection(fleet, connection, gate, lambda _session: None, lambda _session: True)
+    await link._receive(
+        '{"jsonrpc": "2.0", "id": 3, "method": "hello", "params": {"protocol": 1, "kind": "t"}}'
+    )
+    await link._receive(frame_of([]))
+    assert [frame["error"]["code"] for frame in connection.sent] == [jsonrpc.INTERNAL_ERROR] * 2
+    assert NUMBER.match(connection.sent[0]["error"]["message"])[1] in NUMBER.findall(caplog.text)
+
+
+async def test_one_message_of_a_linked_robot_that_goes_wrong_keeps_the_next_from_nothing(connection, caplog):
+    place = LinkPlace(
+        SimpleNamespace(), SimpleNamespace(name="agvs"), "r1", LimitSettings(), lambda _session: None
+    )
+    done = asyncio.Event()
+
+    async def work():
+        done.set()
+
+    place.add(fail_later())
+    place.add(work())
+    await asyncio.wait_for(done.wait(), 20)
+    assert "link agvs: what robot 'r1' said failed" in caplog.text

@@ -10,6 +10,7 @@ from adapter_on_the_line import LinkOnTheLine
 from websockets.asyncio.server import serve
 
 from robot_bridge import jsonrpc
+from robot_bridge.links.base.commanding import Commanding
 from robot_bridge.messages.links import LINK_PROTOCOL
 
 SITE = {
@@ -77,3 +78,30 @@ async def test_a_message_that_the_link_does_not_know_is_refused_and_the_next_is_
     assert sorted(refused) == ["r1/7", "r1/8"]
     assert "does not know it" in refused["r1/7"] and "Dance" in refused["r1/7"]
     assert [command.id for command in link.adapter.commands] == [9]
+
+
+async def test_what_goes_wrong_with_one_robot_keeps_a_stop_from_no_other(tmp_path, monkeypatch, caplog):
+    calls = [jsonrpc.call("SetPosEnd", {"robot": "r1", "x": 1.0, "y": 2.0}, "r1/7")]
+    calls.append(jsonrpc.call("Abort", {"call": "emergency-1", "emergency": True}))
+    gateway = NewerGateway(calls)
+    stop, enqueue = Commanding.stop, Commanding.enqueue
+
+    def fail_for_the_first(self, robot, *arguments, **options):
+        if robot == "r1":
+            raise ZeroDivisionError("nobody foresaw it")
+        (stop if options else enqueue)(self, robot, *arguments, **options)
+
+    monkeypatch.setattr(Commanding, "stop", fail_for_the_first)
+    monkeypatch.setattr(Commanding, "enqueue", fail_for_the_first)
+    async with serve(gateway.speak, "127.0.0.1", 0) as server:
+        port = server.sockets[0].getsockname()[1]
+        link = LinkOnTheLine(SimpleNamespace(address=f"ws://127.0.0.1:{port}"), tmp_path)
+        try:
+            for name in ("r1", "r2"):
+                await asyncio.to_thread(link.do, "add", name, ("targets",))
+            async with asyncio.timeout(40):
+                while ("r2", True) not in link.adapter.stops:
+                    await asyncio.sleep(0.01)
+        finally:
+            await asyncio.to_thread(link.end)
+    assert "what the gateway said failed" in caplog.text and "stopping robot 'r1' failed" in caplog.text
