@@ -49,7 +49,12 @@ class LinkProcesses:
         wait = FIRST_WAIT
         while True:
             began = time.monotonic()
-            one.fault = await self._run_once(one, url)
+            try:
+                one.fault = await self._run_once(one, url)
+            except Exception as error:
+                # What goes wrong with one link ends no other, whose robots could not be stopped then.
+                log.exception("link %s: unexpected %s", one.name, type(error).__name__)
+                one.fault = f"it cannot be kept going: {error}"
             if time.monotonic() - began > LONGEST_WAIT:
                 wait = FIRST_WAIT
             log.error("link %s ended: %s; it is started again in %g s", one.name, one.fault, wait)

@@ -10,6 +10,7 @@ from .errors import StoreError
 from .exchange import Outcome
 from .mailboxes import Mailboxes
 from .messages import RobotState, SetMap
+from .monitoring.unforeseen import note_unforeseen
 from .robotmap.model import Border, EncodedMap
 from .robots import Robots
 from .served_site import ServedSite
@@ -81,6 +82,9 @@ class MapSending:
                 log.error("the map for robot %r: %s; trying again in %g s", robot, error, RETRY_AFTER)
                 self._mailboxes.parts.put_nowait(robot)
                 await asyncio.sleep(RETRY_AFTER)
+            except Exception:
+                # The maps of all other robots go out; again and again it would end the gateway.
+                note_unforeseen(log, f"the map for robot {robot!r}")
 
     async def _follow(self, robot: str) -> None:
         content = await asyncio.to_thread(self._site.whole_map)

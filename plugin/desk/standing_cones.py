@@ -7,9 +7,9 @@ from collections.abc import Iterable, Iterator
 from qgis.core import QgsMarkerSymbol, QgsSingleSymbolRenderer, QgsVectorLayer
 from qgis.PyQt.QtCore import QObject
 
-from ...robot_bridge.messages import CommandReport, CommandState, SetPosEnd
+from ...robot_bridge.messages import CommandReport, CommandState
 from ..language import tr
-from .command_book import place_of
+from .command_book import DRIVES, place_of
 from .desk import Desk
 from .row_layer import Row, RowLayer
 from .wall_clock import date_and_time
@@ -21,7 +21,7 @@ MOST = 2000
 
 class StandingCones(QObject):
     """A layer of the cones that queues' tasks put down and nobody has collected, and of cone targets that
-    were reached. :meth:`remove` takes it out of the project.
+    were reached, straight or along a path. :meth:`remove` takes it out of the project.
     """
 
     def __init__(self, desk: Desk, parent: QObject | None = None):
@@ -70,7 +70,7 @@ class StandingCones(QObject):
 
 
 def _is_cone_put_down(report: CommandReport) -> bool:
-    is_cone = report.op == SetPosEnd.__name__ and report.params.get("cone") is True
+    is_cone = report.op in DRIVES and report.params.get("cone") is True
     return is_cone and report.state is CommandState.REACHED
 
 

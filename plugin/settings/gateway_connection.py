@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from ...robot_bridge.core.decoding import decode_json
 from ..errors import FleetError
 from ..language import tr
 from ..wire.addresses import check_address
@@ -62,8 +63,8 @@ def connections_in(text: str, source: str) -> list[GatewayConnection]:
     try:
         if len(text) > _LARGEST:
             raise ValueError(f"it has {len(text)} characters, more than {_LARGEST}")
-        content = json.loads(text)
-    except (ValueError, RecursionError) as error:
+        content = decode_json(text)
+    except ValueError as error:
         raise BadConnectionError(
             tr("{source} is not JSON: {error}. {choose}", source=source, error=error, choose=CHOOSE)
         ) from error

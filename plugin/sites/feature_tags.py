@@ -6,10 +6,11 @@ GDAL's OSM driver gives each layer a few fields and writes all other tags into `
 
 from __future__ import annotations
 
-import json
 from typing import Any
 
 from qgis.core import NULL, QgsFeature, QgsField, QgsFields, QgsHstoreUtils
+
+from ...robot_bridge.core.decoding import DecodingError, decode_json
 
 TAG_FIELDS = ("other_tags", "all_tags")
 """Fields that hold several tags, as GDAL calls them."""
@@ -69,7 +70,7 @@ def read_tags(value: Any) -> dict[str, str]:
     if not text.startswith("{"):
         return dict(QgsHstoreUtils.parse(text))
     try:
-        tags = json.loads(text)
-    except (ValueError, RecursionError):
+        tags = decode_json(text)
+    except DecodingError:
         return {}
     return {key: str(tag) for key, tag in tags.items() if isinstance(tag, (str, int, float))}

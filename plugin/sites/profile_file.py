@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 from qgis.core import QgsExpression
 
+from ...robot_bridge.core.decoding import decode_json
 from ...robot_bridge.sites.toml_reading import LARGEST, toml_tables
 from ..language import tr
 from .errors import ProfileError
@@ -90,7 +90,7 @@ def _content(file: Path) -> Mapping[str, Any]:
 def _json(text: str) -> Any:
     if len(text) > LARGEST:
         raise ValueError(f"it has {len(text)} characters, more than {LARGEST}")
-    return json.loads(text)
+    return decode_json(text)
 
 
 def _toml(text: str, file: Path) -> Mapping[str, Any]:

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import json
 from dataclasses import dataclass
 from pathlib import Path
 
 from qgis.core import QgsFillSymbol, QgsLineSymbol, QgsProject, QgsRuleBasedRenderer, QgsVectorLayer
 
+from ...robot_bridge.core.decoding import SHORT, DecodingError, decode_json
 from ...robot_bridge.sites.geopackage import GEOPACKAGE_FILE
 from ...robot_bridge.sites.layers import CENTRELINES, KEEPOUTS, OBSTACLES, SURFACES
 from ...robot_bridge.sites.settings import SETTINGS_FILE
@@ -174,8 +174,8 @@ def _site_name(folder: Path) -> str:
     for key in ("name", "id"):
         value = value_text(text, "site", key) or ""
         try:
-            return str(json.loads(value))
-        except (ValueError, RecursionError):
+            return str(decode_json(value, SHORT))
+        except DecodingError:
             if len(value) > 2:
                 return value[1:-1]
     raise PublicationError(

@@ -12,7 +12,7 @@ from ..errors import AddressError
 from ..language import tr
 
 DEFAULT_URL = "ws://127.0.0.1:8765/desk"
-DESK_PATH, ROBOTS_PATH = "/desk", "/robot"
+DESK_PATH, ROBOTS_PATHS = "/desk", ("/robot", "/link")
 """The gateway's paths; a proxy may have put others in front of them."""
 
 
@@ -107,8 +107,9 @@ def check_address(url: str) -> str:
                 example=example,
             )
         )
-    if parts.path.rstrip("/").endswith(ROBOTS_PATH):
-        desk = url.replace(parts.path, parts.path.rstrip("/").removesuffix(ROBOTS_PATH) + DESK_PATH)
+    path = parts.path.rstrip("/")
+    if path.endswith(ROBOTS_PATHS):
+        desk = url.replace(parts.path, path.rpartition("/")[0] + DESK_PATH)
         raise AddressError(
             tr(
                 "{url} is where robots connect; operators connect to {desk}. Write that instead.",

@@ -52,8 +52,8 @@ from .road_news import METHODS as ROAD_NEWS
 
 Clock = Callable[[], float]
 
-UNKNOWN_METHOD = -32601
-"""The error code of JSON-RPC for what is not known there: robots' addresses know no greeting."""
+UNKNOWN_METHOD, WRONG_PARAMETERS = -32601, -32602
+"""Error codes of JSON-RPC: robots' addresses know no greeting, and links' addresses another one."""
 OUTDATED = -32006
 OVERRIDABLE = -32007
 """The error code of a change to what is not as it was seen; the newer state comes with it."""
@@ -222,7 +222,8 @@ class DeskProtocol:
                     "The gateway at {url} turned the desk away: {error}",
                     url=self._url,
                     error=_error_text(message),
-                )
+                ),
+                final=_code(message) == WRONG_PARAMETERS,
             )
         result = message["result"]
         if result.get("protocol") != PROTOCOL_VERSION:

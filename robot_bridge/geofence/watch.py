@@ -80,9 +80,15 @@ class GeofenceWatch:
 
     async def watch(self) -> None:
         """Judge the robots that have moved since the last call, act on what that shows, and tell of it."""
-        fences = await self._fences()
-        if fences is not None:
-            await self._judge(fences)
+        fault = None
+        try:
+            await self._judge(await self._fences())
+        except Exception as error:
+            # Again and again it would end the gateway, and every stop with it.
+            if self._fault is None:
+                log.exception("keepouts and obstacles of site %s cannot be watched", self._site.site.id)
+            fault = f"the site's areas cannot be used: {error}"
+        self._fault = fault
         self._tell()
 
     def report(self) -> Geofence:
@@ -106,21 +112,14 @@ class GeofenceWatch:
         """Wait until every stop that was begun is done or has failed once."""
         await asyncio.gather(*self._acting, return_exceptions=True)
 
-    async def _fences(self) -> Fences | None:
+    async def _fences(self) -> Fences:
         """Return what robots must not be in; what has changed of that is made beside all other work."""
-        try:
-            fences = await asyncio.to_thread(self._site.fences)
-        except Exception as error:
-            if self._fault is None:
-                log.exception("keepouts and obstacles of site %s cannot be watched", self._site.site.id)
-            self._fault = f"the site's areas cannot be used: {error}"
-            return None
+        fences = await asyncio.to_thread(self._site.fences)
         if fences is not self._fenced:
             # With other objects alone the publication's areas are the same, and so are the stays in them.
             if self._fenced is None or fences.keepouts is not self._fenced.keepouts:
                 self._stays.begin_publication()
             self._fenced, self._seen = fences, -1
-        self._fault = None
         return fences
 
     async def _judge(self, fences: Fences) -> None:

@@ -179,6 +179,13 @@ class LinkConnection:
             await self._refuse(error.id, error, code=error.code)
         except (MessageError, BridgeError, DecodingError) as error:
             await self._refuse(id, error)
+        except ConnectionClosed:
+            raise
+        except Exception:
+            # Whatever it was, it ends no connection by which other robots are told to stop.
+            key = f"link {self.name}:", "unforeseen"
+            text = self._fleet.repeated.note_unforeseen(log, key, f"link {self.name}")
+            await self.send(jsonrpc.error(id, jsonrpc.INTERNAL_ERROR, text))
 
     async def _take_call(self, call: jsonrpc.Call) -> None:
         if call.method == LinkHello.method:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import logging
 from collections import deque
 from collections.abc import Callable, Coroutine
 from contextlib import AbstractAsyncContextManager
@@ -15,8 +16,11 @@ from ..access.buckets import Bucket
 from ..fleet import Fleet
 from ..messages.links import Released
 from ..messages.plain import to_json
+from ..monitoring.unforeseen import going_on
 from ..sites.limit_settings import LimitSettings
 from .robot_session import RobotSession
+
+log = logging.getLogger(__name__)
 
 MOST_WAITING = 200
 """messages of one robot that wait to be dealt with; more are refused."""
@@ -154,7 +158,9 @@ class LinkPlace:
     async def _work(self) -> None:
         try:
             while self._waiting:
-                await self._waiting.popleft()
+                what = f"link {self.name}: what robot {self.robot!r} said"
+                with going_on(log, what, except_for=ConnectionClosed):
+                    await self._waiting.popleft()
         except ConnectionClosed:
             self._drop_waiting()
         finally:

@@ -32,13 +32,13 @@ HEADS = ["database", "cases", "wrong", "restarts", "checks that failed", "slowes
 HEADS += ["gateway alive", "tracebacks", "memory grown in the first run by"]
 TEXT = """\
 Every account of a gateway speaks: robots over WebSocket and over SQL, each under an account of its own
-where the database has any, viewers, operators and supervisors. Calls nearly right, with values that are
-deep, of {brackets} brackets, long, of another kind, NULs, lone surrogates and numbers of hundreds of
+where the database has any, links, viewers, operators and supervisors. Calls nearly right, with values that
+are deep, of {brackets} brackets, long, of another kind, NULs, lone surrogates and numbers of hundreds of
 digits; nonsense; emergency stops and everything else that an operator may ask for. After each a right
 question on the same connection has to be answered, to whoever asked it and without anything of the
 gateway's inside. After every {said} an emergency stop is made beside {beside} unread rows, and the gateway
-is killed and started again with {waiting} rows waiting. Each time a well-behaved robot over SQL and one
-over WebSocket must get a command, and the stop within {within:g} s.
+is killed and started again with {waiting} rows waiting. Each time a well-behaved robot over SQL, one
+over WebSocket and one over a link must get a command, and the stop within {within:g} s.
 
 {table}
 

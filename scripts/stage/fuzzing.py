@@ -80,6 +80,9 @@ _paths = st.sampled_from(
         "/robot",
         "/robot?robot=r1",
         "/robot?robot=..%2f..",
+        "/link",
+        "/link?link=agvs",
+        "/link?link=%00",
         "/",
         "*",
         "/healthz",
@@ -111,7 +114,17 @@ _right_but_for_the_token = st.builds(
     lambda path, more: "\r\n".join([f"GET {path} HTTP/1.1", *_RIGHT, *more, "", ""]).encode(
         "utf-8", "surrogatepass"
     ),
-    st.sampled_from(["/desk", "/robot", "/robot?robot=r1", "/desk?token=fleet_op_x", "/desk#x"]),
+    st.sampled_from(
+        [
+            "/desk",
+            "/robot",
+            "/robot?robot=r1",
+            "/link",
+            "/link?link=agvs",
+            "/desk?token=fleet_op_x",
+            "/desk#x",
+        ]
+    ),
     st.lists(_authorizations, max_size=2),
 )
 handshakes = (

@@ -4,10 +4,17 @@ from __future__ import annotations
 
 import dataclasses
 import json
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
+import numpy as np
 from hypothesis import strategies as st
+
+from robot_bridge.core.position_frame import packed_frame
+from robot_bridge.messages import REQUESTS
+from robot_bridge.messages.links import GetAreas, LinkHello, LinkPositions, LinkStatus
+from robot_bridge.position_batches import NUMBERS as POSITION_NUMBERS
+from robot_bridge.position_batches import TEXTS as POSITION_TEXTS
 
 DEPTHS = (20, 500, 2_000, 5_000, 50_000)
 TEXTS = (
@@ -62,7 +69,7 @@ json_texts = _value.map(json.dumps) | deep_texts | st.sampled_from(RAW)
 """The text of one value, as it may stand in a call: JSON, and what looks like it."""
 
 _place = st.floats(0.0, 150.0)
-_name = st.sampled_from(["bad-ws", "bad-sql", "nobody"])
+_name = st.sampled_from(["bad-ws", "bad-sql", "bad-linked", "bad-linked-2", "nobody"])
 _RIGHT: Mapping[str, st.SearchStrategy[Any]] = {
     "robot": _name,
     "other": _name,
@@ -103,6 +110,11 @@ _RIGHT: Mapping[str, st.SearchStrategy[Any]] = {
     "rate": st.floats(0.1, 20.0),
     "image": st.just("AAAA"),
     "t": st.floats(0.0, 2e9),
+    "protocol": st.just(1),
+    "kind": st.just("siege"),
+    "abilities": st.lists(st.sampled_from(["targets", "paths", "cones", "map"]), max_size=3),
+    "counts": st.dictionaries(st.sampled_from(["found", "faults"]), _number, max_size=2),
+    "box": st.tuples(_place, _place, _place, _place),
 }
 
 
@@ -150,3 +162,45 @@ def frames(methods: Mapping[str, type[Any]]) -> st.SearchStrategy[str]:
         json_texts,
     )
     return call | call | call | notice | reply | json_texts
+
+
+def _of_robots(cls: type[Any]) -> type[Any]:
+    names = dict.fromkeys(["robot", *(field.name for field in dataclasses.fields(cls))])
+    return dataclasses.make_dataclass(cls.__name__, list(names))
+
+
+_LINKED = {name: _of_robots(cls) for name, cls in REQUESTS.items()}
+_LINKED |= {cls.method: cls for cls in (LinkHello, LinkStatus, GetAreas, LinkPositions)}
+_columns = st.lists(st.sampled_from([*POSITION_NUMBERS, *POSITION_TEXTS, "\x00"]), max_size=8)
+_numbers_of_rows = st.floats() | st.sampled_from([0.0, 1.0, 20.0, 40.0, 1e308, -1.0])
+
+
+def _table(
+    robots: Sequence[str], columns: Sequence[str], words: Any, numbers: Sequence[float], end: int
+) -> bytes:
+    head = json.dumps(
+        {"method": "positions", "params": {"robots": robots, "columns": columns, "words": words}}
+    ).encode()
+    values = np.resize(np.array(numbers), (len(columns), len(robots)))
+    return packed_frame(head, values)[: -end or None]
+
+
+_robots_of_rows = st.lists(_name, max_size=4) | st.lists(_text, max_size=3)
+tables = st.builds(
+    _table,
+    _robots_of_rows,
+    st.just(["x", "y", "theta", "v", "status"]) | _columns,
+    st.lists(_text, max_size=3) | _leaf,
+    st.lists(_numbers_of_rows, min_size=1, max_size=9),
+    st.sampled_from([0, 0, 0, 1, 8]),
+)
+"""Binary frames of a link: where many robots are, from nearly right to cut off."""
+_linked_reply = st.builds(
+    lambda robot, id, kind, value: f'{{"jsonrpc": "2.0", "id": "{robot}/{id}", "{kind}": {value}}}',
+    _name,
+    st.integers(0, 300) | st.just("emergency-stop") | st.just(10**40),
+    st.sampled_from(["result", "error"]),
+    json_texts,
+)
+link_frames = frames(_LINKED) | frames(_LINKED) | tables | _linked_reply
+"""What a link may send: calls about its robots and others', about itself, tables, answers."""

@@ -1,6 +1,7 @@
-"""A gateway under nonsense from every account that it knows, and two robots that must not notice.
+"""A gateway under nonsense from every account that it knows, and three robots that must not notice.
 
-On any database: robots over WebSocket and, under accounts of their own, over SQL; operators of every role.
+On any database: robots over WebSocket, over a link and, under accounts of their own, over SQL; operators of
+every role.
 What is checked in between is what an operator needs: a command reaches its robot, an emergency stop reaches
 every robot within a second, also after the gateway was killed.
 """
@@ -25,17 +26,19 @@ from websockets.exceptions import ConnectionClosed
 from websockets.sync.client import connect
 
 from robot_bridge.access.accounts import add_operator, issue_robot_token
+from robot_bridge.access.link_accounts import add_link
 from robot_bridge.messages import DESK_REQUESTS, REQUESTS, Role
 from robot_bridge.store import revisions
 from robot_bridge.store.accounts.choice import keeper_on
 from robot_bridge.store.database import run_once
 
 from .fuzzing import Conversation, desk_frames, robot_frames, rr_rows
-from .hostile_values import calls, frames
+from .hostile_values import calls, frames, link_frames
 from .patience import BUSY, START
 from .processes import Processes
 
 GOOD_WS, GOOD_SQL, BAD_WS, BAD_SQL = "good-ws", "good-sql", "bad-ws", "bad-sql"
+GOOD_LINK, BAD_LINK, GOOD_LINKED, BAD_LINKED = "good-link", "bad-link", "good-linked", "bad-linked"
 GATEWAY = "siege-gateway"
 STOP_WITHIN = 1.0
 """seconds from an operator's emergency stop to each robot."""
@@ -45,6 +48,8 @@ GENEROUS = """
 [limits]
 robot_messages_per_s = 100000
 robot_burst = 100000
+link_messages_per_s = 100000
+link_burst = 100000
 desk_messages_per_s = 100000
 desk_burst = 100000
 failed_logins_per_minute = 100000
@@ -65,6 +70,7 @@ rows = st.one_of(
 """What a robot's own account may write into rr: op, params and payload."""
 _cases = [
     st.tuples(st.just("ws"), frames(REQUESTS) | frames(REQUESTS) | robot_frames),
+    st.tuples(st.just("link"), link_frames | link_frames | robot_frames),
     st.tuples(st.just("sql"), rows),
 ]
 _cases += [
@@ -150,6 +156,8 @@ class Siege:
         self.good = WebSocketRobot(self._connect("/robot", GOOD_WS))
         self.desk = Operator(self._connect("/desk", Role.SUPERVISOR.value))
         self.good.plug_in()
+        self.linked = LinkedRobot(self._connect("/link", GOOD_LINK), GOOD_LINKED)
+        self.linked.plug_in()
         self._robots[GOOD_SQL].plug_in()
         self._robots[BAD_SQL].write("Ready", '{"magic": 1}')
 
@@ -228,6 +236,10 @@ class Siege:
                 robot = WebSocketRobot(self._connect("/robot", BAD_WS))
                 robot.plug_in()
                 self._spoken[who] = Conversation(robot.wire, BAD_WS, "SendPos", POSE)
+            elif who == "link":
+                robot = LinkedRobot(self._connect("/link", BAD_LINK), BAD_LINKED)
+                robot.plug_in()
+                self._spoken[who] = Conversation(robot.wire, BAD_LINK, "status", {"ok": True})
             else:
                 desk = Operator(self._connect("/desk", who))
                 self._spoken[who] = Conversation(desk.wire, who, "get_commands", {"limit": 1})
@@ -285,11 +297,14 @@ class Siege:
     def _good_robots(self) -> Iterator[tuple[str, Any]]:
         yield GOOD_SQL, self._robots[GOOD_SQL]
         yield GOOD_WS, self.good
+        yield GOOD_LINKED, self.linked
 
 
 def _issue_tokens(connection: Any) -> dict[str, str]:
     now = time.time()
     tokens = {name: issue_robot_token(connection, name, now) for name in (GOOD_WS, BAD_WS)}
+    for link, robot in ((GOOD_LINK, GOOD_LINKED), (BAD_LINK, BAD_LINKED)):
+        tokens[link] = add_link(connection, link, [f"{robot}*"], now)
     return tokens | {role.value: add_operator(connection, f"Ada-{role.value}", role, now) for role in Role}
 
 
@@ -358,6 +373,40 @@ class WebSocketRobot:
 
     def _send(self, frame: dict[str, Any]) -> None:
         self.wire.send(json.dumps({"jsonrpc": "2.0", **frame}))
+
+
+class LinkedRobot(WebSocketRobot):
+    """The only robot of a link, both of which do what is right."""
+
+    def __init__(self, wire: Any, name: str) -> None:
+        super().__init__(wire)
+        self._name = name
+
+    def plug_in(self) -> None:
+        """Say hello for the link, then Ready for the robot, and where it is."""
+        ready = {"robot": self._name, "magic": 1, "abilities": ["targets", "paths"]}
+        for id, method, params in ((1, "hello", {"protocol": 1, "kind": "siege"}), (0, "Ready", ready)):
+            self._send({"id": id, "method": method, "params": params})
+            self._hear(lambda frame, id=id: frame.get("id") == id, 10 * BUSY)
+        self._say_place()
+
+    def take(self, op: str, seconds: float) -> None:
+        """Take on everything up to the next ``op``; an Abort is the one for all robots of the link."""
+        found: list[dict[str, Any]] = []
+
+        def wanted(frame: dict[str, Any]) -> bool:
+            if frame.get("method") != op or (op == "Abort" and "robot" in frame["params"]):
+                return False
+            found.append(frame)
+            return True
+
+        self._hear(wanted, seconds)
+        if op == "Abort":
+            self._send({"id": f"{self._name}/{found[0]['params']['call']}", "result": {}})
+        self._say_place()
+
+    def _say_place(self) -> None:
+        self._send({"method": "SendPos", "params": {"robot": self._name, **POSE}})
 
 
 class SqlClient:

@@ -14,6 +14,9 @@ from robot_bridge.assignment.plan_json import from_json
 from robot_bridge.errors import StoreError
 from robot_bridge.layouts.errors import TableError
 from robot_bridge.layouts.table import Columns, cones_of, read_csv
+from robot_bridge.links.base.errors import LinkError
+from robot_bridge.links.base.settings import read_settings as read_link_settings
+from robot_bridge.links.tracker.settings import TrackerSettings
 from robot_bridge.sites.errors import SettingsError
 from robot_bridge.sites.settings import read_settings
 from robot_bridge.sites.settings_toml import value_text
@@ -49,6 +52,8 @@ def test_toml_that_is_deep_or_long_is_refused(text, tmp_path):
     (tmp_path / "site.toml").write_text(text, encoding="utf-8")
     with pytest.raises(SettingsError, match=r"site\.toml is not valid TOML: .+ Correct that line"):
         read_settings(tmp_path / "site.toml")
+    with pytest.raises(LinkError, match=r"site\.toml (is not valid TOML|has more than)"):
+        read_link_settings(tmp_path / "site.toml", "tracker", TrackerSettings)
 
 
 def test_keys_of_some_parts_are_read():

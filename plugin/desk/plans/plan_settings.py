@@ -11,6 +11,7 @@ from qgis.core import QgsProject
 
 from ....robot_bridge.assignment.job import FINISHES, STAY, Robot
 from ....robot_bridge.assignment.scheduling import BALANCED, OBJECTIVES
+from ....robot_bridge.core.decoding import decode_json
 
 SCOPE, KEY = "fleet_supervisor", "plans/settings"
 
@@ -76,7 +77,7 @@ def settings_in(project: QgsProject) -> PlanSettings:
     if not found or not text:
         return PlanSettings()
     try:
-        given = json.loads(text)
+        given = decode_json(text)
         robots = {name: _made(RobotSettings, one) for name, one in given.pop("robots", {}).items()}
         made = _made(PlanSettings, given)
     except (ValueError, TypeError, AttributeError):

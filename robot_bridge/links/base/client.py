@@ -35,6 +35,7 @@ from ...messages import (
 )
 from ...messages.links import LINK_PROTOCOL, GetAreas, LinkHello, LinkStatus, Released, SiteAreas
 from ...messages.plain import site_report
+from ...monitoring.unforeseen import going_on
 from ...sites.frame import SiteFrame
 from ...wire import decode_answer, params_of
 from .adapter import Adapter
@@ -301,12 +302,15 @@ class LinkClient:
     # --- what comes in --------------------------------------------------------------------------------------
 
     def _receive(self, frame: str | bytes) -> None:
+        # Once it is let in, what goes wrong with a message ends no connection by which robots are stopped.
+        known = (LinkError, MessageError) if self._is_welcome else Exception
         try:
             message = jsonrpc.decode(frame)
-            if isinstance(message, jsonrpc.Call):
-                self._take_call(message)
-            else:
-                self._take_reply(message)
+            with going_on(log, "what the gateway said", except_for=known):
+                if isinstance(message, jsonrpc.Call):
+                    self._take_call(message)
+                else:
+                    self._take_reply(message)
         except (jsonrpc.FrameError, MessageError) as error:
             log.error("the gateway said what cannot be understood: %s", error)
 
@@ -326,9 +330,11 @@ class LinkClient:
         elif call.method == Released.__name__:
             self._released(str(robot), str(params.get("reason")))
         elif call.method == Abort.__name__ and robot is None:
-            for name, known in self._robots.items():
+            for name, known in list(self._robots.items()):
                 if not known.is_only_seen:
-                    self._stop(name, f"{name}/{params.get('call')}", emergency=True)
+                    # What goes wrong with one robot keeps the stop from no other.
+                    with going_on(log, f"stopping robot {name!r}"):
+                        self._stop(name, f"{name}/{params.get('call')}", emergency=True)
         elif robot in self._robots:
             self._take_answer(robot, call, params)
         elif call.id is not None:

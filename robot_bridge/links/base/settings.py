@@ -9,9 +9,9 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 import msgspec
-import tomllib
 
 from ...messages import ROBOT_NAME
+from ...sites.toml_reading import toml_tables
 from .errors import LinkError
 from .frames import FrameSettings
 
@@ -128,10 +128,10 @@ def _tables(file: Path) -> dict[str, Any]:
     try:
         if file.stat().st_size > LARGEST_FILE:
             raise LinkError(f"{file} has more than {LARGEST_FILE} bytes; it is no file of settings")
-        return tomllib.loads(file.read_text(encoding="utf-8"))
+        return toml_tables(file.read_text(encoding="utf-8"))
     except (OSError, UnicodeDecodeError) as error:
         raise LinkError(f"{file} cannot be read: {getattr(error, 'strerror', None) or error}") from None
-    except tomllib.TOMLDecodeError as error:
+    except ValueError as error:
         raise LinkError(f"{file} is not valid TOML: {error}. Correct that line.") from None
 
 

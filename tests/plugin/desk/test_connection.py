@@ -163,6 +163,7 @@ def test_another_protocol_ends_the_attempts_and_says_what_to_update(connection, 
     [
         ("ws://127.0.0.1:8765/robot", "ws://127.0.0.1:8765/desk"),
         ("wss://fleet.example/site-1/robot/", "wss://fleet.example/site-1/desk"),
+        ("ws://127.0.0.1:8765/link", "ws://127.0.0.1:8765/desk"),
     ],
 )
 def test_the_address_of_robots_is_refused_with_that_of_operators(connection, url, desk):
@@ -177,6 +178,15 @@ def test_what_knows_no_desk_ends_the_attempts_and_names_the_path(connection, gat
     connection.open(gateway.url, "anna")
     reason = reason_when(connection, wait, Phase.FAILED)
     assert "knows no desk" in reason and "ws://127.0.0.1:8765/desk" in reason
+    assert len(gateway.asked("hello")) == 1
+
+
+def test_a_hello_that_cannot_be_right_is_not_said_for_ever(connection, gateway, wait):
+    """As a gateway answers at the address of links, behind whatever path a proxy gave that."""
+    error = {"code": -32602, "message": "hello: Object missing required field `kind`"}
+    gateway.answers["hello"] = lambda _params: {"error": error}
+    connection.open(gateway.url, "anna")
+    assert "required field `kind`" in reason_when(connection, wait, Phase.FAILED)
     assert len(gateway.asked("hello")) == 1
 
 

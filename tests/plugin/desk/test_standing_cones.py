@@ -15,8 +15,9 @@ def cones():
     return sorted((round(p.x() - E, 2), round(p.y() - N, 2), robot) for p, robot in places)
 
 
-def reach(gateway, command, x, y, cone=True):
-    gateway._queue(command, "r1", "SetPosEnd", {"x": x, "y": y, "cone": cone})
+def reach(gateway, command, x, y, cone=True, along=None):
+    end = ("SetPath", {"points": [*along, (x, y)]}) if along else ("SetPosEnd", {"x": x, "y": y})
+    gateway._queue(command, "r1", end[0], {**end[1], "cone": cone})
     for state in (CommandState.DELIVERED, CommandState.ACKNOWLEDGED, CommandState.REACHED):
         gateway.step(command, state, "r1", deviation=0.1)
 
@@ -31,6 +32,13 @@ def placement(number, command, **more):
 def test_a_cone_target_that_was_reached_stays_and_a_plain_target_does_not(at_desk, gateway, wait):
     reach(gateway, "plain", 20.0, 20.0, cone=False)
     reach(gateway, "cone", 70.0, 55.0)
+    wait(lambda: cones() == [(70.0, 55.0, "r1")], what="the cone")
+
+
+def test_a_cone_at_the_end_of_a_path_stays_too_and_the_end_of_a_plain_path_does_not(at_desk, gateway, wait):
+    reach(gateway, "plain", 20.0, 20.0, cone=False, along=[(10.0, 20.0)])
+    reach(gateway, "collected", 25.0, 20.0, cone=None, along=[(10.0, 20.0)])
+    reach(gateway, "cone", 70.0, 55.0, along=[(60.0, 55.0), (65.0, 55.0)])
     wait(lambda: cones() == [(70.0, 55.0, "r1")], what="the cone")
 
 

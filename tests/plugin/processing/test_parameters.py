@@ -4,10 +4,17 @@ from __future__ import annotations
 
 import re
 
+import pytest
 from fleet_supervisor.plugin.processing import parameter_labels
 from fleet_supervisor.plugin.processing.fleet_algorithm import plain_text
 from fleet_supervisor.plugin.processing.provider import FleetProvider
-from qgis.core import QgsApplication, QgsProcessingContext
+from qgis.core import (
+    QgsApplication,
+    QgsProcessingContext,
+    QgsProcessingException,
+    QgsProcessingFeedback,
+    QgsProject,
+)
 
 
 def test_no_algorithm_has_two_parameters_of_one_name(qgis_app):
@@ -92,3 +99,20 @@ def test_a_dialogs_errors_name_parameters_by_their_labels_and_a_scripts_by_their
     names = {one.name() for one in algorithm.parameterDefinitions()}
     assert not names & set(re.findall(r"\w+", in_dialog))
     assert in_dialog.startswith("Neither “Centre of the window” nor “")
+
+
+def test_an_error_of_a_run_names_them_so_too(provider, monkeypatch):
+    algorithm = provider.algorithm("exportrobotmap").create()
+    context = QgsProcessingContext()
+    context.setProject(QgsProject())
+
+    def error():
+        with pytest.raises(QgsProcessingException) as raised:
+            algorithm.prepareAlgorithm(
+                {"CENTER": "0,0 [EPSG:32633]", "WIDTH": 10, "HEIGHT": 10}, context, QgsProcessingFeedback()
+            )
+        return str(raised.value)
+
+    assert "Give OBSTACLES, roles" in error()
+    monkeypatch.setattr(parameter_labels, "is_in_a_dialog", lambda: True)
+    assert "OBSTACLES" not in error() and "Give “" in error()

@@ -99,6 +99,28 @@ async def test_a_robot_waits_for_no_map_and_has_the_whole_one_when_it_is_made(st
     assert tuple(whole.border) == (0.0, 0.0, 800.0, 800.0)
 
 
+async def test_a_map_that_goes_wrong_keeps_no_other_robots_from_following(start, monkeypatch, caplog):
+    maps, made = SiteMaps(city()), threading.Event()
+    whole_map = maps.whole_map
+    monkeypatch.setattr(maps, "whole_map", lambda: (made.wait(60), whole_map())[1])
+    async with start(maps) as yard:
+        follow = yard.fleet.maps._follow
+
+        async def failing_for_r2(robot):
+            if robot == "r2":
+                raise ZeroDivisionError("nobody foresaw it")
+            await follow(robot)
+
+        monkeypatch.setattr(yard.fleet.maps, "_follow", failing_for_r2)
+        for robot in ("r2", "r1"):
+            await yard.ready(robot)
+        await yard.take()
+        made.set()
+        (whole,) = await maps_of(yard, 1)
+    assert len(whole.obstacles) == SIDE**2
+    assert "the map for robot 'r2': internal error" in caplog.text
+
+
 async def test_the_whole_map_that_is_made_already_is_sent_at_once(start):
     maps = SiteMaps(city())
     maps.whole_map()

@@ -150,6 +150,41 @@ async def test_areas_that_cannot_be_used_are_told_and_robots_are_judged_by_the_n
     assert (report.fault, len(report.alarms)) == (None, 1)
 
 
+async def test_what_nobody_foresaw_of_places_is_told_and_ends_no_gateway(guarded, monkeypatch, caplog):
+    def broken(*_everything):
+        raise ZeroDivisionError("no height")
+
+    with monkeypatch.context() as patch:
+        patch.setattr(watch, "find", broken)
+        assert [(await look(guarded)).fault for _ in range(3)] == [
+            "the site's areas cannot be used: no height"
+        ] * 3
+    assert caplog.text.count("Traceback") == 1
+    await guarded.at(*IN_THE_BASIN)
+    report = await look(guarded)
+    assert (report.fault, len(report.alarms)) == (None, 1)
+
+
+async def test_what_nobody_foresaw_of_who_is_near_a_robot_is_told_and_ends_no_gateway(
+    guarded, monkeypatch, caplog
+):
+    def broken(*_everything):
+        raise ZeroDivisionError("no speed")
+
+    await guarded.ready("phone", abilities=[])
+    await guarded.at(*OUTSIDE, robot="phone")
+    nearness = guarded.fleet.nearness
+    with monkeypatch.context() as patch:
+        patch.setattr("robot_bridge.nearness.watch._judged", broken)
+        for _ in range(3):
+            await nearness.watch()
+        assert nearness.report().fault == "it cannot be judged: no speed"
+    assert caplog.text.count("Traceback") == 1
+    await nearness.watch()
+    report = nearness.report()
+    assert (report.fault, [(alarm.seen, alarm.robot) for alarm in report.alarms]) == (None, [("phone", "r1")])
+
+
 async def test_a_settings_change_does_not_stop_a_robot_again(guarded):
     await guarded.at(*IN_THE_BASIN)
     await look(guarded)

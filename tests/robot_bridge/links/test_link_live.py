@@ -112,6 +112,12 @@ def test_an_emergency_stop_is_one_frame_for_all_and_each_robot_answers(bridge, l
         desk.until(lambda: desk.emergency["in_force"] and not set(names) & set(desk.emergency["waiting"]))
         with pytest.raises(RefusedError, match="emergency stop is in force"):
             desk.send(f"go-{names[0]}", names[0], "SetPosEnd", x=40.0, y=8.0)
+        # A link that comes now is told before any robot of it has said Ready.
+        newcomer, told = Wire(f"{bridge.address}/link"), []
+        newcomer._hear = told.append
+        newcomer.until(lambda: "Abort" in [frame["method"] for frame in told])
+        assert "robot" not in told[-1]["params"] and told[-1]["params"]["emergency"]
+        newcomer.connection.close()
         late = f"{names[0]}-late"
         link.do("add", late, DRIVES)
         wait_until(lambda: (late, True) in link.adapter.stops)

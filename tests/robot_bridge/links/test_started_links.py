@@ -2,13 +2,20 @@
 
 from __future__ import annotations
 
+import asyncio
 import json
 import os
 import shutil
+import sys
 import urllib.request
+from types import SimpleNamespace
 
 import pytest
 from bridge_programs import wait_until
+
+from robot_bridge import link_processes
+from robot_bridge.link_processes import LinkProcesses
+from robot_bridge.sites.settings_tables import LinkOptions
 
 SETTINGS = 'kind = "tracker"\n[tracker]\nnmea_udp = "127.0.0.1:0"\n[tracker.names]\n1 = "car-1"\n'
 
@@ -84,3 +91,19 @@ def test_links_are_started_again_and_told_of_and_end_with_their_gateway(bridge):
     bridge.gateway.terminate()
     assert bridge.gateway.wait(10) == 0
     assert not is_running(third)
+
+
+async def test_a_link_that_cannot_even_be_tried_keeps_no_other_from_going_on(tmp_path, monkeypatch):
+    monkeypatch.setattr(link_processes, "sys", SimpleNamespace(executable="/bin/false", stderr=sys.stderr))
+    monkeypatch.setattr(link_processes, "FIRST_WAIT", 0.01)
+    links = LinkProcesses(LinkOptions(tracker=("cars.toml", "no\0file.toml")), tmp_path)
+    running = asyncio.create_task(links.run("ws://127.0.0.1:1/link"))
+    cars, wrong = links.states
+    try:
+        async with asyncio.timeout(60):
+            while cars.starts < 2 or "null byte" not in str(wrong.fault):
+                await asyncio.sleep(0.01)
+        assert wrong.starts == 0 and not running.done()
+    finally:
+        running.cancel()
+        await asyncio.gather(running, return_exceptions=True)

@@ -6,6 +6,7 @@ import itertools
 import math
 
 import pytest
+from bridge_programs import wait_until
 
 WAYS = {
     "r1": ("keepout", "Water basin", [(66.0, 27.0), (66.0, 38.0)]),
@@ -98,6 +99,12 @@ def test_robots_are_stopped_with_no_desk_connected(start_bridge, limited_site):
         for x, y in (begin, ((begin[0] + end[0]) / 2, (begin[1] + end[1]) / 2)):
             wire.tell("SendPos", {"x": x, "y": y, "theta": 0.0, "v": 1.0})
         assert wire.wait_for("Abort")["params"] == {"emergency": False}
-    noted = bridge.sql("select subject, action, detail from audit where who = 'geofence' order by subject")
-    assert [tuple(row) for row in noted] == [(robot, "abort", WHERE[robot]) for robot in WAYS]
+
+    def noted():
+        rows = bridge.sql("select subject, action, detail from audit where who = 'geofence' order by subject")
+        return [tuple(row) for row in rows]
+
+    # It is written after the robot was told: nobody's stop waits for the audit log.
+    wait_until(lambda: len(noted()) == len(WAYS))
+    assert noted() == [(robot, "abort", WHERE[robot]) for robot in WAYS]
     bridge.end()

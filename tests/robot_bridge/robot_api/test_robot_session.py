@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import json
 import re
 from types import SimpleNamespace
@@ -10,10 +11,14 @@ import pytest
 
 from robot_bridge import jsonrpc
 from robot_bridge.errors import DataRefusedError, StoreError
+from robot_bridge.links.base.positions import frame_of
 from robot_bridge.monitoring.repeated_lines import RepeatedLines
 from robot_bridge.monitoring.tally import Tally
+from robot_bridge.robot_api.link_connection import LinkConnection
+from robot_bridge.robot_api.link_place import LinkPlace
 from robot_bridge.robot_api.own_connection import OwnConnection
 from robot_bridge.robot_api.websocket import WebSocketLink
+from robot_bridge.sites.limit_settings import LimitSettings
 
 POSITION = json.dumps(
     {"jsonrpc": "2.0", "method": "SendPos", "params": {"x": 1.0, "y": 2.0, "theta": 0.0, "v": 0.0}}
@@ -114,6 +119,66 @@ def test_a_connection_that_fails_keeps_no_stop_from_the_others(caplog):
     bad = [SimpleNamespace(robot=f"b{n}", stop_now=fail) for n in range(3)]
     # In the order in which they are kept, which nobody knows: some of the good ones come behind a bad one.
     link._sessions = [bad[0], good[0], bad[1], good[1], bad[2], good[2]]
+    links = [SimpleNamespace(name=f"l{n}", stop_all=told.append if n % 2 else fail) for n in range(4)]
+    link._links = links
     link._stop_all("emergency-stop-0001")
-    assert told == ["emergency-stop-0001"] * 3
+    assert told == ["emergency-stop-0001"] * 5
+    assert "telling link l2 of an emergency stop failed" in caplog.text
     assert "telling robot 'b2' of an emergency stop failed" in caplog.text
+
+
+@pytest.fixture
+def link(connection):
+    """A link that may speak for all robots, at a gateway in which everything fails."""
+    connection.identity = SimpleNamespace(name="agvs")
+    fleet = SimpleNamespace(take_poses=fail, links=SimpleNamespace(introduce=fail), repeated=RepeatedLines())
+    gate = SimpleNamespace(spoken_for=lambda _visitor: ("*",), limits=None)
+    return LinkConnection(fleet, connection, gate, lambda _session: None, lambda _session: True)
+
+
+async def test_what_goes_wrong_over_a_link_has_a_number_and_ends_no_connection(link, connection, caplog):
+    hello = {"jsonrpc": "2.0", "id": 3, "method": "hello", "params": {"protocol": 1, "kind": "t"}}
+    await link._receive(json.dumps(hello))
+    await link._receive(frame_of([]))
+    assert [frame["error"]["code"] for frame in connection.sent] == [jsonrpc.INTERNAL_ERROR] * 2
+    assert NUMBER.match(connection.sent[0]["error"]["message"])[1] in NUMBER.findall(caplog.text)
+
+
+async def test_a_stop_of_a_link_outdates_what_each_of_its_robots_was_to_be_sent(link, connection):
+    outdated = []
+    for name in ("r1", "r2"):
+        session = SimpleNamespace(outdate=lambda name=name: outdated.append(name))
+        link._places[name] = SimpleNamespace(session=session)
+    link.stop_all("emergency-stop-0001")
+    assert (outdated, connection.sent) == (["r1", "r2"], [])
+    await asyncio.gather(*link._tasks)
+    assert connection.sent[0]["params"] == {"call": "emergency-stop-0001", "emergency": True}
+
+
+async def test_what_stops_a_linked_robot_waits_for_no_turn_and_all_else_does(link):
+    async def enter(**how):
+        async with link.lane(**how):
+            pass
+
+    async with link.lane(urgent=False, large=True):
+        await asyncio.wait_for(enter(urgent=True, large=True), 20)
+        others = [asyncio.create_task(enter(urgent=False, large=large)) for large in (False, True)]
+        for _ in range(5):
+            await asyncio.sleep(0)
+        assert not any(one.done() for one in others)
+    await asyncio.wait_for(asyncio.gather(*others), 20)
+
+
+async def test_one_message_of_a_linked_robot_that_goes_wrong_keeps_the_next_from_nothing(connection, caplog):
+    place = LinkPlace(
+        SimpleNamespace(), SimpleNamespace(name="agvs"), "r1", LimitSettings(), lambda _session: None
+    )
+    done = asyncio.Event()
+
+    async def work():
+        done.set()
+
+    place.add(fail_later())
+    place.add(work())
+    await asyncio.wait_for(done.wait(), 20)
+    assert "link agvs: what robot 'r1' said failed" in caplog.text

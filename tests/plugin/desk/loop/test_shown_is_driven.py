@@ -54,6 +54,10 @@ def told(operator):
     return operator.desk and operator._find(QLabel, "fleet_draft_text").text()
 
 
+def standing_cones():
+    return sum(layer.featureCount() for layer in QgsProject.instance().mapLayersByName("Cones put down"))
+
+
 def watch(operator, robot):
     """Return every place at which the desk saw the robot until it had come to its end."""
     seen = []
@@ -96,6 +100,7 @@ def test_a_clicked_cone_is_driven_to_by_the_way_that_was_shown(on_site, operator
     assert command.state is CommandState.REACHED
     assert command.deviation <= TOLERANCE
     assert math.dist(seen[-1], sent[-1]) <= TOLERANCE + 0.05
+    operator.wait("the cone staying on the map", lambda: standing_cones() == 1, 20)
 
 
 def test_one_that_neither_asks_nor_takes_cones_with_a_path_is_shown_and_refused_straight(on_site, operator):

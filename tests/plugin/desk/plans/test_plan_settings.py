@@ -39,7 +39,16 @@ def test_a_project_without_settings_has_the_usual_ones(project):
 
 @pytest.mark.parametrize(
     "text",
-    ["", "no json", "[1]", '{"robots": 3}', '{"objective": "fame"}', '{"seconds": "long"}', '{"odd": 1}'],
+    [
+        "",
+        "no json",
+        "[1]",
+        "[" * 50_000,
+        '{"robots": 3}',
+        '{"objective": "fame"}',
+        '{"seconds": "long"}',
+        '{"odd": 1}',
+    ],
 )
 def test_settings_that_are_none_are_the_usual_ones(project, text):
     project.writeEntry(SCOPE, KEY, text)

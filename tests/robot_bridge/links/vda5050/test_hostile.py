@@ -12,6 +12,7 @@ import pytest
 from robot_bridge.links.base.settings import read_settings
 from robot_bridge.links.vda5050.adapter import Vda5050Adapter
 from robot_bridge.links.vda5050.settings import Vda5050Settings
+from robot_bridge.links.vda5050.vehicle import VehicleController
 
 from .bench import state
 
@@ -49,6 +50,21 @@ def test_thousands_of_serial_numbers_make_no_thousands_of_vehicles(tmp_path, cap
         online(adapter, f"agv-{number}")
     assert len(adapter.vehicles) == 5
     assert len(caplog.records) < 20
+
+
+def test_what_nobody_foresaw_in_a_message_concerns_its_vehicle_alone(adapter, monkeypatch, caplog):
+    receive = VehicleController.receive_message
+
+    def failing_for_the_first(self, message, *arguments, **more):
+        if self.vehicle.serial_number == "1":
+            raise ZeroDivisionError("nobody foresaw it")
+        receive(self, message, *arguments, **more)
+
+    monkeypatch.setattr(VehicleController, "receive_message", failing_for_the_first)
+    online(adapter, "1")
+    online(adapter, "2")
+    assert len(adapter.vehicles) == 2
+    assert "vehicle Acme/1: internal error" in caplog.text
 
 
 def test_who_speaks_for_another_vehicle_is_refused(adapter, caplog):
