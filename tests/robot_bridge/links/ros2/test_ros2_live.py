@@ -9,6 +9,7 @@ import sys
 
 import pytest
 from bridge_programs import wait_until
+from cut_line import CutNetwork, outlast_a_cut
 from PIL import Image
 from stage.patience import BUSY
 from stage.processes import Processes
@@ -347,6 +348,31 @@ def test_a_gateway_that_is_killed_loses_no_command_and_repeats_none(bridge, desk
     desk.ask("subscribe", {"rate": 20})
     desk.wait_for_step(f"go-{name}", "reached", 6)
     assert len(events(nodes, name, "goal asked")) == 1
+
+
+@pytest.mark.skipif(not CutNetwork.is_possible(), reason="a network of its own takes root")
+def test_a_network_that_was_cut_loses_nothing_and_does_nothing_twice(bridge, nodes, desk, tmp_path):
+    driving, stopped, ordered = (f"robot{next(NUMBERS)}" for _ in range(3))
+    network, domain = CutNetwork(), nodes.domain + 49
+    file = tmp_path / "cut.toml"
+    more = f'interfaces = ["{network.interface}"]'
+    file.write_text(
+        SETTINGS.format(address=bridge.address, domain=domain, distribution=nodes.distribution).replace(
+            'range = "localhost"', f'range = "subnet"\n{more}'
+        ),
+        encoding="utf-8",
+    )
+    with Processes(tmp_path / "logs") as processes:
+        AdapterProcess(processes, file).start()
+        try:
+            for name in (driving, stopped, ordered):
+                nodes.start(name, *SLOW, domain=domain, through=network.through)
+            desk.wait_for_robots(driving, stopped, ordered, seconds=BUSY * 10)
+            outlast_a_cut(desk, nodes, network.cut, network.mend, driving, stopped, ordered)
+        finally:
+            network.close()
+            for name in (driving, stopped, ordered):
+                nodes.end(name)
 
 
 def test_the_shortest_settings_of_the_guide_show_a_robot_and_send_it(bridge, nodes, desk, tmp_path, guide):

@@ -8,6 +8,7 @@ import sys
 
 import pytest
 from bridge_programs import wait_until
+from cut_line import CutLine, outlast_a_cut
 from stage.patience import BUSY
 from stage.processes import Processes
 from websockets.sync.client import connect
@@ -304,6 +305,28 @@ def test_a_gateway_that_is_killed_loses_no_command_and_repeats_none(bridge, desk
     desk.ask("subscribe", {"rate": 20})
     desk.wait_for_step(f"go-{name}", "reached", 6)
     assert len(events(nodes, name, "goal asked")) == 1
+
+
+@pytest.mark.parametrize("reset", [False, True], ids=["bytes come late", "bytes are lost"])
+def test_a_network_that_was_cut_loses_nothing_and_does_nothing_twice(
+    desk, nodes, start_server, settings, tmp_path, reset
+):
+    domain = nodes.domain + 51
+    names = [f"distant{next(NUMBERS)}" for _ in range(3)]
+    line = CutLine(start_server(domain).port)
+    file = tmp_path / "cut.toml"
+    file.write_text(settings(line.address), encoding="utf-8")
+    with Processes(tmp_path / "logs") as processes:
+        AdapterProcess(processes, file).start()
+        try:
+            for name in names:
+                nodes.start(name, *SLOW, domain=domain)
+            desk.wait_for_robots(*names, seconds=BUSY * 10)
+            outlast_a_cut(desk, nodes, line.cut, lambda: line.mend(reset=reset), *names)
+        finally:
+            line.close()
+            for name in names:
+                nodes.end(name)
 
 
 def test_the_shortest_settings_of_the_guide_show_a_robot_and_send_it(
