@@ -94,7 +94,8 @@ def section() -> str:
             with _crowd(python, robots, rate) as crowd:
                 row, window = _over_dds(crowd, SECONDS if remembered else long)
                 remembered = remembered or memory(crowd.name, window)
-                rows += [row, _over_rosbridge(crowd)]
+                rows.append(row)
+                rows.append(_over_rosbridge(crowd))
             starved += [row[0] for row in rows[-2:] if float(row[1]) < ALL_HEARD * robots * rate]
     except (StageError, NotMeasuredError) as error:
         remembered += f"\n\n**Not measured any further**: {error}"

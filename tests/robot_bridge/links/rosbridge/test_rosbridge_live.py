@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import itertools
 import json
 import sys
@@ -12,6 +13,10 @@ from cut_line import CutLine, outlast_a_cut
 from stage.patience import BUSY
 from stage.processes import Processes
 from websockets.sync.client import connect
+
+from robot_bridge.access.credentials import Credentials
+from robot_bridge.links.rosbridge.connection import RosbridgeConnection, Subscription
+from robot_bridge.links.rosbridge.settings import Server
 
 SETTINGS = """
 [gateway]
@@ -327,6 +332,36 @@ def test_a_network_that_was_cut_loses_nothing_and_does_nothing_twice(
             line.close()
             for name in names:
                 nodes.end(name)
+
+
+async def test_more_than_the_server_takes_at_once_keeps_the_connection_and_all_of_it_arrives(server):
+    connection = RosbridgeConnection(Server(server.url, Credentials()))
+    carrying = asyncio.create_task(connection.run())
+    text, seen = Subscription("std_msgs/msg/String"), []
+    try:
+        async with asyncio.timeout(BUSY * 30):
+            while connection.away is not None:
+                await asyncio.sleep(0.05)
+            heard = connection.subscribe("/crowd/said", text)
+            connection.advertise("/crowd/said", text.type_name)
+
+            async def until(last):
+                while last not in seen:
+                    connection.publish("/crowd/said", {"data": last})
+                    await asyncio.sleep(0.1)
+                    seen.extend(message["data"] for message in heard.drain())
+
+            await until("begin")
+            for n in range(1000):
+                connection.subscribe(f"/crowd{n}/said", text)
+            # As many as an emergency stop has for hundreds of robots.
+            for n in range(800):
+                connection.publish("/crowd/said", {"data": f"{n}"}, urgent=True)
+            await until("end")
+        assert connection.session == 1 and connection.away is None
+    finally:
+        carrying.cancel()
+        await asyncio.gather(carrying, return_exceptions=True)
 
 
 def test_the_shortest_settings_of_the_guide_show_a_robot_and_send_it(
