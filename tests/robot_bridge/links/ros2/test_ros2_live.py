@@ -399,23 +399,27 @@ def test_a_hostile_node_is_named_and_the_robots_go_on(desk, robot, adapter, node
     odometry, status = type_to_dds("nav_msgs/msg/Odometry"), type_to_dds("action_msgs/msg/GoalStatusArray")
     forged = hostile.writer("rt/hostile/odom", odometry, Quality(reliable=False))
     poison = hostile.writer(f"rt/{name}/navigate_to_pose/_action/status", status, Quality(latched=True))
+    text = type_to_dds("std_msgs/msg/String")
+    other = [hostile.writer(f"rt/{one}/odom", text, Quality(reliable=False)) for one in (name, "textual")]
     lies = (b"\0\1\0\0" + b"\xff" * 64, b"\0\1\0\0" + bytes(2**20), bytes(8))
 
     def is_named():
         # Nobody waits for who is only just being met: it is said again and again.
+        assert other, "who is not kept is gone"
         for data in lies:
             forged.write(data)
             poison.write(data)
         said = adapter.output()
         return (
-            "robot hostile: /hostile/odom: it is no nav_msgs/msg/Odometry" in said
+            all(f"/{one}/odom has type std_msgs" in said for one in (name, "textual"))
+            and "robot hostile: /hostile/odom: it is no nav_msgs/msg/Odometry" in said
             and f"robot {name}: the server of NavigateToPose" in said
         )
 
     wait_until(is_named)
     desk.send(f"go-{name}", name, "SetPosEnd", x=25.0, y=8.0)
     desk.wait_for_step(f"go-{name}", "reached", 10)
-    assert "hostile" not in desk.robots
+    assert "hostile" not in desk.robots and "textual" not in desk.robots
 
 
 @pytest.mark.parametrize(
