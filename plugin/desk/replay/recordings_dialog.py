@@ -15,6 +15,7 @@ from qgis.PyQt.QtWidgets import (
     QDoubleSpinBox,
     QFormLayout,
     QHBoxLayout,
+    QLabel,
     QSlider,
     QVBoxLayout,
     QWidget,
@@ -146,7 +147,10 @@ class RecordingsDialog(QDialog):
         place.addWidget(self._seconds)
         form = QFormLayout()
         form.addRow(tr("&Link"), self._link)
-        form.addRow(tr("Pl&ace"), place)
+        # A row of two fields has no key of its own.
+        label = QLabel(tr("Pl&ace"))
+        label.setBuddy(self._place)
+        form.addRow(label, place)
         form.addRow(tr("&Speed"), self._speed)
         form.addRow("", self._paused)
         form.addRow("", self._loop)
