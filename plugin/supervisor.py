@@ -65,6 +65,7 @@ class FleetSupervisor:
         from .desk.options.options_factory import OptionsFactory
         from .desk.plans.plans_action import PlansAction
         from .desk.plugin_menu import PluginMenu
+        from .desk.replay.recordings_dialog import RecordingsAction
         from .desk.replay.replay_action import ReplayAction
         from .desk.robot_feed import RobotFeed
         from .desk.robots.removal import RobotRemoval
@@ -97,6 +98,7 @@ class FleetSupervisor:
         add(PlansAction(iface, MENU, window.desk))
         add(ObservationsAction(iface, MENU, window.desk))
         add(ReplayAction(iface, MENU, window.desk))
+        add(RecordingsAction(iface, MENU, connections, window.desk))
         add(AccountsAction(iface, MENU, connections, window.desk))
         add(SiteChoiceAction(iface, MENU, connections, window.desk))
         add(RobotRemoval(iface, MENU, connections, window.desk, window.dock.table))

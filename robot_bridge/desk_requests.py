@@ -61,6 +61,7 @@ from .messages import (
     RotateToken,
     Send,
     SendMap,
+    SetPlayback,
     SetPositions,
     SetQueue,
     SetRole,
@@ -327,6 +328,10 @@ async def _remove_robots(fleet: Fleet, request: RemoveRobots, caller: Caller) ->
     return to_json(await fleet.removals.remove(request, caller.operator))
 
 
+async def _set_playback(fleet: Fleet, request: SetPlayback, _caller: Caller) -> Json:
+    return to_json(await fleet.links.set_playback(request))
+
+
 SERVICES: dict[type[DeskRequest], Service] = {
     GetPositions: Service(Role.VIEWER, _get_positions),
     GetCommands: Service(Role.VIEWER, _get_commands),
@@ -372,4 +377,5 @@ SERVICES: dict[type[DeskRequest], Service] = {
     OpenRoad: Service(Role.OPERATOR, _open_road),
     ResolveConflict: Service(Role.OPERATOR, _resolve_conflict),
     RemoveRobots: Service(Role.SUPERVISOR, _remove_robots),
+    SetPlayback: Service(Role.OPERATOR, _set_playback),
 }

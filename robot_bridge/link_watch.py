@@ -3,22 +3,29 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Awaitable, Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+import msgspec
+
+from .errors import RefusedError
 from .messages import to_json
 from .messages.links import LinkStatus
-from .messages.service import LinkReport, Links
+from .messages.service import LinkReport, Links, Playback, PlaybackReport, SetPlayback
 from .robots import Robots
 
 GRACE = 3.0
 """seconds that a link may be away before operators are told: most come back by themselves."""
 MOST_NAMES = 50
 AWAY = "it is not connected"
+REPLAY = "replay"
+"""The kind of links that play recordings."""
 
 Announce = Callable[[str, str, dict[str, Any]], None]
+Ask = Callable[[str, dict[str, Any]], Awaitable[Any]]
+"""Calls a method of a link, and returns its result; raises RefusedError."""
 
 
 @dataclass
@@ -51,6 +58,8 @@ class _Known:
     process: LinkProcess | None = None
     robots: int = 0
     counts: Mapping[str, float] = field(default_factory=dict)
+    ask: Ask | None = None
+    """None while it is not connected."""
 
 
 class LinkWatch:
@@ -82,9 +91,30 @@ class LinkWatch:
             self._told = report
             self._announce("links", "", to_json(report))
 
-    def introduce(self, link: str, kind: str) -> None:
-        """Note the kind of a link that has said hello, before it speaks for any robot."""
-        self._known.setdefault(link, _Known(self._clock())).kind = kind
+    def introduce(self, link: str, kind: str, ask: Ask) -> None:
+        """Note the kind of a link that has said hello, before it speaks for any robot, and how to ask it."""
+        known = self._known.setdefault(link, _Known(self._clock()))
+        known.kind, known.ask = kind, ask
+
+    def withdraw(self, link: str, ask: Ask) -> None:
+        """Note that a connection has ended; one that has come in its place is asked on."""
+        known = self._known.get(link)
+        if known is not None and known.ask == ask:
+            known.ask = None
+
+    async def set_playback(self, request: SetPlayback) -> PlaybackReport:
+        """Have a link play its recording otherwise, and return how it does now; raises RefusedError."""
+        known = self._known.get(request.link)
+        if known is None or known.kind != REPLAY:
+            played = ", ".join(sorted(name for name, one in self._known.items() if one.kind == REPLAY))
+            raise RefusedError(f"{request.link[:40]!r} plays no recording; those that do: {played or 'none'}")
+        if known.ask is None:
+            raise RefusedError(f"link {request.link}: {AWAY}")
+        result = await known.ask(Playback.method, to_json(request.change))
+        try:
+            return msgspec.convert(result, PlaybackReport)
+        except msgspec.ValidationError as error:
+            raise RefusedError(f"link {request.link} answers with what is no report: {error}") from None
 
     def kind_of(self, link: str) -> str | None:
         """Return the kind of a link; None for one that has not been heard, and for what is none."""

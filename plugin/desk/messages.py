@@ -256,8 +256,13 @@ class SuspensionNotices(Notices):
 class LinkNotices(Notices):
     """Texts about links to robots of another kind that are down."""
 
+    def __init__(self, parent: QObject | None = None):
+        super().__init__(parent)
+        self.reported = Links()
+
     def show(self, links: Links) -> None:
         """Tell of the newest report."""
+        self.reported = links
         self.renew([_down(one) for one in links.links if not one.up])
 
 

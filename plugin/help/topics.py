@@ -20,6 +20,7 @@ CONNECTIONS = Topic("operator", "connections")
 OPTIONS = Topic("operator", "options")
 ACCOUNTS = Topic("operator", "accounts")
 SITES = Topic("operator", "which-site-is-served")
+RECORDINGS = Topic("operator", "recordings-on-the-map")
 
 TOPICS = {
     "fleet_url": Topic("operator", "connect"),

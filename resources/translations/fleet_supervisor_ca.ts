@@ -4008,6 +4008,71 @@
             <translation>{robot}: {command} · {state} per {by}</translation>
         </message>
         <message>
+            <location filename="../../plugin/desk/replay/recordings_dialog.py" />
+            <source> s</source>
+            <translation> s</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/replay/recordings_dialog.py" />
+            <source>&amp;Link</source>
+            <translation>E&amp;nllaç</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/replay/recordings_dialog.py" />
+            <source>&amp;Paused</source>
+            <translation>En &amp;pausa</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/replay/recordings_dialog.py" />
+            <source>&amp;Speed</source>
+            <translation>&amp;Velocitat</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/replay/recordings_dialog.py" />
+            <source>From the &amp;beginning again at its end</source>
+            <translation>Torna a &amp;començar quan acaba</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/replay/recordings_dialog.py" />
+            <source>No link plays a recording at this gateway.</source>
+            <translation>Cap enllaç d'aquesta passarel·la no reprodueix un enregistrament.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/replay/recordings_dialog.py" />
+            <source>Pl&amp;ace</source>
+            <translation>&amp;Lloc</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/replay/recordings_dialog.py" />
+            <source>Recording of {link}</source>
+            <translation>Enregistrament de {link}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/replay/recordings_dialog.py" />
+            <source>Recordings on the map</source>
+            <translation>Enregistraments al mapa</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/replay/recordings_dialog.py" />
+            <source>Recordings that links play on the map: pause, speed, place</source>
+            <translation>Enregistraments que els enllaços reprodueixen al mapa: pausa, velocitat, lloc</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/replay/recordings_dialog.py" />
+            <source>Recordings…</source>
+            <translation>Enregistraments…</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/replay/recordings_dialog.py" />
+            <source>Seconds after the beginning</source>
+            <translation>Segons des del començament</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/replay/recordings_dialog.py" />
+            <source>{file}: {place} s of {length} s</source>
+            <translation>{file}: {place} s de {length} s</translation>
+        </message>
+        <message>
             <location filename="../../plugin/desk/replay/replay_action.py" />
             <source>Play what robots did, on a map beside the live one</source>
             <translation>Reprodueix el que han fet els robots, en un mapa al costat del que és en viu</translation>

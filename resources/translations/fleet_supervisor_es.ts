@@ -4008,6 +4008,71 @@
             <translation>{robot}: {command} · {state} por {by}</translation>
         </message>
         <message>
+            <location filename="../../plugin/desk/replay/recordings_dialog.py" />
+            <source> s</source>
+            <translation> s</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/replay/recordings_dialog.py" />
+            <source>&amp;Link</source>
+            <translation>E&amp;nlace</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/replay/recordings_dialog.py" />
+            <source>&amp;Paused</source>
+            <translation>En &amp;pausa</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/replay/recordings_dialog.py" />
+            <source>&amp;Speed</source>
+            <translation>&amp;Velocidad</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/replay/recordings_dialog.py" />
+            <source>From the &amp;beginning again at its end</source>
+            <translation>Vuelve a &amp;empezar al acabar</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/replay/recordings_dialog.py" />
+            <source>No link plays a recording at this gateway.</source>
+            <translation>Ningún enlace de esta pasarela reproduce una grabación.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/replay/recordings_dialog.py" />
+            <source>Pl&amp;ace</source>
+            <translation>&amp;Lugar</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/replay/recordings_dialog.py" />
+            <source>Recording of {link}</source>
+            <translation>Grabación de {link}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/replay/recordings_dialog.py" />
+            <source>Recordings on the map</source>
+            <translation>Grabaciones en el mapa</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/replay/recordings_dialog.py" />
+            <source>Recordings that links play on the map: pause, speed, place</source>
+            <translation>Grabaciones que los enlaces reproducen en el mapa: pausa, velocidad, lugar</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/replay/recordings_dialog.py" />
+            <source>Recordings…</source>
+            <translation>Grabaciones…</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/replay/recordings_dialog.py" />
+            <source>Seconds after the beginning</source>
+            <translation>Segundos desde el comienzo</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/replay/recordings_dialog.py" />
+            <source>{file}: {place} s of {length} s</source>
+            <translation>{file}: {place} s de {length} s</translation>
+        </message>
+        <message>
             <location filename="../../plugin/desk/replay/replay_action.py" />
             <source>Play what robots did, on a map beside the live one</source>
             <translation>Reproducir lo que hicieron los robots, en un mapa junto al que está en vivo</translation>

@@ -3987,6 +3987,71 @@
             <translation>{robot}: {command} · {state}, {by}</translation>
         </message>
         <message>
+            <location filename="../../plugin/desk/replay/recordings_dialog.py" />
+            <source> s</source>
+            <translation> s</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/replay/recordings_dialog.py" />
+            <source>&amp;Link</source>
+            <translation>&amp;Kapcsolat</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/replay/recordings_dialog.py" />
+            <source>&amp;Paused</source>
+            <translation>&amp;Szünetel</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/replay/recordings_dialog.py" />
+            <source>&amp;Speed</source>
+            <translation>Se&amp;besség</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/replay/recordings_dialog.py" />
+            <source>From the &amp;beginning again at its end</source>
+            <translation>A végén elölről &amp;kezdi</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/replay/recordings_dialog.py" />
+            <source>No link plays a recording at this gateway.</source>
+            <translation>Ennél az átjárónál egy kapcsolat sem játszik le felvételt.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/replay/recordings_dialog.py" />
+            <source>Pl&amp;ace</source>
+            <translation>&amp;Hely</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/replay/recordings_dialog.py" />
+            <source>Recording of {link}</source>
+            <translation>{link} felvétele</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/replay/recordings_dialog.py" />
+            <source>Recordings on the map</source>
+            <translation>Felvételek a térképen</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/replay/recordings_dialog.py" />
+            <source>Recordings that links play on the map: pause, speed, place</source>
+            <translation>Felvételek, amelyeket kapcsolatok a térképen lejátszanak: szünet, sebesség, hely</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/replay/recordings_dialog.py" />
+            <source>Recordings…</source>
+            <translation>Felvételek…</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/replay/recordings_dialog.py" />
+            <source>Seconds after the beginning</source>
+            <translation>Másodperc a kezdettől</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/replay/recordings_dialog.py" />
+            <source>{file}: {place} s of {length} s</source>
+            <translation>{file}: {place} s / {length} s</translation>
+        </message>
+        <message>
             <location filename="../../plugin/desk/replay/replay_action.py" />
             <source>Play what robots did, on a map beside the live one</source>
             <translation>Lejátssza, mit tettek a robotok, az élő térkép mellett egy másikon</translation>

@@ -171,7 +171,16 @@ from .robots import (
     path_to_end,
 )
 from .roles import Role
-from .service import LinkReport, Links, Stopping, Suspension, Suspensions
+from .service import (
+    LinkReport,
+    Links,
+    Playback,
+    PlaybackReport,
+    SetPlayback,
+    Stopping,
+    Suspension,
+    Suspensions,
+)
 from .sites import ChooseSite, GetSites, SiteOffer, Sites
 from .stopping import (
     AbortTask,
@@ -272,6 +281,8 @@ __all__ = [
     "PauseRobot",
     "PlacementReport",
     "Placements",
+    "Playback",
+    "PlaybackReport",
     "Position",
     "PositionColumns",
     "PositionForm",
@@ -304,6 +315,7 @@ __all__ = [
     "SetMap",
     "SetObject",
     "SetPath",
+    "SetPlayback",
     "SetPosEnd",
     "SetPosIni",
     "SetPositions",

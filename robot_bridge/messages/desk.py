@@ -34,6 +34,7 @@ from .queues import (
 from .removal import RemoveRobots
 from .roads import CloseRoad, GetClosures, GetConflicts, GetRoute, GetWaysOut, OpenRoad, ResolveConflict
 from .robot_state import PathDeclaration, RobotState
+from .service import SetPlayback
 from .sites import ChooseSite, GetSites
 from .stopping import AbortTask, ClearEmergencyStop, EmergencyStop, check_override, check_reason
 from .supervision import EndSession, GetAudit, GetSessions
@@ -332,6 +333,7 @@ DeskRequest = (
     | GetWaysOut
     | ResolveConflict
     | RemoveRobots
+    | SetPlayback
 )
 
 DESK_REQUESTS: dict[str, type[DeskRequest]] = {cls.method: cls for cls in get_args(DeskRequest)}

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+import itertools
 import logging
 from collections.abc import AsyncIterator, Callable, Coroutine
 from typing import Any, TypeVar
@@ -20,7 +21,7 @@ from ..access.gate import ANY_LINK, Gate
 from ..access.link_accounts import speaks_for
 from ..access.visitor import Visitor
 from ..core.decoding import DecodingError
-from ..errors import BridgeError, BusyError, ForbiddenError, NotReadyError
+from ..errors import BridgeError, BusyError, ForbiddenError, NotReadyError, RefusedError
 from ..fleet import Fleet
 from ..messages import (
     MessageError,
@@ -52,6 +53,11 @@ from .robot_session import RobotSession
 
 log = logging.getLogger(__name__)
 
+ANSWER_WITHIN = 5.0
+"""seconds that a link has to answer what it is asked for itself."""
+MOST_ASKED = 20
+"""questions to a link that wait for its answer."""
+
 Message = TypeVar("Message", LinkHello, LinkStatus, GetAreas)
 
 
@@ -82,6 +88,8 @@ class LinkConnection:
         self._robots = gate.spoken_for(connection)
         self._turn, self._large = asyncio.Lock(), asyncio.Lock()
         self._tasks: set[asyncio.Task[None]] = set()
+        self._numbers = itertools.count(1)
+        self._asked: dict[str, asyncio.Future[jsonrpc.Reply]] = {}
 
     # --- what the gateway asks of it --------------------------------------------------------------------
 
@@ -100,8 +108,32 @@ class LinkConnection:
         except ConnectionClosed:
             return
         finally:
+            self._fleet.links.withdraw(self.name, self.ask)
+            for answer in self._asked.values():
+                answer.cancel()
             for place in self._places.values():
                 place.end()
+
+    async def ask(self, method: str, params: dict[str, Any]) -> Any:
+        """Call a method of the link itself, and return its result; raises RefusedError."""
+        if len(self._asked) >= MOST_ASKED:
+            raise RefusedError(f"link {self.name} has not answered yet what it was asked before")
+        id = f"link-{next(self._numbers)}"
+        answer = self._asked[id] = asyncio.get_running_loop().create_future()
+        try:
+            async with asyncio.timeout(ANSWER_WITHIN):
+                await self.send(jsonrpc.call(method, params, id))
+                await asyncio.wait([answer])
+        except (ConnectionClosed, TimeoutError):
+            raise RefusedError(f"link {self.name} does not answer; is it connected?") from None
+        finally:
+            del self._asked[id]
+        if answer.cancelled():
+            raise RefusedError(f"link {self.name} has just ended")
+        reply = answer.result()
+        if reply.error is not None:
+            raise RefusedError(f"link {self.name}: {reply.error[:500]}")
+        return reply.result
 
     def stop_all(self, call_id: str) -> None:
         """Tell the link that all its robots must stop, those as well that have not said Ready by it.
@@ -209,7 +241,7 @@ class LinkConnection:
 
     def _welcome(self, hello: LinkHello) -> LinkWelcome:
         self.kind = hello.kind
-        self._fleet.links.introduce(self.name, hello.kind)
+        self._fleet.links.introduce(self.name, hello.kind, self.ask)
         site = self._fleet.site
         return LinkWelcome(
             LINK_PROTOCOL,
@@ -288,6 +320,10 @@ class LinkConnection:
             await self._refuse(None, fault, robot)
 
     def _take_reply(self, reply: jsonrpc.Reply) -> None:
+        if (answer := self._asked.get(str(reply.id))) is not None:
+            if not answer.done():
+                answer.set_result(reply)
+            return
         robot, separator, id = str(reply.id).rpartition(SEPARATOR)
         place = self._places.get(robot)
         if not separator or place is None:

@@ -18,6 +18,7 @@ from ..messages.links import (
     SiteAreas,
 )
 from ..messages.results import Done
+from ..messages.service import Playback, PlaybackReport
 from .definitions import JSON_SCHEMA, Schema, definitions, schema_of
 from .frames import call, calls, channel, error, in_columns, message, news, operation, result, results
 
@@ -35,6 +36,7 @@ _RESULTS: dict[str, type] = {
     "get_areasResult": SiteAreas,
 }
 _STOP = "AbortOfAll"
+_PLAYBACK_RESULT = f"{Playback.method}Result"
 _ROBOT: Schema = {
     "type": "string",
     "pattern": f"^{ROBOT_NAME.pattern}$",
@@ -51,6 +53,8 @@ def link_documents() -> dict[str, Schema]:
     said["head/link-positions.json"] = schema_of(LinkColumns)
     told = {f"link-gateway/{op}.json": _with_robot(schema_of(cls)) for op, cls in ROBOT_ANSWERS.items()}
     told |= {f"link-gateway/{cls.__name__}.json": schema_of(cls) for cls in (Start, Released, AbortOfAll)}
+    told[f"link-gateway/{Playback.method}.json"] = schema_of(Playback)
+    said[f"link/{_PLAYBACK_RESULT}.json"] = schema_of(PlaybackReport)
     told |= {f"link-gateway/{name}.json": schema_of(cls) for name, cls in _RESULTS.items()}
     return {**said, **told}
 
@@ -58,6 +62,7 @@ def link_documents() -> dict[str, Schema]:
 def link_schemas(template: str) -> dict[str, Schema]:
     """Return the schemas of the AsyncAPI document; ``template`` is how they refer to each other."""
     own: list[type] = [*CALLS.values(), LinkPositions, LinkColumns, *_RESULTS.values(), Released, AbortOfAll]
+    own += [Playback, PlaybackReport]
     robots: list[type] = [*ROBOT_CALLS.values(), *ROBOT_ANSWERS.values()]
     found = definitions(robots, template, list(ROBOT_CALLS.values()))
     with_robot = {f"{cls.__name__}{OF_ROBOT}": _with_robot(found[cls.__name__]) for cls in robots}
@@ -78,6 +83,8 @@ def link_channel() -> Schema:
         **results(_RESULTS),
         **news({**positions, **told}),
         **in_columns({LinkPositions.method: LinkColumns}),
+        **calls({Playback.method: Playback}),
+        **results({_PLAYBACK_RESULT: PlaybackReport}),
         _STOP: message(_STOP, AbortOfAll, call(AbortOfAll.method, _STOP, with_id=False)),
         "OpAck": result(OpAck),
         "error": error(),
@@ -99,6 +106,7 @@ def link_operations() -> Schema:
         "link.positions": operation("receive", "link", positions),
         "link.Start": operation("send", "link", ["Start"]),
         "link.Released": operation("send", "link", ["Released"]),
+        f"link.{Playback.method}": operation("send", "link", [Playback.method], (_PLAYBACK_RESULT, "error")),
         f"link.{_STOP}": operation("send", "link", [_STOP], acknowledged),
     }
 

@@ -84,7 +84,7 @@ from ..messages.roads import (
     RouteReport,
     WaysOut,
 )
-from ..messages.service import Suspensions
+from ..messages.service import PlaybackReport, SetPlayback, Suspensions
 from ..messages.sites import ChooseSite, GetSites, Sites
 from ..messages.stopping import AbortTask, ClearEmergencyStop, EmergencyReport, EmergencyStop
 from ..messages.supervision import EndSession, GetAudit, GetSessions, SessionReport
@@ -136,6 +136,7 @@ RESULTS: dict[type[DeskRequest], type] = {
     GetWaysOut: WaysOut,
     ResolveConflict: ConflictResolved,
     RemoveRobots: RobotsRemoved,
+    SetPlayback: PlaybackReport,
 }
 """What each request of an operator is answered with."""
 

@@ -1,4 +1,4 @@
-"""ROS 2 robots through the adapter, beside rclpy's own subscriber to the same topics in the same seconds."""
+"""ROS 2 robots over DDS and over rosbridge, beside rclpy's own subscriber at the same time."""
 
 from __future__ import annotations
 
@@ -9,32 +9,41 @@ import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
+from tempfile import TemporaryDirectory
+from typing import Any, NamedTuple
 
+from stage.database_server import free_port
 from stage.errors import StageError
-from stage.processes import dying_with_this
+from stage.processes import Processes, dying_with_this
 from stage.ros_peer import DISTRIBUTION, ros_python
+from stage.rosbridge_peer import rosbridge_command
 
 from .clock import table
-from .linked import HERE, PROBING, Linked, NotMeasuredError, Window, linked, memory
+from .linked import HERE, PROBING, START, Linked, NotMeasuredError, Window, linked, memory, memory_seconds
 from .swarm import cpu_seconds
 from .trial import size
 
 CROWDS = size(((200, 10.0), (1000, 1.0)), ((10, 10.0), (20, 1.0)))
-SECONDS, LONG = size((30.0, 90.0), (3.0, 6.0))
-"""of a window; of the first crowd's, in which memory is looked at."""
+SECONDS = size(30.0, 3.0)
+"""of a window; the first one, in which memory is measured, takes :func:`.memory_seconds`."""
 ALL_HEARD = 0.95
 """of what is to be published that rclpy's subscriber must have heard, for the figures to say anything."""
 DOMAIN = 1 + os.getpid() % 50
-SETTINGS = f"""
+OVER_DDS = f"""
 [ros2]
 domain = {DOMAIN}
 range = "localhost"
 distribution = "{DISTRIBUTION}"
 """
+OVER_ROSBRIDGE = """
+[rosbridge]
+url = "ws://127.0.0.1:{port}"
+distribution = "{distribution}"
+throttle_ms = 0
+"""
 NETWORK = {"ROS_DOMAIN_ID": str(DOMAIN), "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST"}
 HEAD = (
-    "robots",
+    "robots, way",
     "heard/s by rclpy",
     "delay to rclpy, ms: median",
     "p99",
@@ -43,14 +52,17 @@ HEAD = (
     "p99",
     "adapter's CPU",
     "gateway's CPU",
+    "rosbridge server's CPU",
 )
 TEXT = """\
 ### ROS 2
 
-Odometry of many robots, published by one rclpy node, best effort. The adapter tells the gateway, and a desk
-at {desk:g} Hz sees it; a second rclpy process, which does nothing but take the time, subscribes to the same
-topics. Delays are from the message's stamp. CPU is of a core; a window takes {seconds:g} s, the first one
-{long:g} s. All processes share the machine. {busy}
+Odometry of many robots, published by one rclpy node, best effort. An adapter tells the gateway, and a desk
+at {desk:g} Hz sees it: first over DDS, then over a rosbridge server (rosbridge-server-rs, CBOR, no throttle),
+each with a gateway of its own, while the same node goes on publishing. A second rclpy process, which does
+nothing but take the time, subscribes to the same topics all the while. Delays are from the message's stamp.
+CPU is of a core; a window takes {seconds:g} s, the first one {long:g} s. All processes share the machine.
+{busy}
 
 {rows}
 
@@ -58,48 +70,86 @@ topics. Delays are from the message's stamp. CPU is of a core; a window takes {s
 """
 
 
+class Crowd(NamedTuple):
+    """Robots that publish, and rclpy's own subscriber to them."""
+
+    robots: int
+    rate: float
+    processes: Processes
+    listener: subprocess.Popen[str]
+
+    @property
+    def name(self) -> str:
+        """How the page calls it."""
+        return f"{self.robots} × {self.rate:g} Hz"
+
+
 def section() -> str:
     """Return what was measured, as Markdown."""
+    rows: list[list[str]] = []
+    remembered, starved, long = "", [], memory_seconds()
     try:
         python = ros_python()
-        rows: list[list[str]] = []
-        remembered, starved = "", []
-        for number, (robots, rate) in enumerate(CROWDS):
-            told, window = _measure(python, robots, rate, SECONDS if number else LONG)
-            rows.append([f"{robots} × {rate:g} Hz", *told, *window.row()])
-            if float(told[0]) < ALL_HEARD * robots * rate:
-                starved.append(rows[-1][0])
-            remembered = remembered or memory(rows[0][0], window)
+        for robots, rate in CROWDS:
+            with _crowd(python, robots, rate) as crowd:
+                row, window = _over_dds(crowd, SECONDS if remembered else long)
+                remembered = remembered or memory(crowd.name, window)
+                rows.append(row)
+                rows.append(_over_rosbridge(crowd))
+            starved += [row[0] for row in rows[-2:] if float(row[1]) < ALL_HEARD * robots * rate]
     except (StageError, NotMeasuredError) as error:
-        return f"### ROS 2\n\n**Not measured**: {error}"
+        remembered += f"\n\n**Not measured any further**: {error}"
     busy = f"It was too busy for {', '.join(starved)}: fewer came than were to." if starved else ""
     return TEXT.format(
-        desk=PROBING, busy=busy, seconds=SECONDS, long=LONG, rows=table(HEAD, rows), memory=remembered
+        desk=PROBING, busy=busy, seconds=SECONDS, long=long, rows=table(HEAD, rows), memory=remembered
     )
 
 
-def _measure(python: Path, robots: int, rate: float, seconds: float) -> tuple[list[str], Window]:
-    with linked("ros2", SETTINGS) as link, _listening(python, robots) as listener:
-        link.processes.start(
-            "crowd", [python, HERE / "ros_crowd.py", "publish", str(robots), str(rate)], env=NETWORK
-        )
-        link.wait_for(robots)
-        link.look()
-        # What discovery still has to do is none of what positions cost.
-        time.sleep(size(10.0, 1.0))
-        return _window(link, listener, seconds)
+def _over_dds(crowd: Crowd, seconds: float) -> tuple[list[str], Window]:
+    with linked("ros2", OVER_DDS) as link:
+        row, window = _window(link, crowd, seconds)
+    return [f"{crowd.name}, DDS", *row, "–"], window
 
 
-def _window(link: Linked, listener: subprocess.Popen[str], seconds: float) -> tuple[list[str], Window]:
+def _over_rosbridge(crowd: Crowd) -> list[str]:
+    port, name = free_port(), "rosbridge"
+    server = crowd.processes.start(name, rosbridge_command(port), env=NETWORK)
+    crowd.processes.wait_for_line(name, "listening", START)
+    with linked("rosbridge", OVER_ROSBRIDGE.format(port=port, distribution=DISTRIBUTION)) as link:
+        row, _ = _window(link, crowd, SECONDS, server.pid)
+    return [f"{crowd.name}, rosbridge", *row]
+
+
+def _window(link: Linked, crowd: Crowd, seconds: float, *others: int) -> tuple[list[str], Window]:
+    """Return a row of the page without its name; processor time is of ``others`` too."""
+    link.wait_for(crowd.robots)
+    link.look()
+    # What discovery still has to do is none of what positions cost.
+    time.sleep(size(10.0, 1.0))
+    listener = crowd.listener
     assert listener.stdin is not None and listener.stdout is not None
     listener.stdin.write(json.dumps({"begin": time.monotonic(), "seconds": seconds}) + "\n")
     listener.stdin.flush()
-    before = cpu_seconds(listener.pid)
+    pids = (listener.pid, *others)
+    before = [cpu_seconds(pid) for pid in pids]
     window = link.window(seconds)
-    cpu = (cpu_seconds(listener.pid) - before) / seconds
+    used = [(cpu_seconds(pid) - was) / seconds for pid, was in zip(pids, before, strict=True)]
+    own, *rest = [f"{100 * one:.0f} %" for one in used]
     heard: dict[str, Any] = json.loads(listener.stdout.readline())
     delays = ["–" if one is None else f"{one:.1f}" for one in heard["delays"]]
-    return [f"{heard['heard'] / seconds:.0f}", *delays, f"{100 * cpu:.0f} %"], window
+    return [f"{heard['heard'] / seconds:.0f}", *delays, own, *window.row(), *rest], window
+
+
+@contextmanager
+def _crowd(python: Path, robots: int, rate: float) -> Iterator[Crowd]:
+    publisher = [python, HERE / "ros_crowd.py", "publish", str(robots), str(rate)]
+    with (
+        TemporaryDirectory() as folder,
+        Processes(Path(folder)) as processes,
+        _listening(python, robots) as listener,
+    ):
+        processes.start("crowd", publisher, env=NETWORK)
+        yield Crowd(robots, rate, processes, listener)
 
 
 @contextmanager

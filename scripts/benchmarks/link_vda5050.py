@@ -14,11 +14,10 @@ from stage.errors import StageError
 from stage.processes import Processes
 
 from .clock import table
-from .linked import HERE, PROBING, START, NotMeasuredError, linked, memory
+from .linked import HERE, PROBING, START, NotMeasuredError, linked, memory, memory_seconds
 from .trial import size
 
 VEHICLES, RATE = size(200, 10), 1.0
-SECONDS = size(45.0, 4.0)
 HEAD = ("vehicles", "delay to the desk, ms: median", "p99", "adapter's CPU", "gateway's CPU")
 TEXT = """\
 ### VDA 5050
@@ -35,6 +34,7 @@ message with the fields that the standard asks for. The delay is from the state'
 
 def section() -> str:
     """Return what was measured, as Markdown."""
+    seconds = memory_seconds()
     try:
         with _broker() as (processes, port):
             settings = f'[vda5050]\nbroker = "mqtt://127.0.0.1:{port}"\n'
@@ -43,13 +43,13 @@ def section() -> str:
                 processes.start("crowd", crowd)
                 link.wait_for(VEHICLES)
                 link.look()
-                window = link.window(SECONDS)
+                window = link.window(seconds)
     except (StageError, NotMeasuredError) as error:
         return f"### VDA 5050\n\n**Not measured**: {error}"
     name = f"{VEHICLES} × {RATE:g} Hz"
     rows = table(HEAD, [[name, *window.row()]])
     return TEXT.format(
-        vehicles=VEHICLES, rate=RATE, seconds=SECONDS, desk=PROBING, rows=rows, memory=memory(name, window)
+        vehicles=VEHICLES, rate=RATE, seconds=seconds, desk=PROBING, rows=rows, memory=memory(name, window)
     )
 
 

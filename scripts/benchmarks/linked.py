@@ -21,6 +21,7 @@ from stage.processes import Processes, dying_with_this
 from .clock import spread
 from .load import serving
 from .swarm import cpu_seconds, megabytes_of
+from .trial import size
 
 HERE = Path(__file__).parent
 FRESH = re.compile(r'^robot_bridge_robots\{state="fresh"\} (\S+)', re.MULTILINE)
@@ -31,6 +32,12 @@ COME_WITHIN = 150.0
 START = 60.0
 SETTLE = 2.5
 """seconds after which a desk that came has been told all that was there before."""
+
+
+def memory_seconds() -> float:
+    """Return for how long memory is measured: MINUTES of the environment, a minute and a half without."""
+    minutes = os.environ.get("MINUTES")
+    return 60 * float(minutes) if minutes else size(90.0, 6.0)
 
 
 class NotMeasuredError(Exception):
@@ -149,5 +156,5 @@ def memory(name: str, window: Window) -> str:
         told.append(f"the {who} from {first:.1f} to {last:.1f} MB")
     return (
         f"Memory, {name}, medians of both halves of {window.seconds / 60:.1f} minutes: {' and '.join(told)}. "
-        "That shows what grows fast, and no more."
+        "`MINUTES=60` looks for as long as an hour; less shows what grows fast, and no more."
     )

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+from collections.abc import Sequence
 from pathlib import Path
 
 from .patience import START
@@ -24,15 +25,25 @@ class Nodes:
         self.domain = 1 + os.getpid() % 50
         self.distribution = DISTRIBUTION
 
-    def start(self, name: str, *options: str, domain: int | None = None, node: str | None = None) -> None:
+    def start(
+        self,
+        name: str,
+        *options: str,
+        domain: int | None = None,
+        node: str | None = None,
+        through: Sequence[str] = (),
+    ) -> None:
         """Start a robot, in the domain of this module or another; wait until it says that it is up.
 
-        ``node`` is the name of its topics, where several nodes are to have the same ones.
+        ``node`` is the name of its topics, where several nodes are to have the same ones; ``through`` begins
+        the command, where it is to run on a network of its own.
         """
         number = self._started[name] = self._started.get(name, 0) + 1
         log = f"{name}-{number}"
         environment = self.environment(domain)
-        self._processes.start(log, [self._python, ROBOT, node or name, *options], env=environment)
+        if through:
+            environment["ROS_AUTOMATIC_DISCOVERY_RANGE"] = "SUBNET"
+        self._processes.start(log, [*through, self._python, ROBOT, node or name, *options], env=environment)
         self._processes.wait_for_line(log, '"up"', START)
 
     def environment(self, domain: int | None = None) -> dict[str, str]:

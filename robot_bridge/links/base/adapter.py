@@ -7,6 +7,8 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from ...messages import Answer
+from ...messages.service import Playback, PlaybackReport
+from .errors import CommandRefusedError
 from .link import Link
 
 
@@ -57,6 +59,13 @@ class Adapter(ABC):
 
         :raises CommandRefusedError: when the robot's side does not answer, or refuses.
         """
+
+    def playback(self, change: Playback) -> PlaybackReport:
+        """Play a recording otherwise from now on, and return how it is played.
+
+        :raises CommandRefusedError: when there is none, or it cannot be played so.
+        """
+        raise CommandRefusedError(f"a link of kind {self.kind} plays no recording")
 
     def admitted(self, robot: str) -> None:
         """Note that the gateway has let ``robot`` in: tell where it is, if that is known."""

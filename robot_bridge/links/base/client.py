@@ -35,6 +35,7 @@ from ...messages import (
 )
 from ...messages.links import LINK_PROTOCOL, GetAreas, LinkHello, LinkStatus, Released, SiteAreas
 from ...messages.plain import site_report
+from ...messages.service import Playback
 from ...monitoring.unforeseen import going_on
 from ...sites.frame import SiteFrame
 from ...wire import decode_answer, params_of
@@ -327,6 +328,8 @@ class LinkClient:
         if call.method == Start.__name__:
             hello = to_json(LinkHello(LINK_PROTOCOL, self._adapter.kind))
             self._call(LinkHello.method, hello, self._welcomed)
+        elif call.method == Playback.method:
+            self._post(self._played(call.id, params))
         elif call.method == Released.__name__:
             self._released(str(robot), str(params.get("reason")))
         elif call.method == Abort.__name__ and robot is None:
@@ -340,6 +343,13 @@ class LinkClient:
         elif call.id is not None:
             text = f"this link does not speak for robot {robot!r}"
             self._post(jsonrpc.error(call.id, jsonrpc.REFUSED, text))
+
+    def _played(self, id: int | str | None, params: dict[str, Any]) -> str:
+        """Return the reply to a gateway that has a recording played otherwise."""
+        try:
+            return jsonrpc.result(id, to_json(self._adapter.playback(msgspec.convert(params, Playback))))
+        except (msgspec.ValidationError, MessageError, CommandRefusedError) as error:
+            return jsonrpc.error(id, jsonrpc.REFUSED, str(error))
 
     def _take_answer(self, robot: str, call: jsonrpc.Call, params: dict[str, Any]) -> None:
         try:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import contextlib
 import logging
 import math
 import time
@@ -10,8 +11,11 @@ from collections import Counter
 from pathlib import Path
 from typing import ClassVar
 
+import msgspec
+
 from ...messages import SendPos
 from ...messages.bounds import SPEED
+from ...messages.service import Playback, PlaybackReport
 from ...recordings.errors import RecordingError
 from ...recordings.movement import ORIGINS
 from ...recordings.opening import read_recording
@@ -53,12 +57,15 @@ class ReplayAdapter(Adapter):
         self._has_sought = True
         self._looked_at = 0.0
         self._told = 0
+        self._clock: PlayClock | None = None
+        self._is_changed = asyncio.Event()
 
     async def run(self, link: Link) -> None:
         """Play until cancelled; what is at its end stays until the settings are changed."""
         settings = self._settings
         begin = self._recording.begin + settings.start_s
         clock = PlayClock(begin, settings.speed, time.monotonic(), paused=settings.paused)
+        self._clock = clock
         told_at = -math.inf
         while True:
             now = time.monotonic()
@@ -74,7 +81,43 @@ class ReplayAdapter(Adapter):
                 self._looked_at = now
                 self._report(link, clock, now)
             due = max(clock.when(self._player.next_place()), told_at + LEAST_STEP)
-            await asyncio.sleep(min(due, self._looked_at + LOOK_EVERY) - time.monotonic())
+            await self._wait_until(min(due, self._looked_at + LOOK_EVERY))
+
+    def playback(self, change: Playback) -> PlaybackReport:
+        """Play on otherwise, from where it is or from another place, until the settings' file is changed."""
+        clock, now, settings = self._clock, time.monotonic(), self._settings
+        if clock is None:
+            raise CommandRefusedError("the recording has not begun")
+        given = {"speed": change.speed, "paused": change.paused, "loop": change.loop}
+        changed = msgspec.structs.replace(
+            settings, **{name: value for name, value in given.items() if value is not None}
+        )
+        length = self._recording.end - self._recording.begin
+        if change.place_s is not None and not 0 <= change.place_s <= length:
+            raise CommandRefusedError(f"place_s = {change.place_s:g}: the recording is {length:.1f} s long")
+        try:
+            changed.check(self._file)
+        except LinkError as error:
+            raise CommandRefusedError(str(error)) from None
+        self._settings = changed
+        clock.change(now, speed=changed.speed, paused=changed.paused)
+        if change.place_s is not None:
+            self._seek(clock, change.place_s, now)
+        self._looked_at = 0.0
+        self._is_changed.set()
+        place = round(min(clock.place(now) - self._recording.begin, length), 3)
+        file = self._recording.file.name
+        return PlaybackReport(file, changed.speed, changed.paused, changed.loop, place, round(length, 3))
+
+    async def _wait_until(self, due: float) -> None:
+        self._is_changed.clear()
+        with contextlib.suppress(TimeoutError):
+            async with asyncio.timeout(max(due - time.monotonic(), 0.0)):
+                await self._is_changed.wait()
+
+    def _seek(self, clock: PlayClock, place_s: float, now: float) -> None:
+        clock.seek(self._recording.begin + place_s, now)
+        self._has_sought = True
 
     async def command(self, command: Command) -> None:
         """Refuse it: the gateway does not send any."""
@@ -162,8 +205,7 @@ class ReplayAdapter(Adapter):
         self._complaint = None
         clock.change(now, speed=new.speed, paused=new.paused)
         if new.start_s != self._settings.start_s:
-            clock.seek(self._recording.begin + new.start_s, now)
-            self._has_sought = True
+            self._seek(clock, new.start_s, now)
         self._settings = new
 
     def _complain(self, text: str) -> None:

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from ...messages import SendGPS, SendPos
 from ..ros.errors import FaultError
 from ..ros.sensing import Sensing
+from ..ros.types import READ
 from .dds import Endpoint, Participant, Quality, RawReader, quality_for
 from .interfaces import Interfaces
 from .names import topic_to_dds, type_from_dds
@@ -74,12 +75,17 @@ class Listening:
         heard = self._heard.get(kind)
         if heard is not None and heard.offers == keys:
             return
+        # Another node that publishes nonsense under the topic's name takes no robot's own away.
+        strange = [one for one in offered if type_from_dds(one.type_name) not in READ[kind]]
+        offered = [one for one in offered if one not in strange] or offered
         found = type_from_dds(offered[0].type_name)
         type_name = self._sensing.check_type(kind, topic, found, offered[0].type_name)
         if type_name is None:
             self._heard.pop(kind, None)
             return
-        if len({one.participant for one in offered}) > 1 and kind == "position":
+        if strange:
+            self._sensing.check_type(kind, topic, None, strange[0].type_name)
+        elif len({one.participant for one in offered}) > 1 and kind == "position":
             self._sensing.fault(topic, f"{len(offered)} nodes publish {topic}; end all but one of them")
         elif kind != "image":
             self._sensing.faults.pop(topic, None)

@@ -59,6 +59,14 @@ LATELY = 10.0
 TOGETHER = 100
 """frames that are read before others get a turn."""
 
+MOST_UNREAD, MOST_COMMANDS_UNREAD = 20, 30
+"""operations that a server may not have dealt with yet; the second is for what robots are told. One that has
+256 operations of a client waiting, or 64 answers to it, ends the connection (rosbridge-server-rs)."""
+ASK_EVERY = 10
+"""operations after which it is asked whether the server has dealt with them."""
+UNANSWERED_AFTER = 3.0
+"""seconds without an answer to that after which nothing waits until one comes: stops have to go out."""
+
 Frame = bytes | Callable[[], bytes]
 Answer = ServiceResponse | ActionFeedback | ActionResult
 
@@ -109,6 +117,9 @@ class RosbridgeConnection:
         """What robots are told, in order: a cancel never comes before the goal that it cancels."""
         self._others: deque[Frame] = deque()
         self._wake = asyncio.Event()
+        self._sent = self._dealt_with = 0
+        """Operations of this connection, and those that the server has dealt with, for all that is known."""
+        self._is_answering = True
 
     @property
     def faults(self) -> list[str]:
@@ -128,7 +139,7 @@ class RosbridgeConnection:
             self.unsubscribe(topic)
         inbox = Inbox()
         self._subscribed[topic] = (wanted, inbox)
-        self._send(_subscribe(topic, wanted))
+        self._post(_encoded(_subscribe(topic, wanted)), kept=True)
         return inbox
 
     def renew(self, topic: str) -> None:
@@ -150,7 +161,7 @@ class RosbridgeConnection:
         if topic in self._advertised:
             self._send({"op": "unadvertise", "topic": topic})
         self._advertised[topic] = wanted
-        self._post(wanted)
+        self._post(wanted, kept=True)
 
     def publish(self, topic: str, message: Any, *, urgent: bool = False, latched: bool = False) -> None:
         """Publish a message; one that is ``latched`` again after each reconnect."""
@@ -236,6 +247,7 @@ class RosbridgeConnection:
         self._commands.clear()
         self._others.clear()
         self._asked.clear()
+        self._sent, self._dealt_with, self._is_answering = 0, 0, True
         for _, inbox in self._subscribed.values():
             inbox.waiting.clear()
         self.away = None
@@ -305,11 +317,37 @@ class RosbridgeConnection:
             while True:
                 await self._wake.wait()
                 self._wake.clear()
-                while self._commands or self._others:
-                    frame = (self._commands or self._others).popleft()
+                while (frame := self._next()) is not None:
                     await connection.send(frame if isinstance(frame, bytes) else frame(), text=True)
+                    self._sent += 1
+                    if self._sent % ASK_EVERY == 0:
+                        await connection.send(self._question(self.session, self._sent), text=True)
         except ConnectionClosed:
             return
+
+    def _next(self) -> Frame | None:
+        """Return what is to be sent now; None for nothing, or while the server has too much of ours."""
+        unread = self._sent - self._dealt_with if self._is_answering else 0
+        if self._commands:
+            return self._commands.popleft() if unread < MOST_COMMANDS_UNREAD else None
+        return self._others.popleft() if self._others and unread < MOST_UNREAD else None
+
+    def _question(self, session: int, sent: int) -> bytes:
+        """Return a call whose answer says that the server has dealt with all that was ``sent`` before it."""
+
+        def answered(_: Answer) -> None:
+            self._dealt_with, self._is_answering = max(self._dealt_with, sent), True
+            self._wake.set()
+
+        def is_due() -> None:
+            if session == self.session and self._dealt_with < sent:
+                self._is_answering = False
+                self._wake.set()
+
+        id = f"call:{next(self._ids)}"
+        self._expect(id, answered)
+        asyncio.get_running_loop().call_later(UNANSWERED_AFTER, is_due)
+        return _encoded({"op": "call_service", "id": id, "service": "/rosapi/get_time", "args": {}})
 
     def _expect(self, id: str, answered: Callable[[Answer], None]) -> None:
         if self.away is None:
@@ -320,8 +358,9 @@ class RosbridgeConnection:
     def _send(self, operation: dict[str, Any], *, urgent: bool = False) -> None:
         self._post(_encoded(operation), urgent=urgent)
 
-    def _post(self, frame: Frame, *, urgent: bool = False) -> None:
-        if self.away is not None or (len(self._others) >= MOST_WAITING and not urgent):
+    def _post(self, frame: Frame, *, urgent: bool = False, kept: bool = False) -> None:
+        is_room = urgent or kept or len(self._others) < MOST_WAITING
+        if self.away is not None or not is_room:
             return
         (self._commands if urgent else self._others).append(frame)
         self._wake.set()

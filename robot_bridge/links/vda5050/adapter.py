@@ -197,7 +197,7 @@ class Vda5050Adapter(Adapter):
             return
         identity, kind = parsed
         try:
-            message = decode_message(kind, payload)
+            message = decode_message(kind, payload, self._topics.major)
             if isinstance(message, Header) and identity != VehicleId(
                 message.manufacturer, message.serial_number
             ):

@@ -1,14 +1,15 @@
-"""What vehicles publish: state, visualization, connection and factsheet of VDA 5050 2.0 and 2.1.
+"""What vehicles publish: state, visualization, connection and factsheet of VDA 5050 2.0, 2.1 and 3.0.
 
 Anybody who reaches the broker can write them: size, depth and count are bounded before anything is built,
-numbers are finite, and fields that nothing here reads are passed over.
+numbers are finite, and fields that nothing here reads are passed over. The classes have the fields of 2.1;
+what 3.0 calls otherwise is renamed before it is read.
 """
 
 from __future__ import annotations
 
 import math
 from datetime import datetime, timezone
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 import msgspec
 from msgspec import Meta, Struct, field
@@ -20,7 +21,26 @@ BOUNDS = Bounds(depth=16, length=1 << 20, values=60_000)
 """A state with a thousand nodes, each with its position, is half as large."""
 MOST_LISTED = 10_000
 LONGEST_TEXT = 4_096
-SUPPORTED_MAJOR = "2"
+SPOKEN = {"2": "versions 2.0 and 2.1", "3": "versions 3.x"}
+"""What is read by the major version that the link's settings name."""
+LEVELS = ("FATAL", "CRITICAL", "URGENT", "WARNING")
+"""Levels of errors, the worst first; 2.x has the first and the last."""
+_RENAMED = {
+    "mobileRobotPosition": "agvPosition",
+    "localized": "positionInitialized",
+    "powerSupply": "batteryState",
+    "stateOfCharge": "batteryCharge",
+    "activeEmergencyStop": "eStop",
+    "actionResult": "resultDescription",
+    "maximumArrayLengths": "maxArrayLens",
+    "mobileRobotActions": "agvActions",
+}
+"""Fields of 3.0, wherever they stand, and what 2.1 calls them."""
+RENAMED_ACTIONS = {"initializePosition": "initPosition"}
+_RENAMED_VALUES = {
+    "connectionState": {"CONNECTION_BROKEN": "CONNECTIONBROKEN"},
+    "actionType": RENAMED_ACTIONS,
+}
 
 Text = Annotated[str, Meta(max_length=LONGEST_TEXT)]
 Identifier = Annotated[str, Meta(max_length=512)]
@@ -87,7 +107,7 @@ class ActionState(Struct, frozen=True, rename="camel", kw_only=True):
     """How an action of an order, or an instant action, stands."""
 
     action_id: Identifier
-    action_status: Literal["WAITING", "INITIALIZING", "RUNNING", "PAUSED", "FINISHED", "FAILED"]
+    action_status: Literal["WAITING", "INITIALIZING", "RUNNING", "PAUSED", "RETRIABLE", "FINISHED", "FAILED"]
     action_type: Identifier | None = None
     result_description: Text | None = None
 
@@ -105,7 +125,7 @@ class ErrorReference(Struct, frozen=True, rename="camel", kw_only=True):
 
 
 class VehicleFault(Struct, frozen=True, rename="camel", kw_only=True):
-    """An error of the vehicle; FATAL ones need a person there."""
+    """An error of the vehicle; FATAL ones need a person there, with CRITICAL ones it drives no further."""
 
     error_type: Identifier
     error_level: Identifier
@@ -114,9 +134,9 @@ class VehicleFault(Struct, frozen=True, rename="camel", kw_only=True):
     error_references: Annotated[list[ErrorReference], Meta(max_length=1_000)] = field(default_factory=list)
 
     @property
-    def is_fatal(self) -> bool:
-        """Whether the vehicle cannot go on by itself."""
-        return self.error_level == "FATAL"
+    def rank(self) -> int:
+        """How bad it is, 0 for the worst."""
+        return LEVELS.index(self.error_level) if self.error_level in LEVELS else len(LEVELS)
 
     def refers(self, key: str, value: str) -> bool:
         """Tell whether it is about ``value`` of ``key``."""
@@ -144,7 +164,10 @@ class SafetyState(Struct, frozen=True, rename="camel", kw_only=True):
 
 
 class State(Header, frozen=True, rename="camel", kw_only=True):
-    """All that the vehicle says of itself: its order, what is left of it, its place, its faults."""
+    """All that the vehicle says of itself: its order, what is left of it, its place, its faults.
+
+    In 3.0 instant actions stand by themselves, until they are cleared; in 2.x they are among the others.
+    """
 
     order_id: Identifier
     order_update_id: Count
@@ -155,6 +178,9 @@ class State(Header, frozen=True, rename="camel", kw_only=True):
     node_states: Annotated[list[NodeState], Meta(max_length=MOST_LISTED)]
     edge_states: Annotated[list[EdgeState], Meta(max_length=MOST_LISTED)]
     action_states: Annotated[list[ActionState], Meta(max_length=MOST_LISTED)]
+    instant_action_states: Annotated[list[ActionState], Meta(max_length=MOST_LISTED)] = field(
+        default_factory=list
+    )
     battery_state: Battery
     errors: Annotated[list[VehicleFault], Meta(max_length=1_000)]
     safety_state: SafetyState
@@ -170,7 +196,8 @@ class State(Header, frozen=True, rename="camel", kw_only=True):
 
     def action(self, action_id: str) -> ActionState | None:
         """Return how an action stands, None where the state does not name it."""
-        return next((one for one in self.action_states if one.action_id == action_id), None)
+        listed = (*self.action_states, *self.instant_action_states)
+        return next((one for one in listed if one.action_id == action_id), None)
 
 
 class Visualization(Struct, frozen=True, rename="camel", kw_only=True):
@@ -188,9 +215,12 @@ class Visualization(Struct, frozen=True, rename="camel", kw_only=True):
 
 
 class Connection(Header, frozen=True, rename="camel", kw_only=True):
-    """Whether the vehicle is there; CONNECTIONBROKEN is its last will, told by the broker."""
+    """Whether the vehicle is there; CONNECTIONBROKEN is its last will, told by the broker.
 
-    connection_state: Literal["ONLINE", "OFFLINE", "CONNECTIONBROKEN"]
+    One that is HIBERNATING stands, has no order, and says nothing (3.0).
+    """
+
+    connection_state: Literal["ONLINE", "OFFLINE", "HIBERNATING", "CONNECTIONBROKEN"]
 
 
 class ArrayLimits(Struct, frozen=True, kw_only=True):
@@ -263,17 +293,41 @@ def seconds_of(timestamp: str) -> float | None:
         return None
 
 
-def decode_message(topic: str, payload: bytes) -> Inbound:
-    """Return the message of the last level of ``topic``; raises VehicleMessageError naming the field."""
+def decode_message(topic: str, payload: bytes, major: str = "2") -> Inbound:
+    """Return the message of the last level of ``topic``, of major version ``major``.
+
+    :raises VehicleMessageError: naming the field, or the version where it is another one.
+    """
     kind = _KINDS.get(topic)
     if kind is None:
         raise VehicleMessageError(f"topic {topic[:40]!r} is none that a vehicle publishes")
     try:
-        message = msgspec.convert(decode_json(payload, BOUNDS), kind, strict=True)
+        body = decode_json(payload, BOUNDS)
+        _check_version(topic, body, major)
+        return msgspec.convert(_as_2_1(body) if major == "3" else body, kind, strict=True)
     except (DecodingError, msgspec.ValidationError) as error:
         raise VehicleMessageError(f"{topic}: {error}") from None
-    if isinstance(message, Header) and message.version.split(".")[0] != SUPPORTED_MAJOR:
+
+
+def _check_version(topic: str, body: Any, major: str) -> None:
+    version = body.get("version") if isinstance(body, dict) else None
+    if isinstance(version, str) and version.split(".")[0] != major:
         raise VehicleMessageError(
-            f"{topic}: version {message.version[:20]!r} is not spoken here; versions 2.0 and 2.1 are"
+            f"{topic}: version {version[:20]!r} is not spoken here; {SPOKEN[major]} are "
+            "(major_version of the link's settings says which)"
         )
-    return message
+
+
+def _as_2_1(body: Any) -> Any:
+    """Return a message of 3.0 with the names of 2.1; its depth is bounded."""
+    if isinstance(body, list):
+        return [_as_2_1(one) for one in body]
+    if not isinstance(body, dict):
+        return body
+    told = {}
+    for name, value in body.items():
+        values = _RENAMED_VALUES.get(name, {})
+        told[_RENAMED.get(name, name)] = (
+            values.get(value, value) if isinstance(value, str) else _as_2_1(value)
+        )
+    return told

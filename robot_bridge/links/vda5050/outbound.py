@@ -1,4 +1,4 @@
-"""What the adapter publishes: orders and instant actions of VDA 5050 2.0 and 2.1, and on which topics."""
+"""What the adapter publishes: orders and instant actions of VDA 5050 2.0 to 3.0, and on which topics."""
 
 from __future__ import annotations
 
@@ -12,8 +12,10 @@ import msgspec
 from msgspec import UNSET, Struct, UnsetType, field
 
 from .errors import Vda5050Error
+from .inbound import RENAMED_ACTIONS
 
 INBOUND_TOPICS = ("connection", "state", "visualization", "factsheet")
+_ACTIONS_OF_3_0 = {old: new for new, old in RENAMED_ACTIONS.items()}
 _LEVEL = re.compile(r"[^/+#$\x00-\x1f][^/+#\x00-\x1f]{0,127}")
 
 
@@ -39,6 +41,11 @@ class Topics:
         for key, level in (("interface", self.interface), ("major_version", self.major_version)):
             if not _LEVEL.fullmatch(level):
                 raise Vda5050Error(f"{key} is {level[:40]!r}; give one level of an MQTT topic: no / + # $")
+
+    @property
+    def major(self) -> str:
+        """The major version of the messages: 3 on topics of v3, 2 on all others."""
+        return "3" if self.major_version == "v3" else "2"
 
     def subscriptions(self) -> list[str]:
         """Return what to subscribe to for the messages of all vehicles."""
@@ -143,8 +150,27 @@ class MessageWriter:
         if topic == "instantActions" and version.startswith("2.0"):
             # The schema of 2.0 has another name for it than its text; vehicles go by one or the other.
             body["instantActions"] = body["actions"]
+        if version.startswith("3."):
+            _rename_for_3_0(body)
         self._numbers[topic] += 1
         return msgspec.json.encode(body)
+
+
+def _rename_for_3_0(body: dict[str, Any]) -> None:
+    """Change a message of 2.1 into one of 3.0."""
+    for action in body.get("actions", []):
+        # 3.0 has instant actions wait for nothing.
+        action["blockingType"] = "NONE"
+        action["actionType"] = _ACTIONS_OF_3_0.get(action["actionType"], action["actionType"])
+    for node in body.get("nodes", []):
+        position = node["nodePosition"]
+        if (deviation := position.pop("allowedDeviationXY", None)) is not None:
+            position["allowedDeviationXY"] = {"a": deviation, "b": deviation, "theta": 0.0}
+    for edge in body.get("edges", []):
+        # Which nodes it joins is said by the sequence alone.
+        del edge["startNodeId"], edge["endNodeId"]
+        if "maxSpeed" in edge:
+            edge["maximumSpeed"] = edge.pop("maxSpeed")
 
 
 def timestamp(now: float) -> str:

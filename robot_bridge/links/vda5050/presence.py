@@ -31,7 +31,7 @@ class MapFrame(Protocol):
 class Presence:
     """What is known of one vehicle; times are seconds of a steady clock."""
 
-    def __init__(self, maps: Mapping[str, MapFrame], silent_after: float) -> None:
+    def __init__(self, maps: Mapping[str, MapFrame], silent_after: float, version: str) -> None:
         self._maps = maps
         self._silent_after = silent_after
         self._serials = SerialWatch()
@@ -43,7 +43,7 @@ class Presence:
         self.factsheet: Factsheet | None = None
         self.position: Position | None = None
         self.pose: SendPos | None = None
-        self.version = "2.1.0"
+        self.version = version
         self._placed_at = -math.inf
         self._misplaced: str | None = None
 
@@ -80,7 +80,7 @@ class Presence:
 
     @property
     def connection(self) -> str | None:
-        """ONLINE, OFFLINE, CONNECTIONBROKEN; None where nothing is known."""
+        """ONLINE, OFFLINE, HIBERNATING, CONNECTIONBROKEN; None where nothing is known."""
         return self._connection
 
     def note_asked(self, now: float) -> None:
@@ -152,7 +152,7 @@ class Presence:
     def _faults(self) -> list[str]:
         if self.state is None:
             return []
-        worst_first = sorted(self.state.errors, key=lambda fault: not fault.is_fatal)
+        worst_first = sorted(self.state.errors, key=lambda fault: fault.rank)
         return [f"{fault.error_level} {fault.summary}" for fault in worst_first[:MOST_FAULTS]]
 
     def _missing_place(self) -> str | None:

@@ -40,8 +40,9 @@ class Vda5050Settings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """Table ``[vda5050]``; files are beside the settings.
 
     ``names`` makes a robot's name of ``{manufacturer}`` and ``{serial}``; with ``vehicles`` only those listed
-    are led. Without ``maps`` every map lies as ``[frame]`` says, else each as its own table. Lengths are
-    metres, times seconds: see :class:`.route.RouteLimits` and :class:`.stopping.StopLimits`.
+    are led. ``major_version`` v3 is for vehicles of 3.0, all else for those of 2.x. Without ``maps`` every
+    map lies as ``[frame]`` says, else each as its own table. Lengths are metres, times seconds: see
+    :class:`.route.RouteLimits` and :class:`.stopping.StopLimits`.
     """
 
     broker: str = "mqtt://127.0.0.1:1883"
@@ -198,7 +199,8 @@ def vehicle_settings(settings: LinkSettings, own: Vda5050Settings) -> VehicleSet
     )
     stop = StopLimits(pause_after=own.pause_after_s, unanswered_after=own.unanswered_after_s)
     accept_within = 0.8 * settings.answer_within_s
-    return VehicleSettings(route, stop, accept_within, own.silent_after_s)
+    version = "3.0.0" if topics(own).major == "3" else "2.1.0"
+    return VehicleSettings(route, stop, accept_within, own.silent_after_s, version=version)
 
 
 def broker_address(settings: LinkSettings, own: Vda5050Settings) -> BrokerAddress:

@@ -15,8 +15,20 @@ from .memory import RememberedTask
 from .outbound import Order
 from .route import OrderPlan, Point, RouteLimits
 
-_ORDER_FAULTS = ("order", "validation", "noroute")
-"""How the error types begin by which VDA 5050 has orders refused, in lower case."""
+_ORDER_FAULTS = (
+    *("order", "validation", "noroute"),
+    *(
+        "unsupportedparameter",
+        "invalidorder",
+        "outdatedorder",
+        "otherorder",
+        "startnode",
+        "insufficientmemory",
+    ),
+)
+"""How the error types begin by which VDA 5050 has orders refused, in lower case; the second row is of 3.0."""
+_UNREACHABLE = "nodeunreachable"
+"""How 3.0 says that a vehicle has an order, and will not drive it to its end."""
 
 
 class Progress(Enum):
@@ -102,7 +114,7 @@ class Task:
         if state.order_id != plan.order_id:
             return self._judge_unshown(state, plan)
         self.accepted = True
-        if (fault := self._update_fault(state, plan)) is not None:
+        if (fault := self._update_fault(state, plan) or _unreachable(state)) is not None:
             return Progress.REFUSED, fault.summary
         self.passed = _passed(state)
         if state.has_active_order or not self.is_shown(state):
@@ -146,7 +158,7 @@ class Task:
         for fault in state.errors:
             # Some vehicles do not say which order they refuse.
             unnamed = not any(one.reference_key == "orderId" for one in fault.error_references)
-            kind = fault.error_type.lower().startswith(_ORDER_FAULTS)
+            kind = _kind(fault).startswith(_ORDER_FAULTS)
             if unnamed and kind and fault.summary not in self._known_faults:
                 return fault
         return None
@@ -157,6 +169,17 @@ class Task:
         number = str(plan.update_id)
         named = (f for f in state.errors if f.refers("orderId", plan.order_id))
         return next((fault for fault in named if fault.refers("orderUpdateId", number)), None)
+
+
+def _kind(fault: VehicleFault) -> str:
+    return fault.error_type.lower().replace("_", "")
+
+
+def _unreachable(state: State) -> VehicleFault | None:
+    """Return the error by which a vehicle says that it will not come to a node that is left."""
+    nodes = {node.node_id for node in state.node_states}
+    faults = (fault for fault in state.errors if _kind(fault) == _UNREACHABLE)
+    return next((f for f in faults if any(f.refers("nodeId", node) for node in nodes)), None)
 
 
 def recalled(kept: RememberedTask, now: float) -> Task:

@@ -36,12 +36,17 @@ MOST_RESUMED = 5
 """times that an order which the vehicle forgot is given to it again."""
 
 
+MOST_SHOWN, CLEAR_EVERY = 20, 30.0
+"""instant actions that a vehicle of 3.0 may show as ended, and seconds between two demands to forget them."""
+
+
 @dataclass(frozen=True)
 class VehicleSettings:
     """How vehicles are led; times in seconds.
 
     A command that the vehicle has not accepted within ``accept_within`` is refused. A vehicle that says
-    nothing for ``silent_after`` is gone; one with a task is asked for its state every ``poll_every``.
+    nothing for ``silent_after`` is gone; one with a task is asked for its state every ``poll_every``. It is
+    taken to speak ``version`` until it has said which.
     """
 
     route: RouteLimits = field(default_factory=RouteLimits)
@@ -49,6 +54,7 @@ class VehicleSettings:
     accept_within: float = 8.0
     silent_after: float = 40.0
     poll_every: float = 2.0
+    version: str = "2.1.0"
 
 
 class VehicleController:
@@ -70,11 +76,11 @@ class VehicleController:
         self._settings = settings
         self._new_id = new_id
         self._ledger = Ledger(remembered or Remembered(), now)
-        self._presence = Presence(maps, settings.silent_after)
+        self._presence = Presence(maps, settings.silent_after, settings.version)
         self._init = PositionInit(self._ledger, self._presence, new_id, settings.accept_within)
         self._stop: StopProcedure | None = None
         self._admitted = self._awaits_halt = False
-        self._next_alive = self._next_poll = self._next_unpause = -math.inf
+        self._next_alive = self._next_poll = self._next_unpause = self._next_clear = -math.inf
         self._last_status: str | None = None
 
     @property
@@ -163,7 +169,7 @@ class VehicleController:
             return
         if isinstance(message, Connection):
             presence.note_connection(message, now, retained=retained)
-            if message.connection_state == "OFFLINE" and not retained:
+            if message.connection_state in ("OFFLINE", "HIBERNATING") and not retained:
                 self._report(Stopped())
         elif retained:
             return  # where it was once says nothing of where it is
@@ -211,6 +217,15 @@ class VehicleController:
         if self._ledger.task is not None and self._stop is None:
             self._judge_task(self._ledger.task, state, now)
         self._init.note_state(state)
+        self._clear_actions(state, now)
+
+    def _clear_actions(self, state: State, now: float) -> None:
+        """Have a vehicle of 3.0 show instant actions no more that have ended, unless one is waited for."""
+        if self._stop is not None or self._init.is_waiting or now < self._next_clear:
+            return
+        if sum(one.has_ended for one in state.instant_action_states) > MOST_SHOWN:
+            self._next_clear = now + CLEAR_EVERY
+            self._ledger.publish_action("clearInstantActions", self._new_id())
 
     def _poll(self, now: float) -> None:
         """Ask for the state of a vehicle that says too little for what is expected of it."""

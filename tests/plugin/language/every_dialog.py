@@ -23,6 +23,7 @@ from fleet_supervisor.plugin.desk.closure_tool import ClosureDialog
 from fleet_supervisor.plugin.desk.commands.coordinates_dialog import CoordinatesDialog
 from fleet_supervisor.plugin.desk.commands.override_dialog import OverrideDialog
 from fleet_supervisor.plugin.desk.drafts import CONE, Draft
+from fleet_supervisor.plugin.desk.replay.recordings_dialog import RecordingsDialog
 from fleet_supervisor.plugin.desk.robots.removal import RemovalDialog
 from fleet_supervisor.plugin.desk.site_choice.site_choice_dialog import SiteChoiceDialog
 from fleet_supervisor.plugin.desk.site_choice.site_question import site_question
@@ -81,6 +82,7 @@ def _of_the_desk(window, desk_window) -> Dialogs:
     yield "clear", ClearDialog(stop, window)
     gone = [f"robot-north-{k:03}" for k in range(30)]
     yield "removal", RemovalDialog(gone[:2], gone, window)
+    yield "recordings", RecordingsDialog(desk_window.desk, window)
 
 
 def _of_accounts(window, desk_window) -> Dialogs:

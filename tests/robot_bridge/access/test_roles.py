@@ -58,6 +58,7 @@ LEAST = {
     "revoke_token": SUPERVISOR,
     "set_role": SUPERVISOR,
     "remove_robots": SUPERVISOR,
+    "set_playback": OPERATOR,
     "get_sites": SUPERVISOR,
     "choose_site": SUPERVISOR,
 }
@@ -101,6 +102,7 @@ def params(method):
         "set_role": {"operator": "nobody", "role": "supervisor"},
         "choose_site": {"site": "nowhere"},
         "remove_robots": {"robots": ["nobody"]},
+        "set_playback": {"link": "nothing"},
     }
     return known.get(method, {})
 

@@ -56,7 +56,7 @@ def test_it_has_an_operation_for_every_message_of_all_endpoints():
         *(f"link.robot.{op}" for op in REQUESTS if op != "OpAck"),
         *(f"link.gateway.{op}" for op in ANSWERS if op not in ("OpAck", "Start")),
         *(f"link.{name}" for name in ("hello", "status", "get_areas", "positions")),
-        *(f"link.{name}" for name in ("Start", "Released", "AbortOfAll")),
+        *(f"link.{name}" for name in ("Start", "Released", "AbortOfAll", "playback")),
     }
 
 

@@ -110,6 +110,45 @@ def test_settings_change_what_is_played_and_a_gateway_that_was_killed_sees_it_ag
     again.wait(5)
 
 
+def test_a_desk_seeks_pauses_and_speeds_up_what_is_played(bridge, desk, config):
+    adapter = bridge.start_link("replay", config(f"{SETTINGS[0]}speed = 0.1\nlargest_gap_s = 100\n"))
+
+    def play(**change):
+        return desk.ask("set_playback", {"link": "cars", **change})
+
+    wait_until(lambda: not _is_refused(play, "connected"), 15)
+    told = play()
+    assert (told["file"], told["speed"], told["paused"], told["length_s"]) == ("cars.csv", 0.1, False, 5.0)
+    assert play(paused=True, place_s=0.0)["place_s"] == 0.0
+    wait_until(lambda: says(desk, "×0.1, paused"), 15)
+    begin = x_of(desk, BLUE)
+    assert play(place_s=5.0)["place_s"] == 5.0
+    wait_until(lambda: x_of(desk, BLUE) == pytest.approx(begin + 53.3, abs=0.5), 10)
+    assert play(place_s=0.0)["place_s"] == 0.0
+    wait_until(lambda: x_of(desk, BLUE) == pytest.approx(begin, abs=0.5), 10)
+    assert not play(paused=False, speed=10.0, loop=True)["paused"]
+    wait_until(lambda: says(desk, "replay of cars.csv ×10"), 10)
+    for wrong, why in (
+        ({"place_s": 6.0}, r"link cars: place_s = 6: the recording is 5\.0 s long"),
+        ({"speed": 5000.0}, r"replay\.speed = 5000.0: give a number from 0\.1 to 1000"),
+        ({"link": "phones"}, r"'phones' plays no recording; those that do: cars"),
+    ):
+        with pytest.raises(RefusedError, match=why):
+            play(**wrong)
+    assert play()["speed"] == 10.0
+    adapter.kill()
+    adapter.wait(5)
+    wait_until(lambda: _is_refused(play, "it is not connected"), 10)
+
+
+def _is_refused(work, why):
+    try:
+        work()
+    except RefusedError as error:
+        return why in str(error)
+    return False
+
+
 WRONG = [
     ("file = 'none.csv'", r"none\.csv cannot be read: No such file"),
     ("file = 'cars.docx'", r"cars\.docx is of no kind that is read; known are \.csv, \.gpx"),

@@ -9,6 +9,7 @@ import sys
 
 import pytest
 from bridge_programs import wait_until
+from cut_line import CutNetwork, outlast_a_cut
 from PIL import Image
 from stage.patience import BUSY
 from stage.processes import Processes
@@ -349,6 +350,31 @@ def test_a_gateway_that_is_killed_loses_no_command_and_repeats_none(bridge, desk
     assert len(events(nodes, name, "goal asked")) == 1
 
 
+@pytest.mark.skipif(not CutNetwork.is_possible(), reason="a network of its own takes root")
+def test_a_network_that_was_cut_loses_nothing_and_does_nothing_twice(bridge, nodes, desk, tmp_path):
+    driving, stopped, ordered = (f"robot{next(NUMBERS)}" for _ in range(3))
+    network, domain = CutNetwork(), nodes.domain + 49
+    file = tmp_path / "cut.toml"
+    more = f'interfaces = ["{network.interface}"]'
+    file.write_text(
+        SETTINGS.format(address=bridge.address, domain=domain, distribution=nodes.distribution).replace(
+            'range = "localhost"', f'range = "subnet"\n{more}'
+        ),
+        encoding="utf-8",
+    )
+    with Processes(tmp_path / "logs") as processes:
+        AdapterProcess(processes, file).start()
+        try:
+            for name in (driving, stopped, ordered):
+                nodes.start(name, *SLOW, domain=domain, through=network.through)
+            desk.wait_for_robots(driving, stopped, ordered, seconds=BUSY * 10)
+            outlast_a_cut(desk, nodes, network.cut, network.mend, driving, stopped, ordered)
+        finally:
+            network.close()
+            for name in (driving, stopped, ordered):
+                nodes.end(name)
+
+
 def test_the_shortest_settings_of_the_guide_show_a_robot_and_send_it(bridge, nodes, desk, tmp_path, guide):
     # What differs from one network to the next is said besides: the gateway's port, and the domain.
     text = guide("shortest").replace("domain = 0 ", f'range = "localhost"\ndomain = {nodes.domain + 50}')
@@ -373,23 +399,27 @@ def test_a_hostile_node_is_named_and_the_robots_go_on(desk, robot, adapter, node
     odometry, status = type_to_dds("nav_msgs/msg/Odometry"), type_to_dds("action_msgs/msg/GoalStatusArray")
     forged = hostile.writer("rt/hostile/odom", odometry, Quality(reliable=False))
     poison = hostile.writer(f"rt/{name}/navigate_to_pose/_action/status", status, Quality(latched=True))
+    text = type_to_dds("std_msgs/msg/String")
+    other = [hostile.writer(f"rt/{one}/odom", text, Quality(reliable=False)) for one in (name, "textual")]
     lies = (b"\0\1\0\0" + b"\xff" * 64, b"\0\1\0\0" + bytes(2**20), bytes(8))
 
     def is_named():
         # Nobody waits for who is only just being met: it is said again and again.
+        assert other, "who is not kept is gone"
         for data in lies:
             forged.write(data)
             poison.write(data)
         said = adapter.output()
         return (
-            "robot hostile: /hostile/odom: it is no nav_msgs/msg/Odometry" in said
+            all(f"/{one}/odom has type std_msgs" in said for one in (name, "textual"))
+            and "robot hostile: /hostile/odom: it is no nav_msgs/msg/Odometry" in said
             and f"robot {name}: the server of NavigateToPose" in said
         )
 
     wait_until(is_named)
     desk.send(f"go-{name}", name, "SetPosEnd", x=25.0, y=8.0)
     desk.wait_for_step(f"go-{name}", "reached", 10)
-    assert "hostile" not in desk.robots
+    assert "hostile" not in desk.robots and "textual" not in desk.robots
 
 
 @pytest.mark.parametrize(

@@ -2,15 +2,21 @@
 
 from __future__ import annotations
 
+import asyncio
 import itertools
 import json
 import sys
 
 import pytest
 from bridge_programs import wait_until
+from cut_line import CutLine, outlast_a_cut
 from stage.patience import BUSY
 from stage.processes import Processes
 from websockets.sync.client import connect
+
+from robot_bridge.access.credentials import Credentials
+from robot_bridge.links.rosbridge.connection import RosbridgeConnection, Subscription
+from robot_bridge.links.rosbridge.settings import Server
 
 SETTINGS = """
 [gateway]
@@ -304,6 +310,58 @@ def test_a_gateway_that_is_killed_loses_no_command_and_repeats_none(bridge, desk
     desk.ask("subscribe", {"rate": 20})
     desk.wait_for_step(f"go-{name}", "reached", 6)
     assert len(events(nodes, name, "goal asked")) == 1
+
+
+@pytest.mark.parametrize("reset", [False, True], ids=["bytes come late", "bytes are lost"])
+def test_a_network_that_was_cut_loses_nothing_and_does_nothing_twice(
+    desk, nodes, start_server, settings, tmp_path, reset
+):
+    domain = nodes.domain + 51
+    names = [f"distant{next(NUMBERS)}" for _ in range(3)]
+    line = CutLine(start_server(domain).port)
+    file = tmp_path / "cut.toml"
+    file.write_text(settings(line.address), encoding="utf-8")
+    with Processes(tmp_path / "logs") as processes:
+        AdapterProcess(processes, file).start()
+        try:
+            for name in names:
+                nodes.start(name, *SLOW, domain=domain)
+            desk.wait_for_robots(*names, seconds=BUSY * 10)
+            outlast_a_cut(desk, nodes, line.cut, lambda: line.mend(reset=reset), *names)
+        finally:
+            line.close()
+            for name in names:
+                nodes.end(name)
+
+
+async def test_more_than_the_server_takes_at_once_keeps_the_connection_and_all_of_it_arrives(server):
+    connection = RosbridgeConnection(Server(server.url, Credentials()))
+    carrying = asyncio.create_task(connection.run())
+    text, seen = Subscription("std_msgs/msg/String"), []
+    try:
+        async with asyncio.timeout(BUSY * 30):
+            while connection.away is not None:
+                await asyncio.sleep(0.05)
+            heard = connection.subscribe("/crowd/said", text)
+            connection.advertise("/crowd/said", text.type_name)
+
+            async def until(last):
+                while last not in seen:
+                    connection.publish("/crowd/said", {"data": last})
+                    await asyncio.sleep(0.1)
+                    seen.extend(message["data"] for message in heard.drain())
+
+            await until("begin")
+            for n in range(1000):
+                connection.subscribe(f"/crowd{n}/said", text)
+            # As many as an emergency stop has for hundreds of robots.
+            for n in range(800):
+                connection.publish("/crowd/said", {"data": f"{n}"}, urgent=True)
+            await until("end")
+        assert connection.session == 1 and connection.away is None
+    finally:
+        carrying.cancel()
+        await asyncio.gather(carrying, return_exceptions=True)
 
 
 def test_the_shortest_settings_of_the_guide_show_a_robot_and_send_it(

@@ -14,6 +14,7 @@ import pytest
 from bridge_programs import wait_until
 from bridge_wires import RefusedError
 from command_line import run_command
+from cut_line import CUT, CutLine
 
 GUIDE = (Path(__file__).parents[4] / "docs/links-tracker.md").read_text(encoding="utf-8")
 SETTINGS = re.findall(r"```toml\n(.*?)```", GUIDE, re.DOTALL)
@@ -120,9 +121,21 @@ def test_receivers_are_seen_over_tcp_and_udp_and_an_emergency_stop_waits_for_non
     for character in sentence:
         total ^= ord(character)
     line = f"${sentence}*{total:02X}\r\n".encode()
-    with socket.create_connection(("127.0.0.1", ports["nmea"])) as receiver:
+    mobile = CutLine(ports["nmea"])
+    port = int(mobile.address.rpartition(":")[2])
+    with socket.create_connection(("127.0.0.1", port)) as receiver:
         receiver.sendall(b"nonsense\r\n" + line)
         desk.until(lambda: desk.robots.get("tractor-1", {}).get("v") is not None, 10)
+        # The network is gone for 10 s, and what was sent meanwhile comes late over the same connection.
+        mobile.cut()
+        mended_at = time.monotonic() + CUT
+        receiver.sendall(line)
+        desk.until(lambda: desk.robots["tractor-1"]["state"] == "lost", 10)
+        desk.listen(mended_at - time.monotonic())
+        assert desk.robots["tractor-1"]["state"] == "lost"
+        mobile.mend()
+        desk.until(lambda: desk.robots["tractor-1"]["state"] == "fresh", 10)
+    mobile.close()
     desk.until(lambda: desk.robots["tractor-1"]["state"] == "lost", 10)
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as receiver:
         receiver.sendto(line, ("127.0.0.1", ports["nmea"]))

@@ -27,16 +27,17 @@ class ShiftedMap:
 
 
 class Bench:
-    """Time stands until a test lets it pass."""
+    """Time stands until a test lets it pass; the vehicle speaks ``version``."""
 
-    def __init__(self, remembered: Remembered | None = None, **settings: Any) -> None:
+    def __init__(self, remembered: Remembered | None = None, version: str = "2.1.0", **settings: Any) -> None:
+        self.version = version
         self.now = 1000.0
         self.header = itertools.count(1)
         self.state = state()
         ids = itertools.count(1)
         self.controller = VehicleController(
             VEHICLE,
-            VehicleSettings(**settings),
+            VehicleSettings(**settings, version=version),
             {"hall": ShiftedMap()},
             remembered,
             lambda: f"action-{next(ids)}",
@@ -63,11 +64,13 @@ class Bench:
         head = {
             "headerId": next(self.header),
             "timestamp": "2026-11-23T12:00:00.00Z",
-            "version": "2.1.0",
+            "version": self.version,
             "manufacturer": VEHICLE.manufacturer,
             "serialNumber": VEHICLE.serial_number,
         }
-        message = decode_message(topic, json.dumps({**head, **body}).encode())
+        major = self.version[0]
+        body = {**head, **(body if major == "2" else of_3_0(topic, body))}
+        message = decode_message(topic, json.dumps(body).encode(), major)
         self.controller.receive_message(message, self.now, retained=retained)
         self.collect()
 
@@ -173,6 +176,31 @@ def state() -> dict[str, Any]:
         "agvPosition": {"x": 0.0, "y": 0.0, "theta": 0.0, "mapId": "hall", "positionInitialized": True},
         "velocity": {"vx": 0.0, "vy": 0.0, "omega": 0.0},
     }
+
+
+def of_3_0(topic: str, body: dict[str, Any]) -> dict[str, Any]:
+    """What a vehicle of 3.0 publishes in place of ``body``, which is of 2.1."""
+    told = dict(body)
+    if topic == "connection":
+        broken = body["connectionState"] == "CONNECTIONBROKEN"
+        return {"connectionState": "CONNECTION_BROKEN"} if broken else told
+    if (position := told.pop("agvPosition", None)) is not None:
+        localized = {"localized": position["positionInitialized"]}
+        told["mobileRobotPosition"] = {
+            **{name: value for name, value in position.items() if name != "positionInitialized"},
+            **localized,
+        }
+    if topic == "state":
+        battery, safety = told.pop("batteryState"), told["safetyState"]
+        told["powerSupply"] = {"stateOfCharge": battery["batteryCharge"], "charging": battery["charging"]}
+        told["safetyState"] = {
+            "activeEmergencyStop": safety["eStop"],
+            "fieldViolation": safety["fieldViolation"],
+        }
+        actions = told.pop("actionStates")
+        # Those of orders are none that a bench knows: what it publishes are instant actions.
+        told["actionStates"], told["instantActionStates"] = [], actions
+    return told
 
 
 def fault(text: str, level: str = "WARNING", **references: str) -> dict[str, Any]:

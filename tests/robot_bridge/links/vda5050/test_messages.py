@@ -14,7 +14,7 @@ from fleet_supervisor.robot_bridge.links.vda5050.outbound import MessageWriter, 
 from fleet_supervisor.robot_bridge.links.vda5050.route import RouteLimits, begin_plan
 from fleet_supervisor.robot_bridge.messages import SendPos, SetPath, SetPosEnd, SetPosIni
 
-from .bench import Bench, fault, state
+from .bench import Bench, fault, of_3_0, state
 
 HEAD = {
     "headerId": 1,
@@ -66,6 +66,53 @@ def test_all_that_is_published_is_valid(version):
 
     needed = {"order", "initPosition", "cancelOrder", "startPause", "stopPause", "stateRequest"}
     assert kinds >= needed
+
+
+def test_what_is_published_to_vehicles_of_3_0_has_the_fields_of_3_0():
+    writer, kinds = MessageWriter(VehicleId("Acme", "1")), set()
+    edges, positions = [], []
+    for message in published():
+        body = json.loads(writer.encode(message, "3.0.0", 1_790_000_000.5))
+        assert body["version"] == "3.0.0" and "instantActions" not in body
+        kinds |= {action["actionType"] for action in body.get("actions", [])}
+        assert {action["blockingType"] for action in body.get("actions", [])} <= {"NONE"}
+        edges += body.get("edges", [])
+        positions += [node["nodePosition"] for node in body.get("nodes", [])]
+    assert kinds >= {"initializePosition", "cancelOrder", "startPause"} and "initPosition" not in kinds
+    assert {key for edge in edges for key in edge} == {"edgeId", "sequenceId", "released", "actions"}
+    deviations = [position["allowedDeviationXY"] for position in positions]
+    assert {"a": 0.1, "b": 0.1, "theta": 0.0} in deviations
+    assert all(0 <= position.get("allowedDeviationTheta", 0) <= 3.15 for position in positions)
+
+    plan = begin_plan("a", "hall", (0, 0), [(1, 1)], None, RouteLimits(max_speed=1.5))
+    order = json.loads(writer.encode(plan.order(RouteLimits(max_speed=1.5)), "3.0.0", 0))
+    assert [edge["maximumSpeed"] for edge in order["edges"]] == [1.5]
+
+
+def test_what_a_vehicle_of_3_0_publishes_is_read_where_the_settings_say_so():
+    body = {**HEAD, **of_3_0("state", state()), "version": "3.0.0"}
+    action = {"actionId": "i", "actionType": "initializePosition", "actionStatus": "RETRIABLE"}
+    body["instantActionStates"] = [{**action, "actionResult": "slipped"}]
+    read = decode_message("state", json.dumps(body).encode(), "3")
+    assert (read.agv_position.position_initialized, read.battery_state.battery_charge) == (True, 80.0)
+    assert read.safety_state.e_stop == "NONE" and read.action_states == []
+    shown = read.action("i")
+    assert (shown.action_type, shown.result_description, shown.has_ended) == (
+        "initPosition",
+        "slipped",
+        False,
+    )
+    sheet = {
+        "protocolLimits": {"maximumArrayLengths": {"order.nodes": 3}},
+        "protocolFeatures": {"mobileRobotActions": [{"actionType": "initializePosition"}]},
+    }
+    sheet = decode_message("factsheet", json.dumps({**HEAD, **sheet, "version": "3.0.0"}).encode(), "3")
+    assert sheet.most_nodes == 3 and sheet.supports("initPosition") and not sheet.supports("startPause")
+    gone = {**HEAD, "version": "3.0.0", "connectionState": "CONNECTION_BROKEN"}
+    assert decode_message("connection", json.dumps(gone).encode(), "3").connection_state == "CONNECTIONBROKEN"
+    with pytest.raises(VehicleMessageError, match=r"version '2.1.0' is not spoken here; versions 3.x are"):
+        decode_message("connection", json.dumps({**HEAD, "connectionState": "ONLINE"}).encode(), "3")
+    assert (Topics("vda5050", "v3").major, Topics().major) == ("3", "2")
 
 
 def test_header_numbers_rise_for_each_topic():

@@ -19,9 +19,9 @@ TARGET = SetPosEnd(120.0, 50.0)
 LONG = SetPath([(100.0, 50.0), (200.0, 50.0), (200.0, 150.0)])
 
 
-@pytest.fixture
-def bench():
-    made = Bench()
+@pytest.fixture(params=["2.1.0", "3.0.0"])
+def bench(request):
+    made = Bench(version=request.param)
     made.connect()
     return made
 
@@ -262,7 +262,7 @@ def test_an_adapter_that_is_started_anew_goes_on(bench):
     update = bench.orders[-1]
     bench.accept(update, passed=1)
 
-    again = Bench(remembered=bench.kept)
+    again = Bench(remembered=bench.kept, version=bench.version)
     again.state = bench.state
     again.connect()
     again.tell(LONG, 7, again=True)
@@ -276,7 +276,7 @@ def test_an_adapter_that_is_started_anew_goes_on(bench):
     assert again.saying(Stopped)
 
     # The gateway was not told yet that it was taken on when the first adapter died.
-    last = Bench(remembered=again.kept)
+    last = Bench(remembered=again.kept, version=bench.version)
     last.connect()
     last.tell(LONG, 7, again=True)
     assert last.settled == [Settled(7)] and last.orders == []
@@ -285,7 +285,7 @@ def test_an_adapter_that_is_started_anew_goes_on(bench):
 def test_an_order_that_was_not_sent_when_the_adapter_died_is_sent_then(bench):
     bench.tell(TARGET, 7)
     order = bench.orders[0]
-    again = Bench(remembered=bench.kept)
+    again = Bench(remembered=bench.kept, version=bench.version)
     again.connect()
     again.wait(20)
     assert again.orders == [], "nobody knows whether it still is to be driven"
@@ -299,7 +299,7 @@ def test_an_order_that_was_not_sent_when_the_adapter_died_is_sent_then(bench):
 
 def test_an_order_that_came_through_when_the_adapter_died_is_acknowledged(bench):
     bench.tell(TARGET, 7)
-    again = Bench(remembered=bench.kept)
+    again = Bench(remembered=bench.kept, version=bench.version)
     again.connect()
     again.accept(bench.orders[0])
     assert again.settled == [Settled(7)] and again.orders == []
@@ -518,3 +518,42 @@ def test_the_last_node_of_the_order_before_releases_nothing(bench):
     bench.show(orderId=order.order_id, nodeStates=nodes, lastNodeSequenceId=12, driving=True)
     bench.wait(1)
     assert {order.order_update_id for order in bench.orders} == {0}
+
+
+def test_a_vehicle_that_says_it_cannot_come_to_a_node_fails_the_command_and_is_stopped():
+    bench = Bench(version="3.0.0")
+    bench.connect()
+    bench.tell(TARGET, 7)
+    order = bench.orders[-1]
+    bench.accept(order)
+    elsewhere = fault("no way", "CRITICAL", nodeId="of-another-order") | {"errorType": "NODE_UNREACHABLE"}
+    bench.show(errors=[elsewhere])
+    assert [one.reason for one in bench.settled] == [None]
+    here = fault("no way", "CRITICAL", nodeId=order.nodes[-1].node_id) | {"errorType": "NODE_UNREACHABLE"}
+    bench.show(errors=[fault("a scratch"), here])
+    assert bench.settled[-1].reason == "NODE_UNREACHABLE: no way"
+    assert bench.actions[-1] == "cancelOrder"
+    assert "CRITICAL NODE_UNREACHABLE: no way; WARNING" in bench.saying(SendPos)[-1].status
+
+
+def test_a_vehicle_that_hibernates_is_offline_and_is_sent_nothing():
+    bench = Bench(version="3.0.0")
+    bench.connect()
+    bench.hear("connection", {"connectionState": "HIBERNATING"})
+    assert bench.saying(Stopped)
+    bench.tell(TARGET, 7)
+    bench.wait(10)
+    assert bench.orders == [] and "HIBERNATING" in bench.settled[-1].reason
+
+
+def test_instant_actions_that_have_ended_are_cleared_unless_one_is_waited_for():
+    bench = Bench(version="3.0.0")
+    bench.connect()
+    ended = [{"actionId": f"old-{n}", "actionStatus": "FINISHED"} for n in range(21)]
+    bench.tell(SetPosIni(110.0, 50.0, 0.5), 6)
+    bench.show(actionStates=ended)
+    assert "clearInstantActions" not in bench.actions
+    init = {"actionId": bench.action_id("initPosition"), "actionStatus": "FINISHED"}
+    bench.show(actionStates=[*ended, init])
+    bench.show()
+    assert bench.actions.count("clearInstantActions") == 1
