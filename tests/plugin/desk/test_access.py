@@ -15,7 +15,7 @@ from fleet_supervisor.plugin.settings.token_store import TokenStore
 from fleet_supervisor.plugin.wire.addresses import Credentials
 from fleet_supervisor.plugin.wire.role_words import ROLES
 from fleet_supervisor.plugin.wire.status import LinkStatus, Phase
-from fleet_supervisor.robot_bridge.messages import Role
+from fleet_supervisor.robot_bridge.messages import AbortAll, ClearEmergencyStop, EmergencyStop, Role, Send
 from qgis.core import QgsApplication, QgsSettings
 from qgis.gui import QgsFileWidget
 from qgis.PyQt.QtCore import Qt
@@ -322,7 +322,7 @@ def test_each_role_reaches_as_far_as_it_may_and_is_told_where_it_ends(
         window.actions.send.trigger()
 
     refused = f"{role.title()} is {role}, and this takes"
-    assert (refused in error_of(SendToRobot, draw_and_send)) is not stops
+    assert (refused in error_of(Send, draw_and_send)) is not stops
     assert (refused in error_of(AbortAll, window.actions.abort_all.trigger)) is not stops
     assert (refused in error_of(EmergencyStop, window.actions.emergency.trigger)) is not stops
     assert (desk.emergency is not None and desk.emergency.in_force) is stops
