@@ -15,7 +15,6 @@ from .ageing import beside_the_time, delete_oldest
 from .rows import readable
 from .schema import command_steps, commands
 
-
 # Built once: SQLAlchemy takes longer to build a statement than the database to do it.
 _ADD, _ADD_STEPS = insert(commands), insert(command_steps)
 _SAVE = (
