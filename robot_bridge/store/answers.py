@@ -25,11 +25,10 @@ _READ = (
     .where(sa.c.robot == bindparam("of"), _LATER)
     .order_by(sa.c.urgent.desc(), sa.c.id)
 )
-_FILL_MAPS = (
-    update(sa)
-    .where(sa.c.robot == bindparam("of"), sa.c.op == SetMap.__name__, sa.c.payload.is_(None))
-    .values(payload=bindparam("content"))
+_UNFILLED_MAPS = select(sa.c.id).where(
+    sa.c.robot == bindparam("of"), sa.c.op == SetMap.__name__, sa.c.payload.is_(None)
 )
+_FILL = update(sa).where(sa.c.id == bindparam("one")).values(payload=bindparam("content"))
 _NAMES = ("robot", "op", "params", "payload", "urgent")
 _REMOVE_OWN = delete(sa).where(sa.c.robot == bindparam("of"), sa.c.id == bindparam("one"))
 _REMOVE_ONE = delete(sa).where(sa.c.id == bindparam("one"))
@@ -125,7 +124,8 @@ def remove_maps(connection: Connection, robot: str) -> None:
 
 def fill_maps(connection: Connection, robot: str, content: bytes) -> None:
     """Write ``content`` into those of the robot's maps that only say that they are of the whole site."""
-    connection.execute(_FILL_MAPS, {"of": robot, "content": content})
+    for id in list(connection.scalars(_UNFILLED_MAPS, {"of": robot})):
+        connection.execute(_FILL, {"one": id, "content": content})
 
 
 def remove_unlocked(connection: Connection, robots: Sequence[str], ops: Sequence[str]) -> None:
