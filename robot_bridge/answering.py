@@ -38,6 +38,9 @@ from .wire import decode_answer
 class Maps(Protocol):
     """Where maps come from."""
 
+    def is_quick(self, x: float, y: float, area: float) -> bool:
+        """Tell whether the map of such a square is made in a few milliseconds."""
+
     def map_around(self, x: float, y: float, area: float) -> bytes:
         """Return the map of a square of ``area`` square metres centred on (x, y)."""
 
@@ -74,8 +77,7 @@ class Answering:
     async def answer(self, robot: str, question: Question) -> Reply:
         """Return the answer to ``question``; raises RefusedError where there is none, saying why."""
         if isinstance(question, GetMap):
-            around = question.x, question.y, question.area
-            return Reply(SetMap(await asyncio.to_thread(self._maps.map_around, *around)))
+            return Reply(SetMap(await self._map(question.x, question.y, question.area)))
         if isinstance(question, GetPath):
             return await self._path(robot)
         if isinstance(question, GetSurface):
@@ -83,6 +85,11 @@ class Answering:
         if isinstance(question, GetPosIni):
             return Reply(await self._begin(robot))
         return Reply(await self._end(robot))
+
+    async def _map(self, *around: float) -> bytes:
+        if self._maps.is_quick(*around):
+            return self._maps.map_around(*around)
+        return await asyncio.to_thread(self._maps.map_around, *around)
 
     async def _path(self, robot: str) -> Reply:
         task = self._book.task(robot)
@@ -120,7 +127,7 @@ class Answering:
 
     async def _given(self, question: str, robot: str, *ops: str) -> Answer:
         """Return the newest of such commands, unless it was given up."""
-        found = await self._database.run(tracks.last_given, robot, ops)
+        found = await self._database.read(tracks.last_given, robot, ops)
         if found is None:
             raise RefusedError(
                 f"{question}: robot {robot!r} was given no {' or '.join(ops)} yet; wait for one"

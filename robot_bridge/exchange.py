@@ -10,7 +10,17 @@ from sqlalchemy import Connection
 
 from .messages import Answer, OpAck, SetMap, Start
 from .store import answers, requests, trajectories
+from .store.answers import AnswerRow
 from .store.trajectories import PackedFix
+
+Reader = tuple[str, int, int]
+"""A robot, and what it was sent last: the ids of a message and of an urgent one."""
+
+WHOLE_SITE = SetMap(b"")
+"""The map of the whole site for a robot that reads no rows itself: what delivers it has the map at hand.
+
+A city's map has megabytes: written, checkpointed and deleted for each robot it keeps all others waiting.
+"""
 
 
 @dataclass(frozen=True)
@@ -73,9 +83,20 @@ def finish(
     """Write what comes of requests, and where robots were, and delete the requests."""
     for outcome in outcomes:
         remove_voided(connection, outcome.robot, outcome.voided())
+        if request_ids and outcome.admitted and isinstance(outcome.answer, SetMap):
+            # It may have come over another link before, and is to read the rows itself from now on.
+            answers.fill_maps(connection, outcome.robot, outcome.answer.map)
     answers.add_all(connection, rows)
     trajectories.add(connection, fixes)
     requests.remove(connection, request_ids)
+
+
+def finish_and_read(
+    connection: Connection, outcomes: Sequence[Outcome], rows: Sequence[tuple[str, Answer]], reader: Reader
+) -> list[AnswerRow]:
+    """Write what comes of requests, and return what then waits for one robot."""
+    finish(connection, outcomes, rows, [], [])
+    return answers.read(connection, *reader)
 
 
 def remove_voided(connection: Connection, robot: str, kinds: Sequence[str]) -> None:

@@ -7,12 +7,13 @@ the way is sent again.
 from __future__ import annotations
 
 import asyncio
+from collections import Counter
 from collections.abc import Iterable
 
 from . import exchange
 from .commanding.book import CommandBook
 from .emergency.stops import HELD_BACK, EmergencyStops
-from .exchange import Outcome
+from .exchange import Outcome, Reader
 from .messages import SetMap
 from .robots import Robots
 from .store import answers, requests
@@ -38,6 +39,9 @@ class Mailboxes:
         self._emergency = emergency
         self._saving = saving
         self._events: dict[str, asyncio.Event] = {}
+        self._changes: Counter[str] = Counter()
+        self._fresh: dict[str, tuple[Reader, list[AnswerRow]]] = {}
+        """what was read as an answer was written, until anything else is written for that robot."""
         self.parts: asyncio.Queue[str] = asyncio.Queue()
         """the robots for which a map of a part of the site was stored in place of the whole one."""
 
@@ -47,11 +51,16 @@ class Mailboxes:
 
     def changed(self, robot: str) -> None:
         """Note that SA holds something new for the robot."""
+        self._changes[robot] += 1
+        self._fresh.pop(robot, None)
         self.event(robot).set()
 
     async def outbox(self, robot: str, after: int, after_urgent: int = 0) -> list[AnswerRow]:
         """Return the robot's messages as :func:`.answers.read`, without those that must not be sent now."""
-        rows = await self._database.read(answers.read, robot, after, after_urgent)
+        reader = robot, after, after_urgent
+        read, rows = self._fresh.pop(robot, (None, []))
+        if read != reader:
+            rows = await self._database.read(answers.read, *reader)
         return [row for row in rows if row.op not in HELD_BACK] if self._emergency.in_force else rows
 
     async def hand_over(self, robot: str, id: int) -> bool:
@@ -94,12 +103,16 @@ class Mailboxes:
             await self._commands.delivered(sent - waiting)
         return rows
 
-    async def finish(self, outcomes: list[Outcome], request_ids: list[int], *, acks: bool) -> None:
+    async def finish(
+        self, outcomes: list[Outcome], request_ids: list[int], *, acks: bool, reader: Reader | None = None
+    ) -> None:
         """Write the answers of requests into SA, with their OpAcks if ``acks``, and delete them from RR.
 
         One transaction, with the positions that they told: a request is either answered and gone, or will be
-        dealt with again. A robot that said Ready is stored before.
+        dealt with again. A robot that said Ready is stored before. ``reader`` is the robot of a single
+        outcome, whose connection then sends the answer without reading SA once more.
         """
+        fresh = None
         if outcomes or request_ids:
             rows = exchange.rows_of(outcomes, acks=acks)
             if admitted := {outcome.robot for outcome in outcomes if outcome.admitted}:
@@ -109,16 +122,23 @@ class Mailboxes:
                 # A request whose answer a power cut undid is there again, and is dealt with again.
                 # It may have waited for long: where the robot was then must not be in memory alone.
                 await self._saving.jot_with(exchange.finish, outcomes, rows, request_ids)
+            elif not all(isinstance(one.answer, SetMap) and not one.admitted for one in outcomes):
+                await self._database.run(exchange.finish, outcomes, rows, request_ids, [])
+            # A map that a power cut undoes is sent again: the robot says Ready on its next connection.
+            elif reader is None:
+                await self._database.jot(exchange.finish, outcomes, rows, request_ids, [])
             else:
-                # A map that a power cut undoes is sent again: the robot says Ready on its next connection.
-                asked = all(isinstance(one.answer, SetMap) and not one.admitted for one in outcomes)
-                store = self._database.jot if asked else self._database.run
-                await store(exchange.finish, outcomes, rows, request_ids, [])
+                changes = self._changes[reader[0]]
+                read = await self._database.jot(exchange.finish_and_read, outcomes, rows, reader)
+                # Whatever else was written for it meanwhile may not be among that.
+                fresh = (reader, read) if self._changes[reader[0]] == changes else None
         for outcome in outcomes:
             if outcome.answer is not None:
                 self.changed(outcome.robot)
             if outcome.part:
                 self.parts.put_nowait(outcome.robot)
+        if fresh is not None:
+            self._fresh[fresh[0][0]] = fresh
 
     def _undelivered(self, link: str) -> set[int]:
         return {

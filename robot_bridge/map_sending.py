@@ -7,7 +7,7 @@ import logging
 from collections.abc import Iterable
 
 from .errors import StoreError
-from .exchange import Outcome
+from .exchange import WHOLE_SITE, Outcome
 from .mailboxes import Mailboxes
 from .messages import RobotState, SetMap
 from .monitoring.unforeseen import note_unforeseen
@@ -38,6 +38,7 @@ class MapSending:
         self._database = database
         self._parts: dict[str, Border] = {}
         """what the newest map of a robot covers that was not sent the whole one."""
+        self._making = asyncio.Lock()
         self._unplaced: set[str] = set()
         """robots that have such a map, and are still to say where they are."""
 
@@ -61,8 +62,16 @@ class MapSending:
         """Send ``robot`` the map of the whole site, or of what is around it; raises StoreError."""
         content = await asyncio.to_thread(self._site.whole_map)
         if content is None:
-            content = (await self._offer(robot)).content
-        await self._store(robot, content)
+            await self._store(robot, SetMap((await self._offer(robot)).content))
+        else:
+            await self._store_whole(robot, content)
+
+    async def whole_or_around(self, robot: str) -> bytes:
+        """Return the map of the whole site, or of what is around ``robot``; raises StoreError."""
+        # While it is made anew all robots may wait for it, but in one thread: others have work for the rest.
+        async with self._making:
+            content = await asyncio.to_thread(self._site.whole_map)
+        return (await self._offer(robot)).content if content is None else content
 
     async def send_all(self) -> None:
         """Send all robots their map, one by one; those that are offline get it with their next Ready."""
@@ -92,7 +101,7 @@ class MapSending:
             return
         known = self._robots.get(robot)
         if content is not None:
-            await self._store(robot, content)
+            await self._store_whole(robot, content)
         elif known.pose is None or not known.located:
             self._unplaced.add(robot)
         elif not self._parts[robot].holds(known.pose.x, known.pose.y):
@@ -107,11 +116,15 @@ class MapSending:
         pose = self._robots.get(robot).pose if robot in self._robots else None
         if pose is not None:
             return pose.x, pose.y
-        given = await self._database.run(tracks.last_given, robot, ("SetPosIni",))
+        given = await self._database.read(tracks.last_given, robot, ("SetPosIni",))
         if given is None:
             return None
         x, y = given.params.get("x"), given.params.get("y")
         return (float(x), float(y)) if isinstance(x, (int, float)) and isinstance(y, (int, float)) else None
 
-    async def _store(self, robot: str, content: bytes) -> None:
-        await self._mailboxes.finish([Outcome(robot, answer=SetMap(content))], [], acks=False)
+    async def _store_whole(self, robot: str, content: bytes) -> None:
+        reads_itself = self._robots.get(robot).link == "sql"
+        await self._store(robot, SetMap(content) if reads_itself else WHOLE_SITE)
+
+    async def _store(self, robot: str, message: SetMap) -> None:
+        await self._mailboxes.finish([Outcome(robot, answer=message)], [], acks=False)

@@ -54,6 +54,9 @@ class ServedSite(Protocol):
     def map_at_once(self, place: tuple[float, float] | None) -> EncodedMap:
         """Return the map of the whole site if small and at hand, else one of what is around ``place``."""
 
+    def is_quick(self, x: float, y: float, area: float) -> bool:
+        """Tell whether the map of such a square is made in a few milliseconds."""
+
     def map_around(self, x: float, y: float, area: float) -> bytes:
         """Return the map of a square of ``area`` square metres centred on (x, y)."""
 

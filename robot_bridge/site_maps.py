@@ -27,6 +27,8 @@ from .sites.site import Site
 
 AT_ONCE = 4000
 """segments of a map that is made while a robot waits for its acknowledgement: some hundredths of a second."""
+QUICK = 500
+"""segments of a map that is made in some 3 ms: another thread would hold the interpreter as long."""
 STORED_AT_ONCE = 1_000_000
 """bytes of a map that is stored meanwhile."""
 
@@ -179,6 +181,14 @@ class SiteMaps:
         x, y = place or (sum(site.bounds[::2]) / 2, sum(site.bounds[1::2]) / 2)
         part = site.map_near(x, y, site.settings.maps.window_m, AT_ONCE)
         return EncodedMap(encode(drawn.objects.join(part)), part.border, is_whole=False)
+
+    def is_quick(self, x: float, y: float, area: float) -> bool:
+        """Tell whether :meth:`map_around` takes a few milliseconds at most, or refuses it as quickly."""
+        site = self._site
+        try:
+            return site.has_index and site.segments_around(x, y, area) <= QUICK
+        except RobotMapError:
+            return True
 
     def map_around(self, x: float, y: float, area: float) -> bytes:
         """Return the map of a square of ``area`` square metres centred on (x, y) in the binary format.

@@ -72,6 +72,8 @@ hear_signals()
 
 # How long something takes on a busy machine says nothing of whether it is right.
 settings.register_profile("any machine", deadline=None, suppress_health_check=[HealthCheck.too_slow])
+# make test-core shows in a minute that nothing is broken; make test looks for the rare example.
+settings.register_profile("core", settings.get_profile("any machine"), max_examples=30)
 settings.load_profile("any machine")
 
 
@@ -135,6 +137,7 @@ def pytest_configure(config):
     if config.getoption("--core"):
         # Whoever imports it all the same fails.
         sys.modules["qgis"] = sys.modules["osgeo"] = None
+        settings.load_profile("core")
 
 
 def pytest_ignore_collect(collection_path, config):

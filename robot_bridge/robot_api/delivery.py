@@ -11,8 +11,9 @@ from websockets.exceptions import ConnectionClosed
 
 from ..emergency.stops import HELD_BACK
 from ..errors import StoreError
+from ..exchange import Reader
 from ..fleet import Fleet
-from ..messages import PAYLOADS, Abort, MessageError, to_json
+from ..messages import PAYLOADS, Abort, MessageError, SetMap, to_json
 from ..monitoring.unforeseen import note_unforeseen
 from ..store.answers import AnswerRow
 from ..wire import parse_params, with_base64
@@ -38,7 +39,14 @@ class Delivery:
         self._robot = robot
         self._work: asyncio.Task[None] | None = None
         self._stops = 0
+        self._last = {False: 0, True: 0}
+        """the ids of the messages that were sent last, by urgency."""
         self._stopping: set[asyncio.Task[None]] = set()
+
+    @property
+    def reader(self) -> Reader:
+        """What is to be read for the robot: what comes behind what it was sent."""
+        return self._robot, self._last[False], self._last[True]
 
     def begin(self) -> None:
         """Deliver the outbox from its beginning: what was not acknowledged is sent again."""
@@ -79,7 +87,8 @@ class Delivery:
     async def _deliver(self, after: float = 0.0) -> None:
         await asyncio.sleep(after)
         event = self._fleet.mailboxes.event(self._robot)
-        last = {False: 0, True: 0}
+        # Of this task alone: one that was ended may still be on its way out.
+        last = self._last = {False: 0, True: 0}
         while True:
             event.clear()
             try:
@@ -117,6 +126,8 @@ class Delivery:
         return True
 
     async def _framed(self, row: AnswerRow) -> str | None:
+        if row.payload is None and row.op == SetMap.__name__:
+            row = row._replace(payload=await self._fleet.maps.whole_or_around(self._robot))
         # A city's map takes a while to be written as text, for which nobody else is to wait.
         if row.payload is not None and row.op in PAYLOADS and len(row.payload) > LARGE:
             return await asyncio.to_thread(self._large_frame, row, row.payload)

@@ -165,7 +165,8 @@ class RobotSession:
         try:
             outcome = await work
             if outcome.answer is not None or outcome.admitted:
-                await self._fleet.mailboxes.finish([outcome], [], acks=False)
+                reader = self._delivery.reader
+                await self._fleet.mailboxes.finish([outcome], [], acks=False, reader=reader)
         except (MessageError, BridgeError) as error:
             self._warn(call.method, f"{self._who}: {error}")
             await channel.send(channel.error(call.id, error_code(error), str(error)))

@@ -74,6 +74,11 @@ class Site:
         """Tell whether (x, y), metres in the site frame, lies in the site's bounds."""
         return self.bounds.contains(x, y)
 
+    @property
+    def has_index(self) -> bool:
+        """Whether what maps are cut from is at hand."""
+        return self.cache is not None or "_index" in self.__dict__
+
     def make_index(self) -> None:
         """Make what maps are cut from, which takes seconds where nothing was computed at publishing."""
         assert self._index is not None
@@ -109,6 +114,13 @@ class Site:
     def segment_count(self) -> int:
         """How many segments all obstacles have together, about."""
         return self._index.count_near(self.bounds_border)
+
+    def segments_around(self, x: float, y: float, area: float) -> int:
+        """Return how many segments the map of a square has at most, as :meth:`map_around` makes it.
+
+        :raises WindowError: when the three are no window.
+        """
+        return self._index.count_near(Window.square(x, y, area).border)
 
     def map_near(self, x: float, y: float, side: float, most: int) -> RobotMap:
         """Return the map of a square around (x, y), or around the nearest place of the site's bounds.

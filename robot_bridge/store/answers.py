@@ -6,7 +6,7 @@ import json
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from sqlalchemy import Connection, and_, bindparam, delete, func, insert, or_, select
+from sqlalchemy import Connection, and_, bindparam, delete, func, insert, or_, select, update
 
 from ..messages import COMMANDS, Abort, Answer, SetMap, to_json
 from .rows import TOGETHER, Row, add_messages, delete_messages
@@ -25,6 +25,10 @@ _READ = (
     .where(sa.c.robot == bindparam("of"), _LATER)
     .order_by(sa.c.urgent.desc(), sa.c.id)
 )
+_UNFILLED_MAPS = select(sa.c.id).where(
+    sa.c.robot == bindparam("of"), sa.c.op == SetMap.__name__, sa.c.payload.is_(None)
+)
+_FILL = update(sa).where(sa.c.id == bindparam("one")).values(payload=bindparam("content"))
 _NAMES = ("robot", "op", "params", "payload", "urgent")
 _REMOVE_OWN = delete(sa).where(sa.c.robot == bindparam("of"), sa.c.id == bindparam("one"))
 _REMOVE_ONE = delete(sa).where(sa.c.id == bindparam("one"))
@@ -40,7 +44,7 @@ _MAPS_BEHIND_ORDERS = select(sa.c.id).where(
 
 
 class AnswerRow(NamedTuple):
-    """A row of SA."""
+    """A row of SA. A SetMap without a payload is the map of the whole site, as it is when it is sent."""
 
     id: int
     op: str
@@ -74,7 +78,7 @@ def _named(robot: str, answer: Answer) -> dict[str, object]:
 
 
 def _row(robot: str, answer: Answer) -> Row:
-    payload = answer.map if isinstance(answer, SetMap) else None
+    payload = (answer.map or None) if isinstance(answer, SetMap) else None
     urgent = int(isinstance(answer, Abort) and answer.emergency)
     return robot, type(answer).__name__, json.dumps(to_json(answer)), payload, urgent
 
@@ -116,6 +120,12 @@ def remove_kinds(connection: Connection, robot: str, ops: Sequence[str]) -> None
 def remove_maps(connection: Connection, robot: str) -> None:
     """Delete the robot's maps, but for those that something waits behind which needs a map first."""
     remove(connection, list(connection.scalars(_MAPS_BEHIND_ORDERS, {"of": robot})))
+
+
+def fill_maps(connection: Connection, robot: str, content: bytes) -> None:
+    """Write ``content`` into those of the robot's maps that only say that they are of the whole site."""
+    for id in list(connection.scalars(_UNFILLED_MAPS, {"of": robot})):
+        connection.execute(_FILL, {"one": id, "content": content})
 
 
 def remove_unlocked(connection: Connection, robots: Sequence[str], ops: Sequence[str]) -> None:

@@ -15,6 +15,31 @@ from .ageing import beside_the_time, delete_oldest
 from .rows import readable
 from .schema import command_steps, commands
 
+# Built once: SQLAlchemy takes longer to build a statement than the database to do it.
+_ADD, _ADD_STEPS = insert(commands), insert(command_steps)
+_SAVE = (
+    update(commands)
+    .where(commands.c.id == bindparam("key"))
+    .values(
+        state=bindparam("new_state"),
+        deviation=bindparam("new_deviation"),
+        stood_x=bindparam("new_x"),
+        stood_y=bindparam("new_y"),
+        stood_theta=bindparam("new_theta"),
+        driven=bindparam("new_driven"),
+        sa_id=bindparam("new_sa_id"),
+    )
+)
+_BY_ID = select(commands).where(commands.c.id.in_(bindparam("ids", expanding=True)))
+_BY_MESSAGE = select(commands).where(
+    commands.c.robot == bindparam("of"), commands.c.sa_id == bindparam("message")
+)
+_STEPS = (
+    select(command_steps)
+    .where(command_steps.c.command.in_(bindparam("commands", expanding=True)))
+    .order_by(command_steps.c.id)
+)
+
 
 class StoredCommand(NamedTuple):
     """A command with what only the gateway needs of it.
@@ -33,7 +58,7 @@ def add_all(connection: Connection, new: Sequence[StoredCommand]) -> None:
     """Write new commands with their steps."""
     if not new:
         return
-    connection.execute(insert(commands), [_row(command) for command in new])
+    connection.execute(_ADD, [_row(command) for command in new])
     _add_steps(connection, [(c.report.command, step) for c in new for step in c.report.steps])
 
 
@@ -41,19 +66,6 @@ def save_all(connection: Connection, changed: Sequence[StoredCommand]) -> None:
     """Write the newest step of each of some commands that are stored already."""
     if not changed:
         return
-    statement = (
-        update(commands)
-        .where(commands.c.id == bindparam("key"))
-        .values(
-            state=bindparam("new_state"),
-            deviation=bindparam("new_deviation"),
-            stood_x=bindparam("new_x"),
-            stood_y=bindparam("new_y"),
-            stood_theta=bindparam("new_theta"),
-            driven=bindparam("new_driven"),
-            sa_id=bindparam("new_sa_id"),
-        )
-    )
     rows = [
         {
             "key": c.report.command,
@@ -65,7 +77,7 @@ def save_all(connection: Connection, changed: Sequence[StoredCommand]) -> None:
         }
         for c in changed
     ]
-    connection.execute(statement, rows)
+    connection.execute(_SAVE, rows)
     _add_steps(connection, [(c.report.command, c.report.steps[-1]) for c in changed])
 
 
@@ -79,7 +91,7 @@ def save_driven(connection: Connection, driven: Mapping[str, float]) -> None:
 
 def find_all(connection: Connection, ids: Sequence[str]) -> dict[str, StoredCommand]:
     """Return those of some commands that are stored, by their ids."""
-    found = _load(connection, select(commands).where(commands.c.id.in_(ids))) if ids else []
+    found = _load(connection, _BY_ID, {"ids": list(ids)}) if ids else []
     return {command.report.command: command for command in found}
 
 
@@ -91,8 +103,7 @@ def find(connection: Connection, command: str) -> CommandReport | None:
 
 def find_message(connection: Connection, robot: str, sa_id: int) -> StoredCommand | None:
     """Return the robot's command whose message is, or was, row ``sa_id`` of SA."""
-    query = select(commands).where(commands.c.robot == robot, commands.c.sa_id == sa_id)
-    return next(iter(_load(connection, query)), None)
+    return next(iter(_load(connection, _BY_MESSAGE, {"of": robot, "message": sa_id})), None)
 
 
 def newest(connection: Connection, robot: str | None, limit: int) -> list[CommandReport]:
@@ -142,11 +153,12 @@ def _row(command: StoredCommand) -> dict[str, object]:
     }
 
 
-def _load(connection: Connection, query: Select[tuple[object, ...]]) -> list[StoredCommand]:
-    rows = connection.execute(query).mappings().all()
+def _load(
+    connection: Connection, query: Select[tuple[object, ...]], values: Mapping[str, Any] | None = None
+) -> list[StoredCommand]:
+    rows = connection.execute(query, values).mappings().all()
     steps: dict[str, list[CommandStep]] = {row["id"]: [] for row in rows}
-    wanted = select(command_steps).where(command_steps.c.command.in_(steps)).order_by(command_steps.c.id)
-    found = connection.execute(wanted).mappings() if rows else ()
+    found = connection.execute(_STEPS, {"commands": list(steps)}).mappings() if rows else ()
     for command, step in readable(found, _step, lambda row: f"a step of command {row['command']}"):
         steps[command].append(step)
     return list(
@@ -190,7 +202,7 @@ def _stood(x: float | None, y: float | None, theta: float | None) -> tuple[float
 
 def _add_steps(connection: Connection, steps: Sequence[tuple[str, CommandStep]]) -> None:
     connection.execute(
-        insert(command_steps),
+        _ADD_STEPS,
         [
             {
                 "command": command,

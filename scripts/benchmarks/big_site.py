@@ -49,8 +49,9 @@ machine does. OpAck: from Ready to its acknowledgement; first map: to the first 
 {table}
 
 GetMap is of {side:g} m × {side:g} m: over the wire, from the question until the map is there; and the map
-itself, in this process, by processor time. What is between the two: the map is made in a thread, stored in
-the database before OpAck says so, and read from there by what delivers it, so that a restart loses none.
+itself, in this process, by processor time. What is between the two: the map is stored in the database before
+OpAck says so, so that a restart loses none. The whole site is not stored for a robot on WebSocket: its row
+says that it is that map.
 
 - OpAck within {ack:g} ms at any size, the slowest: {ack_goal}
 - p99 of another robot's pings below {ping:g} ms: {ping_goal}

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import platform
 import re
+import subprocess
 import textwrap
 import time
 from collections.abc import Mapping
@@ -23,7 +24,8 @@ HEAD = f"""\
 
 Each part is made by the command that it names. Times are medians on the machine as it was; the ratios are
 what to compare. In square brackets behind a median: its quartiles, of fewer than {FEW} runs the least and the
-most. A goal is *met* or **missed**.
+most. A goal is *met* or **missed**. A part names the commit whose code it measured; one that names none is
+older than that, and than the code that it lies beside.
 """
 TELLING = (
     *("MALLOC_", "LD_PRELOAD", "OMP_", "OPENBLAS_", "MKL_", "UV_", "QT_", "MINUTES", "DRIVES"),
@@ -118,9 +120,20 @@ def _wrapped(text: str) -> str:
 def _made_by(command: str) -> str:
     machine = f"{os.cpu_count()} cores, {platform.machine()}, {platform.system()}"
     return (
-        f"Made by `{command}`, on {machine}, Python {platform.python_version()}, "
+        f"Made by `{command}`{_of_commit()}, on {machine}, Python {platform.python_version()}, "
         f"on {date.today().isoformat()}."
     )
+
+
+def _of_commit() -> str:
+    """Return which code is measured, nothing where git does not know."""
+    git = ["git", "-C", str(PAGE.parent), "describe", "--always", "--abbrev=8", "--exclude=*", "--dirty"]
+    try:
+        said = subprocess.run(git, capture_output=True, text=True, check=True).stdout.strip()
+    except (OSError, subprocess.CalledProcessError):
+        return ""
+    name, *changed = said.split("-")
+    return f" of commit {name}{' with changes' if changed else ''}"
 
 
 def _beside(began: Beginning) -> str:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import re
+import subprocess
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -105,7 +106,9 @@ def test_a_part_says_what_it_ran_under(monkeypatch):
     table = "| " + " | ".join(["a long cell that no line may break"] * 5) + " |\n| --- |"
     part = Part("Maps", f"A paragraph.\n\n{table}", settings={"GDAL_CACHEMAX": "16"})
     page = with_part("", "maps", part, ["maps"], Beginning.now())
-    assert "Made by `make bench PARTS=maps`" in page
+    git = ["git", "-C", str(SCRIPTS), "rev-parse", "--short=8", "HEAD"]
+    commit = subprocess.run(git, capture_output=True, text=True).stdout.strip()
+    assert f"Made by `make bench PARTS=maps`{f' of commit {commit}' if commit else ''}" in page
     words = " ".join(page.split())
     assert "load of the machine in the minute before it began" in words
     assert "`GDAL_CACHEMAX=16`" in words and "`MALLOC_ARENA_MAX=2`" in words

@@ -9,12 +9,39 @@ import tempfile
 from pathlib import Path
 
 import pytest
+from sqlalchemy import Connection, Engine, event
 
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "scripts"))
 sys.path.insert(0, str(Path(__file__).with_name("rig")))
 
 from stage.errors import StageError  # noqa: E402 - found by the paths above
+
+
+class SharedStatements(dict):
+    """What SQLAlchemy compiled, for all engines on databases of one kind and version.
+
+    Each test has an engine of its own, and to compile its statements takes longer than to execute them.
+    """
+
+    def get(self, key, default=None):
+        return super().get(self._common(key), default)
+
+    def __setitem__(self, key, compiled):
+        super().__setitem__(self._common(key), compiled)
+
+    @staticmethod
+    def _common(key):
+        dialect, *rest = key
+        return type(dialect), dialect.server_version_info, *rest
+
+
+STATEMENTS = SharedStatements()
+
+
+@event.listens_for(Engine, "engine_connect")
+def share_statements(connection: Connection) -> None:
+    connection.execution_options(compiled_cache=STATEMENTS)
 
 
 @pytest.fixture(scope="session")

@@ -11,14 +11,16 @@ import numpy as np
 import pytest
 from yard import Yard
 
+from robot_bridge.exchange import Outcome
 from robot_bridge.map_requests import send_map
-from robot_bridge.messages import SendMap
+from robot_bridge.messages import Ready, SendMap, SetMap
 from robot_bridge.robotmap.binary import decode
 from robot_bridge.robotmap.model import PART_OF
 from robot_bridge.robotmap.outlines import OutlineRow, Outlines
 from robot_bridge.site_maps import AT_ONCE, SiteMaps
 from robot_bridge.sites.settings import Bounds, MapSettings, SiteSettings
 from robot_bridge.sites.site import Site
+from robot_bridge.store import answers
 
 HOUSE = np.array([[0.0, 0.0], [10.0, 0.0], [10.0, 10.0], [0.0, 10.0], [0.0, 0.0]])
 SIDE = 40
@@ -66,7 +68,8 @@ async def maps_of(yard, count):
     async with asyncio.timeout(60):
         while len(rows := await yard.fleet.mailboxes.outbox("r1", 0)) < count:
             await asyncio.sleep(0.01)
-    return [decode(row.payload) for row in rows if row.op == "SetMap"]
+    whole = yard.fleet.maps.whole_or_around
+    return [decode(row.payload or await whole("r1")) for row in rows if row.op == "SetMap"]
 
 
 async def quiet(yard):
@@ -142,6 +145,64 @@ async def test_a_whole_map_that_takes_long_to_be_stored_follows_a_window(start, 
         while len(whole.obstacles) < SIDE**2:
             part, (*_, whole) = [whole], await maps_of(yard, 1)
     assert all(one.meta[PART_OF] for one in part)
+
+
+async def test_the_whole_map_is_stored_for_those_alone_who_read_rows_themselves(start, monkeypatch):
+    maps = SiteMaps(city())
+    monkeypatch.setattr("robot_bridge.site_maps.STORED_AT_ONCE", len(maps.whole_map()) - 1)
+    sizes = "select length(payload) from sa where robot = ? and op = 'SetMap' order by id"
+    async with start(maps) as yard:
+        await yard.ready()
+        await yard.send("a")
+        await send_map(yard.fleet, SendMap("r1"))
+        await yard.send("b")
+        assert yard.sql(sizes, "r1")[-1] == (None,)
+        yard.ask("r1", Ready(1))
+        yard.now += 60
+        while await yard.link.poll():
+            pass
+        stored = [size for (size,) in yard.sql(sizes, "r1")]
+        assert len(stored) > 1 and all(stored)
+        await send_map(yard.fleet, SendMap("r1"))
+        assert (len(maps.whole_map()),) in yard.sql(sizes, "r1")
+
+
+async def test_an_answer_goes_out_without_being_read_unless_more_was_written_meanwhile(start, monkeypatch):
+    async with start(SiteMaps(city(largest_whole_bytes=0))) as yard:
+        await yard.ready()
+        await yard.take()
+        boxes, database, looked = yard.fleet.mailboxes, yard.database, []
+        read, jot = database.read, database.jot
+
+        async def counted(work, *arguments):
+            looked.append(work)
+            return await read(work, *arguments)
+
+        async def overtaken(work, *arguments):
+            done = await jot(work, *arguments)
+            await yard.send("b")
+            return done
+
+        async def ask():
+            answer = Outcome("r1", answer=SetMap(b"a map"))
+            await boxes.finish([answer], [], acks=False, reader=("r1", 0, 0))
+
+        monkeypatch.setattr(database, "read", counted)
+        await ask()
+        assert [row.op for row in await boxes.outbox("r1", 0, 0)] == ["SetMap"]
+        assert not looked
+        (row,) = await boxes.outbox("r1", 0, 0)
+        assert row.payload == b"a map" and looked == [answers.read]
+
+        await ask()
+        assert await boxes.outbox("r1", 1000) == []
+        await ask()
+        await yard.send("a")
+        assert [row.op for row in await boxes.outbox("r1", 0, 0)] == ["SetMap", "SetPosEnd"]
+        monkeypatch.setattr(database, "jot", overtaken)
+        await ask()
+        stored = yard.sql("select id from sa where robot = 'r1' order by id")
+        assert [(row.id,) for row in await boxes.outbox("r1", 0, 0)] == stored
 
 
 async def test_a_site_beyond_its_limit_is_never_sent_whole(start):

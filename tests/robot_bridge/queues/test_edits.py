@@ -88,7 +88,7 @@ KINDS = ["set", "add", "append", "move", "remove", "first", "resume"]
 ENDS = ["reached", "failed", "aborted", "expired", "superseded"]
 
 
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=3 * settings.default.max_examples, deadline=None)
 @given(
     st.lists(
         st.tuples(st.sampled_from(KINDS + ENDS), st.sampled_from(IDS), st.sampled_from(IDS)), max_size=40
@@ -133,7 +133,7 @@ def test_a_queue_has_an_end():
         edits.added(queue, [task(IDS[0])], None, {}, "Ada", 1.0)
 
 
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=settings.default.max_examples, deadline=None)
 @given(st.permutations(IDS), st.integers(0, 12), st.booleans(), st.booleans())
 def test_a_complete_split_keeps_every_task_once(order, cut, runs, takes_current):
     mine = edits.added(Queue("r1"), [task(id) for id in IDS[:8]], None, {}, "Ada", 1.0)

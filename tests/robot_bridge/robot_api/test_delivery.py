@@ -60,6 +60,11 @@ class Mailboxes:
 class Fleet:
     def __init__(self):
         self.mailboxes = Mailboxes()
+        self.maps = self
+
+    async def whole_or_around(self, robot):
+        assert robot == "r1"
+        return b"the whole site"
 
 
 class Connection:
@@ -119,6 +124,15 @@ async def line():
     line = Line()
     yield line
     line.delivery.end()
+
+
+async def test_a_map_without_content_is_that_of_the_whole_site(line):
+    await line.put(row(1, "SetMap", "{}", b"a window"), row(2, "SetMap", "{}"))
+    line.delivery.begin()
+    await rest()
+    maps = [base64.b64decode(frame["params"]["map"]) for frame in line.connection.frames]
+    assert maps == [b"a window", b"the whole site"]
+    assert line.delivery.reader == ("r1", 2, 0)
 
 
 async def test_what_waits_goes_out_once_in_order_and_what_comes_later_after_it(line):

@@ -203,7 +203,7 @@ def polygons(draw):
     return np.vstack([ring, ring[:1]])[:: draw(st.sampled_from([1, -1]))]
 
 
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=2 * settings.default.max_examples, deadline=None)
 @given(
     st.lists(polygons(), min_size=1, max_size=4),
     coordinate,

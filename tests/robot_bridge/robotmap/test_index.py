@@ -32,7 +32,7 @@ a_row = st.one_of(
 )
 
 
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=3 * settings.default.max_examples, deadline=None)
 @given(
     st.lists(a_row, max_size=12), st.lists(st.tuples(point, st.integers(2, 60_000)), min_size=1, max_size=3)
 )

@@ -42,7 +42,7 @@ def text_of(obstacles) -> str:
 
 
 @pytest.mark.filterwarnings("error")
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=3 * settings.default.max_examples, deadline=None)
 @given(st.lists(obstacle, max_size=6))
 def test_any_map_is_exported_whole(obstacles):
     robot_map = read_text(text_of(obstacles))

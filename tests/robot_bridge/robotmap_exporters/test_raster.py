@@ -26,7 +26,7 @@ def boxes(grid: Grid, grow: float = 0.0):
     return shapely.box(x - grow, y - grow, x + grid.resolution + grow, y + grid.resolution + grow)
 
 
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=3 * settings.default.max_examples, deadline=None)
 @given(points, points)
 def test_a_line_touches_the_cells_it_runs_through_and_no_others(a, b):
     made = touched_cells(GRID, np.array([a]), np.array([b]))
@@ -35,7 +35,7 @@ def test_a_line_touches_the_cells_it_runs_through_and_no_others(a, b):
     assert not (~made & shapely.intersects(boxes(GRID, -1e-6), line)).any()
 
 
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=3 * settings.default.max_examples, deadline=None)
 @given(points, points)
 def test_the_cells_of_a_line_share_edges_so_that_nothing_slips_through(count_regions, a, b):
     grid = Grid(-2.0, 1.0, 0.1, 50, 40)
@@ -52,7 +52,7 @@ def test_a_line_on_the_far_border_of_the_grid_is_kept_and_one_beyond_is_not():
     assert (made == wanted).all()
 
 
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=2 * settings.default.max_examples, deadline=None)
 @given(st.lists(points, min_size=3, max_size=7))
 def test_a_ring_encloses_the_centres_that_shapely_says(corners):
     polygon = shapely.Polygon(corners)

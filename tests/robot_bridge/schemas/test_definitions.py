@@ -100,7 +100,7 @@ JSON = st.recursive(
 )
 
 
-@settings(max_examples=200, suppress_health_check=[HealthCheck.too_slow])
+@settings(max_examples=2 * settings.default.max_examples, suppress_health_check=[HealthCheck.too_slow])
 @given(st.data(), st.sampled_from(sorted(set(REQUESTS) - set(PAYLOADS))))
 def test_what_the_schema_refuses_the_gateway_refuses(data, op):
     schema = json.loads(documents()[f"robot/{op}.json"])
