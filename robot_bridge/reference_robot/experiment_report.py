@@ -26,6 +26,7 @@ _HEADS = {
     "p95_m": "p95 [m]",
     "max_m": "max [m]",
     "heading_mean_deg": "heading mean [°]",
+    "heading_p95_deg": "heading p95 [°]",
     "heading_max_deg": "heading max [°]",
     "odometry_end_m": "odometry alone, at the end [m]",
     "lost": "scans lost",
@@ -57,6 +58,7 @@ class Figures:
     p95_m: float
     max_m: float
     heading_mean_deg: float
+    heading_p95_deg: float
     heading_max_deg: float
     odometry_end_m: float
     lost: int
@@ -104,6 +106,7 @@ def _figures(name: str, records: Sequence[Record]) -> Figures:
         p95_m=float(np.percentile(sure, 95)),
         max_m=float(sure.max()),
         heading_mean_deg=float(sure_turned.mean()),
+        heading_p95_deg=float(np.percentile(sure_turned, 95)),
         heading_max_deg=float(sure_turned.max()),
         odometry_end_m=float(np.mean(odometry)),
         lost=int(lost.sum()),

@@ -83,7 +83,10 @@ def test_figures_are_those_of_the_scans_at_which_it_does_not_say_that_it_is_lost
     (row,) = figures([record])
     assert row.mean_m == pytest.approx((0.1 + 0.3 + 2) / 3)
     assert row.max_m == 2 and row.lost == 1 and row.wrong == 1
-    assert row.heading_mean_deg == pytest.approx(math.degrees(0.02))
+    turned = np.degrees([0.02, 0.04, 0.0])
+    assert row.heading_mean_deg == pytest.approx(turned.mean())
+    assert row.heading_p95_deg == pytest.approx(np.percentile(turned, 95))
+    assert row.heading_max_deg == pytest.approx(turned.max())
     assert row.odometry_end_m == 5 and row.update_ms == pytest.approx(2.5)
     assert row.found_m == math.inf
     assert "| – |" in table_text([row])
