@@ -47,6 +47,19 @@ def experiment(
         float | None,
         typer.Option(help="With --gateway: its maps have so many metres a side.", min=40, max=10_000),
     ] = None,
+    world: Annotated[
+        Path | None,
+        typer.Option(
+            help="With --gateway: published site that the world is made of, where that of --site lacks things."
+        ),
+    ] = None,
+    accept: Annotated[
+        bool,
+        typer.Option(
+            "--accept",
+            help="With --gateway: an operator accepts all that a robot reports, and it drives once more.",
+        ),
+    ] = False,
     numpy: Annotated[bool, typer.Option("--numpy", help="Cast rays by numpy even where numba is.")] = False,
 ) -> None:
     """Drive a simulated robot that finds itself on its map, and tell how far it is off."""
@@ -64,26 +77,32 @@ def experiment(
             "that ends in .toml"
         )
     settings = drives.read_settings(file)
-    robot_map = read_site(site).whole_map()
+    if (world is not None or accept) and not gateway:
+        raise BridgeError("--world and --accept are for robots that report what their map lacks: add --gateway")
+    robot_map = read_site(world or site).whole_map()
     wanted = range(first_seed, first_seed + seeds)
     compiled = False if numpy else None
     found: Iterable[Record] = (drives.run(robot_map, settings, seed, compiled) for seed in wanted)
     if gateway:
         served = _served(site, file.stem, database, output)
-        served = replace(served, at_once=at_once, people=people, pace=pace, compiled=compiled, window=window)
+        served = replace(served, at_once=at_once, people=people, pace=pace, compiled=compiled)
+        served = replace(served, window=window, accept=accept)
         found = drive_at_gateway(served, robot_map, settings, wanted)
-    records = []
+    title = settings.title or file.stem
+    records: dict[bool, list[Record]] = {}
     for record in found:
-        records.append(record)
+        records.setdefault(record.accepted is not None, []).append(record)
         print(table_text(figures([record])).splitlines()[-1], flush=True)
         if output is not None:
-            seed = record.seed
-            title = f"{settings.title or file.stem}, seed {seed}"
-            _write(output, f"{file.stem}-{seed}.svg", svg_of(robot_map, record, title, settings.laser.height))
-    rows = figures(records)
-    print(f"\n{settings.title or file.stem}\n\n{table_text(rows)}")
-    if output is not None:
-        _write(output, f"{file.stem}.csv", csv_text(rows))
+            name = f"{file.stem}{'' if record.accepted is None else '-accepted'}-{record.seed}.svg"
+            plot = svg_of(robot_map, record, f"{title}, seed {record.seed}", settings.laser.height)
+            _write(output, name, plot)
+    for reviewed, some in records.items():
+        rows, name = figures(some), f"{file.stem}-accepted" if reviewed else file.stem
+        head = f"{title}, what robots reported accepted" if reviewed else title
+        print(f"\n{head}\n\n{table_text(rows)}")
+        if output is not None:
+            _write(output, f"{name}.csv", csv_text(rows))
 
 
 def _served(site: Path, name: str, database: str | None, output: Path | None) -> ServedDrives:

@@ -38,6 +38,7 @@ _HEADS = {
     "maps": "maps",
     "map_bytes": "bytes of maps",
     "clearance_m": "nearest to anything [m]",
+    "accepted": "accepted observations",
 }
 
 
@@ -70,6 +71,7 @@ class Figures:
     maps: int | None = None
     map_bytes: int | None = None
     clearance_m: float | None = None
+    accepted: int | None = None
 
 
 def position_errors(record: Record) -> NDArray[Any]:
@@ -123,12 +125,14 @@ def _measured(records: Sequence[Record]) -> dict[str, Any]:
     maps = [record.maps for record in records if record.maps is not None]
     sizes = [record.map_bytes for record in records if record.map_bytes is not None]
     rooms = [record.clearance for record in records if record.clearance is not None]
+    accepted = [record.accepted for record in records if record.accepted is not None]
     return {
         "end_m": float(ends[:, 0].mean()) if len(ends) else None,
         "end_deg": float(ends[:, 1].mean()) if len(ends) else None,
         "maps": round(sum(maps) / len(maps)) if maps else None,
         "map_bytes": round(sum(sizes) / len(sizes)) if sizes else None,
         "clearance_m": min(rooms) if rooms else None,
+        "accepted": round(sum(accepted) / len(accepted)) if accepted else None,
     }
 
 
