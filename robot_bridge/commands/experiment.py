@@ -50,7 +50,7 @@ def experiment(
     world: Annotated[
         Path | None,
         typer.Option(
-            help="With --gateway: published site that the world is made of, where that of --site lacks things."
+            help="With --gateway: published site that the world is made of, where --site lacks things."
         ),
     ] = None,
     accept: Annotated[
@@ -60,6 +60,12 @@ def experiment(
             help="With --gateway: an operator accepts all that a robot reports, and it drives once more.",
         ),
     ] = False,
+    reporter: Annotated[
+        str | None,
+        typer.Option(
+            help="With --accept: NAME of what the robot is set to that reports; itself unless given."
+        ),
+    ] = None,
     numpy: Annotated[bool, typer.Option("--numpy", help="Cast rays by numpy even where numba is.")] = False,
 ) -> None:
     """Drive a simulated robot that finds itself on its map, and tell how far it is off."""
@@ -70,15 +76,12 @@ def experiment(
     from ..sites.publication import read_site
     from .served_experiment import drive_at_gateway
 
-    file = Path(name) if name.endswith(".toml") else drives.EXPERIMENTS / f"{name}.toml"
-    if not file.is_file():
-        raise BridgeError(
-            f"experiment {name!r} is not known; name one of {', '.join(drives.names())}, or a settings file "
-            "that ends in .toml"
-        )
+    file = _settings_file(name)
     settings = drives.read_settings(file)
     if (world is not None or accept) and not gateway:
-        raise BridgeError("--world and --accept are for robots that report what their map lacks: add --gateway")
+        raise BridgeError("--world and --accept need a gateway that robots report to: add --gateway")
+    if reporter is not None and not accept:
+        raise BridgeError("--reporter is the robot whose observations are accepted: add --accept")
     robot_map = read_site(world or site).whole_map()
     wanted = range(first_seed, first_seed + seeds)
     compiled = False if numpy else None
@@ -86,7 +89,8 @@ def experiment(
     if gateway:
         served = _served(site, file.stem, database, output)
         served = replace(served, at_once=at_once, people=people, pace=pace, compiled=compiled)
-        served = replace(served, window=window, accept=accept)
+        other = None if reporter is None else drives.read_settings(_settings_file(reporter))
+        served = replace(served, window=window, accept=accept, reporter=other)
         found = drive_at_gateway(served, robot_map, settings, wanted)
     title = settings.title or file.stem
     records: dict[bool, list[Record]] = {}
@@ -103,6 +107,20 @@ def experiment(
         print(f"\n{head}\n\n{table_text(rows)}")
         if output is not None:
             _write(output, f"{name}.csv", csv_text(rows))
+
+
+def _settings_file(name: str) -> Path:
+    """Return the settings of an experiment; raises BridgeError for a name that is none."""
+    from ..errors import BridgeError
+    from ..reference_robot import experiment as drives
+
+    file = Path(name) if name.endswith(".toml") else drives.EXPERIMENTS / f"{name}.toml"
+    if not file.is_file():
+        raise BridgeError(
+            f"experiment {name!r} is not known; name one of {', '.join(drives.names())}, or a settings file "
+            "that ends in .toml"
+        )
+    return file
 
 
 def _served(site: Path, name: str, database: str | None, output: Path | None) -> ServedDrives:

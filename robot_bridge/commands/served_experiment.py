@@ -63,7 +63,8 @@ class ServedDrives:
     ``pace`` is how many times as fast as the clock time is to run, at most; ``people`` walk along the route.
     With a ``window`` robots are sent maps of so many metres a side, and not that of the site. With ``accept``
     an operator accepts all that a robot reported of its map, and it drives once more in the same world; then
-    all of it is rejected again, so that the next one begins with the map of the site.
+    all of it is rejected again, so that the next one begins with the map of the site. With a ``reporter`` it
+    is what another robot reported, set to that, on a drive of its own in the same world.
     """
 
     site: Path
@@ -75,6 +76,7 @@ class ServedDrives:
     compiled: bool | None = None
     window: float | None = None
     accept: bool = False
+    reporter: ExperimentSettings | None = None
 
 
 def drive_at_gateway(
@@ -82,7 +84,7 @@ def drive_at_gateway(
 ) -> list[Record]:
     """Return what came of a drive for each seed, of a robot that a gateway of its own sends round.
 
-    ``robot_map`` is what the world is made of; the map that robots are sent is the one of ``drives.site``. With
+    ``robot_map`` is what the world is made of; robots are sent the map of ``drives.site``. With
     ``drives.accept`` there are two records a seed, before and after the operator's review.
 
     :raises BridgeError: for settings that no robot at a gateway can drive by, and what the gateway refuses.
@@ -92,9 +94,13 @@ def drive_at_gateway(
             f"experiment {drives.name}: at a gateway a robot that does not know its place stands until it is "
             "told; leave --gateway out"
         )
+    if drives.reporter is not None and drives.reporter.world != settings.world:
+        raise BridgeError(
+            f"experiment {drives.name}: the reporter is set to another world; give both the same [world]"
+        )
     if drives.accept and drives.at_once:
         raise BridgeError(
-            f"experiment {drives.name}: each seed has a world of its own, in which a robot drives twice; give "
+            f"experiment {drives.name}: each seed has a world of its own for what is reported there; give "
             "--accept or --at-once, not both"
         )
     check_route(robot_map, settings.route)
@@ -143,8 +149,12 @@ async def _all_drives(
 async def _drive_reviewed(
     drives: ServedDrives, robot_map: RobotMap, settings: ExperimentSettings, seed: int, address: str
 ) -> list[Record]:
-    """Return another drive of the robot of ``seed``, with what it reported before on its map."""
-    name = _robot_name(drives, seed)
+    """Return another drive of the robot of ``seed``, with what was reported in its world on the map."""
+    reporting = drives
+    if drives.reporter is not None:
+        reporting = replace(drives, name=f"{drives.name}-reporter")
+        await _drive_together(reporting, robot_map, drives.reporter, [seed], address)
+    name = _robot_name(reporting, seed)
     accepted = await _review(address, name, accept=True)
     try:
         drive = await _drive_together(drives, robot_map, settings, [seed], address)

@@ -88,8 +88,8 @@ class Record:
     processor time for an update, and ``particles`` (n,) how many there are after it. The robot was carried
     away before row ``carried``; ``goal`` is where it was to stand in the end. Of a drive at a gateway:
     ``maps`` that the robot was sent, of ``map_bytes`` in all, and the least way, metres, between its body and
-    all that it could have hit, ``clearance``; ``accepted`` observations of the same robot were on its map, None
-    where nobody reviewed any. Of one without: what its sensors said, ``log``.
+    all that it could have hit, ``clearance``; ``accepted`` observations of robots were on its map, None where
+    nobody reviewed any. Of one without: what its sensors said, ``log``.
     """
 
     seed: int

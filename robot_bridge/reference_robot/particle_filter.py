@@ -32,9 +32,9 @@ AROUND = 6_000
 SETTLED = 15.0
 """metres to drive after a search, or after scan and map did not agree, until the robot is no longer lost.
 
-All of them at one place, moved on by the wheels: driving does not count while the particles are in several, and
-begins again when another place comes to fit better. Until then other places are looked for as well: one may fit
-by chance.
+All of them at one place, moved on by the wheels: driving does not count while the particles are in several,
+and begins again when another place comes to fit better. Until then other places are looked for as well: one
+may fit by chance.
 """
 MOST_OF_THEM = 0.8
 """of the particles' weight is near the belief of a robot that is not lost."""
