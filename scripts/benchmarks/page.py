@@ -51,6 +51,7 @@ BENCH = [
     "surfaces",
     "publishing",
     "localisation",
+    "filter_update",
     "assignment",
     "desk",
     "endurance",
