@@ -154,12 +154,20 @@ def test_the_command_prints_the_table_and_writes_plots(root, tmp_path):
     assert lines == ["#222222", "#d62728", "#1f5fd6"]
 
 
-def test_an_unknown_experiment_is_refused_by_name(root):
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["b6-loop"], "'b6-loop' is not known; name one of a5-loop, from-nothing, kidnapped, open-square"),
+        (["a5-loop", "--accept"], "--world and --accept need a gateway that robots report to: add --gateway"),
+        (
+            ["a5-loop", "--reporter", "parking"],
+            "--reporter is the robot whose observations are accepted: add",
+        ),
+    ],
+)
+def test_what_cannot_be_driven_is_refused_by_name(root, words, said):
     program = Path(sys.executable).with_name("robot-bridge")
-    words = ["experiment", "b6-loop", "--site", "resources/sample_site"]
+    words = ["experiment", *words, "--site", "resources/sample_site"]
     done = subprocess.run([program, *words], cwd=root, capture_output=True, text=True, check=False)
     assert done.returncode == 1
-    assert (
-        "'b6-loop' is not known; name one of a5-loop, from-nothing, kidnapped, open-square, parking"
-        in done.stderr
-    )
+    assert said in done.stderr

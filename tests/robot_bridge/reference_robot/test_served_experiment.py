@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sqlite3
+from dataclasses import replace
 
 import msgspec
 import numpy as np
@@ -13,7 +14,12 @@ from robot_bridge.commands.served_experiment import ServedDrives, drive_at_gatew
 from robot_bridge.errors import BridgeError
 from robot_bridge.reference_robot.experiment import Carried, ExperimentSettings, route_from
 from robot_bridge.reference_robot.experiment_report import figures, table_text
-from robot_bridge.reference_robot.settings import FilterSettings, LaserSettings, OdometrySettings
+from robot_bridge.reference_robot.settings import (
+    FilterSettings,
+    LaserSettings,
+    OdometrySettings,
+    WorldSettings,
+)
 from robot_bridge.robotmap.builder import Window, build_map
 from robot_bridge.robotmap.model import ShapeType
 from robot_bridge.robotmap.outlines import OutlineRow, Outlines
@@ -91,6 +97,21 @@ def test_a_robot_that_is_carried_away_is_none_for_a_gateway(drives):
     settings = msgspec.structs.replace(SETTINGS, carried=Carried(1.0, 1.0))
     with pytest.raises(BridgeError, match="stands until it is told; leave --gateway out"):
         drive_at_gateway(drives, None, settings, [1])
+
+
+@pytest.mark.parametrize(
+    ("changes", "said"),
+    [
+        ({"accept": True}, "give --accept or --at-once, not both"),
+        (
+            {"reporter": ExperimentSettings(world=WorldSettings(moved=0.1))},
+            r"the reporter is set to another world; give both the same \[world\]",
+        ),
+    ],
+)
+def test_reviews_are_of_one_robot_in_one_world(drives, changes, said):
+    with pytest.raises(BridgeError, match=said):
+        drive_at_gateway(replace(drives, **changes), None, SETTINGS, [1])
 
 
 def test_a_route_begins_after_a_part_of_it_and_ends_there():
