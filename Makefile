@@ -64,6 +64,7 @@ screenshots: $(READY) build/run ## make the pictures in docs/images, in real win
 	@$(DRAW).supervisors
 	@$(RUN) scripts/cone_plan_pictures.py
 	@$(DRAW).roads
+	@$(DRAW).stored_loop
 	@$(DRAW).road_surfaces
 
 install: $(READY) ## put the plugin into your QGIS profile (PROFILE=name, LINK=1 links this folder)

@@ -47,6 +47,25 @@ def experiment(
         float | None,
         typer.Option(help="With --gateway: its maps have so many metres a side.", min=40, max=10_000),
     ] = None,
+    world: Annotated[
+        Path | None,
+        typer.Option(
+            help="With --gateway: published site that the world is made of, where --site lacks things."
+        ),
+    ] = None,
+    accept: Annotated[
+        bool,
+        typer.Option(
+            "--accept",
+            help="With --gateway: an operator accepts all that a robot reports, and it drives once more.",
+        ),
+    ] = False,
+    reporter: Annotated[
+        str | None,
+        typer.Option(
+            help="With --accept: NAME of what the robot is set to that reports; itself unless given."
+        ),
+    ] = None,
     numpy: Annotated[bool, typer.Option("--numpy", help="Cast rays by numpy even where numba is.")] = False,
 ) -> None:
     """Drive a simulated robot that finds itself on its map, and tell how far it is off."""
@@ -57,33 +76,51 @@ def experiment(
     from ..sites.publication import read_site
     from .served_experiment import drive_at_gateway
 
+    file = _settings_file(name)
+    settings = drives.read_settings(file)
+    if (world is not None or accept) and not gateway:
+        raise BridgeError("--world and --accept need a gateway that robots report to: add --gateway")
+    if reporter is not None and not accept:
+        raise BridgeError("--reporter is the robot whose observations are accepted: add --accept")
+    robot_map = read_site(world or site).whole_map()
+    wanted = range(first_seed, first_seed + seeds)
+    compiled = False if numpy else None
+    found: Iterable[Record] = (drives.run(robot_map, settings, seed, compiled) for seed in wanted)
+    if gateway:
+        served = _served(site, file.stem, database, output)
+        served = replace(served, at_once=at_once, people=people, pace=pace, compiled=compiled)
+        other = None if reporter is None else drives.read_settings(_settings_file(reporter))
+        served = replace(served, window=window, accept=accept, reporter=other)
+        found = drive_at_gateway(served, robot_map, settings, wanted)
+    title = settings.title or file.stem
+    records: dict[bool, list[Record]] = {}
+    for record in found:
+        records.setdefault(record.accepted is not None, []).append(record)
+        print(table_text(figures([record])).splitlines()[-1], flush=True)
+        if output is not None:
+            name = f"{file.stem}{'' if record.accepted is None else '-accepted'}-{record.seed}.svg"
+            plot = svg_of(robot_map, record, f"{title}, seed {record.seed}", settings.laser.height)
+            _write(output, name, plot)
+    for reviewed, some in records.items():
+        rows, name = figures(some), f"{file.stem}-accepted" if reviewed else file.stem
+        head = f"{title}, what robots reported accepted" if reviewed else title
+        print(f"\n{head}\n\n{table_text(rows)}")
+        if output is not None:
+            _write(output, f"{name}.csv", csv_text(rows))
+
+
+def _settings_file(name: str) -> Path:
+    """Return the settings of an experiment; raises BridgeError for a name that is none."""
+    from ..errors import BridgeError
+    from ..reference_robot import experiment as drives
+
     file = Path(name) if name.endswith(".toml") else drives.EXPERIMENTS / f"{name}.toml"
     if not file.is_file():
         raise BridgeError(
             f"experiment {name!r} is not known; name one of {', '.join(drives.names())}, or a settings file "
             "that ends in .toml"
         )
-    settings = drives.read_settings(file)
-    robot_map = read_site(site).whole_map()
-    wanted = range(first_seed, first_seed + seeds)
-    compiled = False if numpy else None
-    found: Iterable[Record] = (drives.run(robot_map, settings, seed, compiled) for seed in wanted)
-    if gateway:
-        served = _served(site, file.stem, database, output)
-        served = replace(served, at_once=at_once, people=people, pace=pace, compiled=compiled, window=window)
-        found = drive_at_gateway(served, robot_map, settings, wanted)
-    records = []
-    for record in found:
-        records.append(record)
-        print(table_text(figures([record])).splitlines()[-1], flush=True)
-        if output is not None:
-            seed = record.seed
-            title = f"{settings.title or file.stem}, seed {seed}"
-            _write(output, f"{file.stem}-{seed}.svg", svg_of(robot_map, record, title, settings.laser.height))
-    rows = figures(records)
-    print(f"\n{settings.title or file.stem}\n\n{table_text(rows)}")
-    if output is not None:
-        _write(output, f"{file.stem}.csv", csv_text(rows))
+    return file
 
 
 def _served(site: Path, name: str, database: str | None, output: Path | None) -> ServedDrives:

@@ -23,7 +23,7 @@ from ..core.decoding import decode_json
 from ..errors import BridgeError
 from ..gateway import GatewaySettings, Signals
 from ..gateway import run as run_gateway
-from ..messages import Answer, OpAck, Request, SetMap, Stopped
+from ..messages import Answer, ObservationState, OpAck, Request, SetMap, SetObject, Stopped
 from ..reference_robot.experiment import (
     PATIENCE,
     ExperimentSettings,
@@ -50,6 +50,8 @@ Point = tuple[float, float]
 
 ASIDE = 1.5
 """metres from the route within which people walk."""
+STORED = 60.0
+"""seconds of a robot's time for its observations to be stored."""
 LOCATED = 300.0, 5.0
 """seconds of a robot's time to be let in, sent its map and know its place on it, and the pace meanwhile."""
 
@@ -59,7 +61,10 @@ class ServedDrives:
     """How drives are made at a gateway: on which ``database``, all ``at_once`` or one after the other.
 
     ``pace`` is how many times as fast as the clock time is to run, at most; ``people`` walk along the route.
-    With a ``window`` robots are sent maps of so many metres a side, and not that of the site.
+    With a ``window`` robots are sent maps of so many metres a side, and not that of the site. With ``accept``
+    an operator accepts all that a robot reported of its map, and it drives once more in the same world; then
+    all of it is rejected again, so that the next one begins with the map of the site. With a ``reporter`` it
+    is what another robot reported, set to that, on a drive of its own in the same world.
     """
 
     site: Path
@@ -70,6 +75,8 @@ class ServedDrives:
     people: int = 0
     compiled: bool | None = None
     window: float | None = None
+    accept: bool = False
+    reporter: ExperimentSettings | None = None
 
 
 def drive_at_gateway(
@@ -77,12 +84,24 @@ def drive_at_gateway(
 ) -> list[Record]:
     """Return what came of a drive for each seed, of a robot that a gateway of its own sends round.
 
+    ``robot_map`` is what the world is made of; robots are sent the map of ``drives.site``. With
+    ``drives.accept`` there are two records a seed, before and after the operator's review.
+
     :raises BridgeError: for settings that no robot at a gateway can drive by, and what the gateway refuses.
     """
     if settings.carried is not None or settings.start == "unknown" or settings.steered_by != "belief":
         raise BridgeError(
             f"experiment {drives.name}: at a gateway a robot that does not know its place stands until it is "
             "told; leave --gateway out"
+        )
+    if drives.reporter is not None and drives.reporter.world != settings.world:
+        raise BridgeError(
+            f"experiment {drives.name}: the reporter is set to another world; give both the same [world]"
+        )
+    if drives.accept and drives.at_once:
+        raise BridgeError(
+            f"experiment {drives.name}: each seed has a world of its own for what is reported there; give "
+            "--accept or --at-once, not both"
         )
     check_route(robot_map, settings.route)
     if drives.window is None:
@@ -119,10 +138,44 @@ async def _all_drives(
         records = []
         for group in groups:
             records += await _drive_together(drives, robot_map, settings, group, await address)
+            if drives.accept:
+                records += await _drive_reviewed(drives, robot_map, settings, group[0], await address)
         return records
     finally:
         signals.stop.set()
         await serving
+
+
+async def _drive_reviewed(
+    drives: ServedDrives, robot_map: RobotMap, settings: ExperimentSettings, seed: int, address: str
+) -> list[Record]:
+    """Return another drive of the robot of ``seed``, with what was reported in its world on the map."""
+    reporting = drives
+    if drives.reporter is not None:
+        reporting = replace(drives, name=f"{drives.name}-reporter")
+        await _drive_together(reporting, robot_map, drives.reporter, [seed], address)
+    name = _robot_name(reporting, seed)
+    accepted = await _review(address, name, accept=True)
+    try:
+        drive = await _drive_together(drives, robot_map, settings, [seed], address)
+    finally:
+        await _review(address, name, accept=False)
+    return [replace(record, accepted=accepted) for record in drive]
+
+
+async def _review(address: str, robot: str, *, accept: bool) -> int:
+    """Accept what ``robot`` reported and nobody reviewed, or reject what was accepted; return how much."""
+    state = ObservationState.PENDING if accept else ObservationState.ACCEPTED
+    async with connect(f"{address}/desk") as wire:
+        desk = _Desk(wire)
+        await desk.ask("hello", {"operator": "experiment"})
+        wanted = {"robot": robot, "state": state.value, "limit": 1000}
+        found = (await desk.ask("get_observations", wanted))["observations"]
+        objects = [one["observation"] for one in found if one["op"] == SetObject.__name__]
+        for number in objects:
+            verdict = {"observation": number, "accept": accept, "revise": not accept}
+            await desk.ask("review_observation", verdict)
+    return len(objects)
 
 
 async def _drive_together(
@@ -152,6 +205,8 @@ async def _drive_together(
                 robot.begin()
             longest = PATIENCE * robots[0].length / settings.speed + 60.0
             await _step_until(robots, people, drives.pace, lambda robot: robot.is_done, longest)
+            # What they saw is to be stored before they are gone.
+            await _step_until(robots, people, pace, lambda robot: robot.has_reported, STORED)
     finally:
         for link in links:
             link.cancel()
@@ -224,6 +279,10 @@ class _TimedExecutor(InlineExecutor):
         return future
 
 
+def _robot_name(drives: ServedDrives, seed: int) -> str:
+    return f"{drives.name}-{seed}"
+
+
 class _Robot:
     """One robot, what drives it, and what is noted of it."""
 
@@ -237,7 +296,7 @@ class _Robot:
         surroundings: Surroundings,
         address: str,
     ) -> None:
-        self.name = f"{drives.name}-{seed}"
+        self.name = _robot_name(drives, seed)
         self._seed, self._route, self._settings = seed, route, settings
         self.length = float(np.hypot(*np.diff(np.array(route), axis=0).T).sum())
         (x, y), (to_x, to_y) = route[:2]
@@ -268,6 +327,11 @@ class _Robot:
     def is_located(self) -> bool:
         """Tell whether it has a map and knows its place on it."""
         return self.body.hindrance is None
+
+    @property
+    def has_reported(self) -> bool:
+        """Tell whether the gateway has acknowledged all that it observed."""
+        return not self.link.unacknowledged_observations
 
     def state(self) -> str:
         """Return where it is and what it says, for a message."""

@@ -88,7 +88,8 @@ class Record:
     processor time for an update, and ``particles`` (n,) how many there are after it. The robot was carried
     away before row ``carried``; ``goal`` is where it was to stand in the end. Of a drive at a gateway:
     ``maps`` that the robot was sent, of ``map_bytes`` in all, and the least way, metres, between its body and
-    all that it could have hit, ``clearance``. Of one without: what its sensors said, ``log``.
+    all that it could have hit, ``clearance``; ``accepted`` observations of robots were on its map, None where
+    nobody reviewed any. Of one without: what its sensors said, ``log``.
     """
 
     seed: int
@@ -106,6 +107,7 @@ class Record:
     maps: int | None = None
     map_bytes: int | None = None
     clearance: float | None = None
+    accepted: int | None = None
     log: SensorLog | None = None
 
 

@@ -26,6 +26,7 @@ _HEADS = {
     "p95_m": "p95 [m]",
     "max_m": "max [m]",
     "heading_mean_deg": "heading mean [°]",
+    "heading_p95_deg": "heading p95 [°]",
     "heading_max_deg": "heading max [°]",
     "odometry_end_m": "odometry alone, at the end [m]",
     "lost": "scans lost",
@@ -37,6 +38,7 @@ _HEADS = {
     "maps": "maps",
     "map_bytes": "bytes of maps",
     "clearance_m": "nearest to anything [m]",
+    "accepted": "accepted observations",
 }
 
 
@@ -57,6 +59,7 @@ class Figures:
     p95_m: float
     max_m: float
     heading_mean_deg: float
+    heading_p95_deg: float
     heading_max_deg: float
     odometry_end_m: float
     lost: int
@@ -68,6 +71,7 @@ class Figures:
     maps: int | None = None
     map_bytes: int | None = None
     clearance_m: float | None = None
+    accepted: int | None = None
 
 
 def position_errors(record: Record) -> NDArray[Any]:
@@ -104,6 +108,7 @@ def _figures(name: str, records: Sequence[Record]) -> Figures:
         p95_m=float(np.percentile(sure, 95)),
         max_m=float(sure.max()),
         heading_mean_deg=float(sure_turned.mean()),
+        heading_p95_deg=float(np.percentile(sure_turned, 95)),
         heading_max_deg=float(sure_turned.max()),
         odometry_end_m=float(np.mean(odometry)),
         lost=int(lost.sum()),
@@ -120,12 +125,14 @@ def _measured(records: Sequence[Record]) -> dict[str, Any]:
     maps = [record.maps for record in records if record.maps is not None]
     sizes = [record.map_bytes for record in records if record.map_bytes is not None]
     rooms = [record.clearance for record in records if record.clearance is not None]
+    accepted = [record.accepted for record in records if record.accepted is not None]
     return {
         "end_m": float(ends[:, 0].mean()) if len(ends) else None,
         "end_deg": float(ends[:, 1].mean()) if len(ends) else None,
         "maps": round(sum(maps) / len(maps)) if maps else None,
         "map_bytes": round(sum(sizes) / len(sizes)) if sizes else None,
         "clearance_m": min(rooms) if rooms else None,
+        "accepted": round(sum(accepted) / len(accepted)) if accepted else None,
     }
 
 

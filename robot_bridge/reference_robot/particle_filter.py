@@ -7,6 +7,7 @@ Fox: Probabilistic Robotics, chapter 8).
 from __future__ import annotations
 
 import math
+from collections import deque
 from dataclasses import dataclass
 from typing import Any
 
@@ -18,7 +19,7 @@ from .errors import ReferenceRobotError
 from .place_search import PlaceSearch
 from .resampling import bins_of, in_groups, low_variance, occupied_bins, particles_for
 from .scan_models import BeamModel, FieldModel, usable_beams
-from .sensors import Motion, Pose, bearings_of
+from .sensors import Motion, Pose, bearings_of, moved
 from .settings import FilterSettings, LaserSettings
 from .world import walls_of
 
@@ -31,7 +32,9 @@ AROUND = 6_000
 SETTLED = 15.0
 """metres to drive after a search, or after scan and map did not agree, until the robot is no longer lost.
 
-Until then other places are looked for as well: one may fit by chance.
+All of them at one place, moved on by the wheels: driving does not count while the particles are in several,
+and begins again when another place comes to fit better. Until then other places are looked for as well: one
+may fit by chance.
 """
 MOST_OF_THEM = 0.8
 """of the particles' weight is near the belief of a robot that is not lost."""
@@ -43,8 +46,11 @@ FIX_LASTS = 10.0
 """metres of driving after which a GPS position says nothing any more of where to look."""
 FIX_WRONG = 1e-3
 """The likelihood of any position, however far away, beside that of a right one, which is 1."""
-FIX_FAR = 5.0, 3
-"""standard deviations from the belief, and so many positions in a row: the belief is wrong."""
+FIX_FAR, FIX_OFTEN = 4.0, (2, 3)
+"""Standard deviations from the belief, and how many of the newest positions: the belief is wrong.
+
+Not all in a row: a belief that drives the same alley the other way comes by the robot's true place.
+"""
 WORTH_WHILE_LOST = 0.25
 """Of a scan's worth, while places are compared: in each of them the same walls are wrong scan after scan."""
 GROUP = 4.0, math.pi / 4
@@ -109,8 +115,10 @@ class ParticleFilter:
         self._since_look = (math.inf, 0)
         self._fix: tuple[float, float, float] | None = None
         self._since_fix = 0.0
-        self._against = 0
-        """GPS positions in a row that are far from the belief."""
+        self._against: deque[bool] = deque(maxlen=FIX_OFTEN[1])
+        """Which of the newest GPS positions are far from the belief."""
+        self._place: Pose | None = None
+        """The one place that the particles have been at while it counts as lost, moved on by the wheels."""
 
     def use_map(self, robot_map: RobotMap) -> None:
         """Go on with another map of the same frame.
@@ -153,7 +161,9 @@ class ParticleFilter:
         """Move all particles as the odometry says, each a little otherwise."""
         settings, rng, count = self._settings, self._rng, len(self.particles)
         far = abs(motion.distance)
-        self._unsettled = max(0.0, self._unsettled - far)
+        if self._place is not None:
+            self._unsettled = max(0.0, self._unsettled - far)
+            self._place = moved(self._place, motion)
         self._since_fix += far
         self._since_look = self._since_look[0] + far, self._since_look[1]
         drift = math.radians(settings.drift_deg)
@@ -204,6 +214,7 @@ class ParticleFilter:
         if self._fast < self._settings.least_agreement:
             self._unsettled = SETTLED
         self._resample(ranges, used)
+        self._compare_places()
 
     def observe_fix(self, x: float, y: float, deviation: float) -> None:
         """Weigh all particles by a GPS position, metres, of which ``deviation`` is the standard deviation.
@@ -214,11 +225,10 @@ class ParticleFilter:
         squares = np.square(self.particles[:, :2] - (x, y)).sum(axis=1) / deviation**2
         weights = self.weights * (np.exp(-0.5 * squares) + FIX_WRONG)
         self.weights = weights / weights.sum()
-        far, often = FIX_FAR
         believed_x, believed_y, _ = self.belief.pose
         away = math.hypot(believed_x - x, believed_y - y)
-        self._against = self._against + 1 if away > far * deviation else 0
-        if self._against >= often:
+        self._against.append(away > FIX_FAR * deviation)
+        if sum(self._against) >= FIX_OFTEN[0]:
             self._unsettled = SETTLED
 
     @property
@@ -239,6 +249,16 @@ class ParticleFilter:
         pose = float(place[0]), float(place[1]), theta
         return Belief(pose, covariance, share, lost, self._agreement, spread)
 
+    def _compare_places(self) -> None:
+        """Begin to count again when the robot that is lost is most likely at another place than before."""
+        if not self._unsettled:
+            self._place = None
+            return
+        belief = self.belief
+        before, self._place = self._place, belief.pose if belief.share >= MOST_OF_THEM else None
+        if self._place is not None and (before is None or math.dist(before[:2], self._place[:2]) > APART[0]):
+            self._unsettled = SETTLED
+
     def _used(self, ranges: NDArray[Any]) -> NDArray[Any]:
         if ranges.shape != self._bearings.shape:
             raise ReferenceRobotError(
@@ -250,7 +270,8 @@ class ParticleFilter:
         self.particles = particles
         self.weights = np.full(len(particles), 1 / len(particles))
         self._slow = self._fast = 0.0
-        self._unsettled = 0.0
+        self._unsettled, self._place = 0.0, None
+        self._against.clear()
 
     def _together(self) -> NDArray[Any]:
         """Return the particles around the heaviest place: those of its cell, then those near their mean."""

@@ -47,6 +47,11 @@ class WebSocketLink:
         self._untold: list[Observed] = []
         self._asked: dict[int, Request] = {}
 
+    @property
+    def unacknowledged_observations(self) -> int:
+        """How many observations the gateway has not acknowledged yet."""
+        return len(self._untold)
+
     def say(self, request: Request) -> None:
         """Send a request, if connected."""
         if isinstance(request, Observed):

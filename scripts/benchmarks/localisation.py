@@ -102,7 +102,7 @@ _SLOW_HEAD = (
 def measure(data: Path) -> Part:
     """Measure on the campus."""
     with TemporaryDirectory(prefix="fleet-localisation-") as folder:
-        return _measure(_campus(data, Path(folder)), Path(folder))
+        return _measure(campus(data, Path(folder)), Path(folder))
 
 
 def _measure(site: Path, folder: Path) -> Part:
@@ -152,7 +152,7 @@ def _measure(site: Path, folder: Path) -> Part:
     return Part("A robot that finds itself: against Nav2's AMCL, and on a slow core", text, not ahead)
 
 
-def _campus(data: Path, folder: Path) -> Path:
+def campus(data: Path, folder: Path) -> Path:
     """Return the campus, published."""
     layers = [f"OBSTACLES={data / CAMPUS}|layername={name}" for name in LAYERS]
     words = ["PROFILE=upc_campus_nord", "SITE_ID=campus", "SITE_CRS=EPSG:25831", "ORIGIN=426000,4582000"]

@@ -53,6 +53,7 @@ BENCH = [
     "surfaces",
     "publishing",
     "localisation",
+    "filter_update",
     "assignment",
     "desk",
     "endurance",

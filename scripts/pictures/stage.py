@@ -75,8 +75,10 @@ def photo(file: Path = SITE / "orthophoto.tif") -> Any:
     return QgsRasterLayer(str(file), "Orthophoto", "gdal")
 
 
-def draw_map(layers: list[Any], extent: Sequence[float], pixels_per_m: float, picture: Path) -> None:
-    """Draw ``layers``, the top one first, within ``extent`` (x and y from, x and y to, metres)."""
+def draw_map(
+    layers: list[Any], extent: Sequence[float], pixels_per_m: float, picture: Path, crs: str = CRS
+) -> None:
+    """Draw ``layers``, the top one first, within ``extent`` (x and y from, x and y to, metres of ``crs``)."""
     from qgis.core import (
         QgsCoordinateReferenceSystem,
         QgsMapRendererParallelJob,
@@ -87,7 +89,7 @@ def draw_map(layers: list[Any], extent: Sequence[float], pixels_per_m: float, pi
 
     settings = QgsMapSettings()
     settings.setLayers(layers)
-    settings.setDestinationCrs(QgsCoordinateReferenceSystem(CRS))
+    settings.setDestinationCrs(QgsCoordinateReferenceSystem(crs))
     settings.setExtent(QgsRectangle(*extent))
     settings.setOutputSize(QSize(*(round((extent[k + 2] - extent[k]) * pixels_per_m) for k in (0, 1))))
     settings.setOutputDpi(96)

@@ -83,7 +83,10 @@ def test_figures_are_those_of_the_scans_at_which_it_does_not_say_that_it_is_lost
     (row,) = figures([record])
     assert row.mean_m == pytest.approx((0.1 + 0.3 + 2) / 3)
     assert row.max_m == 2 and row.lost == 1 and row.wrong == 1
-    assert row.heading_mean_deg == pytest.approx(math.degrees(0.02))
+    turned = np.degrees([0.02, 0.04, 0.0])
+    assert row.heading_mean_deg == pytest.approx(turned.mean())
+    assert row.heading_p95_deg == pytest.approx(np.percentile(turned, 95))
+    assert row.heading_max_deg == pytest.approx(turned.max())
     assert row.odometry_end_m == 5 and row.update_ms == pytest.approx(2.5)
     assert row.found_m == math.inf
     assert "| – |" in table_text([row])
@@ -151,12 +154,20 @@ def test_the_command_prints_the_table_and_writes_plots(root, tmp_path):
     assert lines == ["#222222", "#d62728", "#1f5fd6"]
 
 
-def test_an_unknown_experiment_is_refused_by_name(root):
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["b6-loop"], "'b6-loop' is not known; name one of a5-loop, from-nothing, kidnapped, open-square"),
+        (["a5-loop", "--accept"], "--world and --accept need a gateway that robots report to: add --gateway"),
+        (
+            ["a5-loop", "--reporter", "parking"],
+            "--reporter is the robot whose observations are accepted: add",
+        ),
+    ],
+)
+def test_what_cannot_be_driven_is_refused_by_name(root, words, said):
     program = Path(sys.executable).with_name("robot-bridge")
-    words = ["experiment", "b6-loop", "--site", "resources/sample_site"]
+    words = ["experiment", *words, "--site", "resources/sample_site"]
     done = subprocess.run([program, *words], cwd=root, capture_output=True, text=True, check=False)
     assert done.returncode == 1
-    assert (
-        "'b6-loop' is not known; name one of a5-loop, from-nothing, kidnapped, open-square, parking"
-        in done.stderr
-    )
+    assert said in done.stderr

@@ -27,7 +27,7 @@ from robot_bridge.reference_robot.inline_executor import InlineExecutor
 from robot_bridge.reference_robot.people import Surroundings
 from robot_bridge.reference_robot.sensors import Motion
 from robot_bridge.reference_robot.settings import FilterSettings, LaserSettings, RobotSettings, WorldSettings
-from robot_bridge.reference_robot.simulation import localised_robot
+from robot_bridge.reference_robot.simulation import MAP_MARGIN, localised_robot
 from robot_bridge.robot.agent import Agent, AgentSettings
 from robot_bridge.robot.body import BodyLimits
 from robot_bridge.robotmap.binary import encode
@@ -51,7 +51,7 @@ class Robot:
     def __init__(self, yard, executor=None, pose=(13.0, 3.0, 0.0), robot_map=None, settings=SETTINGS, **more):
         self.body = localised_robot(yard, settings, LIMITS, pose, executor or InlineExecutor(), **more)
         self.said, self._ids = [], 0
-        values = AgentSettings(magic=1, pose=pose, limits=LIMITS, body=self.body, map_margin=20.0)
+        values = AgentSettings(magic=1, pose=pose, limits=LIMITS, body=self.body, map_margin=MAP_MARGIN)
         self.agent = Agent(replace(values, asks_path=True), self.said.append)
         self.agent.receive(OpAck(magic=1, robot="r1"), None)
         self.map_ack = self.tell(SetMap(encode(robot_map or yard)))
@@ -252,6 +252,17 @@ def test_near_the_border_of_its_map_it_asks_for_the_next_and_waits_there_until_i
     assert robot.tell(SetMap(encode(window(yard, 20.0, 20.0)))).ok
     robot.until(lambda: robot.heard(Stopped))
     assert robot.error < 0.25
+
+
+def test_it_asks_for_the_next_map_20_m_before_the_border_of_its_own(yard):
+    assert MAP_MARGIN == 20.0
+    # Which ends at x = 24 m; a quarter of its shorter side before it would be x = 19 m.
+    robot = Robot(yard, pose=(10.0, 17.0, 0.0), robot_map=window(yard, 10.0, 28.0))
+    robot.live(1)
+    robot.tell(SetPath([(10.0, 17.0), (18.0, 17.0)]))
+    # Not before it has come 5 m from where it was sent this one.
+    robot.until(lambda: robot.heard(GetMap))
+    assert 14.8 < robot.body.truth[0] < 15.5
 
 
 class HeldExecutor(InlineExecutor):

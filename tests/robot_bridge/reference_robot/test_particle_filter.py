@@ -124,12 +124,48 @@ def test_a_gps_position_weighs_particles_by_their_distance_and_rules_none_out(ya
 def test_gps_positions_far_from_the_belief_bring_it_back(yard):
     run = Run(yard)
     run.filter.place((3.0, 18.0, 0.0), (0.1, 0.05))
-    for told in (False, False, True):
-        run.filter.observe_fix(14.5, 3.5, 1.0)
+    # Two of three: one that is right by chance, or one that is wrong, says nothing.
+    for fix, told in (((14.5, 3.5), False), ((3.0, 17.0), False), ((14.5, 3.5), True)):
+        run.filter.observe_fix(*fix, 1.0)
         assert run.filter.belief.lost == told
     run.filter.observe(run.laser.scan(CIRCLE[0]))
     away = [away for away, _ in run.drive(CIRCLE[:12])]
     assert away[-1] < 0.3
+
+
+def drive_to_and_fro(run, pose, metres):
+    for _ in range(metres):
+        run.filter.move(Motion(0.5, 0.0))
+        run.filter.move(Motion(-0.5, 0.0))
+        run.filter.observe(run.laser.scan(pose))
+
+
+def test_what_it_drove_at_another_place_does_not_count_towards_this_one(yard):
+    run, there = Run(yard), (3.0, 3.0, math.pi / 2)
+    run.filter.place(CIRCLE[0], (0.1, 0.05))
+    run.filter.doubt()
+    drive_to_and_fro(run, CIRCLE[0], 12)
+    run.filter.particles = run.filter.particles + np.subtract(there, CIRCLE[0])
+    drive_to_and_fro(run, there, 12)
+    assert run.filter.belief.lost
+    drive_to_and_fro(run, there, 8)
+    assert not run.filter.belief.lost
+
+
+def test_what_it_drives_while_it_may_be_in_two_places_does_not_count(yard):
+    run = Run(yard)
+    run.filter.place(CIRCLE[0], (0.1, 0.05))
+    run.filter.doubt()
+    together = run.filter.particles
+    apart = together.copy()
+    apart[::2, 0] += 5.0
+    run.filter.particles = apart
+    one_beam = np.full(LASER.beams, np.nan)
+    one_beam[0] = 2.0
+    run.filter.observe(one_beam)
+    run.filter.move(Motion(20.0, 0.0))
+    run.filter.particles, run.filter.weights = together, np.full(len(together), 1 / len(together))
+    assert run.filter.belief.lost
 
 
 def test_another_map_of_the_same_frame_changes_nothing_of_the_belief(yard):
