@@ -34,7 +34,7 @@ TEXTS = (
     "Makefile",
     "*.ts",
 )
-KEPT = ("CHANGELOG.md", "tools/restructure")
+KEPT = ("CHANGELOG.md", "tools/")
 
 
 def tracked(patterns: tuple[str, ...]) -> list[str]:

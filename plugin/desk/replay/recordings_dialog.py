@@ -68,12 +68,13 @@ class RecordingsDialog(QDialog):
         self._link.activated.connect(self._look)
         self._place.sliderReleased.connect(lambda: self._change(place_s=float(self._place.value())))
         self._place.actionTriggered.connect(self._step)
-        self._seconds.editingFinished.connect(self._go)
-        self._speed.editingFinished.connect(self._set_speed)
+        self._seconds.editingFinished.connect(self._apply)
+        self._speed.editingFinished.connect(self._apply)
         self._paused.clicked.connect(lambda on: self._change(paused=on))
         self._loop.clicked.connect(lambda on: self._change(loop=on))
         self._asking.refused.connect(lambda why: self.said.setText(f"✘ {why}"))
-        self._report: PlaybackReport | None = None
+        self._numbers: dict[str, float] = {}
+        """Place and speed as reported or sent last."""
 
     def showEvent(self, event: QShowEvent) -> None:
         super().showEvent(event)
@@ -105,24 +106,29 @@ class RecordingsDialog(QDialog):
     def _change(self, **change: Any) -> None:
         name = self._link.currentText()
         words = tr("Recording of {link}", link=name)
+        self._numbers.update({key: value for key, value in change.items() if key in self._numbers})
         self._asking.ask(SetPlayback(name, **change), words, self._show)
 
-    def _go(self) -> None:
-        if self._report is not None and self._seconds.value() != round(self._report.place_s, 1):
-            self._change(place_s=self._seconds.value())
-
-    def _set_speed(self) -> None:
-        if self._report is not None and self._speed.value() != self._report.speed:
-            self._change(speed=self._speed.value())
+    def _apply(self) -> None:
+        """Send the numbers that were typed, as far as they are others than those reported or sent last."""
+        typed = {"place_s": self._seconds.value(), "speed": self._speed.value()}
+        if change := {
+            name: value for name, value in typed.items() if value != self._numbers.get(name, value)
+        }:
+            self._change(**change)
 
     def _step(self, action: int) -> None:
         # By a key or a click beside the handle; while that is dragged its end counts.
-        if not self._place.isSliderDown() and action != QSlider.SliderAction.SliderNoAction:
+        if (
+            not self._place.isSliderDown()
+            and QSlider.SliderAction(action) != QSlider.SliderAction.SliderNoAction
+        ):
             self._change(place_s=float(self._place.sliderPosition()))
 
     def _show(self, result: dict[str, Any]) -> None:
         names = PlaybackReport.__dataclass_fields__
-        report = self._report = PlaybackReport(**{name: result[name] for name in names})
+        report = PlaybackReport(**{name: result[name] for name in names})
+        self._numbers = {"place_s": round(report.place_s, 1), "speed": report.speed}
         self._place.setMaximum(int(report.length_s))
         self._seconds.setMaximum(report.length_s)
         if not self._place.isSliderDown():
@@ -155,16 +161,16 @@ class RecordingsDialog(QDialog):
         form.addRow("", self._paused)
         form.addRow("", self._loop)
         standard = QDialogButtonBox.StandardButton
-        foot = QDialogButtonBox(standard.Close | standard.Help)
+        foot = QDialogButtonBox(standard.Apply | standard.Close | standard.Help)
+        foot.button(standard.Apply).clicked.connect(self._apply)
         foot.rejected.connect(self.reject)
         foot.helpRequested.connect(lambda: show_help(RECORDINGS, self))
         rows = QVBoxLayout(self)
         rows.addLayout(form)
         rows.addWidget(self.said)
         rows.addWidget(foot)
-        for button in foot.buttons():
-            # Enter ends the typing of a number, and closes nothing.
-            button.setAutoDefault(False)
+        # Enter ends the typing of a number, and closes nothing.
+        foot.button(standard.Apply).setDefault(True)
         self.resize(520, self.sizeHint().height())
 
 

@@ -72,15 +72,17 @@ def click(button):
 def objects_on_map(loop):
     """Ask for a map as a robot does; return the objects on it that robots saw, by their ids."""
     with connect(f"{loop.address}/robot?robot=looker") as socket:
-        calls = (("Ready", {"magic": 7}), ("GetMap", {"x": 24.0, "y": 10.0, "area": 400.0}))
-        for number, (method, params) in enumerate(calls):
-            socket.send(json.dumps({"jsonrpc": "2.0", "id": number, "method": method, "params": params}))
         maps = []
-        while len(maps) < 2:
-            told = json.loads(socket.recv(timeout=10))
-            if told.get("method") == "SetMap":
-                maps.append(decode(base64.b64decode(told["params"]["map"])))
-                socket.send(json.dumps({"jsonrpc": "2.0", "id": told["id"], "result": {}}))
+        # One after the other: a newer map makes one void that is still on its way.
+        for number, (method, params) in enumerate(
+            (("Ready", {"magic": 7}), ("GetMap", {"x": 24.0, "y": 10.0, "area": 400.0}))
+        ):
+            socket.send(json.dumps({"jsonrpc": "2.0", "id": number, "method": method, "params": params}))
+            while len(maps) <= number:
+                told = json.loads(socket.recv(timeout=10))
+                if told.get("method") == "SetMap":
+                    maps.append(decode(base64.b64decode(told["params"]["map"])))
+                    socket.send(json.dumps({"jsonrpc": "2.0", "id": told["id"], "result": {}}))
         return {o.ext["id"]: o for o in maps[-1].obstacles if o.ext.get("src", "").startswith("observation")}
 
 
