@@ -3,10 +3,10 @@
 
 def classFactory(iface):  # noqa: ANN001, N802 - the name that QGIS calls; Language comes before all imports
     """Return the plugin; ``iface`` is QGIS's QgisInterface, or None under qgis_process."""
-    from .plugin.language import Language
+    from .plugin.ui.language import Language
 
     # Before the rest of the plugin is imported: its modules hold texts.
     language = Language()
-    from .plugin.supervisor import FleetSupervisor
+    from .plugin.plugin import FleetPlugin
 
-    return FleetSupervisor(iface, language)
+    return FleetPlugin(iface, language)

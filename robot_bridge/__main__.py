@@ -13,8 +13,8 @@ from typing import Annotated
 
 import typer
 
-from .errors import BridgeError
-from .monitoring.logs import set_up_log
+from .core.errors import BridgeError
+from .core.logs import set_up_log
 
 COMMANDS = {
     "database": "Make, upgrade and check the database.",
@@ -32,7 +32,7 @@ COMMANDS = {
     "robot": "Run the reference robot: a simulated body that speaks the protocol.",
     "experiment": "Drive a simulated robot that finds itself on its map, and tell how far it is off.",
 }
-"""The modules of ``commands`` with what each says of itself: a group ``app``, or a function of its name."""
+"""The modules of ``cli`` with what each says of itself: a group ``app``, or a function of its name."""
 
 
 def command_line(arguments: Sequence[str]) -> typer.Typer:
@@ -63,7 +63,7 @@ def main() -> None:
 
 
 def _add(app: typer.Typer, name: str) -> None:
-    module = import_module(f"{__package__}.commands.{name}")
+    module = import_module(f"{__package__}.cli.{name}")
     if hasattr(module, "app"):
         app.add_typer(module.app, name=name)
     else:
@@ -93,10 +93,9 @@ def _only_named() -> None:
 
 def _foreseen() -> tuple[type[Exception], ...]:
     """Return the families of errors whose text is for people."""
-    from .messages import MessageError
-    from .reference_robot.errors import ReferenceRobotError
-    from .robotmap.errors import RobotMapError
-    from .sites.errors import SiteError
+    from .core.errors import RobotMapError, SiteError
+    from .core.messages import MessageError
+    from .reference_robot.localisation.settings import ReferenceRobotError
 
     return (BridgeError, SiteError, RobotMapError, MessageError, ReferenceRobotError)
 

@@ -23,7 +23,7 @@ from stage.program import ended
 from stage.qgis import Profile, virtual_screen
 from stage.session import follow, start_qgis
 
-from robot_bridge.sites.publication import read_site
+from robot_bridge.core.sites.site import read_site
 
 FOLDER = Path(os.environ.get("FLEET_DESKTOP_FOLDER") or ROOT / "build" / "cone_plan_pictures")
 WINDOW = (1360, 850)

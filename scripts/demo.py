@@ -31,8 +31,7 @@ from stage.session import follow, start_qgis
 from stage.verdict import Errand, Outcome, judge
 from zalazone import demonstration
 
-from robot_bridge.sites.publication import read_site
-from robot_bridge.sites.site import Site
+from robot_bridge.core.sites.site import Site, read_site
 
 FOLDER = Path(os.environ.get("FLEET_DEMO_FOLDER") or ROOT / "build" / "demo")
 SCREEN = (1440, 900)

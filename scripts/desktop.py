@@ -22,7 +22,7 @@ from stage.program import ended
 from stage.qgis import Profile, has_screen, virtual_screen
 from stage.session import follow, start_qgis
 
-from robot_bridge.sites.publication import read_site
+from robot_bridge.core.sites.site import read_site
 
 FOLDER = Path(os.environ.get("FLEET_DESKTOP_FOLDER") or ROOT / "build" / "desktop")
 WINDOW = (1360, 850)

@@ -25,13 +25,12 @@ import shapely
 ROOT = Path(__file__).resolve().parents[1]
 sys.path[:0] = [str(ROOT), str(ROOT / "resources" / "styles")]
 
-from robot_bridge.roads.surfaces.surface import GENERATED, Surface  # noqa: E402
-from robot_bridge.robotmap.outlines import Outlines  # noqa: E402
-from robot_bridge.sites.features import Centreline  # noqa: E402
-from robot_bridge.sites.frame import SiteFrame  # noqa: E402
-from robot_bridge.sites.projections import projections  # noqa: E402
-from robot_bridge.sites.publication import write_site  # noqa: E402
-from robot_bridge.sites.settings import Bounds, SiteSettings  # noqa: E402
+from robot_bridge.core.roads.centrelines import GENERATED, Surface  # noqa: E402
+from robot_bridge.core.robotmap.outlines import Outlines  # noqa: E402
+from robot_bridge.core.sites.frame import SiteFrame, projections  # noqa: E402
+from robot_bridge.core.sites.geopackage import Centreline  # noqa: E402
+from robot_bridge.core.sites.settings import SiteBounds, SiteSettings  # noqa: E402
+from robot_bridge.core.sites.site import write_site  # noqa: E402
 
 CENTRELINES = "university_track_centrelines.geojson"
 SURFACES = "university_track_surfaces_derived_utm33.gpkg"
@@ -42,7 +41,7 @@ SETTINGS = SiteSettings(
     version=1,
     crs="EPSG:32633",
     origin=(639988.0, 5193408.4),
-    bounds=Bounds(0.0, 0.0, 322.35, 355.6),
+    bounds=SiteBounds(0.0, 0.0, 322.35, 355.6),
 )
 """The origin is the south-west corner of the photo, the bounds are the photo's."""
 
@@ -95,7 +94,7 @@ def reaching(drives: dict[str, np.ndarray]) -> SiteSettings:
     places = np.concatenate(list(drives.values())) - SETTINGS.origin
     least = np.minimum(SETTINGS.bounds[:2], np.floor(places.min(axis=0)) - AROUND_DRIVES_M)
     most = np.maximum(SETTINGS.bounds[2:], np.ceil(places.max(axis=0)) + AROUND_DRIVES_M)
-    bounds = Bounds(*least.tolist(), *most.tolist())
+    bounds = SiteBounds(*least.tolist(), *most.tolist())
     return replace(SETTINGS, id="zalazone", name="ZalaZONE proving ground", bounds=bounds)
 
 

@@ -1,1 +1,1 @@
-"""What the plugin adds to QGIS's expressions."""
+"""Expression functions for QGIS, and the snapshot of the robots that they read."""

@@ -1,20 +1,384 @@
-"""Puts the plugin's expression functions into QGIS and takes them out again."""
+"""The expression functions, and their registration in QGIS."""
 
 from __future__ import annotations
 
-from qgis.core import QgsExpression
+from collections.abc import Callable, Sequence
+from typing import Any
 
-from ..sites.surface_store import SurfaceStore
-from .distance_to_robot import DistanceToRobot
-from .road_surface import RoadSurface
-from .robot_values import robot_values
-from .robots_now import FleetNow
+from qgis.core import (
+    NULL,
+    QgsCoordinateReferenceSystem,
+    QgsCoordinateTransform,
+    QgsCsException,
+    QgsExpression,
+    QgsExpressionContext,
+    QgsExpressionFunction,
+    QgsExpressionNodeFunction,
+    QgsFeature,
+    QgsGeometry,
+    QgsProject,
+    QgsVectorLayer,
+)
+
+from ..layers.crs import check_transform
+from ..layers.road_surfaces import SurfaceStore
+from ..layers.roles import ROAD_SURFACE
+from ..ui.errors import FleetError
+from ..ui.language import tr, tr_page
+from .robot_snapshot import RobotSnapshot, SnapshotHolder
+
+# --- Which CRS a place in an expression is in ---
+
+
+def crs_of_place(given: Any, of_layer: Any) -> QgsCoordinateReferenceSystem:
+    """Return the CRS of a place: as given, that of the layer that is looked at, that of the project.
+
+    :raises FleetError: when QGIS does not know the one that is given.
+    """
+    if given is not None:
+        crs = QgsCoordinateReferenceSystem(str(given))
+        if not crs.isValid():
+            raise FleetError(
+                tr("crs {given!r} is no CRS that QGIS knows; write a code such as 'EPSG:32633'", given=given)
+            )
+        return crs
+    crs = QgsCoordinateReferenceSystem(str(of_layer or ""))
+    return crs if crs.isValid() else QgsProject.instance().crs()
+
+
+# --- The expression function ``distance_to_robot(robot, geometry, crs)`` ---
+
+DISTANCE_TO_ROBOT, DISTANCE_GROUP = "distance_to_robot", tr("Fleet")
+_DISTANCE_HELP = tr_page("""
+<h3>function distance_to_robot</h3>
+<p>Returns how far a robot is from a feature or a geometry, in metres of the site.</p>
+<h4>Syntax</h4>
+<p><code>distance_to_robot(robot, [geometry], [crs])</code></p>
+<h4>Arguments</h4>
+<table>
+<tr><td><i>robot</i></td><td>its name, as in the Fleet panel</td></tr>
+<tr><td><i>geometry</i></td><td>optional; without it, that of the feature that is looked at</td></tr>
+<tr><td><i>crs</i></td><td>optional, the CRS of the geometry, such as 'EPSG:4326'; without it, that of the
+layer whose feature is looked at, else that of the project</td></tr>
+</table>
+<h4>Examples</h4>
+<ul>
+<li><code>distance_to_robot('r1')</code> &rarr; 12.3</li>
+<li><code>distance_to_robot('r1', make_point(16.8438, 46.8804), 'EPSG:4326')</code> &rarr; 104.6</li>
+<li><code>distance_to_robot('r1') &lt; 5</code> &rarr; true of features near the robot</li>
+</ul>
+<h4>Notes</h4>
+<p>The distance is measured in the plane of the site's CRS; in a polygon it is 0. NULL stands for a robot
+whose place is not known, and while this QGIS is connected to no gateway. Places are at most half a second
+old; a layer shows them when it is drawn.</p>
+""")
+
+
+class DistanceToRobot(QgsExpressionFunction):
+    """Measures from where a robot is now."""
+
+    def __init__(self, fleet: SnapshotHolder):
+        parameter = QgsExpressionFunction.Parameter
+        parameters = [parameter("robot"), parameter("geometry", True), parameter("crs", True)]
+        # Handles NULL itself: an argument that is left out comes as NULL, too.
+        super().__init__(
+            DISTANCE_TO_ROBOT, parameters, DISTANCE_GROUP, _DISTANCE_HELP, lazyEval=False, handlesNull=True
+        )
+        self._fleet = fleet
+
+    def isStatic(
+        self, _node: QgsExpressionNodeFunction, _parent: QgsExpression, _context: QgsExpressionContext
+    ):
+        return False
+
+    def usesGeometry(self, _node: QgsExpressionNodeFunction):
+        return True
+
+    def referencedColumns(self, _node: QgsExpressionNodeFunction):
+        return set()
+
+    def func(
+        self,
+        values: Sequence[Any],
+        context: QgsExpressionContext,
+        parent: QgsExpression,
+        _node: QgsExpressionNodeFunction,
+    ):
+        robot, geometry, crs = (None if _is_null(value) else value for value in values)
+        robots = self._fleet.robots
+        place = None if robots is None or robot is None else robots.place(str(robot))
+        if place is None:
+            return None
+        if geometry is None:
+            geometry = context.feature().geometry() if context is not None else None
+        if not isinstance(geometry, QgsGeometry):
+            parent.setEvalErrorString(
+                tr(
+                    "{function}: {geometry!r} is no geometry; give one, or a feature that has one",
+                    function=DISTANCE_TO_ROBOT,
+                    geometry=geometry,
+                )
+            )
+            return None
+        if geometry.isNull():
+            return None
+        try:
+            return _placed(geometry, crs, robots.crs, context).distance(QgsGeometry.fromPointXY(place))
+        except FleetError as error:
+            parent.setEvalErrorString(f"{DISTANCE_TO_ROBOT}: {error}")
+        except QgsCsException:
+            parent.setEvalErrorString(
+                tr(
+                    "{function}: the geometry has no place in {crs}",
+                    function=DISTANCE_TO_ROBOT,
+                    crs=robots.crs.authid(),
+                )
+            )
+        return None
+
+
+def _placed(
+    geometry: QgsGeometry,
+    crs: Any,
+    site_crs: QgsCoordinateReferenceSystem,
+    context: QgsExpressionContext | None,
+) -> QgsGeometry:
+    """Return ``geometry`` in ``site_crs``; the way there is looked for once in a context."""
+    of_layer = context.variable("layer_crs") if context is not None else None
+    key = f"fleet {DISTANCE_TO_ROBOT} {crs} {of_layer} {site_crs.authid()}"
+    if context is not None and context.hasCachedValue(key):
+        way = context.cachedValue(key)
+    else:
+        way = QgsCoordinateTransform(crs_of_place(crs, of_layer), site_crs, QgsProject.instance())
+        if context is not None:
+            context.setCachedValue(key, way)
+    check_transform(way)
+    placed = QgsGeometry(geometry)
+    if way.isValid():
+        placed.transform(way)
+    return placed
+
+
+def _is_null(value: Any) -> bool:
+    return value is None or (not isinstance(value, (QgsGeometry, QgsFeature)) and value == NULL)
+
+
+# --- The expression function ``road_surface(x, y, layer, crs)`` ---
+
+ROAD_SURFACE_FUNCTION, ROAD_SURFACE_GROUP = "road_surface", tr("Fleet")
+_ROAD_SURFACE_HELP = tr_page("""
+<h3>function road_surface</h3>
+<p>Returns the class of the road surface at a place, such as 'asphalt', or NULL where there is none.</p>
+<h4>Syntax</h4>
+<p><code>road_surface(x, y, [layer], [crs])</code></p>
+<h4>Arguments</h4>
+<table>
+<tr><td><i>x, y</i></td><td>the place; x is the easting or the longitude, whatever the CRS</td></tr>
+<tr><td><i>layer</i></td><td>optional, the name or id of a layer of areas; without it, all layers of the
+project with the role road surface</td></tr>
+<tr><td><i>crs</i></td><td>optional, the CRS of the place, such as 'EPSG:4326'; without it, that of the layer
+whose feature is looked at, else that of the project</td></tr>
+</table>
+<h4>Examples</h4>
+<ul>
+<li><code>road_surface($x, $y)</code> &rarr; 'asphalt'</li>
+<li><code>road_surface(16.8438, 46.8804, crs:='EPSG:4326')</code> &rarr; 'slippery'</li>
+<li><code>road_surface($x, $y, 'Road surfaces') IS NULL</code> &rarr; true off the road</li>
+</ul>
+<h4>Notes</h4>
+<p>A place on an edge is on the surface. Where surfaces lie on one another a drawn one counts before a
+generated one, then the smaller before the larger.</p>
+""")
+
+
+class RoadSurface(QgsExpressionFunction):
+    """Tells the road surface at a place by what ``store`` keeps."""
+
+    def __init__(self, store: SurfaceStore):
+        parameter = QgsExpressionFunction.Parameter
+        parameters = [parameter("x"), parameter("y"), parameter("layer", True), parameter("crs", True)]
+        # Handles NULL itself: an argument that is left out comes as NULL, too.
+        super().__init__(
+            ROAD_SURFACE_FUNCTION,
+            parameters,
+            ROAD_SURFACE_GROUP,
+            _ROAD_SURFACE_HELP,
+            lazyEval=False,
+            handlesNull=True,
+        )
+        self._store = store
+
+    def usesGeometry(self, _node: QgsExpressionNodeFunction):
+        return False
+
+    def referencedColumns(self, _node: QgsExpressionNodeFunction):
+        return set()
+
+    def func(
+        self,
+        values: Sequence[Any],
+        context: QgsExpressionContext,
+        parent: QgsExpression,
+        _node: QgsExpressionNodeFunction,
+    ):
+        x, y, layer, crs = (None if value == NULL else value for value in values)
+        if x is None or y is None:
+            return None
+        try:
+            surfaces, way = self._kept(layer, crs, context)
+            found = surfaces.at(float(x), float(y), way)
+        except (TypeError, ValueError):
+            parent.setEvalErrorString(
+                tr(
+                    "{function}: x is {x!r} and y is {y!r}; give two numbers",
+                    function=ROAD_SURFACE_FUNCTION,
+                    x=x,
+                    y=y,
+                )
+            )
+            return None
+        except FleetError as error:
+            parent.setEvalErrorString(f"{ROAD_SURFACE_FUNCTION}: {error}")
+            return None
+        return None if found is None else found.label
+
+    def _kept(self, layer: Any, crs: Any, context: QgsExpressionContext | None) -> tuple[Any, Any]:
+        """Return the surfaces and the way to them, which are looked for once in a context."""
+        of_layer = context.variable("layer_crs") if context is not None else None
+        key = f"fleet road_surface {_named(layer)} {crs} {of_layer}"
+        if context is not None and context.hasCachedValue(key):
+            return context.cachedValue(key)
+        surfaces = self._store.read(self._layers(layer))
+        found = surfaces, surfaces.way_from(crs_of_place(crs, of_layer))
+        if context is not None:
+            context.setCachedValue(key, found)
+        return found
+
+    def _layers(self, layer: Any) -> list[QgsVectorLayer]:
+        if layer is None:
+            found = self._store.layers()
+            if not found:
+                raise FleetError(
+                    tr(
+                        "no layer of the project has the role {role}; set it in Plugins > Fleet Supervisor > "
+                        "Layer roles, or name a layer as the third argument",
+                        role=ROAD_SURFACE,
+                    )
+                )
+            return found
+        if isinstance(layer, QgsVectorLayer):
+            return [layer]
+        project = QgsProject.instance()
+        named = project.mapLayer(str(layer)) or next(iter(project.mapLayersByName(str(layer))), None)
+        if not isinstance(named, QgsVectorLayer):
+            raise FleetError(tr("no vector layer of the project has the name or id {layer!r}", layer=layer))
+        return [named]
+
+
+def _named(layer: Any) -> str:
+    return layer.id() if isinstance(layer, QgsVectorLayer) else str(layer)
+
+
+# --- The expression functions ``robot_state``, ``robot_battery`` and ``robot_age`` ---
+
+ROBOT_GROUP = tr("Fleet")
+_STATE_HELP = tr_page("""
+<h3>function robot_state</h3>
+<p>Returns how far what is known of a robot can be trusted: 'fresh', 'stale', 'lost' or 'offline'.</p>
+<h4>Syntax</h4>
+<p><code>robot_state(robot)</code></p>
+<h4>Arguments</h4>
+<table><tr><td><i>robot</i></td><td>its name, as in the Fleet panel</td></tr></table>
+<h4>Examples</h4>
+<ul>
+<li><code>robot_state('r1')</code> &rarr; 'fresh'</li>
+<li><code>robot_state("robot") IN ('stale', 'lost')</code> &rarr; true of robots that are silent</li>
+</ul>
+""")
+_BATTERY_HELP = tr_page("""
+<h3>function robot_battery</h3>
+<p>Returns how full a robot's battery is, 0 to 1.</p>
+<h4>Syntax</h4>
+<p><code>robot_battery(robot)</code></p>
+<h4>Arguments</h4>
+<table><tr><td><i>robot</i></td><td>its name, as in the Fleet panel</td></tr></table>
+<h4>Examples</h4>
+<ul>
+<li><code>robot_battery('r1')</code> &rarr; 0.82</li>
+<li><code>round(100 * robot_battery('r1')) || ' %'</code> &rarr; '82 %'</li>
+</ul>
+""")
+_AGE_HELP = tr_page("""
+<h3>function robot_age</h3>
+<p>Returns the seconds since a robot's last message, by this computer's clock.</p>
+<h4>Syntax</h4>
+<p><code>robot_age(robot)</code></p>
+<h4>Arguments</h4>
+<table><tr><td><i>robot</i></td><td>its name, as in the Fleet panel</td></tr></table>
+<h4>Examples</h4>
+<ul>
+<li><code>robot_age('r1')</code> &rarr; 0.4</li>
+<li><code>robot_age('r1') &gt; 10</code> &rarr; true once it has been silent for more than 10 seconds</li>
+</ul>
+""")
+_NOTES = tr_page("""
+<h4>Notes</h4>
+<p>NULL stands for a robot that the gateway has not told of, and while this QGIS is connected to none. What is
+not known of a robot is NULL as well. Values are at most half a second old; a layer shows them when it is
+drawn.</p>
+""")
+
+
+class RobotValue(QgsExpressionFunction):
+    """Tells one thing of a robot by its name."""
+
+    def __init__(
+        self, name: str, help_text: str, fleet: SnapshotHolder, value: Callable[[RobotSnapshot, str], object]
+    ):
+        super().__init__(name, [QgsExpressionFunction.Parameter("robot")], ROBOT_GROUP, help_text)
+        self._fleet, self._value = fleet, value
+
+    def isStatic(
+        self, _node: QgsExpressionNodeFunction, _parent: QgsExpression, _context: QgsExpressionContext
+    ):
+        # QGIS works out once what cannot change; robots do.
+        return False
+
+    def usesGeometry(self, _node: QgsExpressionNodeFunction):
+        return False
+
+    def referencedColumns(self, _node: QgsExpressionNodeFunction):
+        return set()
+
+    def func(
+        self,
+        values: Sequence[Any],
+        _context: QgsExpressionContext,
+        _parent: QgsExpression,
+        _node: QgsExpressionNodeFunction,
+    ):
+        robots = self._fleet.robots
+        if robots is None or values[0] is None or values[0] == NULL:
+            return None
+        return self._value(robots, str(values[0]))
+
+
+def robot_values(fleet: SnapshotHolder) -> list[RobotValue]:
+    """Return the functions; each needs to be kept as long as QGIS has it."""
+    return [
+        RobotValue("robot_state", _STATE_HELP + _NOTES, fleet, RobotSnapshot.state),
+        RobotValue("robot_battery", _BATTERY_HELP + _NOTES, fleet, RobotSnapshot.charge),
+        RobotValue("robot_age", _AGE_HELP + _NOTES, fleet, RobotSnapshot.silence),
+    ]
+
+
+# --- Puts the plugin's expression functions into QGIS and takes them out again ---
 
 
 class ExpressionFunctions:
     """The functions as long as the plugin is loaded. :meth:`remove` undoes the constructor."""
 
-    def __init__(self, surfaces: SurfaceStore, fleet: FleetNow):
+    def __init__(self, surfaces: SurfaceStore, fleet: SnapshotHolder):
         # QGIS does not keep Python's functions alive; what it does not take, as when two copies of the plugin
         # are loaded, is not ours to take out.
         made = [RoadSurface(surfaces), DistanceToRobot(fleet), *robot_values(fleet)]

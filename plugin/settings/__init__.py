@@ -1,1 +1,1 @@
-"""What QGIS keeps for the plugin between sessions: connections, tokens, preferences."""
+"""Connections, tokens and preferences, kept in the QGIS profile."""

@@ -1,12 +1,260 @@
-"""The connections that QGIS keeps, and which one was used last."""
+"""Connections kept in the QGIS profile, and their tokens in QGIS's authentication database."""
 
 from __future__ import annotations
 
+import json
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
 from urllib.parse import quote, unquote
 
-from qgis.core import QgsSettings
+from qgis.core import QgsApplication, QgsAuthMethodConfig, QgsSettings
 
-from .gateway_connection import GatewayConnection
+from ...robot_bridge.core.json_decoder import decode_json
+from ..gateway_client.link import check_address
+from ..ui.errors import FleetError
+from ..ui.language import tr
+
+# --- Where the operator's tokens are kept: encrypted, in the authentication manager of QGIS, or nowhere
+
+TITLE = "Fleet Supervisor"
+METHOD = "Basic"
+"""The method whose user name is the operator and whose password is the token."""
+HEADERS = "APIHeader"
+
+
+class TokenStoreError(FleetError):
+    """A token could not be kept, or not be read."""
+
+
+class TokenStore:
+    """Tokens as authentication configurations, listed in QGIS's options under *Authentication*.
+
+    QGIS asks for its master password when it has to.
+    """
+
+    @property
+    def is_there(self) -> bool:
+        """Whether this QGIS can keep tokens."""
+        return not QgsApplication.authManager().isDisabled()
+
+    def has(self, url: str) -> bool:
+        """Tell whether a token is kept for a gateway; nobody is asked for anything."""
+        return bool(self.kept_for(url))
+
+    def kept_for(self, url: str) -> str:
+        """Return the id of the configuration that was kept here for a gateway, nothing where none is."""
+        return self.id_of(_name(url))
+
+    def id_of(self, name: str) -> str:
+        """Return the id of the configuration called ``name``, nothing where there is none."""
+        if not self.is_there:
+            return ""
+        known = QgsApplication.authManager().availableAuthMethodConfigs().items()
+        return next((key for key, one in known if one.name() == name), "")
+
+    def read(self, url: str) -> str:
+        """Return the token for a gateway; empty where none is kept.
+
+        :raises TokenStoreError: when QGIS does not give it, as without its master password.
+        """
+        config = self.kept_for(url)
+        return self.token_in(config) if config else ""
+
+    def token_in(self, config: str) -> str:
+        """Return the token in the authentication configuration with the id ``config``.
+
+        :raises TokenStoreError: when QGIS does not give it, or it holds no token.
+        """
+        if not self.is_there:
+            raise TokenStoreError(
+                tr(
+                    "This QGIS keeps no authentication (its options say why, under Authentication): enter "
+                    "the token under Access."
+                )
+            )
+        manager = QgsApplication.authManager()
+        if config not in manager.configIds():
+            raise TokenStoreError(
+                tr(
+                    "The authentication {config} that the connection names is not in this QGIS. Edit the "
+                    "connection and choose another, or enter the token.",
+                    config=config,
+                )
+            )
+        done, loaded = manager.loadAuthenticationConfig(config, QgsAuthMethodConfig(), True)
+        if not done:
+            raise TokenStoreError(
+                tr(
+                    "QGIS did not give the token that it keeps: its master password was not given. Press "
+                    "Connect and enter it, or enter the token under Access."
+                )
+            )
+        return _token(loaded)
+
+    def keep(self, url: str, token: str, operator: str = "") -> str:
+        """Keep a token for a gateway, in place of one that is kept, and return its configuration's id.
+
+        :raises TokenStoreError: when QGIS does not take it.
+        """
+        return self.write(self.kept_for(url), _name(url), url, token, operator)
+
+    def write(self, config_id: str, name: str, url: str, token: str, operator: str) -> str:
+        """Keep a token in the configuration ``config_id``, empty for a new one, and return its id.
+
+        :raises TokenStoreError: when QGIS does not take it.
+        """
+        config = QgsAuthMethodConfig(METHOD)
+        config.setName(name)
+        config.setUri(url)
+        config.setConfig("username", operator)
+        config.setConfig("password", token)
+        config.setId(config_id)
+        manager = QgsApplication.authManager()
+        if config.id():
+            done = manager.updateAuthenticationConfig(config)
+        elif manager.isDisabled():
+            done = False
+        else:
+            done, config = manager.storeAuthenticationConfig(config)
+        if not done:
+            raise TokenStoreError(
+                tr(
+                    "QGIS did not keep the token: its master password was not given. The token is used now "
+                    "and has to be entered again next time."
+                )
+            )
+        return str(config.id())
+
+    def forget(self, url: str) -> None:
+        """Keep no token for a gateway any more."""
+        config = self.kept_for(url)
+        if config:
+            QgsApplication.authManager().removeAuthenticationConfig(config)
+
+
+def _name(url: str) -> str:
+    return f"{TITLE}: {url}"
+
+
+def _token(config: QgsAuthMethodConfig) -> str:
+    """Return the token: a password, or what a header of a web service would be sent with."""
+    if config.method() == METHOD:
+        return config.config("password").strip()
+    if config.method() == HEADERS:
+        header = config.configMap().get("Authorization", "")
+        return header.removeprefix("Bearer ").strip()
+    raise TokenStoreError(
+        tr(
+            "The authentication {config} is of the method {method}, which gateways do not know. "
+            "Choose one of the method {wanted} with the token as its password.",
+            config=config.name(),
+            method=config.method(),
+            wanted=METHOD,
+        )
+    )
+
+
+# --- A gateway under a name, as operators keep it; and several of them as a file, to be handed on ---
+
+FORMAT = "fleet-supervisor-connections"
+VERSION = 1
+_LARGEST = 200_000
+"""characters: a thousand connections, each of which is written into QGIS's settings."""
+CHOOSE = tr("Choose a file that Export wrote.")
+
+
+class BadConnectionError(FleetError):
+    """A connection, or a file of them, cannot be used as it is."""
+
+
+@dataclass(frozen=True)
+class GatewayConnection:
+    """What it takes to connect. ``auth`` is the id of an authentication configuration of QGIS, or empty."""
+
+    name: str
+    url: str
+    operator: str = ""
+    ca_file: str = ""
+    auth: str = ""
+
+    def checked(self) -> GatewayConnection:
+        """Return the connection without blanks around its values.
+
+        :raises FleetError: when the name is empty or the URL cannot be a gateway's.
+        """
+        name = " ".join(self.name.split())
+        if not name:
+            raise BadConnectionError(tr("The connection has no name. Give it one, such as the site's."))
+        url = check_address(self.url)
+        return GatewayConnection(name, url, self.operator.strip(), self.ca_file.strip(), self.auth)
+
+
+def connections_text(connections: Sequence[GatewayConnection]) -> str:
+    """Return connections as JSON, without tokens and without what only this computer's QGIS knows."""
+    rows = [
+        {"name": one.name, "url": one.url, "operator": one.operator, "ca_file": one.ca_file}
+        for one in connections
+    ]
+    content = {"format": FORMAT, "version": VERSION, "connections": rows}
+    return json.dumps(content, indent=2, ensure_ascii=False) + "\n"
+
+
+def connections_in(text: str, source: str) -> list[GatewayConnection]:
+    """Return the connections in ``text``, the content of the file ``source``.
+
+    :raises FleetError: naming ``source``, the entry and what is wrong with it.
+    """
+    try:
+        if len(text) > _LARGEST:
+            raise ValueError(f"it has {len(text)} characters, more than {_LARGEST}")
+        content = decode_json(text)
+    except ValueError as error:
+        raise BadConnectionError(
+            tr("{source} is not JSON: {error}. {choose}", source=source, error=error, choose=CHOOSE)
+        ) from error
+    if not isinstance(content, dict) or content.get("format") != FORMAT:
+        raise BadConnectionError(
+            tr("{source} holds no connections to gateways. {choose}", source=source, choose=CHOOSE)
+        )
+    if content.get("version") != VERSION:
+        raise BadConnectionError(
+            tr(
+                "{source} is of version {found}; this plugin reads version {version}. Update the plugin.",
+                source=source,
+                found=content.get("version"),
+                version=VERSION,
+            )
+        )
+    rows = content.get("connections")
+    if not isinstance(rows, list):
+        raise BadConnectionError(
+            tr("{source} has no list named connections. {choose}", source=source, choose=CHOOSE)
+        )
+    return [_connection(row, number, source) for number, row in enumerate(rows, 1)]
+
+
+def _connection(row: Any, number: int, source: str) -> GatewayConnection:
+    keys = ("name", "url", "operator", "ca_file")
+    if not isinstance(row, dict) or not all(isinstance(row.get(key, ""), str) for key in keys):
+        raise BadConnectionError(
+            tr(
+                "{source}: connection {number} is not a set of texts named {keys}. {choose}",
+                source=source,
+                number=number,
+                keys=", ".join(keys),
+                choose=CHOOSE,
+            )
+        )
+    try:
+        return GatewayConnection(*(row.get(key, "") for key in keys)).checked()
+    except FleetError as error:
+        raise BadConnectionError(
+            tr("{source}: connection {number}: {error}", source=source, number=number, error=error)
+        ) from error
+
+
+# --- The connections that QGIS keeps, and which one was used last ---
 
 GROUP = "fleet_supervisor/connections"
 LAST = "fleet_supervisor/last_connection"

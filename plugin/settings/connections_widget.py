@@ -1,15 +1,22 @@
-"""The connections that are kept: new, edit, remove, test, import, export."""
+"""The list of kept connections, and the dialog of one."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 from qgis.core import QgsFileUtils
-from qgis.PyQt.QtCore import QModelIndex
+from qgis.gui import QgsAuthConfigSelect
+from qgis.PyQt.QtCore import QModelIndex, QObject, Qt, QTimer, pyqtSignal
 from qgis.PyQt.QtWidgets import (
     QAbstractItemView,
+    QDialog,
+    QDialogButtonBox,
+    QFormLayout,
     QHBoxLayout,
+    QLabel,
+    QLineEdit,
     QPushButton,
     QTreeWidget,
     QTreeWidgetItem,
@@ -17,17 +24,238 @@ from qgis.PyQt.QtWidgets import (
     QWidget,
 )
 
-from ..errors import FleetError
-from ..file_dialogs import file_to_read, file_to_write
-from ..language import tr, tr_count
-from ..wire.addresses import DEFAULT_URL, Credentials
-from .connection_dialog import ConnectionDialog
-from .connection_trial import ConnectionTrial
-from .connections import Connections
-from .gateway_connection import GatewayConnection, connections_in, connections_text
+from ..gateway_client.connection import ConnectionThread
+from ..gateway_client.link import DEFAULT_URL, ConnectionPhase, ConnectionStatus, OperatorCredentials
+from ..help import CONNECTIONS, show_help
+from ..ui.dialogs import file_field, file_to_read, file_to_write
+from ..ui.errors import FleetError
+from ..ui.language import tr, tr_count
+from .connections import (
+    TITLE,
+    BadConnectionError,
+    Connections,
+    GatewayConnection,
+    TokenStore,
+    connections_in,
+    connections_text,
+)
 from .preferences import export_path, exports_folder
-from .token_store import TokenStore
-from .verdict_label import VerdictLabel
+
+# --- A line beneath fields that says what became of what was asked ---
+
+GOOD, BAD = "✔", "✘"
+
+
+class ResultLabel(QLabel):
+    """Empty until something is told; its mark tells good from bad without colour."""
+
+    def __init__(self, parent: QWidget | None = None):
+        super().__init__(parent)
+        self.setObjectName("fleet_verdict")
+        self.setWordWrap(True)
+        self.setTextFormat(Qt.TextFormat.PlainText)
+        self.setTextInteractionFlags(Qt.TextInteractionFlag.TextSelectableByMouse)
+
+    def tell(self, good: bool, text: str) -> None:
+        """Show how it ended."""
+        self.setText(f"{GOOD if good else BAD} {text}")
+
+    def wait(self, text: str) -> None:
+        """Show that it is under way."""
+        self.setText(text)
+
+
+# --- Tries a connection: greets the gateway, says what became of it, and hangs up ---
+
+LOOK_EVERY_MS = 50
+
+
+class ConnectionTest(QObject):
+    """One trial at a time. The network is waited for in a thread; :meth:`end` waits for that thread."""
+
+    told = pyqtSignal(bool, str)
+    """Whether the gateway let the operator in, and what to say of it."""
+
+    def __init__(self, parent: QObject | None = None):
+        super().__init__(parent)
+        self._connection = ConnectionThread(self)
+        self._site = None
+        self._timer = QTimer(self)
+        self._timer.setInterval(LOOK_EVERY_MS)
+        self._timer.timeout.connect(self._look)
+
+    def begin(self, url: str, operator: str, credentials: OperatorCredentials) -> None:
+        """Try to connect; a trial that is under way is given up."""
+        self._site = None
+        try:
+            self._connection.open(url, operator, credentials)
+        except FleetError as error:
+            self.told.emit(False, str(error))
+            return
+        self._timer.start()
+
+    def end(self) -> None:
+        """Give up what is under way."""
+        self._timer.stop()
+        self._connection.shut_down()
+
+    def _look(self) -> None:
+        news = self._connection.take()
+        self._site = news.site or self._site
+        if not self._connection.is_open:
+            # The thread of a trial that is over ends within a moment: it is looked after until then.
+            if not self._connection.is_ending:
+                self._timer.stop()
+            return
+        verdict = self._verdict(news.link)
+        if verdict is not None:
+            self._connection.close()
+            self.told.emit(*verdict)
+
+    def _verdict(self, link: ConnectionStatus) -> tuple[bool, str] | None:
+        if link.phase in (ConnectionPhase.RETRYING, ConnectionPhase.FAILED):
+            return False, link.reason
+        if link.phase is ConnectionPhase.CONNECTED and self._site is not None:
+            site = {"site": self._site.name, "crs": self._site.crs}
+            if link.who:
+                return True, tr("{site} ({crs}) answers, as {who}.", who=link.who, **site)
+            return True, tr("{site} ({crs}) answers.", **site)
+        return None
+
+
+# --- One connection: its name, where the gateway is, and what the operator brings to it ---
+
+
+class ConnectionDialog(QDialog):
+    """Edits ``connection``; ``kept`` tells it as it was kept. Nothing is kept before OK."""
+
+    kept = pyqtSignal(object)
+
+    def __init__(
+        self, connection: GatewayConnection, connections: Connections, parent: QWidget | None = None
+    ):
+        super().__init__(parent)
+        self._before, self._connections, self._store = connection, connections, TokenStore()
+        self.setObjectName("fleet_connection_dialog")
+        self.setWindowTitle(tr("Edit connection") if connection.name else tr("New connection"))
+        self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
+        self._name = _line("fleet_connection_name", connection.name, tr("such as the site's name"))
+        self._url = _line("fleet_connection_url", connection.url, DEFAULT_URL)
+        self._operator = _line(
+            "fleet_connection_operator", connection.operator, tr("who you are, in every log")
+        )
+        self._token = _line("fleet_connection_token", "", tr("kept by QGIS, encrypted; or choose one below"))
+        self._token.setEchoMode(QLineEdit.EchoMode.Password)
+        self._token.setEnabled(self._store.is_there)
+        # Without a parent yet: the keyboard goes from row to row, in the order in which they get one.
+        self._auth = QgsAuthConfigSelect()
+        self._auth.setObjectName("fleet_connection_auth")
+        self._auth.setConfigId(connection.auth)
+        self._ca = file_field()
+        self._ca.setObjectName("fleet_connection_ca")
+        self._ca.setFilter(tr("Certificates (*.pem *.crt *.cer);;All files (*)"))
+        self._ca.setFilePath(connection.ca_file)
+        hint = tr("the site's ca.pem; empty for public authorities")
+        self._ca.lineEdit().setPlaceholderText(hint)
+        self._ca.lineEdit().setToolTip(hint)
+        self._verdict = ResultLabel()
+        self._trial = ConnectionTest(self)
+        self._trial.told.connect(self._verdict.tell)
+        self.finished.connect(self._trial.end)
+        self._lay_out()
+
+    def connection(self) -> GatewayConnection:
+        """Return what stands in the fields.
+
+        :raises FleetError: when the name or the URL cannot be used.
+        """
+        return self._written().checked()
+
+    def accept(self) -> None:
+        """Keep the connection and close, or say why that cannot be and stay."""
+        try:
+            made = self.connection()
+            if made.name != self._before.name and self._connections.get(made.name) is not None:
+                raise BadConnectionError(
+                    tr("There is a connection {name} already. Give this one another name.", name=made.name)
+                )
+            token = self._token.text().strip()
+            if token:
+                OperatorCredentials(token, made.ca_file).check(made.url)
+                made = self._with_token(made, token)
+        except FleetError as error:
+            self._verdict.tell(False, str(error))
+            return
+        self._connections.put(made, self._before.name)
+        self.kept.emit(made)
+        super().accept()
+
+    def _with_token(self, made: GatewayConnection, token: str) -> GatewayConnection:
+        """Keep a token under the connection's name: several operators may have one for the same gateway."""
+        name = f"{TITLE}: {made.name}"
+        auth = self._store.write(self._store.id_of(name), name, made.url, token, made.operator)
+        return replace(made, auth=auth)
+
+    def try_it(self) -> None:
+        """Greet the gateway with what stands in the fields, and say what became of it."""
+        self._verdict.wait(tr("Connecting …"))
+        try:
+            made = self._written()
+            # The name is of no matter to the gateway.
+            made = replace(made, name=made.name or "-").checked()
+            token = self._token.text().strip()
+            if not token and made.auth:
+                token = self._store.token_in(made.auth)
+        except FleetError as error:
+            self._verdict.tell(False, str(error))
+            return
+        self._trial.begin(
+            made.url, made.operator or tr("connection test"), OperatorCredentials(token, made.ca_file)
+        )
+
+    def _written(self) -> GatewayConnection:
+        texts = (field.text() for field in (self._name, self._url, self._operator))
+        return GatewayConnection(*texts, self._ca.filePath(), self._auth.configId())
+
+    def _lay_out(self) -> None:
+        form = QFormLayout()
+        form.setFieldGrowthPolicy(QFormLayout.FieldGrowthPolicy.ExpandingFieldsGrow)
+        rows = (
+            (tr("&Name"), self._name),
+            (tr("&Gateway"), self._url),
+            (tr("&Operator"), self._operator),
+            (tr("&Token"), self._token),
+            (tr("&Authentication"), self._auth),
+            (tr("CA &file"), self._ca),
+        )
+        for text, field in rows:
+            label = QLabel(text)
+            label.setBuddy(field)
+            form.addRow(label, field)
+        standard = QDialogButtonBox.StandardButton
+        buttons = QDialogButtonBox(standard.Ok | standard.Cancel | standard.Help)
+        trial = buttons.addButton(tr("T&est"), QDialogButtonBox.ButtonRole.ActionRole)
+        trial.setObjectName("fleet_connection_test")
+        trial.clicked.connect(self.try_it)
+        buttons.accepted.connect(self.accept)
+        buttons.rejected.connect(self.reject)
+        buttons.helpRequested.connect(lambda: show_help(CONNECTIONS, self))
+        rows_of_it = QVBoxLayout(self)
+        rows_of_it.addLayout(form)
+        rows_of_it.addWidget(self._verdict)
+        rows_of_it.addWidget(buttons)
+        self.setMinimumWidth(520)
+
+
+def _line(name: str, text: str, hint: str) -> QLineEdit:
+    line = QLineEdit(text)
+    line.setObjectName(name)
+    line.setPlaceholderText(hint)
+    line.setToolTip(hint)
+    return line
+
+
+# --- The connections that are kept: new, edit, remove, test, import, export ---
 
 FILTER = tr("Connections (*.json)")
 TITLES = (tr("Name"), tr("Gateway"), tr("Operator"))
@@ -47,8 +275,8 @@ class ConnectionsWidget(QWidget):
         self._list.setSelectionMode(QAbstractItemView.SelectionMode.ExtendedSelection)
         self._list.setColumnWidth(0, 150)
         self._list.setColumnWidth(1, 260)
-        self._verdict = VerdictLabel()
-        self._trial = ConnectionTrial(self)
+        self._verdict = ResultLabel()
+        self._trial = ConnectionTest(self)
         self._trial.told.connect(self._verdict.tell)
         self._buttons = {
             name: self._button(name, text, action)
@@ -123,7 +351,7 @@ class ConnectionsWidget(QWidget):
         except FleetError as error:
             self._verdict.tell(False, str(error))
             return
-        credentials = Credentials(token, connection.ca_file)
+        credentials = OperatorCredentials(token, connection.ca_file)
         self._trial.begin(connection.url, connection.operator or tr("connection test"), credentials)
 
     def read_file(self, file: str) -> None:
@@ -202,3 +430,26 @@ class ConnectionsWidget(QWidget):
         button.setAutoDefault(False)
         button.clicked.connect(lambda _=False: action())
         return button
+
+
+# --- The window that the connections are managed in, where QGIS's options are not open ---
+
+
+class ConnectionsDialog(QDialog):
+    """:class:`ConnectionsWidget` in a window of its own."""
+
+    def __init__(self, parent: QWidget | None = None):
+        super().__init__(parent)
+        self.setObjectName("fleet_connections_dialog")
+        self.setWindowTitle(tr("Connections to gateways"))
+        self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
+        widget = ConnectionsWidget()
+        standard = QDialogButtonBox.StandardButton
+        buttons = QDialogButtonBox(standard.Close | standard.Help)
+        buttons.rejected.connect(self.reject)
+        buttons.helpRequested.connect(lambda: show_help(CONNECTIONS, self))
+        self.finished.connect(widget.end)
+        rows = QVBoxLayout(self)
+        rows.addWidget(widget)
+        rows.addWidget(buttons)
+        self.resize(620, 360)

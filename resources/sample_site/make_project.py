@@ -27,7 +27,7 @@ from qgis.core import (  # noqa: E402
 from qgis.PyQt.QtGui import QColor  # noqa: E402
 from symbols import LOOKS, style  # noqa: E402
 
-from robot_bridge.sites.settings import SiteSettings  # noqa: E402
+from robot_bridge.core.sites.settings import SiteSettings  # noqa: E402
 
 GROUPS = {
     "Rules": ["keepouts"],

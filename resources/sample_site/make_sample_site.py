@@ -18,7 +18,7 @@ from plan import CRS, ORIGIN, make_plan  # noqa: E402
 from published import publish  # noqa: E402
 from source_layers import write_source_layers  # noqa: E402
 
-from robot_bridge.sites.frame import SiteFrame  # noqa: E402
+from robot_bridge.core.sites.frame import SiteFrame  # noqa: E402
 
 TIME_OF_WRITING = "2026-01-01T00:00:00.000Z"
 

@@ -9,13 +9,13 @@ import numpy as np
 import shapely
 from plan import CRS, HEIGHT, ORIGIN, SITE_ID, SITE_NAME, WIDTH, Item, Plan
 
-from robot_bridge.roads.surfaces.surface import Surface
-from robot_bridge.robotmap.chords import ramp_normal
-from robot_bridge.robotmap.model import ShapeType
-from robot_bridge.robotmap.outlines import OutlineRow, Outlines
-from robot_bridge.sites.features import Area, Centreline
-from robot_bridge.sites.publication import write_site
-from robot_bridge.sites.settings import Bounds, SiteSettings
+from robot_bridge.core.roads.centrelines import Surface
+from robot_bridge.core.robotmap.model import ShapeType
+from robot_bridge.core.robotmap.outlines import OutlineRow, Outlines
+from robot_bridge.core.robotmap.parametric_shapes import ramp_normal
+from robot_bridge.core.sites.geopackage import Area, Centreline
+from robot_bridge.core.sites.settings import SiteBounds, SiteSettings
+from robot_bridge.core.sites.site import write_site
 
 SETTINGS = SiteSettings(
     id=SITE_ID,
@@ -23,7 +23,7 @@ SETTINGS = SiteSettings(
     version=1,
     crs=CRS,
     origin=ORIGIN,
-    bounds=Bounds(0.0, 0.0, WIDTH, HEIGHT),
+    bounds=SiteBounds(0.0, 0.0, WIDTH, HEIGHT),
 )
 
 

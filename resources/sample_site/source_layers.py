@@ -10,9 +10,8 @@ import numpy as np
 import shapely
 from plan import CRS, Item, Plan
 
-from robot_bridge.sites.frame import SiteFrame
-from robot_bridge.sites.geopackage import Layer, layer_of, write_layers
-from robot_bridge.sites.layers import LayerSpec
+from robot_bridge.core.sites.frame import SiteFrame
+from robot_bridge.core.sites.geopackage import Layer, LayerSpec, layer_of, write_layers
 
 OBJECT_FIELDS = {"name": str, "height_m": float, "kind": str}
 

@@ -1,1 +1,1 @@
-"""What plugin, gateway, links and robots share; no more than the standard library is needed to import it."""
+"""What plugin, gateway, links and robots share; no more than numpy is needed to import it."""

@@ -1,16 +1,23 @@
-"""The binary frame of positions: a JSON head, and behind it a table of 64-bit floats.
-
-Everything is little-endian: the length of the head as an unsigned 32-bit integer; the head, a JSON-RPC
-notification ``positions``, filled up with spaces so that what follows begins at a multiple of 8 bytes; then
-each of its ``columns``, one float for each of its ``robots``.
-"""
+"""Positions of many robots in one frame: binary with a JSON head, or JSON."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from .decoding import MESSAGE, Bounds, DecodingError, decode_json
+import numpy as np
+import numpy.typing as npt
+
+from .json_decoder import MESSAGE, DecodingError, JsonBounds, decode_json
+from .messages import MessageError, SendPos
+from .messages.robots import is_status
+
+# --- The binary frame of positions: a JSON head, and behind it a table of 64-bit floats ---
+# Everything is little-endian: the length of the head as an unsigned 32-bit integer; the head, a JSON-RPC
+# notification ``positions``, filled up with spaces so that what follows begins at a multiple of 8 bytes;
+# then
+# each of its ``columns``, one float for each of its ``robots``.
 
 if TYPE_CHECKING:
     import numpy as np
@@ -41,7 +48,7 @@ def packed_frame(head: bytes, columns: Iterable[npt.NDArray[np.float64]]) -> byt
     return b"".join([length.to_bytes(POSITION_HEAD, "little"), head.ljust(length), *values])
 
 
-def split_frame(frame: bytes, bounds: Bounds = MESSAGE) -> PositionFrame:
+def split_frame(frame: bytes, bounds: JsonBounds = MESSAGE) -> PositionFrame:
     """Return the parts of a frame; raises DecodingError when it is none, or names something twice."""
     import numpy as np
 
@@ -68,3 +75,127 @@ def _texts(name: str, value: Any) -> list[str]:
     if not isinstance(value, list) or not all(isinstance(one, str) for one in value):
         raise DecodingError(f"{name} is no list of texts")
     return value
+
+
+# --- Where the robots of a link are, many at once: as the binary frame of a desk, or as JSON ---
+
+NUMBERS = {
+    "x": "x",
+    "y": "y",
+    "theta": "theta",
+    "v": "v",
+    "device_time": "t",
+    "fix_time": "fix_t",
+    "battery": "battery",
+    "accuracy": "accuracy",
+    "altitude": "altitude",
+}
+"""Columns of numbers, and the parameters of SendPos that they are."""
+TEXTS = ("status", "theta_from")
+"""Columns of places in ``words``."""
+NEEDED = ("x", "y", "theta", "v")
+WAYS = ("course", "last", "unknown")
+"""What ``theta_from`` may be."""
+
+_PARAMETERS = {name: name for name in TEXTS} | NUMBERS
+_DIRECTION = (-math.pi, math.pi)
+"""radians; what lies beyond is the same direction as one within."""
+
+Batch = list[tuple[str, SendPos | MessageError]]
+Rows = npt.NDArray[np.bool_]
+
+
+def poses_in_frame(frame: bytes) -> Batch:
+    """Return each robot of a binary frame with its pose, or with what is wrong with that one.
+
+    What is right in every column at once is not looked at row by row: ten thousand rows come every second.
+
+    :raises DecodingError: when it is no such frame; MessageError for columns that are not a robot's to tell.
+    """
+    batch = split_frame(frame)
+    _check_columns(batch)
+    names = [_PARAMETERS[name] for name in batch.columns]
+    right = np.ones(len(batch.robots), dtype=np.bool_)
+    columns: list[list[Any]] = []
+    for name, values in zip(batch.columns, batch.table, strict=True):
+        if name in TEXTS:
+            columns.append(_words(batch.words, values))
+            right &= _right_words(name, batch.words, values)
+        else:
+            unknown = np.isnan(values) if name not in NEEDED else None
+            columns.append(_known(values, unknown))
+            right &= _right_numbers(NUMBERS[name], values, unknown)
+    rows = zip(*columns, strict=True)
+    if right.all():
+        of_checked = SendPos.of_checked
+        return [(robot, of_checked(names, row)) for robot, row in zip(batch.robots, rows, strict=True)]
+    return [
+        (robot, SendPos.of_checked(names, row) if is_right else _pose(dict(zip(names, row, strict=True))))
+        for robot, row, is_right in zip(batch.robots, rows, right.tolist(), strict=True)
+    ]
+
+
+def entries_in(params: Any) -> list[dict[str, Any]]:
+    """Return the entries of ``positions`` as JSON, each with its ``robot``; raises MessageError."""
+    entries = params.get("positions") if isinstance(params, dict) else None
+    if not isinstance(entries, list) or not all(isinstance(one, dict) for one in entries):
+        raise MessageError('positions: give {"positions": [...]}, an object for each robot')
+    return entries
+
+
+def _known(values: npt.NDArray[np.float64], unknown: Rows | None) -> list[float | None]:
+    if unknown is None or not unknown.any():
+        known: list[float | None] = values.tolist()
+        return known
+    return [None if value != value else value for value in values.tolist()]
+
+
+def _right_numbers(parameter: str, values: npt.NDArray[np.float64], unknown: Rows | None) -> Rows:
+    """Return which values a pose may have as they are; NaN is right where a parameter may be unknown."""
+    low, high = _DIRECTION if parameter == "theta" else SendPos.ranges[parameter]
+    right: Rows = (values >= low) & (values <= high)
+    return right if unknown is None else right | unknown
+
+
+def _right_words(name: str, words: list[str], values: npt.NDArray[np.float64]) -> Rows:
+    """Return which values are the places of words that a pose may have as they are, or are not known."""
+    right = [word in WAYS if name == "theta_from" else is_status(word) for word in words]
+    places = np.flatnonzero(right).astype(np.float64)
+    found: Rows = np.isin(values, places) | np.isnan(values)
+    return found
+
+
+def _pose(values: dict[str, Any]) -> SendPos | MessageError:
+    """Return the pose of a row that is not right as it is, or what is wrong with it."""
+    status, way = values.get("status"), values.get("theta_from")
+    if status is _NO_WORD:
+        return MessageError("status is the place of no word")
+    if way is not None and way not in WAYS:
+        return MessageError(f"theta_from is {way!r:.40}; give one of {', '.join(WAYS)}, or none")
+    try:
+        return SendPos(**values)
+    except MessageError as error:
+        return error
+
+
+_NO_WORD: Any = object()
+
+
+def _words(words: list[str], values: npt.NDArray[np.float64]) -> list[Any]:
+    """Return the word at each of the places ``values``, None for NaN."""
+    is_place = (values >= 0) & (values < len(words)) & (values == np.floor(values))
+    missing = np.where(np.isnan(values), len(words) + 1, len(words))
+    found = [*words, _NO_WORD, None]
+    return [found[place] for place in np.where(is_place, values, missing).astype(np.int64).tolist()]
+
+
+def _check_columns(batch: PositionFrame) -> None:
+    unknown = [name for name in batch.columns if name not in NUMBERS and name not in TEXTS]
+    missing = [name for name in NEEDED if name not in batch.columns]
+    if unknown:
+        raise MessageError(
+            f"positions: column {unknown[0]!r:.40} is not a robot's to tell; known are "
+            f"{', '.join((*NUMBERS, *TEXTS))}"
+        )
+    if missing:
+        raise MessageError(f"positions: column {missing[0]!r} is missing")

@@ -1,13 +1,24 @@
-"""What every reader makes of a file: positions one by one, and remarks on those that cannot be used."""
+"""Samples that every reader makes of a file: positions, times, remarks, errors."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass, field
+from datetime import UTC, datetime
 from typing import NamedTuple
 
-from ..messages.bounds import COORDINATE, SPEED, THETA
+from ..core.errors import BridgeError
+from ..core.messages.validation import COORDINATE, SPEED, THETA
+
+# --- The exception family of recordings ---
+
+
+class RecordingError(BridgeError):
+    """A file of which nothing can be played; the text names file, row and column, and what to do."""
+
+
+# --- What every reader makes of a file: positions one by one, and remarks on those that cannot be used
 
 WGS84 = "wgs84"
 MOST_SAMPLES = 10_000_000
@@ -92,3 +103,31 @@ def shown(text: str) -> str:
 
 
 TIME_BOUNDS, SPEED_BOUNDS, THETA_BOUNDS = (-LATEST, LATEST), SPEED, THETA
+
+
+# --- Times in recordings: seconds, parts of seconds, or dates as ISO 8601 ---
+
+UNITS = {"s": 1.0, "ms": 1e3, "us": 1e6, "ns": 1e9}
+"""How many of each are a second."""
+
+
+def seconds_of(text: str, column: str, unit: str = "s") -> float:
+    """Return a time as seconds: a number in ``unit``, or a date and time, UTC where it has no offset.
+
+    :raises ValueRefusedError: for what is neither.
+    """
+    try:
+        at = float(text) / UNITS[unit]
+    except ValueError:
+        at = _of_date(text, column)
+    if not -LATEST <= at <= LATEST:
+        raise ValueRefusedError(column, f"{shown(text)} is no time in {unit}; give time_unit")
+    return at
+
+
+def _of_date(text: str, column: str) -> float:
+    try:
+        found = datetime.fromisoformat(text.strip())
+        return (found if found.tzinfo else found.replace(tzinfo=UTC)).timestamp()
+    except (ValueError, OverflowError):
+        raise ValueRefusedError(column, f"{shown(text)} is no time") from None

@@ -1,1 +1,1 @@
-"""A robot that finds itself on the map that it was sent: sensors, ray casting, particle filter."""
+"""The reference robot: its connection to the gateway, and a simulated body."""

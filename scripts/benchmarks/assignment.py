@@ -8,18 +8,23 @@ from pathlib import Path
 
 import numpy as np
 
-from robot_bridge.assignment.checks import check_plan
-from robot_bridge.assignment.days import Days
-from robot_bridge.assignment.job import TO_START, Job, Robot, Store, Target
-from robot_bridge.assignment.plan import Plan
-from robot_bridge.assignment.pyvrp_search import load_pyvrp
-from robot_bridge.assignment.road_travel import RoadTravel
-from robot_bridge.assignment.savings import TripLimits, saving_pairs, trips_by_savings
-from robot_bridge.assignment.solving import PREVIEW, PYVRP, Wanted, assign
-from robot_bridge.assignment.travel import StraightTravel, Travel
-from robot_bridge.roads.repairs import repaired_network
-from robot_bridge.roads.route import stretch
-from robot_bridge.roads.routes import Router
+from robot_bridge.core.assignment.job import (
+    TO_START,
+    AssignmentJob,
+    ConeTarget,
+    PlanRobot,
+    RoadTravel,
+    Store,
+    StraightTravel,
+    Travel,
+)
+from robot_bridge.core.assignment.local_search import TripLimits, saving_pairs, trips_by_savings
+from robot_bridge.core.assignment.plan import ConePlan, check_plan
+from robot_bridge.core.assignment.pyvrp_search import load_pyvrp
+from robot_bridge.core.assignment.schedules import ScheduleEvaluator
+from robot_bridge.core.assignment.solver import PREVIEW, PYVRP, Objective, assign
+from robot_bridge.core.roads.network_checks import repaired_network
+from robot_bridge.core.roads.routes import Router, stretch
 
 from . import e_n51_k5
 from .clock import spread
@@ -79,7 +84,7 @@ class Case:
     """One set of cones, and what was found for it."""
 
     name: str
-    job: Job
+    job: AssignmentJob
     travel: Travel
 
 
@@ -119,7 +124,7 @@ def measure(data: Path) -> Part:
         metres="\n".join(rows), ends="\n".join(ends),
         loaded="\n".join(loaded),
         preview=spread(previews), matrix=matrix_s, goal=goal(f"at most {GOAL} times", median <= GOAL),
-        service=Target.service_s, loading=Store.service_s, small=SMALL_FIELD,
+        service=ConeTarget.service_s, loading=Store.service_s, small=SMALL_FIELD,
         customers=len(e_n51_k5.customers()), no_faults=goal("none", faults == 0), runs=RUNS,
         count=len(ratios), median=median, worst=max(ratios),
         optimum=e_n51_k5.OPTIMUM, instance=solved, instance_preview=quick, faults=faults, plans=len(plans),
@@ -159,15 +164,15 @@ def _on_the_track(data: Path) -> Case:
     return Case("roads of ZalaZONE's track", job, RoadTravel(job, Router(network)))
 
 
-def _job(places: np.ndarray, store: tuple[float, float]) -> Job:
-    return Job(
-        tuple(Target(f"c{k}", float(x), float(y)) for k, (x, y) in enumerate(places, 1)),
-        tuple(Robot(f"r{k}", *store, CAPACITY) for k in range(1, ROBOTS + 1)),
+def _job(places: np.ndarray, store: tuple[float, float]) -> AssignmentJob:
+    return AssignmentJob(
+        tuple(ConeTarget(f"c{k}", float(x), float(y)) for k, (x, y) in enumerate(places, 1)),
+        tuple(PlanRobot(f"r{k}", *store, CAPACITY) for k in range(1, ROBOTS + 1)),
         (Store("store", *store),),
     )
 
 
-def _loaded_rows() -> tuple[list[str], list[Plan]]:
+def _loaded_rows() -> tuple[list[str], list[ConePlan]]:
     """Return the rows of the jobs without a store, and all their plans."""
     rows, made = [], []
     for cones, robots in LOADED:
@@ -188,18 +193,18 @@ def _loaded(cones: int, robots: int) -> Case:
     random = np.random.default_rng(cones)
     places, starts = (random.uniform(0, SMALL_FIELD, (count, 2)).tolist() for count in (cones, robots))
     room = cones // robots + 4
-    job = Job(
-        tuple(Target(f"c{k}", *place) for k, place in enumerate(places, 1)),
-        tuple(Robot(f"r{k}", *start, room, aboard=room) for k, start in enumerate(starts, 1)),
+    job = AssignmentJob(
+        tuple(ConeTarget(f"c{k}", *place) for k, place in enumerate(places, 1)),
+        tuple(PlanRobot(f"r{k}", *start, room, aboard=room) for k, start in enumerate(starts, 1)),
         (),
         TO_START,
     )
     return Case(f"{cones} cones, {robots} robots", job, StraightTravel(job))
 
 
-def _planned(case: Case, objective: str, method: str, seed: int = 0) -> tuple[float, Plan]:
+def _planned(case: Case, objective: str, method: str, seed: int = 0) -> tuple[float, ConePlan]:
     begun = time.process_time()
-    plan = assign(case.job, case.travel, Wanted(objective, method, SHORT_S, seed))
+    plan = assign(case.job, case.travel, Objective(objective, method, SHORT_S, seed))
     return time.process_time() - begun, plan
 
 
@@ -217,7 +222,7 @@ def _nearest_neighbour(case: Case) -> float:
 
 
 def _savings(case: Case) -> float:
-    days = Days(case.job, case.travel.metres)
+    days = ScheduleEvaluator(case.job, case.travel.metres)
     targets = list(range(case.job.first_target, len(case.job.places)))
     trips = trips_by_savings(days, targets, saving_pairs(days, targets), TripLimits(CAPACITY))
     return sum(days.trip_metres(trip) for trip in trips)
@@ -243,21 +248,21 @@ def _pyvrp_alone(case: Case, seconds: float, seed: int) -> float:
     return float(best.distance()) / 10 if best.is_feasible() else float("inf")
 
 
-def _even_share(plan: Plan) -> float:
+def _even_share(plan: ConePlan) -> float:
     return sum(one.end_s for one in plan.robots) / len(plan.robots)
 
 
 def _instance(method: str) -> float:
     customers = e_n51_k5.customers()
     x, y = map(float, e_n51_k5.DEPOT)
-    job = Job(
-        tuple(Target(f"c{k}", *row[:2], demand=row[2]) for k, row in enumerate(customers, 1)),
-        (Robot("r", x, y, e_n51_k5.CAPACITY),),
+    job = AssignmentJob(
+        tuple(ConeTarget(f"c{k}", *row[:2], demand=row[2]) for k, row in enumerate(customers, 1)),
+        (PlanRobot("r", x, y, e_n51_k5.CAPACITY),),
         (Store("store", x, y),),
     )
     travel = StraightTravel(job)
     travel.metres = e_n51_k5.rounded(travel.metres)
-    return assign(job, travel, Wanted("distance", method, SHORT_S)).metres
+    return assign(job, travel, Objective("distance", method, SHORT_S)).metres
 
 
 def _row(name: str, cells: list[str]) -> str:

@@ -15,8 +15,8 @@ from collections.abc import Sequence
 from typing import Any
 from urllib.parse import urlsplit
 
-from robot_bridge.store.engines.postgresql import GATEWAY_DOZES
-from robot_bridge.store.wakeups import LONGEST_S, SHORTEST_S
+from robot_bridge.gateway.storage.dialects import GATEWAY_DOZES
+from robot_bridge.gateway.storage.wakeups import LONGEST_S, SHORTEST_S
 
 from .sql_robots import Ear, where
 

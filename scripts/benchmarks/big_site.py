@@ -18,12 +18,12 @@ import numpy as np
 from stage.processes import Processes
 from websockets.asyncio.client import ClientConnection, connect
 
-from robot_bridge.robotmap.binary import decode
-from robot_bridge.robotmap.model import PART_OF
-from robot_bridge.site_maps import STORED_AT_ONCE, SiteMaps
-from robot_bridge.sites.mapped.cache import CACHE_FILE
-from robot_bridge.sites.publication import cache_writer, read_site, write_site, write_site_cache
-from robot_bridge.sites.settings import Bounds, SiteSettings
+from robot_bridge.core.robotmap.binary import decode
+from robot_bridge.core.robotmap.model import PART_OF
+from robot_bridge.core.sites.settings import SiteBounds, SiteSettings
+from robot_bridge.core.sites.site import cache_writer, read_site, write_site, write_site_cache
+from robot_bridge.core.sites.site_cache import CACHE_FILE
+from robot_bridge.gateway.site.site_maps import STORED_AT_ONCE, SiteMaps
 
 from .clock import Spread, each, once, spread, table
 from .growth import PITCH, city
@@ -161,7 +161,7 @@ def _measured(count: int) -> Measured:
 def _publish(folder: Path, count: int) -> float:
     """Publish a city; return the seconds of processor time that its cache took."""
     outlines, side = city(count), PITCH * count**0.5
-    bounds = Bounds(-20.0, -20.0, side + 20.0, side + 20.0)
+    bounds = SiteBounds(-20.0, -20.0, side + 20.0, side + 20.0)
     settings = SiteSettings("city", "City", 1, "EPSG:32633", (430000.0, 3960000.0), bounds)
     write_site(folder, settings, outlines)
     text = (folder / "site.toml").read_text(encoding="utf-8")

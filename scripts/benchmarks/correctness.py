@@ -10,10 +10,9 @@ from typing import Any
 import numpy as np
 import shapely
 
-from robot_bridge.robotmap.builder import Window
-from robot_bridge.robotmap.index import OutlineIndex
-from robot_bridge.robotmap.model import Border, Obstacle, RobotMap
-from robot_bridge.robotmap.outlines import Outlines
+from robot_bridge.core.robotmap.model import Border, Obstacle, RobotMap, Window
+from robot_bridge.core.robotmap.outlines import Outlines
+from robot_bridge.core.robotmap.window_index import OutlineIndex
 
 from .layers import features, moved, rows
 

@@ -107,12 +107,12 @@ def overlay(data: str, number: int) -> None:
     stage = Stage(data, number)
     now = [1000.0]
     desk, view, _ = open_desk(stage, lambda: now[0])
-    wire = importlib.import_module("fleet_supervisor.plugin.wire.position_rows")
+    wire = importlib.import_module("fleet_supervisor.plugin.gateway_client.robot_table")
     times = []
     for _ in range(WARM_UP + UPDATES):
         now[0] += UPDATE_S
         stage.fleet.drive(UPDATE_S)
-        told = wire.sightings(stage.fleet.told(), now[0])
+        told = wire.table_from_rows(stage.fleet.told(), now[0])
         marks = [time.thread_time()]
         for step in (
             lambda told=told: desk.picture.merge(told),
@@ -235,12 +235,12 @@ def hour(data: str, number: int) -> None:
     stage = Stage(data, number)
     now = [1000.0]
     desk, view, _ = open_desk(stage, lambda: now[0])
-    wire = importlib.import_module("fleet_supervisor.plugin.wire.position_rows")
+    wire = importlib.import_module("fleet_supervisor.plugin.gateway_client.robot_table")
     memory = []
     for second in range(HOUR):
         now[0] += 1.0
         stage.fleet.drive(1.0)
-        desk.picture.merge(wire.sightings(stage.fleet.told(), now[0]))
+        desk.picture.merge(wire.table_from_rows(stage.fleet.told(), now[0]))
         view.show_now()
         stage.canvas.viewport().repaint()
         view.layer.begin(len(desk.picture))
@@ -255,11 +255,11 @@ def hour(data: str, number: int) -> None:
 def open_desk(stage: Stage, clock: Callable[[], float] = time.monotonic) -> tuple[Any, Any, Any]:
     """Return a desk that knows its site, its live view, and the site."""
     register()
-    from fleet_supervisor.plugin.desk.desk import Desk
-    from fleet_supervisor.plugin.desk.live.live_view import LiveView
+    from fleet_supervisor.plugin.control.fleet_controller import FleetController
+    from fleet_supervisor.plugin.map.live_view import LiveView
 
     site = site_of(stage)
-    desk = Desk(stage.canvas, QgsProject.instance(), clock=clock)
+    desk = FleetController(stage.canvas, QgsProject.instance(), clock=clock)
     view = LiveView(desk)
     desk._take_site(site, "")
     stage.canvas.setLayers([view.layer.layer, *stage.layers])
@@ -270,7 +270,7 @@ def open_desk(stage: Stage, clock: Callable[[], float] = time.monotonic) -> tupl
 
 def site_of(stage: Stage) -> Any:
     """Return the site that a gateway would tell of: what the canvas shows."""
-    from fleet_supervisor.robot_bridge.messages import SiteReport
+    from fleet_supervisor.robot_bridge.core.messages import SiteReport
 
     x, y, width, height = stage.area
     bounds = (x, y, x + width, y + height)

@@ -21,7 +21,7 @@ LAYERS = {"obstacle": (5000, 1.0), "keepout": (500, 2.0), "road_surface": (300, 
 """By role how many discs there are, and their radius in metres."""
 RUNS = size(5, 2)
 """How often each is checked, each time another draft of its kind."""
-DESK = "fleet_supervisor.plugin.desk"
+PLUGIN = "fleet_supervisor.plugin"
 
 
 def drafts(data: str, number: int) -> None:
@@ -32,8 +32,7 @@ def drafts(data: str, number: int) -> None:
     random = np.random.default_rng(1)
     for role, (count, radius) in LAYERS.items():
         _scatter(stage, role, count, radius, random)
-    kinds = importlib.import_module(f"{DESK}.drafts")
-    editing = importlib.import_module(f"{DESK}.drafting.route_editing")
+    kinds = importlib.import_module(f"{PLUGIN}.control.pending_command")
     x, y, width, height = stage.area
     middle = np.array([x + width / 2, y + height / 2])
     slices = _Slices()
@@ -45,11 +44,14 @@ def drafts(data: str, number: int) -> None:
     for _ in range(RUNS):
         targets = _points(random.uniform((x, y), (x + width, y + height), (number, 2)))
         way = _points(middle + random.uniform(-1.0, 1.0, (number, 2)).cumsum(axis=0))
-        check(f"{number} targets", kinds.Draft("robot-1", kinds.TARGETS, targets))
-        check(f"a route of {number} points", kinds.Draft("robot-1", kinds.ROUTE, way, legs=(1,) * number))
-        changed = editing.moved(desk.drafts.draft, number // 2, (way[0][0], way[0][1]))
+        check(f"{number} targets", kinds.PendingCommand("robot-1", kinds.TARGETS, targets))
+        check(
+            f"a route of {number} points",
+            kinds.PendingCommand("robot-1", kinds.ROUTE, way, legs=(1,) * number),
+        )
+        changed = kinds.moved(desk.drafts.draft, number // 2, (way[0][0], way[0][1]))
         check("one of these points moved", changed)
-        check("a cone", kinds.Draft("robot-1", kinds.CONE, targets[:1]))
+        check("a cone", kinds.PendingCommand("robot-1", kinds.CONE, targets[:1]))
     rows = {
         name: {
             "ms": spread(map(sum, runs)),
@@ -65,7 +67,7 @@ class _Slices:
     """Takes the time of each slice by the thread's own clock."""
 
     def __init__(self) -> None:
-        self._kind = importlib.import_module(f"{DESK}.time_slices").TimeSlices
+        self._kind = importlib.import_module(f"{PLUGIN}.ui.scheduling").CooperativeTask
         self._slice = self._kind._slice
         self._taken: list[float] = []
         self.garbage: list[float] = []

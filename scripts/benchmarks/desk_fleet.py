@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from robot_bridge.messages import PositionColumns
-from robot_bridge.position_columns import packed
+from robot_bridge.core.messages import PositionColumns
+from robot_bridge.gateway.fleet.operator_updates import packed
 
 SPEED = 1.5
 SILENT = 0.03

@@ -21,14 +21,14 @@ def lists(data: str, number: int) -> None:
     """Print milliseconds on the window's thread of what the lists do when the robots have moved."""
     stage = Stage(data, number)
     desk, _, _ = open_desk(stage)
-    desk_of = "fleet_supervisor.plugin.desk"
-    wire = importlib.import_module("fleet_supervisor.plugin.wire.position_rows")
-    table = importlib.import_module(f"{desk_of}.robots.robot_table").RobotTable(desk)
-    columns = importlib.import_module(f"{desk_of}.robots.columns")
-    alarms = importlib.import_module(f"{desk_of}.alarms.board").AlarmBoard()
-    ground = importlib.import_module(f"{desk_of}.alarms.road_ground").RoadGround
-    surfaces = importlib.import_module("fleet_supervisor.plugin.sites.surface_store").SurfaceStore
-    situations = importlib.import_module(f"{desk_of}.alarms.situations").Situations
+    panel = "fleet_supervisor.plugin.panel"
+    wire = importlib.import_module("fleet_supervisor.plugin.gateway_client.robot_table")
+    table = importlib.import_module(f"{panel}.robot_table").RobotTableView(desk)
+    columns = importlib.import_module(f"{panel}.robot_model")
+    alarms = importlib.import_module(f"{panel}.alarms.board").AlarmBoard()
+    ground = importlib.import_module(f"{panel}.alarms.watch").RoadGround
+    surfaces = importlib.import_module("fleet_supervisor.plugin.layers.road_surfaces").SurfaceStore
+    situations = importlib.import_module(f"{panel}.alarms.watch").SnapshotBuilder
     looking = situations(desk, ground(surfaces(desk.project)))
 
     def look() -> None:
@@ -58,7 +58,7 @@ def lists(data: str, number: int) -> None:
     times: dict[str, list[float]] = {name: [] for name in steps}
     for _ in range(UPDATES):
         stage.fleet.drive(0.5)
-        desk.picture.merge(wire.sightings(stage.fleet.told(), time.monotonic()))
+        desk.picture.merge(wire.table_from_rows(stage.fleet.told(), time.monotonic()))
         for name, step in steps.items():
             began = time.thread_time()
             step()

@@ -57,9 +57,9 @@ def open_window(stage: Stage) -> tuple[Any, Any, Any]:
     register()
     plugin = "fleet_supervisor.plugin"
     bare = BareWindow(stage.canvas)
-    window = importlib.import_module(f"{plugin}.desk.window").DeskWindow(bare)
-    surfaces = importlib.import_module(f"{plugin}.sites.surface_store").SurfaceStore
-    watched = importlib.import_module(f"{plugin}.desk.window_alarms").WindowAlarms
+    window = importlib.import_module(f"{plugin}.panel.window").FleetWindow(bare)
+    surfaces = importlib.import_module(f"{plugin}.layers.road_surfaces").SurfaceStore
+    watched = importlib.import_module(f"{plugin}.panel.window").WindowAlarms
     window.alarms = watched(bare, window, surfaces(QgsProject.instance()))
     bare.mainWindow().show()
     # Python would take both for garbage: nothing else holds them.

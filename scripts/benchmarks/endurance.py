@@ -18,7 +18,7 @@ from stage.processes import Processes
 from stage.qgis import Profile, virtual_screen
 from stage.session import follow, start_qgis
 
-from robot_bridge.sites.publication import read_site
+from robot_bridge.core.sites.site import read_site
 
 from .bad_network import PAUSES, BadNetwork
 from .endurance_findings import Run, Sample, Unloaded, complaints_in, faults, grown

@@ -10,17 +10,17 @@ from tempfile import TemporaryDirectory
 import msgspec
 import numpy as np
 
-from robot_bridge.reference_robot.experiment import (
+from robot_bridge.core.robotmap.model import RobotMap
+from robot_bridge.core.sites.site import read_site
+from robot_bridge.reference_robot.localisation.experiment import (
     EXPERIMENTS,
     ExperimentSettings,
     SensorLog,
     read_settings,
     run,
 )
-from robot_bridge.reference_robot.particle_filter import ParticleFilter
-from robot_bridge.reference_robot.sensors import Motion
-from robot_bridge.robotmap.model import RobotMap
-from robot_bridge.sites.publication import read_site
+from robot_bridge.reference_robot.localisation.particle_filter import ParticleFilter
+from robot_bridge.reference_robot.localisation.sensors import Motion
 
 from .clock import spread
 from .localisation import campus

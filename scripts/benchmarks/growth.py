@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from robot_bridge.robotmap.binary import encode
-from robot_bridge.robotmap.builder import Window
-from robot_bridge.robotmap.index import OutlineIndex
-from robot_bridge.robotmap.model import ShapeType
-from robot_bridge.robotmap.outlines import Outlines
+from robot_bridge.core.robotmap.binary import encode
+from robot_bridge.core.robotmap.model import ShapeType, Window
+from robot_bridge.core.robotmap.outlines import Outlines
+from robot_bridge.core.robotmap.window_index import OutlineIndex
 
 from .clock import each, in_a_process, megabytes, once, spread, table
 from .trial import size

@@ -10,8 +10,8 @@ import numpy as np
 import pyogrio
 import shapely
 
-from robot_bridge.robotmap.model import ShapeType
-from robot_bridge.robotmap.outlines import OutlineRow
+from robot_bridge.core.robotmap.model import ShapeType
+from robot_bridge.core.robotmap.outlines import OutlineRow
 
 Place = Callable[[np.ndarray], np.ndarray]
 

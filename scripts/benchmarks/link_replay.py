@@ -12,10 +12,10 @@ from pathlib import Path
 
 import numpy as np
 
+from robot_bridge.core.messages import PositionForm
 from robot_bridge.core.position_frame import split_frame
+from robot_bridge.core.sites.settings import read_settings
 from robot_bridge.links.replay.adapter import LEAST_STEP
-from robot_bridge.messages import PositionForm
-from robot_bridge.sites.settings import read_settings
 
 from .clock import table
 from .linked import COME_WITHIN, PROBING, Linked, NotMeasuredError, linked

@@ -15,7 +15,7 @@ from pathlib import Path
 from plugin_files import ROOT
 from stage.processes import Processes
 
-from robot_bridge.sites.limit_settings import LimitSettings
+from robot_bridge.core.sites.settings_tables import LimitSettings
 
 from .clock import Spread, spread, table
 from .page import Part, goal

@@ -19,7 +19,10 @@ from stage.errors import StageError
 from stage.peers import run_peer
 from stage.slow_core import slow_core
 
-from robot_bridge.reference_robot.experiment import (
+from robot_bridge.core.robotmap.exporters.nav2 import occupancy_of, trinary_files
+from robot_bridge.core.robotmap.model import RobotMap
+from robot_bridge.core.sites.site import read_site
+from robot_bridge.reference_robot.localisation.experiment import (
     EXPERIMENTS,
     ExperimentSettings,
     Record,
@@ -27,12 +30,8 @@ from robot_bridge.reference_robot.experiment import (
     read_settings,
     run,
 )
-from robot_bridge.reference_robot.experiment_report import Figures, figures
-from robot_bridge.reference_robot.sensors import bearings_of
-from robot_bridge.robotmap.exporters.nav2 import trinary_files
-from robot_bridge.robotmap.exporters.occupancy import occupancy_of
-from robot_bridge.robotmap.model import RobotMap
-from robot_bridge.sites.publication import read_site
+from robot_bridge.reference_robot.localisation.experiment_report import Figures, figures
+from robot_bridge.reference_robot.localisation.sensors import bearings_of
 
 from .clock import spread
 from .page import Part, goal

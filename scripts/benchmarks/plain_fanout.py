@@ -17,7 +17,7 @@ from websockets.asyncio.server import ServerConnection, broadcast, serve
 from websockets.exceptions import ConnectionClosed
 from websockets.http11 import Request, Response
 
-from robot_bridge.wire import decode_position
+from robot_bridge.protocol.codec import decode_position
 
 
 async def main() -> None:

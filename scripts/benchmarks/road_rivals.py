@@ -20,9 +20,8 @@ from qgis.core import (
     QgsVectorLayer,
 )
 
-from robot_bridge.roads.engines.contraction import ContractionEngines
-from robot_bridge.roads.engines.engine import Graph
-from robot_bridge.roads.network import Network
+from robot_bridge.core.roads.engines import ContractionEngines, RouteGraph
+from robot_bridge.core.roads.network import Network
 
 NO_WAY = "There is no route"
 """What QGIS says where there is none."""
@@ -62,7 +61,7 @@ def by_routingkit(network: Network) -> tuple[Query, Query]:
     A query that is kept belongs to one thread, and until it is gone no cost can be changed.
     """
     edge, tail, head = network.arcs()
-    made = ContractionEngines(Graph(network.nodes, tail, head))
+    made = ContractionEngines(RouteGraph(network.nodes, tail, head))
     tenths_of_mm = np.maximum(np.rint(network.lengths[edge] * 1e4), 1).astype(np.int64)
     metric = made.kit.CCHMetric(made.hierarchy, tenths_of_mm.tolist())
     kept = made.kit.CCHQuery(metric)
@@ -75,7 +74,7 @@ def by_routingkit(network: Network) -> tuple[Query, Query]:
 def by_graph_analyzer(network: Network, engine: type) -> Query:
     """Return QgsGraphAnalyzer on a graph that is kept; ``engine`` is the plugin's."""
     edge, tail, head = network.arcs()
-    made = engine(Graph(network.nodes, tail, head), network.lengths[edge])
+    made = engine(RouteGraph(network.nodes, tail, head), network.lengths[edge])
     return lambda a, b: made.way([(a, 0.0)], [(b, 0.0)])
 
 

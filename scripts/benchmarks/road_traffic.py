@@ -6,18 +6,16 @@ from collections.abc import Callable, Collection, Mapping
 
 import numpy as np
 
-from robot_bridge.messages import SetPath
-from robot_bridge.polyline import Polyline
-from robot_bridge.road_traffic.closed_roads import ClosedRoads
-from robot_bridge.road_traffic.traffic_picture import Seen
-from robot_bridge.road_traffic.ways import Underway
-from robot_bridge.roads.dense import Driving, dense_path
-from robot_bridge.roads.errors import NoRouteError, OffNetworkError
-from robot_bridge.roads.network import Network
-from robot_bridge.roads.routes import Place, Router
-from robot_bridge.sites.settings import RouteSettings
-from robot_bridge.traffic.conflicts import Conflict, conflicts_of, find_conflicts
-from robot_bridge.traffic.movement import Movement
+from robot_bridge.core.errors import NoRouteError, OffNetworkError
+from robot_bridge.core.geometry import Polyline
+from robot_bridge.core.messages import SetPath
+from robot_bridge.core.roads.network import Network
+from robot_bridge.core.roads.path_smoothing import Driving, dense_path
+from robot_bridge.core.roads.routes import Place, Router
+from robot_bridge.core.sites.settings_tables import RouteSettings
+from robot_bridge.gateway.traffic.conflicts import Conflict, Movement, conflicts_of, find_conflicts
+from robot_bridge.gateway.traffic.robot_paths import DrivenTask, TrafficSnapshot
+from robot_bridge.gateway.traffic.site_roads import ClosedRoads
 
 from .clock import FEW, Spread, again, once, spread
 from .trial import size
@@ -125,9 +123,9 @@ def _conflicts(router: Router, count: int) -> str:
     for number, pair in enumerate(_pairs(router, count, near=1000.0)):
         line = Polyline(_dense(router, *pair).tolist())
         path, robot = SetPath(line.beyond(-1.0).tolist()), f"r{number}"
-        underway.append(Underway(robot, f"c{number}", path, path.points[0], 0.0, None, line))
+        underway.append(DrivenTask(robot, f"c{number}", path, path.points[0], 0.0, None, line))
         places[robot] = path.points[0], SPEED
-    seen = Seen(0.0, RouteSettings(margin_m=MARGIN), underway, places, {}, frozenset(places))
+    seen = TrafficSnapshot(0.0, RouteSettings(margin_m=MARGIN), underway, places, {}, frozenset(places))
     moving, left = again(seen.movements, RUNS)
     movements = list(moving.values())
     found, took = again(lambda: find_conflicts(movements, MARGIN, 0.0), RUNS)

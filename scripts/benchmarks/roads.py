@@ -13,12 +13,11 @@ import networkx
 import numpy as np
 import shapely
 
-from robot_bridge.roads.dense import Driving, dense_path
-from robot_bridge.roads.errors import NoRouteError
-from robot_bridge.roads.findings import count_by_kind, find
-from robot_bridge.roads.network import Network, build_network
-from robot_bridge.roads.repairs import repaired_network
-from robot_bridge.roads.routes import Router
+from robot_bridge.core.errors import NoRouteError
+from robot_bridge.core.roads.network import Network, build_network
+from robot_bridge.core.roads.network_checks import count_by_kind, find_road_defects, repaired_network
+from robot_bridge.core.roads.path_smoothing import Driving, dense_path
+from robot_bridge.core.roads.routes import Router
 
 from .clock import FEW, Spread, again, once, spread
 from .page import Part, goal
@@ -132,8 +131,8 @@ def _networks(data: Path) -> tuple[list[str], dict[str, Network], list[str]]:
         memory = f"{grown:.0f} MB" if grown > 1 else "–"
         built.append(f"| {name} | {sizes} | {seconds:.2f} s | {memory} |")
         networks |= {name: network, f"{name}, repaired": mended}
-        found = find(network, TOLERANCE)
-        left = find(mended, TOLERANCE)
+        found = find_road_defects(network, TOLERANCE)
+        left = find_road_defects(mended, TOLERANCE)
         for what, counted in (("found", found), ("repaired", done), ("left", left)):
             findings.append(f"| {name}: {what} | {' | '.join(map(str, count_by_kind(counted).values()))} |")
     return built, networks, findings
@@ -182,7 +181,7 @@ def _graph_engine() -> type:
         assert spec is not None and spec.loader is not None
         sys.modules[name] = importlib.util.module_from_spec(spec)
         spec.loader.exec_module(sys.modules[name])
-    engine: type = importlib.import_module(f"{name}.plugin.processing.graph_engine").GraphEngine
+    engine: type = importlib.import_module(f"{name}.plugin.processing.algorithms.find_route").GraphEngine
     return engine
 
 

@@ -27,10 +27,10 @@ from stage.processes import Processes, dying_with_this
 from websockets.exceptions import ConnectionClosed
 from websockets.sync.client import ClientConnection, connect
 
-from robot_bridge.store import revisions
-from robot_bridge.store.accounts.choice import keeper_on
-from robot_bridge.store.database import run_once
-from robot_bridge.store.wakeups import LONGEST_S, SHORTEST_S
+from robot_bridge.gateway.storage import revisions
+from robot_bridge.gateway.storage.database import run_once
+from robot_bridge.gateway.storage.roles.choice import role_manager_on
+from robot_bridge.gateway.storage.wakeups import LONGEST_S, SHORTEST_S
 
 from .clock import Spread, spread, table
 from .page import Part
@@ -226,7 +226,7 @@ def _databases(case: Case) -> Iterator[Databases]:
 
 
 def _accounts(connection: Connection, names: list[str], url: Any) -> dict[str, str]:
-    keeper = keeper_on(connection)
+    keeper = role_manager_on(connection)
     for name in names:
         keeper.add_robot(name, PASSWORD)
     shared = url.set(database=keeper.robots_database(), password=PASSWORD)

@@ -10,12 +10,12 @@ import pyogrio
 import pyproj
 import shapely
 
-from robot_bridge.robotmap.binary import decode_text, encode
-from robot_bridge.robotmap.builder import Window, build_map
-from robot_bridge.robotmap.model import RobotMap
-from robot_bridge.robotmap.outlines import OutlineRow, Outlines
-from robot_bridge.robotmap.shaping import Shaping, shaped
-from robot_bridge.robotmap.text import write_text
+from robot_bridge.core.robotmap.binary import decode_text, encode
+from robot_bridge.core.robotmap.builder import build_map
+from robot_bridge.core.robotmap.model import RobotMap, Window
+from robot_bridge.core.robotmap.outlines import OutlineRow, Outlines
+from robot_bridge.core.robotmap.shaping import Shaping, shaped
+from robot_bridge.core.robotmap.text_format import write_text
 
 from .clock import table
 from .layers import features, rows

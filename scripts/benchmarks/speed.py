@@ -11,15 +11,15 @@ import pyogrio
 import shapely
 from osgeo import ogr
 
-from robot_bridge.robotmap.binary import encode
-from robot_bridge.robotmap.builder import Window, build_map
-from robot_bridge.robotmap.index import OutlineIndex
-from robot_bridge.robotmap.outlines import Outlines
-from robot_bridge.robotmap.text import write_text
-from robot_bridge.site_maps import SiteMaps
-from robot_bridge.sites.publication import read_site, write_site
-from robot_bridge.sites.settings import Bounds, SiteSettings
-from robot_bridge.sites.site import Site
+from robot_bridge.core.robotmap.binary import encode
+from robot_bridge.core.robotmap.builder import build_map
+from robot_bridge.core.robotmap.model import Window
+from robot_bridge.core.robotmap.outlines import Outlines
+from robot_bridge.core.robotmap.text_format import write_text
+from robot_bridge.core.robotmap.window_index import OutlineIndex
+from robot_bridge.core.sites.settings import SiteBounds, SiteSettings
+from robot_bridge.core.sites.site import Site, read_site, write_site
+from robot_bridge.gateway.site.site_maps import SiteMaps
 
 from .clock import again, each, in_a_process, table, with_children
 from .layers import features, moved, rows
@@ -42,7 +42,7 @@ def publish(file: Path, folder: Path) -> None:
     ]
     outlines = Outlines.from_rows(made)
     low, high = outlines.coordinates.min(axis=0).tolist(), outlines.coordinates.max(axis=0).tolist()
-    settings = SiteSettings("malta", "Malta", 1, "EPSG:32633", ORIGIN, Bounds(*low, *high))
+    settings = SiteSettings("malta", "Malta", 1, "EPSG:32633", ORIGIN, SiteBounds(*low, *high))
     write_site(folder, settings, outlines)
 
 
@@ -79,7 +79,7 @@ def speed_tables(folder: Path) -> str:
 _MEMORY = """
 import json, pyogrio, pyproj, shapely
 from benchmarks.clock import megabytes
-from robot_bridge.sites.publication import read_site
+from robot_bridge.core.sites.site import read_site
 before = megabytes()
 site = read_site({folder!r})
 site.map_around(site.bounds.x_min, site.bounds.y_min, 100)

@@ -9,10 +9,9 @@ import numpy as np
 import pyogrio
 import shapely
 
-from robot_bridge.roads.surfaces.generation import generate, polygon_of, rings_of
-from robot_bridge.roads.surfaces.index import NOWHERE, SurfaceIndex
-from robot_bridge.roads.surfaces.outlines import areas_of, edges_of
-from robot_bridge.roads.surfaces.surface import Surface
+from robot_bridge.core.roads.centrelines import Surface
+from robot_bridge.core.roads.surface_generation import generate_surfaces, polygon_of, rings_of
+from robot_bridge.core.roads.surface_index import NOWHERE, SurfaceIndex, areas_of, surface_edges
 
 from .clock import Spread, again, table
 from .page import Part, goal
@@ -56,7 +55,7 @@ def measure(data: Path) -> Part:
     """Measure on a made-up town, on Malta and on ZalaZONE's track."""
     application = start_qgis()
     roads = malta(data, size(None, 1500))
-    made, seconds = again(lambda: generate(roads), RUNS)
+    made, seconds = again(lambda: generate_surfaces(roads), RUNS)
     town, island = Ground("made-up town", _town(POLYGONS)), Ground("Malta", made)
     speeds: dict[str, list[str]] = {}
     for ground in (town, island):
@@ -101,7 +100,7 @@ class Ground:
         low, high = shapely.total_bounds(self._shapes).reshape(2, 2)
         places = np.random.default_rng(1).uniform(low, high, (BULK, 2))
         ours, told = self._index, self._index.at_many(places[:1000])
-        areas = areas_of(edges_of(self._surfaces), len(self._surfaces))
+        areas = areas_of(surface_edges(self._surfaces), len(self._surfaces))
         rank = np.lexsort([-np.arange(len(areas)), areas]).argsort()
         tree_bulk, tree_single = by_tree(self._shapes, rank)
         spatial = by_spatial_index(self._shapes, rank)
@@ -154,7 +153,7 @@ def _truth(data: Path) -> str:
     _, _, wkb, _ = pyogrio.raw.read(lanes_file, layer="lanes", where="module = 'university_track'")
     lanes = shapely.union_all(shapely.from_wkb(wkb))
     roads = track(data)
-    alone, with_parking = generate(roads), [*parking, *generate(roads, parking)]
+    alone, with_parking = generate_surfaces(roads), [*parking, *generate_surfaces(roads, parking)]
     rows = [
         ["generated from the centrelines", "digitised from the photo", *_overlap(alone, digitised)],
         ["the same and the parking by hand", "digitised from the photo", *_overlap(with_parking, digitised)],

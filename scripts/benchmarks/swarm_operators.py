@@ -19,8 +19,8 @@ import msgspec
 import numpy as np
 from raw_websocket import BINARY, Stream, call, connect
 
+from robot_bridge.core.messages import PositionForm
 from robot_bridge.core.position_frame import POSITION_HEAD, POSITION_VALUE
-from robot_bridge.messages import PositionForm
 
 DEVICE_TIME = "device_time"
 

@@ -28,7 +28,7 @@ SHOWN: dict[str, dict[str, float]] = {"circle": {"radius": 30, "spacing": 8}}
 
 def main() -> None:
     with drawing(__doc__) as folder, tempfile.TemporaryDirectory() as place:
-        for name, kind in part("robot_bridge.layouts.catalogue").LAYOUTS.items():
+        for name, kind in part("robot_bridge.core.layouts.catalogue").LAYOUTS.items():
             draw(kind.of(SHOWN.get(name, {})).cones(), folder / f"cones-{name.replace('_', '-')}.png")
         draw_on_site(Path(place) / "cones.gpkg", folder / "cones-on-site.png")
 

@@ -76,7 +76,7 @@ def _solid(source: str) -> Any:
 
 def _parking(source: str) -> Any:
     """Return the digitised parking, under the name that the style knows."""
-    from fleet_supervisor.plugin.sites.roles import LayerExpressions, LayerSetup, keep_setup
+    from fleet_supervisor.plugin.layers.roles import LayerExpressions, LayerSetup, keep_setup
 
     layer = vector(source)
     expressions = LayerExpressions(

@@ -67,7 +67,7 @@ def load(file: Path) -> list[Any]:
 
 def put_faults_in(sound: Path, faulty: Path) -> None:
     """Write the map in ``sound`` with a fault of each kind to ``faulty``."""
-    text, model = part("robot_bridge.robotmap.text"), part("robot_bridge.robotmap.model")
+    text, model = part("robot_bridge.core.robotmap.text_format"), part("robot_bridge.core.robotmap.model")
     robot_map = text.read_text(sound.read_text(encoding="utf-8"))
     obstacles = []
     for obstacle in robot_map.obstacles:

@@ -77,9 +77,9 @@ def connected(url: str, tokens: dict[str, str]) -> Iterator[tuple[Any, Any]]:
     from qgis.gui import QgsMapCanvas
     from qgis.PyQt.QtWidgets import QWidget
 
-    credentials = part("plugin.wire.addresses").Credentials
-    ben = part("plugin.connection").Connection()
-    desk = part("plugin.desk.desk").Desk(QgsMapCanvas(), QgsProject.instance())
+    credentials = part("plugin.gateway_client.link").OperatorCredentials
+    ben = part("plugin.gateway_client.connection").ConnectionThread()
+    desk = part("plugin.control.fleet_controller").FleetController(QgsMapCanvas(), QgsProject.instance())
     try:
         ben.open(url, "Ben", credentials(tokens["Ben"]))
         wait(lambda: ben.take().link.operator == "Ben", "Ben's link")
@@ -92,7 +92,7 @@ def connected(url: str, tokens: dict[str, str]) -> Iterator[tuple[Any, Any]]:
 
 def draw_sites(desk: Any, window: Any, picture: Path) -> None:
     """Open the choice of the site with one selected that can be chosen, and take its picture."""
-    dialog = part("plugin.desk.site_choice.site_choice_dialog").SiteChoiceDialog(desk, window)
+    dialog = part("plugin.admin.site_choice").SiteChoiceDialog(desk, window)
     dialog.show()
     wait(lambda: len(dialog.model.rows) == len(SITES), "the sites")
     ready = [not row.served and row.refusal is None for row in dialog.model.rows]
@@ -106,14 +106,14 @@ def draw_accounts(desk: Any, window: Any, folder: Path) -> None:
     """Open the accounts and take their picture; make one more, and take the picture of its token."""
     from qgis.PyQt.QtWidgets import QDialog, QPushButton
 
-    messages = part("robot_bridge.messages")
-    dialog = part("plugin.desk.accounts.accounts_dialog").AccountsDialog(desk, window)
+    messages = part("robot_bridge.core.messages")
+    dialog = part("plugin.admin.accounts_dialog").AccountsDialog(desk, window)
     dialog.show()
     wait(lambda: len(dialog.model.rows) == len(OPERATORS), "the accounts")
     dialog.view.selectRow(1)
     wait(lambda: dialog.selected() is not None, "the selection")
     save(dialog, folder / "accounts.png")
-    question = part("plugin.desk.accounts.questions").NewAccount
+    question = part("plugin.admin.accounts_dialog").NewAccount
     dialog._add()
     asks = dialog.findChild(question)
     asks.confirmed.emit(NEW, messages.Role.OPERATOR, WEEK_S)

@@ -1,9 +1,9 @@
 """One logged drive through Nav2's AMCL: ``amcl_drive.py MAP.yaml LOG.npz SETTINGS.json BELIEFS.npz``.
 
 Run by the Python of :mod:`.amcl_peer`, which knows nothing of this project: all that it has of the map are
-the two files that Nav2 reads. ``LOG`` holds what a SensorLog of ``robot_bridge/reference_robot`` does, with
-the ``bearings`` and the ``reach`` of the laser; ``BELIEFS`` gets ``belief``, (n, 3), and the ``seconds`` of
-processor time of each update.
+the two files that Nav2 reads. ``LOG`` holds what a SensorLog of ``robot_bridge/reference_robot/localisation``
+does, with the ``bearings`` and the ``reach`` of the laser; ``BELIEFS`` gets ``belief``, (n, 3), and the
+``seconds`` of processor time of each update.
 """
 
 from __future__ import annotations

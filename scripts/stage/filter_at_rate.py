@@ -15,10 +15,10 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 
-from robot_bridge.reference_robot.particle_filter import ParticleFilter
-from robot_bridge.reference_robot.sensors import Motion
-from robot_bridge.reference_robot.settings import FilterSettings, LaserSettings
-from robot_bridge.sites.publication import read_site
+from robot_bridge.core.sites.site import read_site
+from robot_bridge.reference_robot.localisation.particle_filter import ParticleFilter
+from robot_bridge.reference_robot.localisation.sensors import Motion
+from robot_bridge.reference_robot.localisation.settings import FilterSettings, LaserSettings
 
 WARM = 10
 """scans before it is measured, in which numba compiles."""

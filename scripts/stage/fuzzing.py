@@ -14,7 +14,7 @@ from typing import Any
 from hypothesis import HealthCheck, Phase, given, settings
 from hypothesis import strategies as st
 
-from robot_bridge.messages import DESK_REQUESTS, REQUESTS
+from robot_bridge.core.messages import DESK_REQUESTS, REQUESTS
 
 from .patience import BUSY
 

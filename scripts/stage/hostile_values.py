@@ -10,11 +10,11 @@ from typing import Any
 import numpy as np
 from hypothesis import strategies as st
 
+from robot_bridge.core.messages import REQUESTS
+from robot_bridge.core.messages.links import GetAreas, LinkHello, LinkPositions, LinkStatus
+from robot_bridge.core.position_frame import NUMBERS as POSITION_NUMBERS
+from robot_bridge.core.position_frame import TEXTS as POSITION_TEXTS
 from robot_bridge.core.position_frame import packed_frame
-from robot_bridge.messages import REQUESTS
-from robot_bridge.messages.links import GetAreas, LinkHello, LinkPositions, LinkStatus
-from robot_bridge.position_batches import NUMBERS as POSITION_NUMBERS
-from robot_bridge.position_batches import TEXTS as POSITION_TEXTS
 
 DEPTHS = (20, 500, 2_000, 5_000, 50_000)
 TEXTS = (

@@ -10,9 +10,9 @@ from pathlib import Path
 
 import numpy as np
 
-from robot_bridge.robotmap.binary import decode_text
-from robot_bridge.robotmap.text import read_text
-from robot_bridge.sites.publication import read_site
+from robot_bridge.core.robotmap.binary import decode_text
+from robot_bridge.core.robotmap.text_format import read_text
+from robot_bridge.core.sites.site import read_site
 
 from .errors import StageError
 from .fleet import PROJECT, SITE

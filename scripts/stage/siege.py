@@ -25,12 +25,11 @@ from sqlalchemy import make_url
 from websockets.exceptions import ConnectionClosed
 from websockets.sync.client import connect
 
-from robot_bridge.access.accounts import add_operator, issue_robot_token
-from robot_bridge.access.link_accounts import add_link
-from robot_bridge.messages import DESK_REQUESTS, REQUESTS, Role
-from robot_bridge.store import revisions
-from robot_bridge.store.accounts.choice import keeper_on
-from robot_bridge.store.database import run_once
+from robot_bridge.core.messages import DESK_REQUESTS, REQUESTS, Role
+from robot_bridge.gateway.auth.accounts import add_link, add_operator, issue_robot_token
+from robot_bridge.gateway.storage import revisions
+from robot_bridge.gateway.storage.database import run_once
+from robot_bridge.gateway.storage.roles.choice import role_manager_on
 
 from .fuzzing import Conversation, desk_frames, robot_frames, rr_rows
 from .hostile_values import calls, frames, link_frames
@@ -127,7 +126,7 @@ class Siege:
         self.start()
 
     def _add_accounts(self, connection: Any) -> None:
-        keeper = keeper_on(connection)
+        keeper = role_manager_on(connection)
         for name in (GOOD_SQL, BAD_SQL):
             keeper.add_robot(name, self._passwords[name])
         keeper.add_gateway(GATEWAY, self._passwords[GATEWAY])
@@ -176,7 +175,9 @@ class Siege:
             client.close()
         if self._admin is not None:
             for name in self._robots:
-                run_once(self._admin, lambda connection, name=name: keeper_on(connection).remove_robot(name))
+                run_once(
+                    self._admin, lambda connection, name=name: role_manager_on(connection).remove_robot(name)
+                )
 
     def _hang_up(self) -> None:
         for wire in self._wires:

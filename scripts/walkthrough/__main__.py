@@ -22,7 +22,7 @@ from stage.program import ended
 from stage.qgis import Profile, virtual_screen
 from stage.session import follow, start_qgis
 
-from robot_bridge.sites.publication import read_site
+from robot_bridge.core.sites.site import read_site
 
 from .film import Film
 from .gateway import Gateway

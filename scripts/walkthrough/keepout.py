@@ -6,7 +6,7 @@ import math
 
 from stage.errors import StageError
 
-from robot_bridge.polyline import Polyline
+from robot_bridge.core.geometry import Polyline
 
 from .scene import Scene
 

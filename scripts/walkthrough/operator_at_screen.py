@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from stage.errors import StageError
 
-from robot_bridge.sites.frame import SiteFrame
+from robot_bridge.core.sites.frame import SiteFrame
 
 from .screen import WHEEL_DOWN, Pixel, Screen
 from .window import Window

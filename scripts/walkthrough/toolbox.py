@@ -6,7 +6,7 @@ from pathlib import Path
 
 from stage.errors import StageError
 
-from robot_bridge.robotmap.text import read_text
+from robot_bridge.core.robotmap.text_format import read_text
 
 from .gateway import Place
 from .scene import Scene

@@ -25,7 +25,7 @@ from stage.processes import Processes
 from stage.qgis import Profile, virtual_screen
 from stage.session import follow, start_qgis
 
-from robot_bridge.sites.publication import read_site
+from robot_bridge.core.sites.site import read_site
 
 from .links import Links, peer
 from .places import AWAY, CONE, GOAL, GRASS, ROAD_CLASS, START, same_ground, spellings

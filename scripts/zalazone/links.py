@@ -13,7 +13,7 @@ from stage.patience import START
 from stage.processes import Processes
 from stage.ros_peer import DISTRIBUTION, ros_python
 
-from robot_bridge.sites.settings import SiteSettings
+from robot_bridge.core.sites.settings import SiteSettings
 
 from .places import Place
 

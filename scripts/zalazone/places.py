@@ -9,8 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from stage.errors import StageError
 
-from robot_bridge.sites.frame import SiteFrame
-from robot_bridge.sites.projections import projections
+from robot_bridge.core.sites.frame import SiteFrame, projections
 
 Place = tuple[float, float]
 CONE: Place = (98.0, 262.0)

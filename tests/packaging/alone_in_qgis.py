@@ -59,9 +59,9 @@ def import_everything():
 
 def connect(url):
     """Return the news of a connection that is up, as the desk gets them."""
-    from fleet_supervisor.plugin.connection import Connection
+    from fleet_supervisor.plugin.gateway_client.connection import ConnectionThread
 
-    connection = Connection()
+    connection = ConnectionThread()
     connection.open(url, "packaging test")
     try:
         until = time.monotonic() + 40
@@ -86,7 +86,7 @@ def main():
     # Processing comes with every QGIS, beside the plugins that users install.
     sys.path.append(str(Path(QgsApplication.pkgDataPath()) / "python" / "plugins"))
     count = import_everything()
-    from fleet_supervisor.plugin.websocket_library import websocket_library
+    from fleet_supervisor.plugin.gateway_client.websocket_library import websocket_library
 
     library = websocket_library()
     news = connect(url)

@@ -13,7 +13,7 @@ import pytest
 from stage.fleet import STARTS
 from stage.patience import BUSY
 
-from robot_bridge.robotmap.binary import decode_text
+from robot_bridge.core.robotmap.binary import decode_text
 
 
 @pytest.fixture

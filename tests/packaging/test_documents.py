@@ -15,7 +15,7 @@ from stage.patience import START
 from stage.processes import Processes
 from stage.qgis import program
 
-from robot_bridge.robotmap.text import read_text
+from robot_bridge.core.robotmap.text_format import read_text
 
 ROOT = Path(__file__).resolve().parents[2]
 DOCUMENTS = [

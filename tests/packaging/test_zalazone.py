@@ -14,7 +14,7 @@ from stage.ros_peer import ros_python
 from zalazone.places import same_ground, spellings
 from zalazone.recording import Sample, compare
 
-from robot_bridge.sites.frame import SiteFrame
+from robot_bridge.core.sites.frame import SiteFrame
 
 RECORDED = {"1": np.array([(t / 10, 100.0 + t, 50.0) for t in range(60)])}
 

@@ -7,12 +7,12 @@ import math
 
 import pytest
 
-from robot_bridge import jsonrpc
-from robot_bridge.ground_track import GroundTracks
-from robot_bridge.messages import MessageError, SendGPS
-from robot_bridge.messages.bounds import LARGEST_MESSAGE, LONGEST_STATUS
-from robot_bridge.schemas.documents import documents
-from robot_bridge.wire import check_size, decode_position, decode_request
+from robot_bridge.core.messages import MessageError, SendGPS
+from robot_bridge.core.messages.validation import LARGEST_MESSAGE, LONGEST_STATUS
+from robot_bridge.gateway.model.position_checks import GroundTracks
+from robot_bridge.protocol import jsonrpc
+from robot_bridge.protocol.asyncapi import documents
+from robot_bridge.protocol.codec import check_size, decode_position, decode_request
 
 POSE = {"x": 20.0, "y": 8.0, "theta": 0.0, "v": 1.0}
 FIX = {"lat": 46.88, "lon": 16.84}

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from robot_bridge.clock_at_start import clock_doubt
+from robot_bridge.gateway.model.clocks import check_clock_at_start
 
 NOW = 1_790_000_000.0
 DAY = 86400.0
@@ -12,12 +12,12 @@ DAY = 86400.0
 
 @pytest.mark.parametrize("newest", [None, NOW, NOW - 6 * DAY, NOW + 4.0])
 def test_a_clock_that_goes_on_from_what_is_stored_is_not_doubted(newest):
-    assert clock_doubt(NOW, newest) is None
+    assert check_clock_at_start(NOW, newest) is None
 
 
 @pytest.mark.parametrize("behind", [6.0, 3600.0, 400 * DAY])
 def test_a_clock_before_what_is_stored_is_told_with_both_times_and_what_to_do(behind):
-    doubt = clock_doubt(NOW, NOW + behind)
+    doubt = check_clock_at_start(NOW, NOW + behind)
     assert not doubt.may_be_ahead
     assert (
         "the clock of this computer says 2026-09-21 14:13:20 UTC, and what was stored last is from "
@@ -29,11 +29,12 @@ def test_a_clock_before_what_is_stored_is_told_with_both_times_and_what_to_do(be
 
 def test_a_clock_that_never_was_set_is_told_in_an_empty_database_too():
     assert (
-        "says 1970-01-01 00:01:00 UTC, which is before this version was made" in clock_doubt(60.0, None).text
+        "says 1970-01-01 00:01:00 UTC, which is before this version was made"
+        in check_clock_at_start(60.0, None).text
     )
 
 
 def test_a_clock_long_after_what_is_stored_may_be_ahead():
-    doubt = clock_doubt(NOW, NOW - 8 * DAY)
+    doubt = check_clock_at_start(NOW, NOW - 8 * DAY)
     assert doubt.may_be_ahead
     assert "what was stored last is from 2026-09-13 14:13:20 UTC. For a day nothing is deleted" in doubt.text

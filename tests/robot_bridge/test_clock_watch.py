@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from robot_bridge.clock_watch import ClockStep, ClockWatch
-from robot_bridge.messages import RobotState, SendPos
-from robot_bridge.robots import Robots
+from robot_bridge.core.messages import RobotState, SendPos
+from robot_bridge.gateway.model.clocks import ClockStep, ClockWatch
+from robot_bridge.gateway.model.robots import Robots
 
 DAY = 86400.0
 

@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from robot_bridge.compass import heading_of, headings_of, theta_of
+from robot_bridge.core.geometry import heading_of, headings_of, theta_of
 
 
 @pytest.mark.parametrize(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from robot_bridge.counting import counted
+from robot_bridge.core.errors import counted
 
 
 @pytest.mark.parametrize(("number", "words"), [(0, "0 cones"), (1, "1 cone"), (2, "2 cones")])

@@ -6,10 +6,8 @@ import asyncio
 
 import pytest
 
-from robot_bridge import desk_lanes, jsonrpc
-from robot_bridge.desk_lanes import MOST_ASIDE, MOST_BYTES, MOST_STOPPING, MOST_WAITING, Asked, DeskLanes
-from robot_bridge.errors import BusyError, RefusedError
-from robot_bridge.messages import (
+from robot_bridge.core.errors import BusyError, RefusedError
+from robot_bridge.core.messages import (
     AbortAll,
     AbortTask,
     EmergencyStop,
@@ -25,6 +23,16 @@ from robot_bridge.messages import (
     TakeOver,
     TargetPosition,
 )
+from robot_bridge.gateway.api import operator_server
+from robot_bridge.gateway.api.operator_server import (
+    MOST_ASIDE,
+    MOST_BYTES,
+    MOST_STOPPING,
+    MOST_WAITING,
+    RequestScheduler,
+    ScheduledRequest,
+)
+from robot_bridge.protocol import jsonrpc
 
 QUESTION = GetQueue()
 SLOWLY = (GetQueue, GetRoute, GetImage)
@@ -33,7 +41,7 @@ TOO_MANY = "too many requests of this connection wait to be answered; wait for a
 
 
 def asked(request, size=10):
-    return Asked(jsonrpc.Call(request.method, {}, 1), request, size)
+    return ScheduledRequest(jsonrpc.Call(request.method, {}, 1), request, size)
 
 
 class Operator:
@@ -43,10 +51,10 @@ class Operator:
         self.held = held
         self.begun, self.done, self.refused = [], [], []
         self.may = asyncio.Event()
-        self.lanes = DeskLanes(self.settle)
+        self.lanes = RequestScheduler(self.settle)
 
     async def settle(self, asked, refusal):
-        assert isinstance(asked, Asked)
+        assert isinstance(asked, ScheduledRequest)
         if refusal is not None:
             self.refused.append((asked.request, refusal))
             return
@@ -161,8 +169,8 @@ async def test_an_emergency_stop_is_never_one_too_many_and_any_other_stop_is():
 async def test_of_emergency_stops_that_are_not_done_so_many_are_begun_and_then_the_connection_waits(
     monkeypatch,
 ):
-    monkeypatch.setattr(desk_lanes, "MOST_STOPPING", 2)
-    monkeypatch.setattr(desk_lanes, "MOST_EMERGENCIES", 3)
+    monkeypatch.setattr(operator_server, "MOST_STOPPING", 2)
+    monkeypatch.setattr(operator_server, "MOST_EMERGENCIES", 3)
     operator = Operator(held=(EmergencyStop,))
     stops = [EmergencyStop(f"stop-{k:04}") for k in range(5)]
     await operator.ask(*stops[:4])
@@ -176,14 +184,14 @@ async def test_of_emergency_stops_that_are_not_done_so_many_are_begun_and_then_t
 
 
 async def test_the_connection_goes_on_as_soon_as_one_of_them_is_done(monkeypatch):
-    monkeypatch.setattr(desk_lanes, "MOST_STOPPING", 0)
-    monkeypatch.setattr(desk_lanes, "MOST_EMERGENCIES", 2)
+    monkeypatch.setattr(operator_server, "MOST_STOPPING", 0)
+    monkeypatch.setattr(operator_server, "MOST_EMERGENCIES", 2)
     gates = {f"stop-{k:04}": asyncio.Event() for k in range(2)}
 
     async def settle(asked, _refusal):
         await gates[asked.request.command].wait()
 
-    lanes = DeskLanes(settle)
+    lanes = RequestScheduler(settle)
     first, second = (asked(EmergencyStop(id)) for id in gates)
     async with asyncio.timeout(5):
         await lanes.take(first)
@@ -195,7 +203,7 @@ async def test_the_connection_goes_on_as_soon_as_one_of_them_is_done(monkeypatch
 
 
 async def test_a_pause_beside_many_stops_holds_no_connection_up(monkeypatch):
-    monkeypatch.setattr(desk_lanes, "MOST_EMERGENCIES", -MOST_STOPPING)
+    monkeypatch.setattr(operator_server, "MOST_EMERGENCIES", -MOST_STOPPING)
     operator = Operator(held=(PauseRobot,))
     await operator.ask(PauseRobot("r1"), PauseRobot("r1"))
     assert operator.begun == [PauseRobot("r1")] * 2
@@ -300,7 +308,7 @@ async def test_one_stop_that_goes_wrong_keeps_no_other_from_being_waited_for():
         await free.wait()
         done.append(asked.request)
 
-    lanes = DeskLanes(settle)
+    lanes = RequestScheduler(settle)
     for request in (PauseRobot("r1"), PauseRobot("broken")):
         await lanes.take(asked(request))
     finishing = asyncio.ensure_future(lanes.finish())

@@ -8,8 +8,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robot_bridge.ground_track import GroundTracks
-from robot_bridge.messages import SendGPS, SendPos
+from robot_bridge.core.messages import SendGPS, SendPos
+from robot_bridge.gateway.model.position_checks import GroundTracks
 
 
 class Walk:

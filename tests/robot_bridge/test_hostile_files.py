@@ -9,19 +9,15 @@ from pathlib import Path
 import pytest
 from sqlalchemy import make_url
 
-from robot_bridge.assignment.errors import PlanFileError
-from robot_bridge.assignment.plan_json import from_json
-from robot_bridge.errors import StoreError
-from robot_bridge.layouts.errors import TableError
-from robot_bridge.layouts.table import Columns, cones_of, read_csv
+from robot_bridge.core.assignment.plan import plan_from_json
+from robot_bridge.core.errors import ConeTableError, PlanFileError, SettingsError, StoreError
+from robot_bridge.core.layouts.cone_files import ConeColumns, cones_of, read_csv
+from robot_bridge.core.sites.settings import read_settings
+from robot_bridge.core.sites.settings_tables import toml_tables, value_text
+from robot_bridge.gateway.storage.backup import MARK, PostgreSqlBackups
 from robot_bridge.links.base.errors import LinkError
 from robot_bridge.links.base.settings import read_settings as read_link_settings
-from robot_bridge.links.tracker.settings import TrackerSettings
-from robot_bridge.sites.errors import SettingsError
-from robot_bridge.sites.settings import read_settings
-from robot_bridge.sites.settings_toml import value_text
-from robot_bridge.sites.toml_reading import toml_tables
-from robot_bridge.store.backups.server_dump import MARK, PostgreSqlBackups
+from robot_bridge.links.tracker.adapter import TrackerSettings
 
 MOST = 3.0
 """seconds of the processor, on a computer three times as slow as a common one."""
@@ -79,15 +75,15 @@ def test_lines_of_a_settings_text_are_gone_over_once(line):
 def test_a_table_of_cones_without_bounds_is_refused(tmp_path, text, reason):
     file = tmp_path / "cones.csv"
     file.write_text(text, encoding="utf-8")
-    with pytest.raises(TableError, match=reason):
+    with pytest.raises(ConeTableError, match=reason):
         head, rows = read_csv(file)
-        cones_of(rows, head, Columns(), "cones")
+        cones_of(rows, head, ConeColumns(), "cones")
 
 
 @pytest.mark.parametrize("text", ["[" * 1_000_000, '{"a":' * 200_000, "9" * 1_000_000, '"' + "\\n" * 500_000])
 def test_a_plan_that_is_deep_or_long_is_refused(text):
     with pytest.raises(PlanFileError):
-        from_json(text)
+        plan_from_json(text)
 
 
 @pytest.mark.parametrize("first", [MARK + b"[" * 4000, b"[" * 4000 + b"\n", MARK + b"{}"])

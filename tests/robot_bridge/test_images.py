@@ -9,9 +9,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 from PIL import Image
 
-from robot_bridge.errors import RefusedError
-from robot_bridge.images import check_size, media_type_of
-from robot_bridge.messages import MessageError
+from robot_bridge.core.errors import RefusedError
+from robot_bridge.core.images import check_size, media_type_of
+from robot_bridge.core.messages import MessageError
 
 
 def picture(kind: str) -> bytes:

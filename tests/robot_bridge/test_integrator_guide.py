@@ -17,13 +17,13 @@ from bridge_wires import RefusedError
 from command_line import run_command
 from websockets.frames import CloseCode
 
-from robot_bridge import jsonrpc
-from robot_bridge.access.gate import REVOKED
-from robot_bridge.messages import ANSWERS, DESK_REQUESTS, PAYLOADS, REQUESTS
-from robot_bridge.robot_api.own_connection import REPLACED
-from robot_bridge.schemas.documents import documents
-from robot_bridge.schemas.tables import NOTIFICATIONS
-from robot_bridge.wire import decode_answer, decode_desk_request, decode_request
+from robot_bridge.core.messages import ANSWERS, DESK_REQUESTS, PAYLOADS, REQUESTS
+from robot_bridge.gateway.api.robot_session import REPLACED
+from robot_bridge.gateway.auth.gate import REVOKED
+from robot_bridge.protocol import jsonrpc
+from robot_bridge.protocol.asyncapi import documents
+from robot_bridge.protocol.codec import decode_answer, decode_desk_request, decode_request
+from robot_bridge.protocol.json_schemas import NOTIFICATIONS
 
 ROOT = Path(__file__).resolve().parents[2]
 GUIDE = (ROOT / "docs" / "integrator.md").read_text(encoding="utf-8")
@@ -382,7 +382,7 @@ def test_the_schemas_are_served_as_they_are_written(bridge, tmp_path):
 
 
 def test_the_reference_robots_command_lines_have_options_that_exist():
-    from robot_bridge.commands.robot import robot
+    from robot_bridge.cli.robot import robot
 
     for line in re.findall(r"^    robot-bridge robot (.*)$", GUIDE, re.MULTILINE):
         for option in re.findall(r"--([\w-]+)", line):

@@ -8,8 +8,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robot_bridge import jsonrpc
-from robot_bridge.jsonrpc import Call, FrameError, Reply
+from robot_bridge.protocol import jsonrpc
+from robot_bridge.protocol.jsonrpc import Call, FrameError, Reply
 
 stored = st.characters(exclude_categories=["Cs"], exclude_characters="\0")
 """Characters that every database stores."""

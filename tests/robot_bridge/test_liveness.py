@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from robot_bridge.liveness import liveness
+from robot_bridge.gateway.model.robots import liveness
 
 
 @pytest.mark.parametrize(

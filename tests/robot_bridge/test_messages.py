@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robot_bridge.messages import (
+from robot_bridge.core.messages import (
     ANSWERS,
     DESK_REQUESTS,
     REQUESTS,
@@ -52,7 +52,7 @@ from robot_bridge.messages import (
     site_report,
     to_json,
 )
-from robot_bridge.wire import (
+from robot_bridge.protocol.codec import (
     UnknownOperationError,
     decode_answer,
     decode_desk_request,

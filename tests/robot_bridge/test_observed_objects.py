@@ -7,13 +7,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from robot_bridge.messages import ObservationReport, ObservationState
-from robot_bridge.observed_objects import FIRST_ID, ObservedObjects
-from robot_bridge.robotmap.builder import Window, build_map
-from robot_bridge.robotmap.model import ShapeType
-from robot_bridge.robotmap.outlines import OutlineRow, Outlines
-from robot_bridge.robotmap.text import write_text
-from robot_bridge.robotmap.text_reader import read_text
+from robot_bridge.core.messages import ObservationReport, ObservationState
+from robot_bridge.core.robotmap.builder import build_map
+from robot_bridge.core.robotmap.model import ShapeType, Window
+from robot_bridge.core.robotmap.outlines import OutlineRow, Outlines
+from robot_bridge.core.robotmap.text_format import read_text, write_text
+from robot_bridge.gateway.site.site_maps import FIRST_ID, ObservedObjects
 
 WINDOW = Window(0.0, 0.0, 40.0, 40.0)
 

@@ -6,7 +6,7 @@ import json
 
 import pytest
 
-from robot_bridge.messages import (
+from robot_bridge.core.messages import (
     NewToken,
     OperatorReport,
     Operators,

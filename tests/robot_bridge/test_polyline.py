@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from robot_bridge.polyline import Polyline
+from robot_bridge.core.geometry import Polyline
 
 
 def test_a_corner_turns_at_its_point_alone():

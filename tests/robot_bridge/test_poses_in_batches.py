@@ -6,15 +6,15 @@ import random
 from dataclasses import asdict, replace
 from typing import ClassVar
 
-from robot_bridge.errors import BridgeError
-from robot_bridge.messages import RobotState, SendPos
-from robot_bridge.place_checks import PlaceChecks
-from robot_bridge.robots import Robots
-from robot_bridge.sites.limit_settings import LimitSettings
-from robot_bridge.sites.settings import Bounds, SiteSettings
+from robot_bridge.core.errors import BridgeError
+from robot_bridge.core.messages import RobotState, SendPos
+from robot_bridge.core.sites.settings import SiteBounds, SiteSettings
+from robot_bridge.core.sites.settings_tables import LimitSettings
+from robot_bridge.gateway.model.position_checks import PlaceChecks
+from robot_bridge.gateway.model.robots import Robots
 
 LIMITS = LimitSettings(place_within_m=60.0, leap_m=100.0)
-BOUNDS = Bounds(0.0, 0.0, 100.0, 100.0)
+BOUNDS = SiteBounds(0.0, 0.0, 100.0, 100.0)
 SITE = SiteSettings("s", "S", 1, "EPSG:32633", (0.0, 0.0), BOUNDS, limits=LIMITS)
 LINK, ROUNDS, STEP = "yard", 250, 0.1
 

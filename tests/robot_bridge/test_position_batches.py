@@ -8,11 +8,10 @@ import msgspec
 import numpy as np
 import pytest
 
-from robot_bridge.core.decoding import DecodingError
-from robot_bridge.core.position_frame import packed_frame
-from robot_bridge.links.base.positions import frame_of
-from robot_bridge.messages import MessageError, SendPos
-from robot_bridge.position_batches import entries_in, poses_in_frame
+from robot_bridge.core.json_decoder import DecodingError
+from robot_bridge.core.messages import MessageError, SendPos
+from robot_bridge.core.position_frame import entries_in, packed_frame, poses_in_frame
+from robot_bridge.links.base.linked_robots import frame_of
 
 FULL = SendPos(1.0, 2.0, 0.5, 0.1, 1e9, 0.5, "driving", 1e9, 0.2, 100.0, "course")
 BARE = SendPos(3.0, 4.0, -0.5, 0.0)

@@ -11,15 +11,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robot_bridge.messages import (
-    POSITION_FLAGS,
-    POSITION_NUMBERS,
-    POSITION_TEXTS,
-    RobotReport,
-    SendPos,
-)
-from robot_bridge.position_columns import frame
-from robot_bridge.robots import Robots
+from robot_bridge.core.messages import POSITION_FLAGS, POSITION_NUMBERS, POSITION_TEXTS, RobotReport, SendPos
+from robot_bridge.gateway.fleet.operator_updates import table_frame
+from robot_bridge.gateway.model.robots import Robots
 
 places = st.floats(-1e5, 1e5)
 maybe = st.none() | places
@@ -72,7 +66,7 @@ def fleet_of(poses):
 @given(fleets, st.floats(10.0, 60.0))
 def test_it_says_of_each_robot_what_the_rows_say(poses, now):
     robots = fleet_of(poses)
-    _, found = unpacked(frame(1.0, robots.changed(-1), now))
+    _, found = unpacked(table_frame(1.0, robots.changed(-1), now))
     for report in robots.reports(now):
         told = {k: v for k, v in dataclasses.asdict(report).items() if v is not None and k != "robot"}
         told["state"] = told["state"].value
@@ -88,11 +82,11 @@ def test_its_columns_are_the_fields_of_a_report():
 
 
 def test_what_no_robot_has_said_takes_no_column():
-    params, _ = unpacked(frame(1.0, fleet_of({"a": None}).changed(-1), 12.0))
+    params, _ = unpacked(table_frame(1.0, fleet_of({"a": None}).changed(-1), 12.0))
     assert sorted(params["columns"]) == ["age", "command", "latency", "link", "state", "stopped"]
 
 
 def test_a_place_keeps_every_digit():
     x = 640420.123456789 / 3
-    _, found = unpacked(frame(1.0, fleet_of({"a": SendPos(x, -x, math.pi, 0.1)}).changed(-1), 12.0))
+    _, found = unpacked(table_frame(1.0, fleet_of({"a": SendPos(x, -x, math.pi, 0.1)}).changed(-1), 12.0))
     assert (found["a"]["x"], found["a"]["y"], found["a"]["theta"]) == (x, -x, math.pi)

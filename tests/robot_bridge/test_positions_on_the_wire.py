@@ -6,8 +6,8 @@ import json
 
 import pytest
 
-from robot_bridge import jsonrpc
-from robot_bridge.wire import decode_position, decode_request
+from robot_bridge.protocol import jsonrpc
+from robot_bridge.protocol.codec import decode_position, decode_request
 
 POSE = {"x": 1.5, "y": -2, "theta": 0.5, "v": 1.0, "t": 1795249076.5, "battery": 0.5, "status": "docking"}
 

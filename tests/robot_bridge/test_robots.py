@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from robot_bridge.errors import NotReadyError
-from robot_bridge.messages import RobotState, SendPos
-from robot_bridge.robots import Robot, Robots
+from robot_bridge.core.errors import NotReadyError
+from robot_bridge.core.messages import RobotState, SendPos
+from robot_bridge.gateway.model.robots import Robot, Robots
 
 
 def pose(x, t=None, v=0.0):

@@ -6,9 +6,9 @@ import json
 
 import pytest
 
-from robot_bridge.messages import PositionForm, SendPos
-from robot_bridge.robots import Robots
-from robot_bridge.snapshots import EVERYTHING, MOST_RATES, Snapshots, Tick
+from robot_bridge.core.messages import PositionForm, SendPos
+from robot_bridge.gateway.fleet.operator_updates import EVERYTHING, MOST_RATES, Snapshots, Tick
+from robot_bridge.gateway.model.robots import Robots
 
 
 class Counted(Snapshots):

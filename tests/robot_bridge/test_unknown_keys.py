@@ -6,9 +6,9 @@ import json
 
 import pytest
 
-from robot_bridge.messages import DESK_REQUESTS, REQUESTS, MessageError
-from robot_bridge.schemas.documents import documents
-from robot_bridge.wire import decode_answer, decode_desk_request, decode_position, decode_request
+from robot_bridge.core.messages import DESK_REQUESTS, REQUESTS, MessageError
+from robot_bridge.protocol.asyncapi import documents
+from robot_bridge.protocol.codec import decode_answer, decode_desk_request, decode_position, decode_request
 
 VALID = {
     "Ready": {"magic": 1},

@@ -1,13 +1,16 @@
-"""The link's connection to the gateway: it comes back, tells nothing old, and has nothing done twice."""
+"""Client of the gateway's ``/link``: reconnects, does nothing twice; the process that runs an adapter."""
 
 from __future__ import annotations
 
 import asyncio
+import contextlib
 import itertools
 import logging
+import os
 import random
+import signal
 from collections import deque
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Coroutine, Sequence
 from typing import Any
 from urllib.parse import quote
 
@@ -15,9 +18,8 @@ import msgspec
 from websockets.asyncio.client import ClientConnection, connect
 from websockets.exceptions import ConnectionClosed, InvalidHandshake, InvalidStatus, InvalidURI
 
-from ... import jsonrpc
-from ...access.credentials import Credentials
-from ...messages import (
+from ...core.logs import log_and_continue, notify
+from ...core.messages import (
     Ability,
     Abort,
     Alive,
@@ -33,20 +35,21 @@ from ...messages import (
     check_robot_name,
     to_json,
 )
-from ...messages.links import LINK_PROTOCOL, GetAreas, LinkHello, LinkStatus, Released, SiteAreas
-from ...messages.plain import site_report
-from ...messages.service import Playback
-from ...monitoring.unforeseen import going_on
-from ...sites.frame import SiteFrame
-from ...wire import decode_answer, params_of
+from ...core.messages.administration import Playback
+from ...core.messages.json_values import site_report
+from ...core.messages.links import LINK_PROTOCOL, GetAreas, LinkHello, LinkStatus, Released, SiteAreas
+from ...core.sites.frame import SiteFrame
+from ...protocol import jsonrpc
+from ...protocol.codec import decode_answer, params_of
+from ...protocol.credentials import ClientCredentials
 from .adapter import Adapter
-from .commanding import Commanding
 from .errors import CommandRefusedError, LinkError
 from .frames import LinkFrame
-from .linked_robot import Kept, LinkedRobot
+from .linked_robots import Commanding, Kept, LinkedRobot, frame_of, gps_call
 from .memory import LinkMemory
-from .positions import frame_of, gps_call
 from .settings import LinkSettings
+
+# --- The link's connection to the gateway: it comes back, tells nothing old, and has nothing done twice
 
 log = logging.getLogger(__name__)
 
@@ -62,7 +65,7 @@ LARGEST_FRAME = 64 << 20
 
 
 class LinkClient:
-    """A connection to the gateway that comes back: the :class:`.link.Link` of an adapter."""
+    """A connection to the gateway that comes back: the :class:`.adapter.Link` of an adapter."""
 
     def __init__(self, settings: LinkSettings, adapter: Adapter, memory: LinkMemory) -> None:
         self.name = settings.name
@@ -70,7 +73,7 @@ class LinkClient:
         self._adapter = adapter
         self._memory = memory
         folder, gateway = settings.folder, settings.gateway
-        self._credentials = Credentials(
+        self._credentials = ClientCredentials(
             None if gateway.token_file is None else folder / gateway.token_file,
             None if gateway.ca is None else folder / gateway.ca,
         )
@@ -307,7 +310,7 @@ class LinkClient:
         known = (LinkError, MessageError) if self._is_welcome else Exception
         try:
             message = jsonrpc.decode(frame)
-            with going_on(log, "what the gateway said", except_for=known):
+            with log_and_continue(log, "what the gateway said", except_for=known):
                 if isinstance(message, jsonrpc.Call):
                     self._take_call(message)
                 else:
@@ -336,7 +339,7 @@ class LinkClient:
             for name, known in list(self._robots.items()):
                 if not known.is_only_seen:
                     # What goes wrong with one robot keeps the stop from no other.
-                    with going_on(log, f"stopping robot {name!r}"):
+                    with log_and_continue(log, f"stopping robot {name!r}"):
                         self._stop(name, f"{name}/{params.get('call')}", emergency=True)
         elif robot in self._robots:
             self._take_answer(robot, call, params)
@@ -505,3 +508,58 @@ def _reason(error: OSError | InvalidHandshake) -> str:
         said = bytes(error.response.body or b"").decode("utf-8", "replace").strip()
         return f"the gateway refuses (HTTP {error.response.status_code}): {said[:300]}"
     return str(error)
+
+
+# --- An adapter as a process: from its settings to its exit status ---
+
+
+def run(settings: LinkSettings, adapter: Adapter, *, until_stdin_closes: bool = False) -> None:
+    """Run an adapter until SIGTERM or SIGINT; raises BridgeError for what has to be put right.
+
+    Also ``until_stdin_closes``, which it does when the gateway that started this ends, however that ends.
+    """
+    asyncio.run(_until_told(serve(settings, adapter), until_stdin_closes))
+
+
+async def serve(settings: LinkSettings, adapter: Adapter) -> None:
+    """Run an adapter and its connection to the gateway until one of them fails, or this is cancelled."""
+    client = LinkClient(settings, adapter, LinkMemory(settings.memory_file))
+    connecting = asyncio.create_task(client.run())
+    adapting = asyncio.create_task(_adapt(client, adapter))
+    try:
+        done, _ = await asyncio.wait({connecting, adapting}, return_when=asyncio.FIRST_COMPLETED)
+        for task in done:
+            task.result()
+        raise LinkError(f"link {settings.name}: the {adapter.kind} side ended")
+    finally:
+        for task in (connecting, adapting):
+            task.cancel()
+        await asyncio.gather(connecting, adapting, return_exceptions=True)
+
+
+async def _adapt(client: LinkClient, adapter: Adapter) -> None:
+    await client.site_known()
+    notify("READY=1", f"STATUS=connected to {client.settings.gateway.url}")
+    await adapter.run(client)
+
+
+async def _until_told(work: Coroutine[Any, Any, None], until_stdin_closes: bool) -> None:
+    stop = asyncio.Event()
+    if until_stdin_closes:
+        asyncio.get_running_loop().add_reader(0, _read_stdin, stop)
+    for number in (signal.SIGINT, signal.SIGTERM):
+        asyncio.get_running_loop().add_signal_handler(number, stop.set)
+    working, stopping = asyncio.create_task(work), asyncio.create_task(stop.wait())
+    await asyncio.wait({working, stopping}, return_when=asyncio.FIRST_COMPLETED)
+    stopping.cancel()
+    if working.done():
+        await working
+    working.cancel()
+    with contextlib.suppress(asyncio.CancelledError):
+        await working
+
+
+def _read_stdin(stop: asyncio.Event) -> None:
+    if not os.read(0, 4096):
+        asyncio.get_running_loop().remove_reader(0)
+        stop.set()

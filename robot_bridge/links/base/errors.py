@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ...errors import BridgeError
+from ...core.errors import BridgeError
 
 
 class LinkError(BridgeError):

@@ -11,9 +11,8 @@ import msgspec
 import numpy as np
 import numpy.typing as npt
 
-from ...sites.errors import CrsError, SiteError
-from ...sites.frame import SiteFrame
-from ...sites.projections import crs_of, projections, utm_zone_of
+from ...core.errors import CrsError, SiteError
+from ...core.sites.frame import SiteFrame, crs_of, projections, utm_zone_of
 from .errors import LinkError
 
 Points = npt.NDArray[np.float64]

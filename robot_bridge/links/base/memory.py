@@ -15,7 +15,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from ...core.decoding import SHORT, DecodingError, decode_json
+from ...core.json_decoder import SHORT, DecodingError, decode_json
 from .errors import LinkError
 
 log = logging.getLogger(__name__)
@@ -29,7 +29,7 @@ PASSING = frozenset({errno.ENOSPC, errno.EDQUOT, errno.EROFS, errno.EIO})
 
 
 @dataclass(frozen=True)
-class Done:
+class CompletedCall:
     """What came of a message: ``refusal`` is None where the robot took it on."""
 
     refusal: str | None = None
@@ -38,7 +38,7 @@ class Done:
 @dataclass
 class _Robot:
     magic: int
-    begun: OrderedDict[int, Done | None] = field(default_factory=OrderedDict)
+    begun: OrderedDict[int, CompletedCall | None] = field(default_factory=OrderedDict)
     """what came of each message, None while that is not known."""
 
 
@@ -89,7 +89,7 @@ class LinkMemory:
             robot.begun.clear()
         self._append_if_possible({"database": database})
 
-    def find(self, robot: str, id: int) -> Done | None:
+    def find(self, robot: str, id: int) -> CompletedCall | None:
         """Return what came of a message, None where it was never finished."""
         known = self._robots.get(robot)
         return None if known is None else known.begun.get(id)
@@ -110,14 +110,14 @@ class LinkMemory:
             raise
         return False
 
-    async def finish(self, robot: str, id: int, done: Done) -> None:
+    async def finish(self, robot: str, id: int, done: CompletedCall) -> None:
         """Note what came of a message; it is on the disk when this returns, if the disk takes anything."""
         self._note(robot, id, done)
         refusal = {} if done.refusal is None else {"refusal": done.refusal}
         with contextlib.suppress(LinkError):
             await self._append_surely({"robot": robot, "done": id, **refusal})
 
-    def _note(self, robot: str, id: int, done: Done | None) -> None:
+    def _note(self, robot: str, id: int, done: CompletedCall | None) -> None:
         begun = self._robots[robot].begun
         begun[id] = done
         while len(begun) > MOST_DONE:
@@ -203,7 +203,7 @@ class LinkMemory:
             known = self._robots.get(line["robot"])
             self._robots[line["robot"]] = _Robot(int(line["magic"]), known.begun if known else OrderedDict())
         elif "done" in line:
-            self._note(line["robot"], int(line["done"]), Done(line.get("refusal")))
+            self._note(line["robot"], int(line["done"]), CompletedCall(line.get("refusal")))
         else:
             self._note(line["robot"], int(line["begun"]), None)
 

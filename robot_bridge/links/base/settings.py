@@ -10,8 +10,8 @@ from typing import Any, TypeVar
 
 import msgspec
 
-from ...messages import ROBOT_NAME
-from ...sites.toml_reading import toml_tables
+from ...core.messages import ROBOT_NAME
+from ...core.sites.settings_tables import toml_tables
 from .errors import LinkError
 from .frames import FrameSettings
 
@@ -22,7 +22,7 @@ LARGEST_FILE = 1 << 20
 """bytes."""
 
 
-class GatewaySettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+class GatewayAddressSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """Table ``[gateway]``: where the gateway is, and what is shown to it; files lie beside the settings."""
 
     url: str = ""
@@ -39,7 +39,7 @@ class LinkSettings(msgspec.Struct, frozen=True):
 
     name: str
     file: Path
-    gateway: GatewaySettings
+    gateway: GatewayAddressSettings
     frame: FrameSettings
     state_folder: Path
     answer_within_s: float = 10.0
@@ -74,7 +74,7 @@ def read_settings(file: Path, table: str, of: type[Table]) -> tuple[LinkSettings
     if tables.get("kind", table) != table:
         raise LinkError(f"{file}: kind = {tables['kind']!r}, and it is run as one of kind {table}")
     own = tables.get(table, {})
-    gateway = _convert(tables.get("gateway", {}), GatewaySettings, file, "gateway")
+    gateway = _convert(tables.get("gateway", {}), GatewayAddressSettings, file, "gateway")
     if not gateway.url:
         # That of the gateway that started this link, where one did.
         gateway = msgspec.structs.replace(gateway, url=os.environ.get("ROBOT_BRIDGE_LINK_URL", URL))

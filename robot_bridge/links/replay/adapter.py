@@ -1,4 +1,4 @@
-"""The adapter of recordings: tells where robots were, when the recording's clock is there."""
+"""Adapter of recordings: settings, clock, player; recorded drives as robots that are only seen."""
 
 from __future__ import annotations
 
@@ -6,29 +6,212 @@ import asyncio
 import contextlib
 import logging
 import math
+import re
 import time
 from collections import Counter
+from collections.abc import Iterator
+from dataclasses import dataclass
+from enum import Enum
 from pathlib import Path
 from typing import ClassVar
 
 import msgspec
 
-from ...messages import SendPos
-from ...messages.bounds import SPEED
-from ...messages.service import Playback, PlaybackReport
-from ...recordings.errors import RecordingError
-from ...recordings.movement import ORIGINS
-from ...recordings.opening import read_recording
-from ...recordings.tracks import Recording
-from ...sites.frame import SiteFrame
-from ..base.adapter import Adapter, Command
+from ...core.messages import MessageError, SendPos, check_robot_name
+from ...core.messages.administration import Playback, PlaybackReport
+from ...core.messages.validation import SPEED
+from ...core.sites.frame import SiteFrame
+from ...recordings.csv_table import TableForm
+from ...recordings.readers import ReadingOptions, read_recording
+from ...recordings.samples import RecordingError
+from ...recordings.tracks import ORIGINS, Recording, Track
+from ..base.adapter import Adapter, Command, Link
 from ..base.errors import CommandRefusedError, LinkError
 from ..base.frames import FrameSettings, LinkFrame
-from ..base.link import Link
 from ..base.settings import LinkSettings, read_settings
-from .clock import PlayClock
-from .player import Player, Presence, Told
-from .settings import ReplaySettings
+
+# --- Table ``[replay]`` of a link's settings: which file is played, and how ---
+
+PREFIX = "replay-"
+"""What the names of all replayed robots begin with, also where only names are stored."""
+_SLOWEST, _FASTEST = 0.1, 1000.0
+_UNUSABLE = re.compile(r"[^A-Za-z0-9_.-]+")
+
+
+class ReplaySettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """``file`` is beside the settings; ``robots`` gives recorded robots other names.
+
+    ``speed``, ``start_s`` (seconds after its begin), ``loop`` and ``paused`` may be changed while it is
+    played. A robot of which the file says nothing for ``largest_gap_s`` of its seconds is silent.
+    ``columns``, ``delimiter``, ``time_unit`` and ``theta_unit`` are those of CSV; ``topics`` are patterns of
+    the topics of a bag.
+    """
+
+    file: str
+    speed: float = 1.0
+    start_s: float = 0.0
+    loop: bool = False
+    paused: bool = False
+    robots: dict[str, str] = {}
+    largest_gap_s: float = 10.0
+    columns: dict[str, str] = {}
+    delimiter: str = ","
+    time_unit: str = "s"
+    theta_unit: str = "rad"
+    topics: list[str] = []
+
+    def check(self, file: Path) -> None:
+        """Raise LinkError, naming file and key, for what cannot be."""
+        bounds = {"speed": (_SLOWEST, _FASTEST), "start_s": (0.0, 1e9), "largest_gap_s": (0.1, 1e6)}
+        for key, (least, most) in bounds.items():
+            if not least <= getattr(self, key) <= most:
+                raise LinkError(
+                    f"{file}: replay.{key} = {getattr(self, key)}: give a number from {least:g} to {most:g}"
+                )
+        try:
+            self.reading.table.check()
+        except RecordingError as error:
+            raise LinkError(f"{file}: replay.{error}") from None
+
+    @property
+    def reading(self) -> ReadingOptions:
+        """How the file is to be read."""
+        return ReadingOptions(
+            TableForm(self.columns, self.delimiter, self.time_unit, self.theta_unit), tuple(self.topics)
+        )
+
+    def is_same_recording(self, other: ReplaySettings) -> bool:
+        """Tell whether ``other`` differs only in what may be changed while it is played."""
+        changed = msgspec.structs.replace(
+            other, speed=self.speed, start_s=self.start_s, loop=self.loop, paused=self.paused
+        )
+        return changed == self
+
+    def names(self, recorded: list[str], file: Path) -> dict[str, str]:
+        """Return the names that recorded robots have on the map; raises LinkError."""
+        for name in self.robots:
+            if name not in recorded:
+                there = ", ".join(recorded[:20])
+                raise LinkError(f"{file}: replay.robots.{name}: no robot is recorded so; there are {there}")
+        names: dict[str, str] = {}
+        for name in recorded:
+            given = self.robots.get(name, _UNUSABLE.sub("-", name).strip("-"))
+            names[name] = given if given.startswith(PREFIX) else PREFIX + given
+            try:
+                check_robot_name(names[name])
+            except MessageError as error:
+                raise LinkError(f"{file}: replay.robots.{name}: {error}") from None
+        if len(set(names.values())) < len(names):
+            raise LinkError(f"{file}: replay.robots: two robots would have one name; give each its own")
+        return names
+
+
+# --- Where in a recording it is, by a clock that only goes forward; no I/O ---
+
+
+class PlayClock:
+    """Seconds of a recording, ``speed`` of them for each second of the clock that ``now`` is read from.
+
+    The place is always reckoned from where it was set last, never summed up, so it does not drift.
+    """
+
+    def __init__(self, place: float, speed: float, now: float, *, paused: bool = False) -> None:
+        self._place = place
+        self._since = now
+        self._speed = speed
+        self._paused = paused
+
+    @property
+    def speed(self) -> float:
+        """Seconds of the recording for each second."""
+        return self._speed
+
+    @property
+    def is_paused(self) -> bool:
+        """Whether it stands."""
+        return self._paused
+
+    def place(self, now: float) -> float:
+        """Return the recording's time at ``now``."""
+        return self._place if self._paused else self._place + (now - self._since) * self._speed
+
+    def when(self, place: float) -> float:
+        """Return the clock's time at which ``place`` is reached; infinite while it stands."""
+        return math.inf if self._paused else self._since + (place - self._place) / self._speed
+
+    def seek(self, place: float, now: float) -> None:
+        """Go to ``place``."""
+        self._place, self._since = place, now
+
+    def change(self, now: float, *, speed: float, paused: bool) -> None:
+        """Go on from where it is with another speed, or stand."""
+        self.seek(self.place(now), now)
+        self._speed, self._paused = speed, paused
+
+
+# --- What of a recording is to be told when its clock is at a place; no I/O ---
+
+
+class ReplayPresence(Enum):
+    """Whether the recording knows of a robot at a place: not yet, now, silent for too long, or no more."""
+
+    BEFORE, HERE, SILENT, OVER = range(4)
+
+
+@dataclass
+class _Cursor:
+    track: Track
+    at: int = -1
+    """the number of the position that was told last, -1 for none."""
+
+    def move(self, place: float) -> bool:
+        """Go to the last position up to ``place``; return whether that is another one."""
+        last, self.at = self.at, int(self.track.t.searchsorted(place, side="right")) - 1
+        return self.at != last
+
+    def presence(self, place: float, largest_gap: float) -> ReplayPresence:
+        """Return whether the recording knows of the robot."""
+        if self.at < 0:
+            return ReplayPresence.BEFORE
+        if place - self.track.t[self.at] <= largest_gap:
+            return ReplayPresence.HERE
+        return ReplayPresence.OVER if self.at == len(self.track.t) - 1 else ReplayPresence.SILENT
+
+
+@dataclass(frozen=True)
+class Told:
+    """Position number ``at`` of a track is told; ``is_new`` unless it was told before."""
+
+    track: Track
+    at: int
+    presence: ReplayPresence
+    is_new: bool
+
+
+class Player:
+    """Goes through the tracks of a recording.
+
+    A robot of which the recording says nothing for more than ``largest_gap`` of its seconds is silent.
+    """
+
+    def __init__(self, recording: Recording, largest_gap: float) -> None:
+        self._cursors = [_Cursor(track) for track in recording.tracks]
+        self._largest_gap = largest_gap
+        self.begin, self.end = recording.begin, recording.end
+
+    def advance(self, place: float) -> Iterator[Told]:
+        """Yield for each robot where it is at ``place``, seconds of the recording."""
+        for cursor in self._cursors:
+            is_new = cursor.move(place)
+            yield Told(cursor.track, cursor.at, cursor.presence(place, self._largest_gap), is_new)
+
+    def next_place(self) -> float:
+        """Return when the recording says something new, infinite at its end."""
+        following = (float(c.track.t[c.at + 1]) for c in self._cursors if c.at + 1 < len(c.track.t))
+        return min(following, default=math.inf)
+
+
+# --- The adapter of recordings: tells where robots were, when the recording's clock is there ---
 
 log = logging.getLogger(__name__)
 
@@ -136,16 +319,16 @@ class ReplayAdapter(Adapter):
         status = self._status(clock)
         for told in self._player.advance(clock.place(now)):
             name = self._names[told.track.robot]
-            if told.presence is Presence.HERE and (told.is_new or (again and clock.is_paused)):
+            if told.presence is ReplayPresence.HERE and (told.is_new or (again and clock.is_paused)):
                 if name not in known:
                     link.add(name)
                 if told.is_new:
                     self._told += 1
                     self._note_delay(now - clock.when(float(told.track.t[told.at])))
                 self._place(link, name, told, status, stands=clock.is_paused)
-            elif told.presence is Presence.HERE and again:
+            elif told.presence is ReplayPresence.HERE and again:
                 link.alive(name)
-            elif told.presence in (Presence.BEFORE, Presence.OVER) and name in known:
+            elif told.presence in (ReplayPresence.BEFORE, ReplayPresence.OVER) and name in known:
                 link.stopped(name)
                 link.remove(name)
         self._has_sought = False

@@ -5,10 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from enum import Enum
 
-from ...messages import SetPath, SetPosEnd
+from ...core.messages import SetPath, SetPosEnd
 
 
-class Action(str, Enum):
+class RosAction(str, Enum):
     """Nav2's actions that drive a robot."""
 
     TO_POSE = "NavigateToPose"
@@ -17,7 +17,7 @@ class Action(str, Enum):
     WAYPOINTS = "FollowWaypoints"
 
 
-PATH_ACTIONS = (Action.FOLLOW_PATH, Action.THROUGH_POSES, Action.WAYPOINTS)
+PATH_ACTIONS = (RosAction.FOLLOW_PATH, RosAction.THROUGH_POSES, RosAction.WAYPOINTS)
 """Those that drive a path, the one that keeps to it best first."""
 
 
@@ -25,8 +25,8 @@ PATH_ACTIONS = (Action.FOLLOW_PATH, Action.THROUGH_POSES, Action.WAYPOINTS)
 class Abilities:
     """What somebody on the robot's side listens to at the moment, found by discovery."""
 
-    actions: frozenset[Action] = frozenset()
-    foreign: frozenset[Action] = frozenset()
+    actions: frozenset[RosAction] = frozenset()
+    foreign: frozenset[RosAction] = frozenset()
     """Those of another distribution: goals sent to them could not be read, and theirs can be canceled."""
     goal_topic: bool = False
     path_topic: bool = False
@@ -35,7 +35,7 @@ class Abilities:
     cone_service: bool = False
 
     @property
-    def driving(self) -> frozenset[Action]:
+    def driving(self) -> frozenset[RosAction]:
         """The actions that goals may be sent to."""
         return self.actions - self.foreign
 
@@ -71,7 +71,7 @@ class Remark:
 class SendGoal:
     """Send the goal for a ``message`` to an action server, and ask for its result."""
 
-    action: Action
+    action: RosAction
     goal_id: bytes
     task: SetPosEnd | SetPath
     message: int
@@ -81,7 +81,7 @@ class SendGoal:
 class CancelGoals:
     """Ask an action server to cancel one goal; without ``goal_id`` all, whoever sent them."""
 
-    action: Action
+    action: RosAction
     goal_id: bytes | None = None
 
 

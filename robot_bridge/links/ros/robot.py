@@ -1,22 +1,33 @@
-"""One ROS robot of a link: what it says goes to the gateway, what the gateway says is done."""
+"""One ROS robot of a link, and its camera, between the gateway and the network that reaches it."""
 
 from __future__ import annotations
 
 import asyncio
+import hashlib
 import logging
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
-from typing import Any, Generic, cast
+from typing import Any, Generic, Protocol, TypeVar, cast
 
-from ...messages import Ability, SendGPS, SetMap, SetPath, SetPosEnd, SetPosIni
-from ..base.adapter import Command
+from ...core.messages import (
+    Ability,
+    MessageError,
+    SendGPS,
+    SendImage,
+    SendPos,
+    SetMap,
+    SetPath,
+    SetPosEnd,
+    SetPosIni,
+)
+from ...core.messages.validation import LONGEST_LABEL, one_line
+from ...core.sites.frame import SiteFrame
+from ..base.adapter import Command, Link
 from ..base.errors import CommandRefusedError
-from ..base.link import Link
-from .camera import Camera
+from ..base.frames import WGS84, FrameSettings, LinkFrame
 from .effects import (
     Abilities,
-    Action,
     Answered,
     CallCone,
     CallStop,
@@ -26,17 +37,139 @@ from .effects import (
     PublishHere,
     PublishTask,
     Remark,
+    RosAction,
     SendGoal,
     StopEnded,
     ZeroTwist,
 )
-from .geometry import Pose
-from .grids import Grids
-from .masks import KEEPOUT, SPEED, Masks
-from .peer import Acting, Hearing, Network
-from .sensing import Sensing
+from .errors import FaultError
+from .messages import Pose, image_of
+from .sensing import Sensing, stamp
 from .settings import RobotSettings
+from .site_maps import KEEPOUT, SPEED, Grids, Masks
 from .tasks import Tasks
+
+# --- What the way to a robot does for it, however that is made: over DDS, or over rosbridge ---
+
+Network = TypeVar("Network", contravariant=True)
+"""Who is there on the network, as that way to the robot knows it."""
+
+
+class Hearing(Protocol[Network]):
+    """Hears a robot's topics."""
+
+    def connect(self, network: Network) -> None:
+        """Read what is offered under the robot's names now."""
+
+    def poll(self) -> SendPos | SendGPS | None:
+        """Take in what has come; return the robot's newest position, None where none came."""
+
+
+class RobotActions(Protocol[Network]):
+    """Speaks to a robot. ``server`` is who has its tasks, None where nobody does."""
+
+    server: bytes | None
+    feedback: str | None
+
+    @property
+    def abilities(self) -> Abilities:
+        """Who of the robot's side hears this program at the moment."""
+
+    def connect(self, network: Network) -> None:
+        """Meet the servers and listeners that are there now."""
+
+    def hears(self, setting: str) -> bool:
+        """Tell whether somebody listens to the topic of a setting."""
+
+    def poll(self, tasks: Tasks, now: float, fault: Callable[[str, str], None]) -> list[Effect]:
+        """Take in what servers have said; return the effects."""
+
+    def send_goal(self, asked: SendGoal, here: Pose | None) -> None:
+        """Send a goal; ``here`` is where the robot is. Raises ValueError where it has no place there."""
+
+    def ask_result(self, asked: SendGoal) -> None:
+        """Ask for the result of a goal that was taken on."""
+
+    def cancel(self, asked: CancelGoals) -> None:
+        """Cancel goals."""
+
+    def call(self, setting: str) -> None:
+        """Call a service of type Trigger."""
+
+    def publish_task(self, asked: PublishTask, here: Pose | None) -> None:
+        """Publish a target or a path; raises ValueError where it has no place there."""
+
+    def publish_target(self, target: SetPosEnd, here: Pose | None) -> None:
+        """Publish a target."""
+
+    def publish_zero(self) -> None:
+        """Publish speed 0, with or without a time as its listeners want it."""
+
+    def publish_start(self, start: SetPosIni, here: Pose | None) -> None:
+        """Publish where the robot is to take itself to be."""
+
+    def publish_latched(self, setting: str, message: bytes) -> None:
+        """Publish what is encoded on a topic of LATCHED: who comes later is told it, too."""
+
+    def serve_map(self, grid: bytes) -> None:
+        """Answer with a map that is encoded who asks for it by the service ``get_map``."""
+
+
+# --- One robot's images on their way to the gateway: seldom, one at a time, with the place of the robot
+
+
+class Camera:
+    """Has the robot's sensing wait for an image when one is due, and sends it as an observation."""
+
+    def __init__(self, robot: str, settings: RobotSettings, link: Link, sensing: Sensing) -> None:
+        self._robot = robot
+        self._settings = settings
+        self._link = link
+        self._sensing = sensing
+        self._due = 0.0
+        self._sending: asyncio.Task[None] | None = None
+
+    def step(self, now: float) -> None:
+        """Send the image that has come; ``now`` is a steady clock's."""
+        sensing, image = self._sensing, self._sensing.image
+        sensing.image = None
+        place = self._place()
+        if image is not None and place is not None and sensing.wants_image:
+            self._due = now + self._settings.image_every_s
+            self._sending = asyncio.create_task(self._send(*image, place))
+        is_free = self._sending is None or self._sending.done()
+        sensing.wants_image = is_free and now >= self._due and place is not None
+
+    def _place(self) -> tuple[float, float] | None:
+        """Return where the robot is in the site frame, None while that is not known."""
+        pose, fix = self._sensing.pose, self._sensing.fix
+        if pose is not None:
+            return pose.x, pose.y
+        if fix is None:
+            return None
+        site = self._link.site
+        frame = SiteFrame(site.crs, (site.origin[0], site.origin[1]), site.rotation)
+        try:
+            return LinkFrame(FrameSettings(crs=WGS84), frame).to_site(fix.lon, fix.lat)
+        except ValueError:
+            return None
+
+    async def _send(self, topic: str, type_name: str, message: Any, place: tuple[float, float]) -> None:
+        largest = min(self._settings.largest_image_bytes, self._link.largest_image_bytes)
+        try:
+            image = await asyncio.to_thread(image_of, type_name, message, largest)
+            digest = hashlib.sha256(image).hexdigest()[:16]
+            x, y = place
+            seen = one_line(str(message.header.frame_id), LONGEST_LABEL) or "camera"
+            told = SendImage(image, x, y, seen, t=stamp(message.header), source=f"{topic[-100:]} {digest}")
+            await self._link.ask(self._robot, told)
+        except (FaultError, MessageError, CommandRefusedError) as error:
+            self._sensing.refuse(topic, error)
+        else:
+            self._sensing.faults.pop(topic, None)
+
+
+# --- One ROS robot of a link: what it says goes to the gateway, what the gateway says is done ---
 
 log = logging.getLogger(__name__)
 
@@ -60,7 +193,7 @@ class RosRobot(Generic[Network]):
         link: Link,
         sensing: Sensing,
         hearing: Hearing[Network],
-        acting: Acting[Network],
+        acting: RobotActions[Network],
         grids: Grids,
         masks: Masks,
     ) -> None:
@@ -263,7 +396,7 @@ class RosRobot(Generic[Network]):
     def _abilities(self, can: Abilities) -> list[Ability]:
         settings = self._settings
         offered = {
-            "targets": Action.TO_POSE in can.driving or can.goal_topic,
+            "targets": RosAction.TO_POSE in can.driving or can.goal_topic,
             "paths": can.path_topic or not can.driving.isdisjoint(settings.actions_for_paths),
             "start": self._acting.hears("initial_pose"),
             "cones": can.cone_service,

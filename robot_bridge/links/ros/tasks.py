@@ -1,28 +1,128 @@
-"""The tasks of one robot: from the gateway's message to a Nav2 goal, to its end, to a stop; no I/O.
-
-Time is given, in seconds of a steady clock. What is to be done is returned as effects.
-"""
+"""Tasks of one robot as goals of actions, and how a robot is stopped."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
-from ...messages import SetPath, SetPosEnd
+from ...core.messages import SetPath, SetPosEnd
 from .effects import (
     PATH_ACTIONS,
     Abilities,
-    Action,
     Answered,
     CallCone,
+    CallStop,
     CancelGoals,
     Effect,
     Idle,
+    PublishHere,
     PublishTask,
+    Remark,
+    RosAction,
     SendGoal,
+    StopEnded,
+    ZeroTwist,
 )
 from .goals import ACTIVE, GoalStatus, Statuses, failure_of, goal_id, message_of, missed_text
-from .stopping import Stop
+
+# --- How a robot on ROS 2 is stopped: what is said, how often, and when it counts as heard; no I/O ---
+# A stop is three things at once, repeated until they are answered: all goals of its action servers are
+# canceled, whoever sent them; speed 0 is published; its stop service is called where it has one.
+
+ASK_AGAIN = 0.5
+"""seconds after which goals are canceled, and the service called, once more."""
+TWIST_EVERY = 0.1
+"""seconds between two messages of speed 0."""
+LONGEST = 5.0
+"""seconds after which a stop that nobody answered is refused, so that operators see it."""
+ASK_SELDOM = 2.0
+"""seconds between two attempts after that."""
+STANDING = 0.05
+"""m/s below which a robot stands."""
+
+REJECTED = 1
+"""action_msgs/CancelGoal: ERROR_REJECTED."""
+
+
+class Stop:
+    """One stop of one robot, from the first Abort to its end."""
+
+    def __init__(self, now: float) -> None:
+        self._began = now
+        self._ask_at = self._twist_at = now
+        self._canceled: set[RosAction] = set()
+        self._stopped_by_service = False
+        self._stood = 0
+        self._service_said = ""
+        self.is_over = False
+        self.is_refused = False
+
+    def restart(self, now: float) -> None:
+        """Give a stop that nobody answered as much time again."""
+        self._began, self._ask_at, self.is_refused = now, now, False
+
+    def cancel_answered(self, action: RosAction, code: int, statuses: Statuses) -> None:
+        """Take in what an action server said to canceling all goals; ``statuses`` are its goals'."""
+        busy = any(status in ACTIVE and status != GoalStatus.CANCELING for status in statuses.values())
+        if code != REJECTED or not busy:
+            self._canceled.add(action)
+
+    def stop_answered(self, success: bool, text: str) -> None:
+        """Take in what the stop service said."""
+        self._stopped_by_service |= success
+        self._service_said = text
+
+    def seen(self, speed: float | None) -> None:
+        """Take in a speed of the robot, m/s; None where its positions tell none."""
+        self._stood = self._stood + 1 if speed is not None and abs(speed) <= STANDING else 0
+
+    def step(self, abilities: Abilities, goals: Mapping[RosAction, Statuses], now: float) -> list[Effect]:
+        """Return what is to be done now; ``goals`` are those of each action server."""
+        missing = self._missing(abilities, goals)
+        if not missing:
+            return self._end()
+        effects: list[Effect] = []
+        if now >= self._twist_at and abilities.velocity and not self.is_refused:
+            self._twist_at = now + TWIST_EVERY
+            effects.append(ZeroTwist())
+        if now >= self._ask_at:
+            self._ask_at = now + (ASK_SELDOM if self.is_refused else ASK_AGAIN)
+            effects += [CancelGoals(action) for action in sorted(abilities.actions)]
+            effects += [CallStop()] * (abilities.stop_service and not self._stopped_by_service)
+            effects += [PublishHere()] * abilities.goal_topic
+        if now - self._began >= LONGEST and not self.is_refused:
+            effects += self._refuse(missing)
+        return effects
+
+    def _missing(self, abilities: Abilities, goals: Mapping[RosAction, Statuses]) -> list[str]:
+        """Return what has not been answered yet, in words."""
+        missing = []
+        for action in sorted(abilities.actions):
+            active = any(status in ACTIVE for status in goals.get(action, {}).values())
+            if action not in self._canceled:
+                missing.append(f"its server of {action.value} does not answer")
+            elif active:
+                missing.append(f"its server of {action.value} still has a goal")
+        if abilities.stop_service and not self._stopped_by_service:
+            said = f", it said {self._service_said[:120]!r}" if self._service_said else ""
+            missing.append(f"its stop service did not confirm{said}")
+        if not abilities.actions and not abilities.stop_service and self._stood < 2:
+            told = "it was sent speed 0" if abilities.velocity else "nobody listens there to any stop"
+            missing.append(f"{told}, and it is not seen to stand")
+        return missing
+
+    def _end(self) -> list[Effect]:
+        self.is_over = True
+        return [Remark("it answered the stop after all")] if self.is_refused else [StopEnded()]
+
+    def _refuse(self, missing: list[str]) -> list[Effect]:
+        self.is_refused = True
+        what = "; ".join(missing)
+        return [StopEnded(f"the stop was not confirmed within {LONGEST:g} s: {what}. Stop it on site")]
+
+
+# --- The tasks of one robot: from the gateway's message to a Nav2 goal, to its end, to a stop; no I/O ---
+# Time is given, in seconds of a steady clock. What is to be done is returned as effects.
 
 ACCEPTED_WITHIN = 5.0
 """seconds for an action server to take a goal on or refuse it."""
@@ -46,13 +146,13 @@ _NO_TARGETS = (
 
 
 @dataclass(frozen=True)
-class Task:
+class RosTask:
     """What the robot was asked by ``message``, as a goal or on a topic, and how far that is."""
 
     message: int
     order: SetPosEnd | SetPath | None
     goal: bytes
-    action: Action | None
+    action: RosAction | None
     sent_at: float | None = None
     taken: bool = False
     rejected_at: float | None = None
@@ -73,15 +173,15 @@ class Tasks:
     ``path_actions`` that is there.
     """
 
-    def __init__(self, *, cones: bool, path_actions: Sequence[Action] = PATH_ACTIONS) -> None:
+    def __init__(self, *, cones: bool, path_actions: Sequence[RosAction] = PATH_ACTIONS) -> None:
         self._cones = cones
         self._path_actions = path_actions
-        self._task: Task | None = None
-        self._waiting: Task | None = None
+        self._task: RosTask | None = None
+        self._waiting: RosTask | None = None
         """The task that is sent when the one before, or a stop, has ended."""
         self._wait_until = 0.0
         self._stop: Stop | None = None
-        self._goals: dict[Action, dict[bytes, GoalStatus]] = {}
+        self._goals: dict[RosAction, dict[bytes, GoalStatus]] = {}
 
     @property
     def is_busy(self) -> bool:
@@ -114,7 +214,7 @@ class Tasks:
         effects: list[Effect] = []
         if self._waiting is not None:
             effects.append(_refused(self._waiting, "another task came before it was begun"))
-        task = Task(message, order, goal_id(message), self._action_for(order, abilities))
+        task = RosTask(message, order, goal_id(message), self._action_for(order, abilities))
         known = self._known(task)
         if known is not None and again:
             self._task = replace(task, sent_at=now)
@@ -137,13 +237,13 @@ class Tasks:
             self._stop.restart(now)
         return [*effects, *self.step(abilities, now)]
 
-    def goal_answered(self, action: Action, accepted: bool, now: float) -> None:
+    def goal_answered(self, action: RosAction, accepted: bool, now: float) -> None:
         """Take in a reply to ``send_goal``, maybe to another client: the status topic says more."""
         task = self._task
         if task is not None and task.action == action and not task.taken and not accepted:
             self._task = replace(task, rejected_at=now)
 
-    def statuses_came(self, action: Action, statuses: Statuses, now: float) -> list[Effect]:
+    def statuses_came(self, action: RosAction, statuses: Statuses, now: float) -> list[Effect]:
         """Take in what the status topic of an action server says of its goals."""
         self._goals[action] = dict(statuses)
         if self._task is None and self._stop is None and self._waiting is None:
@@ -154,7 +254,7 @@ class Tasks:
             return []
         return self._judge(task, status, now)
 
-    def _judge(self, task: Task, status: GoalStatus, now: float) -> list[Effect]:
+    def _judge(self, task: RosTask, status: GoalStatus, now: float) -> list[Effect]:
         effects = self._take_on(task) if not task.taken and status != GoalStatus.UNKNOWN else []
         task = self._task or task
         if status == GoalStatus.SUCCEEDED:
@@ -165,7 +265,7 @@ class Tasks:
 
     def result_came(
         self,
-        action: Action,
+        action: RosAction,
         status: int,
         error_code: int | None,
         text: str | None,
@@ -177,7 +277,7 @@ class Tasks:
             return
         if status in (GoalStatus.ABORTED, GoalStatus.CANCELED):
             self._task = replace(task, failure=failure_of(GoalStatus(status), error_code, text))
-        elif status == GoalStatus.SUCCEEDED and action is Action.WAYPOINTS:
+        elif status == GoalStatus.SUCCEEDED and action is RosAction.WAYPOINTS:
             self._task = replace(task, failure=missed_text(missed) if missed else "", has_result=True)
 
     def cone_answered(self, success: bool, text: str) -> list[Effect]:
@@ -190,7 +290,7 @@ class Tasks:
             return [Idle()]
         return [_refused(task, f"it stands there, and its cone service said {text[:120]!r}")]
 
-    def cancel_answered(self, action: Action, code: int) -> None:
+    def cancel_answered(self, action: RosAction, code: int) -> None:
         """Take in what an action server said to canceling all its goals."""
         if self._stop is not None:
             self._stop.cancel_answered(action, code, self._goals.get(action, {}))
@@ -210,7 +310,7 @@ class Tasks:
         self._task = self._waiting = None
         self._goals.clear()
 
-    def server_left(self, action: Action) -> None:
+    def server_left(self, action: RosAction) -> None:
         """Forget the goals of an action server that is gone."""
         self._goals.pop(action, None)
 
@@ -230,9 +330,9 @@ class Tasks:
             return self._send(abilities, now)
         return self._overdue(now)
 
-    def _action_for(self, order: SetPosEnd | SetPath, abilities: Abilities) -> Action | None:
+    def _action_for(self, order: SetPosEnd | SetPath, abilities: Abilities) -> RosAction | None:
         """Return the action that carries out an order, None where the robot has none for it."""
-        wanted = self._path_actions if isinstance(order, SetPath) else (Action.TO_POSE,)
+        wanted = self._path_actions if isinstance(order, SetPath) else (RosAction.TO_POSE,)
         return next((action for action in wanted if action in abilities.driving), None)
 
     def _refusal(self, order: SetPosEnd | SetPath, abilities: Abilities) -> str | None:
@@ -244,7 +344,7 @@ class Tasks:
         heard = abilities.path_topic if isinstance(order, SetPath) else abilities.goal_topic
         return None if heard else (_NO_PATHS if isinstance(order, SetPath) else _NO_TARGETS)
 
-    def _leave(self, following: Task) -> list[Effect]:
+    def _leave(self, following: RosTask) -> list[Effect]:
         """Return what ends the task before, where the action server does not see to that by itself."""
         task, self._task = self._task, None
         if task is None or task.action is None or task.action == following.action:
@@ -267,7 +367,7 @@ class Tasks:
         self._task = replace(task, sent_at=now)
         return [SendGoal(task.action, task.goal, task.order, task.message)]
 
-    def _take_on(self, task: Task) -> list[Effect]:
+    def _take_on(self, task: RosTask) -> list[Effect]:
         self._task = replace(task, taken=True)
         return [Answered(task.message), *[goal for goal in self._active() if goal.goal_id != task.goal]]
 
@@ -280,19 +380,19 @@ class Tasks:
             if status in ACTIVE and message_of(goal) is not None
         ]
 
-    def _known(self, task: Task) -> GoalStatus | None:
+    def _known(self, task: RosTask) -> GoalStatus | None:
         return self._goals.get(task.action, {}).get(task.goal) if task.action else None
 
-    def _adopt(self, action: Action, statuses: Statuses, now: float) -> None:
+    def _adopt(self, action: RosAction, statuses: Statuses, now: float) -> None:
         """Take up a goal of ours that this program sent before it was started anew."""
         for goal, status in statuses.items():
             message = message_of(goal)
             if message is not None and status in ACTIVE:
-                self._task = Task(message, None, goal, action, sent_at=now, taken=True)
+                self._task = RosTask(message, None, goal, action, sent_at=now, taken=True)
 
     def _succeed(self, now: float) -> list[Effect]:
         task = self._task
-        if task is not None and task.action is Action.WAYPOINTS and task.order is not None:
+        if task is not None and task.action is RosAction.WAYPOINTS and task.order is not None:
             since = now if task.succeeded_at is None else task.succeeded_at
             task = self._task = replace(task, succeeded_at=since)
             if task.failure:
@@ -332,5 +432,5 @@ class Tasks:
         return [CancelGoals(task.action, task.goal), _refused(task, reason)]
 
 
-def _refused(task: Task, reason: str) -> Answered:
+def _refused(task: RosTask, reason: str) -> Answered:
     return Answered(task.message, reason)

@@ -1,32 +1,412 @@
-"""The adapter of ROS 2 robots: finds them on the network and leads each, in one loop."""
+"""Adapter of ROS 2 robots over DDS: settings; topics of each robot read, its actions and services called."""
 
 from __future__ import annotations
 
 import asyncio
+import logging
 import time
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
-from typing import ClassVar
+from typing import Any, ClassVar
 
-from ..base.adapter import Adapter
+from ...core.messages import SendGPS, SendPos, SetPath, SetPosEnd, SetPosIni
+from ..base.adapter import Adapter, Link
 from ..base.errors import LinkError
-from ..base.link import Link
 from ..base.settings import LinkSettings, read_settings
-from ..ros.adapter import RosAdapter
-from ..ros.errors import RosError
-from ..ros.geometry import Outgoing
-from ..ros.grids import Grids
-from ..ros.masks import Masks
-from ..ros.notes import RobotNotes
+from ..ros.adapter import RobotNotes, RosAdapter
+from ..ros.effects import Abilities, CancelGoals, PublishTask, RosAction, SendGoal
+from ..ros.errors import FaultError, RosError
+from ..ros.goals import GoalStatus, Statuses, feedback_text, missed_of, statuses_of
+from ..ros.messages import (
+    ACTIONS,
+    GET_MAP,
+    LATCHED,
+    READ,
+    SERVICES,
+    TRIGGER,
+    TWIST,
+    WRITTEN,
+    Outgoing,
+    Pose,
+    action_type,
+)
 from ..ros.robot import RosRobot
 from ..ros.sensing import Sensing
-from .acting import Acting
-from .dds import Participant
-from .interfaces import Interfaces
-from .listening import Listening, Offers
-from .names import topic_from_dds
-from .services import by_topic
-from .settings import Ros2Settings, check
+from ..ros.settings import RobotSettings, check_robots
+from ..ros.site_maps import Grids, Masks
+from ..ros.tasks import Tasks
+from .dds import DdsSettings, Endpoint, Participant, Quality, Range, RawReader, RawWriter, quality_for
+from .interfaces import (
+    Interfaces,
+    action_names,
+    service_names,
+    topic_from_dds,
+    topic_to_dds,
+    type_from_dds,
+    type_to_dds,
+)
+from .services import ActionClient, Refuse, ServiceClient, ServiceServer, by_topic, is_framed
+
+# --- Table ``[ros2]`` of a link's settings: the DDS network beside the robots ---
+
+
+class Ros2Settings(RobotSettings, frozen=True, forbid_unknown_fields=True):
+    """Table ``[ros2]``."""
+
+    domain: int = 0
+    range: Range = "subnet"
+    interfaces: tuple[str, ...] = ()
+    peers: tuple[str, ...] = ()
+
+    @property
+    def dds(self) -> DdsSettings:
+        """The DDS domain."""
+        return DdsSettings(self.domain, self.range, self.interfaces, self.peers)
+
+
+def check(settings: Ros2Settings, file: Path) -> None:
+    """Raise LinkError, naming file and key, for what the types alone do not refuse."""
+    check_robots(settings, "ros2", file)
+    try:
+        _ = settings.dds
+    except RosError as error:
+        raise LinkError(f"{file}: ros2.{error}") from None
+
+
+# --- Readers of one robot's topics over DDS ---
+
+Offers = Mapping[tuple[str, bool], list[Endpoint]]
+
+
+@dataclass
+class _Heard:
+    """A topic that is read."""
+
+    topic: str
+    type_name: str
+    reader: RawReader
+    quality: Quality
+    offers: frozenset[bytes]
+
+
+class DdsSubscriptions:
+    """Reads a robot's topics as they are offered, and hands their messages to its sensing."""
+
+    def __init__(self, sensing: Sensing, participant: Participant, types: Interfaces) -> None:
+        self._sensing = sensing
+        self._participant = participant
+        self._types = types
+        self._heard: dict[str, _Heard] = {}
+        self._camera: tuple[str, list[Endpoint]] | None = None
+        """The topic of its images, and who offers it."""
+
+    def connect(self, offers: Offers) -> None:
+        """Read what is offered under the robot's names; what is offered otherwise now is read anew."""
+        for kind, topic in self._sensing.topics().items():
+            offered = offers.get((topic_to_dds(topic), False), [])
+            if kind == "image":
+                self._camera = (topic, offered) if offered else None
+            elif offered:
+                self._read(kind, topic, offered)
+            elif self._heard.pop(kind, None) is not None:
+                self._sensing.faults.pop(topic, None)
+
+    def poll(self) -> SendPos | SendGPS | None:
+        """Take in what has come; return the robot's newest position, None where none came."""
+        self._watch()
+        newest: SendPos | SendGPS | None = None
+        for kind, heard in list(self._heard.items()):
+            for data in heard.reader.read_samples():
+                try:
+                    message = self._types.decode(heard.type_name, data)
+                except FaultError as error:
+                    self._sensing.refuse(heard.topic, error)
+                else:
+                    newest = self._sensing.receive(kind, heard.topic, heard.type_name, message) or newest
+        return newest
+
+    def _watch(self) -> None:
+        """Read images only while one is waited for: a camera sends more than a network should carry twice."""
+        if self._camera is not None and self._sensing.wants_image:
+            self._read("image", *self._camera)
+        elif (heard := self._heard.pop("image", None)) is not None:
+            heard.reader.close()
+
+    def _read(self, kind: str, topic: str, offered: list[Endpoint]) -> None:
+        keys = frozenset(one.key for one in offered)
+        heard = self._heard.get(kind)
+        if heard is not None and heard.offers == keys:
+            return
+        # Another node that publishes nonsense under the topic's name takes no robot's own away.
+        strange = [one for one in offered if type_from_dds(one.type_name) not in READ[kind]]
+        offered = [one for one in offered if one not in strange] or offered
+        found = type_from_dds(offered[0].type_name)
+        type_name = self._sensing.check_type(kind, topic, found, offered[0].type_name)
+        if type_name is None:
+            self._heard.pop(kind, None)
+            return
+        if strange:
+            self._sensing.check_type(kind, topic, None, strange[0].type_name)
+        elif len({one.participant for one in offered}) > 1 and kind == "position":
+            self._sensing.fault(topic, f"{len(offered)} nodes publish {topic}; end all but one of them")
+        elif kind != "image":
+            self._sensing.faults.pop(topic, None)
+        quality = quality_for(offered, depth=1 if kind == "image" else 10)
+        if heard is None or heard.quality != quality or heard.type_name != type_name:
+            reader = self._participant.reader(topic_to_dds(topic), offered[0].type_name, quality)
+            self._heard[kind] = _Heard(topic, type_name, reader, quality, keys)
+        else:
+            heard.offers = keys
+
+
+# --- What one robot is told: clients of its actions and services, and writers of its topics ---
+
+log = logging.getLogger(__name__)
+
+NOT_SERVED = (
+    "a node on Fast DDS asks for the map by the service get_map, which can be answered to nodes on Cyclone "
+    "DDS alone; have it listen to the topic map"
+)
+
+
+class DdsActions:
+    """Speaks to one robot. ``server`` is the participant of its action server, None where it has none."""
+
+    def __init__(
+        self,
+        robot: str,
+        settings: Ros2Settings,
+        participant: Participant,
+        types: Interfaces,
+        outgoing: Outgoing,
+        sensing: Sensing,
+    ) -> None:
+        self._robot = robot
+        self._settings = settings
+        self._participant = participant
+        self._types = types
+        self._outgoing = outgoing
+        self._sensing = sensing
+        self._patterns = settings.patterns
+        self._actions: dict[RosAction, ActionClient] = {}
+        self._services: dict[str, ServiceClient] = {}
+        self._writers: dict[str, tuple[str, RawWriter]] = {}
+        self._other_goals: dict[RosAction, str] = {}
+        """The hash of goals that are laid out otherwise than those that are sent."""
+        self._wanted: set[str] = set()
+        self._map_server: ServiceServer | None = None
+        self.server: bytes | None = None
+        self.feedback: str | None = None
+
+    def connect(self, offers: Offers) -> None:
+        """Meet the servers and listeners that are there now."""
+        self.server = None
+        for action, setting in ACTIONS.items():
+            self._connect_action(action, setting, offers)
+        for setting in SERVICES:
+            if setting in self._patterns:
+                names = service_names(self._topic(setting), TRIGGER)
+                servers = offers.get((names.request, True), [])
+                if not servers:
+                    self._services.pop(setting, None)
+                elif setting not in self._services:
+                    self._services[setting] = ServiceClient(
+                        self._participant, self._types, names, TRIGGER, framed=is_framed(servers[0])
+                    )
+        for setting, known in WRITTEN.items():
+            if setting in self._patterns:
+                self._connect_topic(setting, known, offers)
+
+    @property
+    def abilities(self) -> Abilities:
+        """Who of the robot's side hears this program at the moment."""
+        return Abilities(
+            frozenset(action for action, client in self._actions.items() if client.is_matched),
+            frozenset(self._other_goals),
+            goal_topic="goal_pose" in self._wanted,
+            path_topic="path" in self._wanted,
+            velocity="cmd_vel" in self._wanted,
+            stop_service="stop" in self._services,
+            cone_service="place_cone" in self._services,
+        )
+
+    def hears(self, setting: str) -> bool:
+        """Tell whether somebody listens to the topic of a setting."""
+        return setting in self._wanted
+
+    def poll(self, tasks: Tasks, now: float, fault: Callable[[str, str], None]) -> list[Any]:
+        """Take in what servers have said; return the effects."""
+        effects: list[Any] = []
+        if self._map_server is not None and self._map_server.answer():
+            fault("get_map", NOT_SERVED)
+        for action, client in self._actions.items():
+            refuse = partial(_refuse, fault, action.value, f"the server of {action.value}")
+            effects += self._poll_action(action, client, tasks, now, refuse)
+        for setting, service in self._services.items():
+            for reply in service.replies(partial(_refuse, fault, setting, f"its service {setting}")):
+                if setting == "stop":
+                    tasks.stop_answered(bool(reply.success), str(reply.message))
+                else:
+                    effects += tasks.cone_answered(bool(reply.success), str(reply.message))
+        return effects
+
+    def send_goal(self, asked: SendGoal, here: Pose | None) -> None:
+        """Send a goal; ``here`` is where the robot is. Raises ValueError where it has no place there."""
+        client = self._actions[asked.action]
+        client.send_goal(asked.goal_id, **self._outgoing.goal(asked.action, asked.task, here))
+
+    def ask_result(self, asked: SendGoal) -> None:
+        """Ask for the result of a goal that was taken on."""
+        if asked.action in self._actions:
+            self._actions[asked.action].ask_result(asked.goal_id)
+
+    def cancel(self, asked: CancelGoals) -> None:
+        """Cancel goals."""
+        if asked.action in self._actions:
+            self._actions[asked.action].cancel_goals(asked.goal_id)
+
+    def call(self, setting: str) -> None:
+        """Call a service of type Trigger."""
+        if setting in self._services:
+            self._services[setting].call(self._types.make(f"{TRIGGER}_Request"))
+
+    def publish_task(self, asked: PublishTask, here: Pose | None) -> None:
+        """Publish a target or a path; raises ValueError where it has no place there."""
+        if isinstance(asked.task, SetPath):
+            self._publish("path", self._outgoing.path(asked.task))
+        else:
+            self.publish_target(asked.task, here)
+
+    def publish_target(self, target: SetPosEnd, here: Pose | None) -> None:
+        """Publish a target."""
+        fields = self._outgoing.goal(RosAction.TO_POSE, target, here)
+        self._publish("goal_pose", fields["pose"])
+
+    def publish_zero(self) -> None:
+        """Publish speed 0, with or without a time as its listeners want it."""
+        type_name = self._writers["cmd_vel"][0] if "cmd_vel" in self._writers else TWIST
+        self._publish("cmd_vel", self._types.make(type_name))
+
+    def publish_start(self, start: SetPosIni, here: Pose | None) -> None:
+        """Publish where the robot is to take itself to be."""
+        self._publish("initial_pose", self._outgoing.start(start, here))
+
+    def publish_latched(self, setting: str, message: bytes) -> None:
+        """Publish what is encoded on a topic of LATCHED: who comes later is told it, too."""
+        if setting not in self._writers:
+            self._write_to(setting, LATCHED[setting])
+        self._writers[setting][1].write(message)
+
+    def serve_map(self, grid: bytes) -> None:
+        """Answer with a map that is encoded who asks for it by the service ``get_map``."""
+        if self._map_server is None:
+            names = service_names(self._topic("get_map"), GET_MAP)
+            self._map_server = ServiceServer(self._participant, names)
+        # The map is the whole of the reply, so both are the same bytes.
+        self._map_server.reply = grid
+
+    def _topic(self, setting: str) -> str:
+        return self._patterns[setting].topic_of(self._robot)
+
+    def _connect_action(self, action: RosAction, setting: str, offers: Offers) -> None:
+        if setting not in self._patterns:
+            return
+        topic = self._topic(setting)
+        names = action_names(topic, action_type(action))
+        servers = offers.get((names.send_goal.request, True), [])
+        right = [one for one in servers if one.type_name == names.send_goal.request_type]
+        if not right:
+            self._actions.pop(action, None)
+            self._other_goals.pop(action, None)
+            self._sensing.faults.pop(topic, None)
+            return
+        if self._reads_goals(action, topic, right[0]):
+            self._check_alone(topic, right)
+        if self.server is None:
+            self.server = right[0].participant
+        if action not in self._actions:
+            self._actions[action] = ActionClient(
+                self._participant, self._types, names, action.value, framed=is_framed(right[0])
+            )
+
+    def _check_alone(self, topic: str, servers: list[Endpoint]) -> None:
+        count = len({one.participant for one in servers})
+        if count > 1:
+            text = f"{count} nodes serve {topic}, and each drives what is sent; end all but one of them"
+            self._sensing.fault(topic, text)
+        else:
+            self._sensing.faults.pop(topic, None)
+
+    def _reads_goals(self, action: RosAction, topic: str, server: Endpoint) -> bool:
+        """Tell whether a server's goals are laid out as those that are sent; else it is a fault."""
+        told, types = server.type_hash, self._types
+        if told is None or told == types.goal_hash(action.value):
+            self._other_goals.pop(action, None)
+            return True
+        if self._other_goals.get(action) != told:
+            self._other_goals[action] = told
+            named = " or ".join(types.distributions_of(action.value, told)) or "none that is known"
+            text = f"{topic} has the {action.value} of {named}, and distribution is {types.distribution!r}"
+            self._sensing.faults.pop(topic, None)
+            self._sensing.fault(topic, f"{text}; correct that, or give the robot a link of its own")
+        return False
+
+    def _connect_topic(self, setting: str, known: tuple[str, ...], offers: Offers) -> None:
+        listeners = self._listeners(setting, offers)
+        types = [name for name in map(type_from_dds, (one.type_name for one in listeners)) if name in known]
+        if not types:
+            self._wanted.discard(setting)
+            return
+        self._wanted.add(setting)
+        if setting not in self._writers or self._writers[setting][0] != types[0]:
+            self._write_to(setting, str(types[0]))
+
+    def _listeners(self, setting: str, offers: Offers) -> list[Endpoint]:
+        return offers.get((topic_to_dds(self._topic(setting)), True), [])
+
+    def _write_to(self, setting: str, type_name: str) -> None:
+        latched = setting in LATCHED
+        quality = Quality(latched=latched, depth=1 if latched else 10)
+        topic = topic_to_dds(self._topic(setting))
+        self._writers[setting] = (
+            type_name,
+            self._participant.writer(topic, type_to_dds(type_name), quality),
+        )
+
+    def _publish(self, setting: str, message: Any) -> None:
+        if setting in self._writers:
+            type_name, writer = self._writers[setting]
+            writer.write(self._types.encode(type_name, message))
+
+    def _poll_action(
+        self, action: RosAction, client: ActionClient, tasks: Tasks, now: float, refuse: Refuse
+    ) -> list[Any]:
+        effects: list[Any] = []
+        for reply in client.send.replies(refuse):
+            tasks.goal_answered(action, bool(reply.accepted), now)
+        for reply in client.cancel.replies(refuse):
+            tasks.cancel_answered(action, int(reply.return_code))
+        for reply in client.results():
+            code, text = getattr(reply, "error_code", None), getattr(reply, "error_msg", None)
+            tasks.result_came(action, int(reply.status), code, text, missed_of(reply))
+        for array in client.statuses(refuse):
+            known: Statuses = statuses_of(array)
+            if GoalStatus.EXECUTING not in known.values():
+                self.feedback = None
+            effects += tasks.statuses_came(action, known, now)
+        told = client.newest_feedback(refuse)
+        if told is not None and tasks.is_busy:
+            self.feedback = feedback_text(told[1])
+        return effects
+
+
+def _refuse(fault: Callable[[str, str], None], what: str, who: str, error: FaultError) -> None:
+    fault(what, f"{who}: {error}")
+
+
+# --- The adapter of ROS 2 robots: finds them on the network and leads each, in one loop ---
 
 EVERY = 0.02
 """seconds between two looks at what has come."""
@@ -57,8 +437,8 @@ class Ros2Adapter(RosAdapter[Offers]):
 
         def make(name: str) -> RosRobot[Offers]:
             sensing = Sensing(name, settings, link.frame)
-            listening = Listening(sensing, participant, types)
-            acting = Acting(name, settings, participant, types, outgoing, sensing)
+            listening = DdsSubscriptions(sensing, participant, types)
+            acting = DdsActions(name, settings, participant, types, outgoing, sensing)
             return RosRobot(name, settings, link, sensing, listening, acting, grids, masks)
 
         for name in settings.robots:

@@ -15,7 +15,7 @@ from typing import Any, Literal
 from xml.sax.saxutils import quoteattr
 
 from ..ros.errors import RosError
-from ..ros.names import LONGEST_NAME
+from ..ros.settings import LONGEST_NAME
 from .interfaces import LARGEST_MESSAGE
 
 log = logging.getLogger(__name__)

@@ -16,8 +16,7 @@ import numpy as np
 
 from ..ros.errors import FaultError
 from .dds import Endpoint, Participant, Quality, RawReader, RawWriter
-from .interfaces import Interfaces
-from .names import CYCLONE, ActionNames, ServiceNames
+from .interfaces import CYCLONE, ActionNames, Interfaces, ServiceNames
 
 _HEADER = struct.Struct("<Qq")
 _ENCAPSULATION = 4

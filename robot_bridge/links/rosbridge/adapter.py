@@ -1,32 +1,301 @@
-"""The adapter of ROS 2 robots behind a rosbridge server: finds them there and leads each, in one loop."""
+"""Adapter of robots behind a rosbridge server: topics of each read, its actions and services called."""
 
 from __future__ import annotations
 
 import asyncio
+import logging
 import time
+from collections import deque
+from collections.abc import Callable
+from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from typing import ClassVar
 
-from ..base.adapter import Adapter, Command
+import msgspec
+
+from ...core.messages import SendGPS, SendPos, SetPath, SetPosEnd, SetPosIni
+from ..base.adapter import Adapter, Command, Link
 from ..base.errors import CommandRefusedError
-from ..base.link import Link
 from ..base.settings import LinkSettings, read_settings
-from ..ros.adapter import RosAdapter
-from ..ros.geometry import Outgoing
-from ..ros.grids import Grids
-from ..ros.masks import Masks
-from ..ros.notes import RobotNotes
+from ..ros.adapter import RobotNotes, RosAdapter
+from ..ros.effects import Abilities, CancelGoals, Effect, PublishTask, RosAction, SendGoal
+from ..ros.errors import FaultError
+from ..ros.messages import ACTIONS, CANCEL_GOAL, GET_MAP, LATCHED, SERVICES, TWIST, WRITTEN, Outgoing, Pose
 from ..ros.robot import RosRobot
 from ..ros.sensing import Sensing
-from .acting import Acting
-from .connection import RosbridgeConnection
-from .goal_book import GoalBook
-from .goals import ActionGoals
+from ..ros.site_maps import Grids, Masks
+from ..ros.tasks import Tasks
+from .connection import Answer, Inbox, JsonMessages, RosbridgeConnection, Subscription, encode
+from .decoding import ServiceResponse, convert
+from .goals import ActionGoals, GoalBook
 from .graph import Graph, GraphWatch
-from .json_messages import JsonMessages, encode
-from .listening import Listening
+from .messages import READABLE, CancelReply, TriggerReply
 from .settings import RosbridgeSettings, Server, check, server_of
+
+# --- Subscriptions to one robot's topics over rosbridge ---
+
+
+@dataclass
+class _Heard:
+    """A topic that is read."""
+
+    topic: str
+    type_name: str
+    inbox: Inbox
+
+
+class RosbridgeSubscriptions:
+    """Reads a robot's topics while they are there, and hands their messages to its sensing."""
+
+    def __init__(
+        self, sensing: Sensing, settings: RosbridgeSettings, connection: RosbridgeConnection
+    ) -> None:
+        self._sensing = sensing
+        self._settings = settings
+        self._connection = connection
+        self._heard: dict[str, _Heard] = {}
+        self._camera: tuple[str, str] | None = None
+        """The topic of its images, and its type."""
+
+    def connect(self, network: Graph) -> None:
+        """Read what is offered under the robot's names now; what has another type now is read anew."""
+        for kind, topic in self._sensing.topics().items():
+            told = network.topics.get(topic)
+            if kind == "image":
+                self._camera = None if told is None else (topic, told)
+                continue
+            known = self._heard.get(kind)
+            if told is None or (known is not None and known.type_name == told):
+                # A topic that is gone stays asked for: the server tells it as soon as it is there again.
+                continue
+            self._read(kind, topic, told)
+
+    def poll(self) -> SendPos | SendGPS | None:
+        """Take in what has come; return the robot's newest position, None where none came."""
+        self._watch()
+        newest: SendPos | SendGPS | None = None
+        for kind, heard in list(self._heard.items()):
+            for content in heard.inbox.drain():
+                where = f"{heard.topic} ({heard.type_name})"
+                try:
+                    message = convert(content, READABLE[heard.type_name], where)
+                except FaultError as error:
+                    self._sensing.refuse(heard.topic, error)
+                else:
+                    newest = self._sensing.receive(kind, heard.topic, heard.type_name, message) or newest
+        return newest
+
+    def _watch(self) -> None:
+        """Read images only while one is waited for: a camera sends more than a network should carry."""
+        if self._camera is not None and self._sensing.wants_image:
+            if "image" not in self._heard:
+                self._read("image", *self._camera)
+        elif (heard := self._heard.pop("image", None)) is not None:
+            self._connection.unsubscribe(heard.topic)
+
+    def _read(self, kind: str, topic: str, told: str) -> None:
+        """Read a topic of which rosapi has told the type."""
+        if self._heard.pop(kind, None) is not None:
+            self._connection.unsubscribe(topic)
+        type_name = self._sensing.check_type(kind, topic, told, told)
+        if type_name is not None:
+            if kind != "image":
+                self._sensing.faults.pop(topic, None)
+            inbox = self._connection.subscribe(topic, self._wanted(kind, type_name))
+            self._heard[kind] = _Heard(topic, type_name, inbox)
+
+    def _wanted(self, kind: str, type_name: str) -> Subscription:
+        own = self._settings
+        if kind in ("tf", "tf_static"):
+            # Each message has other frames: none may be left out.
+            return Subscription(type_name, compression=own.compression)
+        return Subscription(type_name, own.throttle_ms, own.queue_length, own.compression)
+
+
+# --- What one robot is told over rosbridge: its actions, its services, its topics ---
+
+log = logging.getLogger(__name__)
+
+MOST_ANSWERS = 1000
+"""of services that wait to be read."""
+
+
+class RosbridgeActions:
+    """Speaks to one robot. ``server`` is another one when its action servers have started anew."""
+
+    def __init__(
+        self,
+        robot: str,
+        settings: RosbridgeSettings,
+        connection: RosbridgeConnection,
+        outgoing: Outgoing,
+        goals: ActionGoals,
+    ) -> None:
+        self._robot = robot
+        self._patterns = settings.patterns
+        self._connection = connection
+        self._outgoing = outgoing
+        self._goals = goals
+        self._services: set[str] = set()
+        self._wanted: set[str] = set()
+        self._types: dict[str, str] = {}
+        self._answers: deque[tuple[str, RosAction | None, ServiceResponse]] = deque(maxlen=MOST_ANSWERS)
+        self.server: bytes | None = None
+
+    @property
+    def feedback(self) -> str | None:
+        """How far its goal is yet."""
+        return self._goals.feedback
+
+    @feedback.setter
+    def feedback(self, text: str | None) -> None:
+        self._goals.feedback = text
+
+    @property
+    def written(self) -> list[str]:
+        """The topics of which it matters who listens to them."""
+        return [self._topic(setting) for setting in WRITTEN if setting in self._patterns]
+
+    def connect(self, network: Graph) -> None:
+        """Meet the servers and listeners that are there now."""
+        for action, setting in ACTIONS.items():
+            if setting in self._patterns:
+                self._goals.meet(action, self._topic(setting), network)
+        self.server = self._goals.server
+        for setting in SERVICES:
+            if setting in self._patterns:
+                there = self._topic(setting) in network.services
+                (self._services.add if there else self._services.discard)(setting)
+        for setting, known in WRITTEN.items():
+            if setting in self._patterns:
+                self._meet_listeners(setting, known, network)
+
+    @property
+    def abilities(self) -> Abilities:
+        """Who of the robot's side was there when the network was last looked at."""
+        return Abilities(
+            self._goals.actions,
+            goal_topic="goal_pose" in self._wanted,
+            path_topic="path" in self._wanted,
+            velocity="cmd_vel" in self._wanted,
+            stop_service="stop" in self._services,
+            cone_service="place_cone" in self._services,
+        )
+
+    def hears(self, setting: str) -> bool:
+        """Tell whether somebody listens to the topic of a setting."""
+        return setting in self._wanted
+
+    def poll(self, tasks: Tasks, now: float, fault: Callable[[str, str], None]) -> list[Effect]:
+        """Take in what servers have said; return the effects."""
+        effects = self._goals.poll(tasks, now, fault)
+        while self._answers:
+            what, action, came = self._answers.popleft()
+            try:
+                effects += self._answered(what, action, came, tasks)
+            except FaultError as error:
+                fault(what, str(error))
+        return effects
+
+    def send_goal(self, asked: SendGoal, here: Pose | None) -> None:
+        """Send a goal; ``here`` is where the robot is. Raises ValueError where it has no place there."""
+        self._goals.send(asked, self._outgoing.goal(asked.action, asked.task, here))
+
+    def ask_result(self, asked: SendGoal) -> None:
+        """Nothing is to be asked: rosbridge tells the result to who sent the goal."""
+
+    def cancel(self, asked: CancelGoals) -> None:
+        """Cancel goals."""
+        wanted = self._goals.cancel(asked)
+        if wanted is None:
+            return
+        answered = self._note("cancel" if asked.goal_id is None else "cancel one", asked.action)
+        topic = self._topic(ACTIONS[asked.action])
+        self._connection.call(f"{topic}/_action/cancel_goal", wanted, answered, urgent=True)
+
+    def call(self, setting: str) -> None:
+        """Call a service of type Trigger."""
+        if setting in self._services:
+            self._connection.call(self._topic(setting), {}, self._note(setting), urgent=True)
+
+    def publish_task(self, asked: PublishTask, here: Pose | None) -> None:
+        """Publish a target or a path; raises ValueError where it has no place there."""
+        if isinstance(asked.task, SetPath):
+            self._publish("path", self._outgoing.path(asked.task))
+        else:
+            self.publish_target(asked.task, here)
+
+    def publish_target(self, target: SetPosEnd, here: Pose | None) -> None:
+        """Publish a target."""
+        self._publish("goal_pose", self._outgoing.goal(RosAction.TO_POSE, target, here)["pose"])
+
+    def publish_zero(self) -> None:
+        """Publish speed 0, with or without a time as its listeners want it."""
+        twist = {"linear": {"x": 0.0, "y": 0.0, "z": 0.0}, "angular": {"x": 0.0, "y": 0.0, "z": 0.0}}
+        self._publish("cmd_vel", twist if self._types.get("cmd_vel") == TWIST else {"twist": twist})
+
+    def publish_start(self, start: SetPosIni, here: Pose | None) -> None:
+        """Publish where the robot is to take itself to be."""
+        self._publish("initial_pose", self._outgoing.start(start, here))
+
+    def publish_latched(self, setting: str, message: bytes) -> None:
+        """Publish what is encoded on a topic of LATCHED: who comes later is told it, too."""
+        topic = self._topic(setting)
+        self._connection.advertise(topic, LATCHED[setting], latched=True)
+        self._connection.publish(topic, msgspec.Raw(message), latched=True)
+
+    def serve_map(self, grid: bytes) -> None:
+        """Answer with a map that is encoded who asks for it by the service ``get_map``."""
+        reply = msgspec.Raw(b'{"map":' + grid + b"}")
+        self._connection.serve(self._topic("get_map"), GET_MAP, reply)
+
+    def _topic(self, setting: str) -> str:
+        return self._patterns[setting].topic_of(self._robot)
+
+    def _meet_listeners(self, setting: str, known: tuple[str, ...], network: Graph) -> None:
+        topic = self._topic(setting)
+        type_name = network.topics.get(topic)
+        if type_name not in known or not network.listeners.get(topic):
+            self._wanted.discard(setting)
+            return
+        self._wanted.add(setting)
+        if self._types.get(setting) != type_name:
+            self._types[setting] = type_name
+            self._connection.advertise(topic, type_name)
+
+    def _publish(self, setting: str, message: object) -> None:
+        if setting in self._wanted:
+            self._connection.publish(self._topic(setting), message, urgent=True)
+
+    def _note(self, what: str, action: RosAction | None = None) -> Callable[[Answer], None]:
+        return partial(self._keep, what, action)
+
+    def _keep(self, what: str, action: RosAction | None, came: Answer) -> None:
+        if isinstance(came, ServiceResponse):
+            self._answers.append((what, action, came))
+
+    def _answered(
+        self, what: str, action: RosAction | None, came: ServiceResponse, tasks: Tasks
+    ) -> list[Effect]:
+        """Take in what a service said; one that could not be called has said a text in place of values."""
+        if action is not None:
+            if not came.result:
+                raise FaultError(f"its {CANCEL_GOAL} of {action.value} failed: {str(came.values)[:200]}")
+            reply = convert(came.values, CancelReply, f"its {CANCEL_GOAL} of {action.value}")
+            if what == "cancel":
+                tasks.cancel_answered(action, reply.return_code)
+            return []
+        said = TriggerReply(False, str(came.values)[:200])
+        if came.result:
+            said = convert(came.values, TriggerReply, f"its service {what}")
+        if what == "stop":
+            tasks.stop_answered(said.success, said.message)
+            return []
+        return tasks.cone_answered(said.success, said.message)
+
+
+# --- The adapter of ROS 2 robots behind a rosbridge server: finds them there and leads each, in one loop
 
 EVERY = 0.02
 """seconds between two looks at what has come."""
@@ -43,7 +312,7 @@ class RosbridgeAdapter(RosAdapter[Graph]):
         self._connection = RosbridgeConnection(server)
         self._watch = GraphWatch(self._connection, self._written, self._watched)
         self._books = self._notes.read(GoalBook.from_json)
-        self._acting: list[Acting] = []
+        self._acting: list[RosbridgeActions] = []
         self._goals: list[ActionGoals] = []
 
     async def run(self, link: Link) -> None:
@@ -82,10 +351,10 @@ class RosbridgeAdapter(RosAdapter[Graph]):
         def make(name: str) -> RosRobot[Graph]:
             sensing = Sensing(name, settings, link.frame)
             goals = ActionGoals(name, self._connection, self._book(name), self._note_goals)
-            acting = Acting(name, settings, self._connection, outgoing, goals)
+            acting = RosbridgeActions(name, settings, self._connection, outgoing, goals)
             self._acting.append(acting)
             self._goals.append(goals)
-            listening = Listening(sensing, settings, self._connection)
+            listening = RosbridgeSubscriptions(sensing, settings, self._connection)
             return RosRobot(name, settings, link, sensing, listening, acting, grids, masks)
 
         for name in settings.robots:

@@ -1,7 +1,4 @@
-"""The connection to a rosbridge server: it comes back, with every topic that was read or written.
-
-What is said while there is no connection is thrown away: who has to be heard says it again while it is due.
-"""
+"""Connection to a rosbridge server: reconnects, bounded frames, JSON of ROS messages."""
 
 from __future__ import annotations
 
@@ -17,10 +14,11 @@ from functools import partial
 from typing import Any
 
 import msgspec
+import numpy as np
 from websockets.asyncio.client import ClientConnection, connect
 from websockets.exceptions import ConnectionClosed, InvalidHandshake, InvalidURI
 
-from ...access.errors import AccessError
+from ...protocol.credentials import AccessError
 from ..base.errors import LinkError
 from ..ros.errors import FaultError
 from .decoding import (
@@ -34,8 +32,52 @@ from .decoding import (
     StatusText,
     decode_frame,
 )
-from .json_messages import plain
 from .settings import Server
+
+# --- ROS messages as JSON, as they are sent to a rosbridge server: it fills in what is left out ---
+
+LARGEST_SENT = 10_000_000
+"""bytes of a message: what a rosbridge server takes in unless it is set otherwise."""
+_WITH_GOALS = ("kilted", "lyrical")
+"""Distributions whose NavigateThroughPoses takes nav_msgs/Goals."""
+
+
+class JsonMessages:
+    """Makes messages: objects by the names of their fields."""
+
+    def __init__(self, distribution: str) -> None:
+        self._distribution = distribution
+
+    def knows(self, type_name: str) -> bool:
+        """Tell whether the robots' distribution has a type."""
+        return type_name != "nav_msgs/msg/Goals" or self._distribution in _WITH_GOALS
+
+    def make(self, type_name: str, **fields: Any) -> Any:
+        """Return a message; fields that are left out are zero, empty, or made of such."""
+        return fields
+
+
+def encode(_type_name: str, message: Any) -> bytes:
+    """Return a message as JSON; raises ValueError for one that no server takes."""
+    encoded = msgspec.json.encode(message, enc_hook=plain)
+    if len(encoded) > LARGEST_SENT:
+        raise ValueError(
+            f"it has {len(encoded)} bytes as JSON, and {LARGEST_SENT} are the most; make "
+            "rosbridge.map_resolution_m larger"
+        )
+    return encoded
+
+
+def plain(value: Any) -> Any:
+    """Return an array of numpy as a list."""
+    if isinstance(value, np.ndarray):
+        return value.tolist()
+    raise TypeError(f"{type(value).__name__} cannot be written as JSON")
+
+
+# --- The connection to a rosbridge server: it comes back, with every topic that was read or written ---
+# What is said while there is no connection is thrown away: who has to be heard says it again while it is
+# due.
 
 log = logging.getLogger(__name__)
 

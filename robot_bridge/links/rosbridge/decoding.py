@@ -12,14 +12,14 @@ from typing import Any, TypeVar
 import msgspec
 import numpy as np
 
-from ...core.decoding import Bounds, DecodingError, decode_json
+from ...core.json_decoder import DecodingError, JsonBounds, decode_json
 from ..ros.errors import FaultError
 
 LARGEST_FRAME = 32 << 20
 """bytes beyond which the connection is given up."""
 LARGEST_DECODED = 4 << 20
 """bytes: nothing that is asked for is as large."""
-BOUNDS = Bounds(depth=32, length=LARGEST_DECODED, values=200_000)
+BOUNDS = JsonBounds(depth=32, length=LARGEST_DECODED, values=200_000)
 
 _TOPIC_IN_FRAME = re.compile(rb"topic[^/]{1,6}(/[A-Za-z0-9_/]{1,254})")
 _ARRAYS = {

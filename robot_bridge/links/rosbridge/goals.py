@@ -1,28 +1,134 @@
-"""The goals of one robot's action servers over rosbridge: sent, found on the status topic, lost and told of.
-
-The status topic decides what a goal is, as it does over DDS; results and feedback, which the server tells to
-who sent the goal, are details, and stand in where that topic cannot be read.
-"""
+"""Goals of actions over rosbridge: sent, followed, and kept for the next process."""
 
 from __future__ import annotations
 
 import logging
 import time
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
 from functools import partial
 from typing import Any
 
-from ..ros.effects import Action, Answered, CancelGoals, Effect, Idle, SendGoal
+from ..ros.effects import Answered, CancelGoals, Effect, Idle, RosAction, SendGoal
 from ..ros.errors import FaultError
 from ..ros.goals import ACTIVE, GoalStatus, failure_of, feedback_text, message_of, statuses_of
+from ..ros.messages import GOAL_STATUSES, action_type
 from ..ros.tasks import Tasks
-from ..ros.types import GOAL_STATUSES, action_type
 from .connection import Answer, Inbox, RosbridgeConnection, Subscription
 from .decoding import ActionFeedback, ActionResult, convert
-from .goal_book import Entry, GoalBook
 from .graph import Graph
 from .messages import GoalStatusArray, NavigationFeedback, NavigationResult
+
+# --- Which of an action server's goals is for which of the gateway's messages; no I/O ---
+# rosbridge lets the server side choose a goal's id, and says it to nobody. So the goals that were known are
+# kept before one is sent: the one that is new afterwards is ours. That is written down before it is sent,
+# and
+# outlives this process.
+
+MOST_ENTRIES = 10
+"""goals of one robot that are remembered."""
+MOST_BEFORE = 1000
+"""goals of others that are remembered from before."""
+
+
+@dataclass
+class Entry:
+    """A goal that was sent: ``goal`` is its id here, ``real`` the one that it has on the robot.
+
+    ``doomed``: it is to be canceled as soon as that is known. ``was_shown``: an action server has named it
+    over this connection.
+    """
+
+    action: RosAction
+    goal: bytes
+    before: frozenset[bytes]
+    real: bytes | None = None
+    doomed: bool = False
+    is_over: bool = False
+    was_shown: bool = field(default=False, compare=False)
+
+
+class GoalBook:
+    """The goals of one robot, the newest last."""
+
+    def __init__(self) -> None:
+        self.entries: list[Entry] = []
+
+    def find(self, goal: bytes) -> Entry | None:
+        """Return the newest entry of a goal."""
+        return next((one for one in reversed(self.entries) if one.goal == goal), None)
+
+    def add(self, action: RosAction, goal: bytes, known: frozenset[bytes]) -> Entry:
+        """Note that a goal is about to be sent to a server whose goals are ``known``."""
+        for earlier in self.entries:
+            # The server has not shown it until now, or has been told by its own id to cancel it.
+            earlier.is_over |= earlier.action is action and earlier.real is None
+        entry = Entry(action, goal, frozenset(sorted(known)[:MOST_BEFORE]))
+        self.entries = [*self.entries, entry][-MOST_ENTRIES:]
+        return entry
+
+    def forget(self) -> None:
+        """Take it that no server knows any goal."""
+        self.entries = []
+
+    def translate(
+        self, action: RosAction, statuses: Mapping[bytes, GoalStatus]
+    ) -> tuple[dict[bytes, GoalStatus], bool]:
+        """Return the statuses under the ids that are used here, and whether a goal was found by that."""
+        found = self._claim(action, statuses)
+        ours = {one.real: one for one in self.entries if one.action is action and one.real is not None}
+        translated = {}
+        for real, status in statuses.items():
+            entry = ours.get(real)
+            if entry is not None:
+                entry.was_shown = True
+                entry.is_over |= status in (GoalStatus.SUCCEEDED, GoalStatus.CANCELED, GoalStatus.ABORTED)
+            translated[real if entry is None else entry.goal] = status
+        return translated, found
+
+    def _claim(self, action: RosAction, statuses: Mapping[bytes, GoalStatus]) -> bool:
+        """Find the goals that were sent, and whose ids are not known yet, among those that are new."""
+        claimed = {one.real for one in self.entries}
+        found = False
+        for entry in self.entries:
+            if entry.action is not action or entry.real is not None or entry.is_over:
+                continue
+            new = [real for real in statuses if real not in entry.before and real not in claimed]
+            if new:
+                entry.real = new[0]
+                claimed.add(new[0])
+                found = True
+        return found
+
+    def to_json(self) -> list[dict[str, Any]]:
+        """Return it as it is written down."""
+        return [
+            {
+                "action": one.action.value,
+                "goal": one.goal.hex(),
+                "real": one.real.hex() if one.real else None,
+                "before": [real.hex() for real in sorted(one.before)],
+            }
+            for one in self.entries
+            if not one.is_over
+        ]
+
+    @classmethod
+    def from_json(cls, rows: Any) -> GoalBook:
+        """Return what was written down; raises ValueError, TypeError or KeyError where it was not by us."""
+        book = cls()
+        for row in rows[-MOST_ENTRIES:]:
+            real = bytes.fromhex(row["real"]) if row["real"] is not None else None
+            before = frozenset(bytes.fromhex(one) for one in row["before"])
+            book.entries.append(Entry(RosAction(row["action"]), bytes.fromhex(row["goal"]), before, real))
+        return book
+
+
+# --- The goals of one robot's action servers over rosbridge: sent, found on the status topic, lost and told
+# of The status topic decides what a goal is, as it does over DDS; results and feedback, which the server
+# tells to
+# who sent the goal, are details, and stand in where that topic cannot be read.
 
 log = logging.getLogger(__name__)
 
@@ -46,23 +152,23 @@ class ActionGoals:
         self._note = note
         self._earlier = {one.goal for one in book.entries}
         """Goals that an earlier process of this link sent."""
-        self._topics: dict[Action, str] = {}
-        self._statuses: dict[Action, Inbox] = {}
-        self._known: dict[Action, dict[bytes, GoalStatus]] = {}
+        self._topics: dict[RosAction, str] = {}
+        self._statuses: dict[RosAction, Inbox] = {}
+        self._known: dict[RosAction, dict[bytes, GoalStatus]] = {}
         """The newest status of each goal, by the id on the robot."""
         self._answers: deque[tuple[Entry, Answer]] = deque(maxlen=MOST_ANSWERS)
         self._held: tuple[SendGoal, Any] | None = None
         self._session = 0
-        self._since: dict[Action, float] = {}
+        self._since: dict[RosAction, float] = {}
         """When a status topic was first read over this connection."""
         self._sent_in: dict[bytes, int] = {}
-        self._seen_over: dict[Action, int] = {}
+        self._seen_over: dict[RosAction, int] = {}
         """The connection over which a server was last seen there."""
-        self._gone: set[Action] = set()
-        self._publishers: dict[Action, int] = {}
+        self._gone: set[RosAction] = set()
+        self._publishers: dict[RosAction, int] = {}
         """How many published a status topic when that was last counted."""
         self._epoch = 0
-        self.actions: frozenset[Action] = frozenset()
+        self.actions: frozenset[RosAction] = frozenset()
         self.feedback: str | None = None
 
     @property
@@ -76,7 +182,7 @@ class ActionGoals:
         open_ones = {one.action for one in self._book.entries if not one.is_over}
         return [f"{self._topics[one]}/_action/status" for one in open_ones if one in self._topics]
 
-    def meet(self, action: Action, topic: str, network: Graph) -> None:
+    def meet(self, action: RosAction, topic: str, network: Graph) -> None:
         """Note whether an action's server is there now, and whether it is another one than before."""
         # Over a new connection the server may not have met the robots yet: that tells nothing.
         is_same = self._seen_over.get(action) == network.session
@@ -163,7 +269,7 @@ class ActionGoals:
         self._note()
 
     def _statuses_came(
-        self, action: Action, statuses: dict[bytes, GoalStatus], tasks: Tasks, now: float
+        self, action: RosAction, statuses: dict[bytes, GoalStatus], tasks: Tasks, now: float
     ) -> list[Effect]:
         is_first = action not in self._known
         self._known[action] = statuses
@@ -209,12 +315,12 @@ class ActionGoals:
                 effects += self._ended(entry, GoalStatus.UNKNOWN, LOST)
         return effects
 
-    def _is_settled(self, action: Action, now: float) -> bool:
+    def _is_settled(self, action: RosAction, now: float) -> bool:
         """Tell whether a latched status would have come by now."""
         is_read = self._seen_over.get(action) == self._session
         return is_read and now - self._since[action] >= SETTLED_AFTER
 
-    def _translated(self, action: Action) -> dict[bytes, GoalStatus]:
+    def _translated(self, action: RosAction) -> dict[bytes, GoalStatus]:
         return self._book.translate(action, self._known.get(action, {}))[0]
 
     def _send_held(self, now: float) -> None:

@@ -14,7 +14,7 @@ import msgspec
 import numpy as np
 from msgspec import Meta
 
-from ..ros import types
+from ..ros import messages
 
 NOTHING = math.nan
 Number = float | None
@@ -47,7 +47,7 @@ class Time(msgspec.Struct):
     nanosec: int = 0
 
 
-class Header(_Message):
+class HeaderMessage(_Message):
     """When, and in which frame."""
 
     stamp: Time = msgspec.field(default_factory=Time)
@@ -100,7 +100,7 @@ class TwistWithCovariance(msgspec.Struct):
 class Odometry(msgspec.Struct):
     """nav_msgs/Odometry."""
 
-    header: Header
+    header: HeaderMessage
     pose: PoseWithCovariance
     twist: TwistWithCovariance
 
@@ -108,14 +108,14 @@ class Odometry(msgspec.Struct):
 class PoseStamped(msgspec.Struct):
     """geometry_msgs/PoseStamped."""
 
-    header: Header
+    header: HeaderMessage
     pose: Pose
 
 
 class PoseWithCovarianceStamped(msgspec.Struct):
     """geometry_msgs/PoseWithCovarianceStamped."""
 
-    header: Header
+    header: HeaderMessage
     pose: PoseWithCovariance
 
 
@@ -128,7 +128,7 @@ class NavSatStatus(msgspec.Struct):
 class NavSatFix(_Message):
     """sensor_msgs/NavSatFix."""
 
-    header: Header
+    header: HeaderMessage
     status: NavSatStatus
     latitude: Number
     longitude: Number
@@ -168,7 +168,7 @@ class DiagnosticArray(msgspec.Struct):
     status: Annotated[list[DiagnosticStatus], Meta(max_length=MOST_STATUSES)]
 
 
-class Transform(msgspec.Struct):
+class TransformMessage(msgspec.Struct):
     """Where a frame is in its parent."""
 
     translation: Vector
@@ -178,9 +178,9 @@ class Transform(msgspec.Struct):
 class TransformStamped(_Message):
     """geometry_msgs/TransformStamped."""
 
-    header: Header
+    header: HeaderMessage
     child_frame_id: Text
-    transform: Transform
+    transform: TransformMessage
 
 
 class TFMessage(msgspec.Struct):
@@ -206,7 +206,7 @@ class GoalInfo(msgspec.Struct):
     goal_id: GoalId
 
 
-class GoalStatus(msgspec.Struct):
+class GoalStatusMessage(msgspec.Struct):
     """action_msgs/GoalStatus."""
 
     goal_info: GoalInfo
@@ -216,7 +216,7 @@ class GoalStatus(msgspec.Struct):
 class GoalStatusArray(msgspec.Struct):
     """action_msgs/GoalStatusArray."""
 
-    status_list: Annotated[list[GoalStatus], Meta(max_length=MOST_STATUSES)]
+    status_list: Annotated[list[GoalStatusMessage], Meta(max_length=MOST_STATUSES)]
 
 
 class CancelReply(msgspec.Struct):
@@ -260,10 +260,10 @@ class NavigationFeedback(msgspec.Struct):
             self.distance_remaining = self.distance_to_goal
 
 
-class Image(msgspec.Struct):
+class ImageMessage(msgspec.Struct):
     """sensor_msgs/Image."""
 
-    header: Header
+    header: HeaderMessage
     height: int
     width: int
     encoding: Text
@@ -277,7 +277,7 @@ class Image(msgspec.Struct):
 class CompressedImage(msgspec.Struct):
     """sensor_msgs/CompressedImage."""
 
-    header: Header
+    header: HeaderMessage
     format: Text
     data: bytes
 
@@ -317,17 +317,17 @@ class PublishersReply(msgspec.Struct):
 
 
 READABLE: dict[str, type[msgspec.Struct]] = {
-    types.ODOMETRY: Odometry,
-    types.POSE: PoseStamped,
-    types.POSE_WITH_COVARIANCE: PoseWithCovarianceStamped,
-    types.FIX: NavSatFix,
-    types.TF: TFMessage,
-    types.IMU: Imu,
-    types.BATTERY: BatteryState,
-    types.DIAGNOSTICS: DiagnosticArray,
-    types.GOAL_STATUSES: GoalStatusArray,
-    types.IMAGE: Image,
-    types.COMPRESSED_IMAGE: CompressedImage,
+    messages.ODOMETRY: Odometry,
+    messages.POSE: PoseStamped,
+    messages.POSE_WITH_COVARIANCE: PoseWithCovarianceStamped,
+    messages.FIX: NavSatFix,
+    messages.TF: TFMessage,
+    messages.IMU: Imu,
+    messages.BATTERY: BatteryState,
+    messages.DIAGNOSTICS: DiagnosticArray,
+    messages.GOAL_STATUSES: GoalStatusArray,
+    messages.IMAGE: ImageMessage,
+    messages.COMPRESSED_IMAGE: CompressedImage,
 }
 """What a message of each type is read as."""
 

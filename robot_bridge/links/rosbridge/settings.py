@@ -8,8 +8,7 @@ from pathlib import Path
 from typing import Any, Literal
 from urllib.parse import urlsplit
 
-from ...access.credentials import Credentials
-from ...access.errors import AccessError
+from ...protocol.credentials import AccessError, ClientCredentials
 from ..base.errors import LinkError
 from ..base.settings import LinkSettings
 from ..ros.errors import FaultError
@@ -42,7 +41,7 @@ class Server:
     """Where the server is, and what is shown to it; the files are read anew for each connection."""
 
     url: str
-    credentials: Credentials
+    credentials: ClientCredentials
     user: str | None = None
     password_file: Path | None = None
 
@@ -51,7 +50,7 @@ class Server:
         if self.user is None or self.password_file is None:
             return self.credentials.options(self.url)
         # Credentials refuse a secret that would travel for everybody to read.
-        secret = Credentials(self.password_file, self.credentials.ca)
+        secret = ClientCredentials(self.password_file, self.credentials.ca)
         options = secret.options(self.url)
         password = options["additional_headers"]["Authorization"].removeprefix("Bearer ")
         shown = base64.b64encode(f"{self.user}:{password}".encode()).decode()
@@ -64,7 +63,7 @@ def server_of(settings: LinkSettings, own: RosbridgeSettings) -> Server:
     def beside(name: str | None) -> Path | None:
         return None if name is None else settings.beside(name)
 
-    credentials = Credentials(beside(own.token_file), beside(own.ca))
+    credentials = ClientCredentials(beside(own.token_file), beside(own.ca))
     return Server(own.url, credentials, own.user, beside(own.password_file))
 
 

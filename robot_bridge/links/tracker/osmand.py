@@ -1,20 +1,24 @@
-"""The OsmAnd protocol, which Traccar Client and others speak over HTTP: texts in, fixes out; no I/O.
-
-A report is the query of a GET or the form of a POST, or (newer clients) JSON. Speeds are knots in the first
-and m/s in the second, batteries per cent and a fraction.
-"""
+"""OsmAnd protocol over HTTP, which Traccar Client speaks: server, requests, fixes."""
 
 from __future__ import annotations
 
+import asyncio
+import contextlib
+import logging
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from typing import Any
-from urllib.parse import parse_qsl
+from urllib.parse import parse_qsl, urlsplit
 
-from ...core.decoding import Bounds, DecodingError, decode_json
-from ...messages import MessageError, SendGPS
+from ...core.json_decoder import DecodingError, JsonBounds, decode_json
+from ...core.messages import MessageError, SendGPS
+
+# --- The OsmAnd protocol, which Traccar Client and others speak over HTTP: texts in, fixes out; no I/O
+# A report is the query of a GET or the form of a POST, or (newer clients) JSON. Speeds are knots in the
+# first
+# and m/s in the second, batteries per cent and a fraction.
 
 KNOT = 0.514444
 """m/s."""
@@ -24,7 +28,7 @@ MOST_FIELDS = 100
 LONGEST_DEVICE = 64
 MILLISECONDS_FROM = 1e11
 """A time stamp above this counts milliseconds: as seconds it would be in the year 5138."""
-_JSON = Bounds(depth=12, length=256 << 10, values=5_000)
+_JSON = JsonBounds(depth=12, length=256 << 10, values=5_000)
 
 
 class ReportError(ValueError):
@@ -32,14 +36,14 @@ class ReportError(ValueError):
 
 
 @dataclass(frozen=True)
-class Report:
+class TrackerReport:
     """Where a ``device``, as it calls itself, was."""
 
     device: str
     fix: SendGPS
 
 
-def reports_in_form(text: str) -> list[Report]:
+def reports_in_form(text: str) -> list[TrackerReport]:
     """Return the report in a query or a form; raises ReportError."""
     try:
         fields = dict(parse_qsl(text, keep_blank_values=True, max_num_fields=MOST_FIELDS))
@@ -68,7 +72,7 @@ def reports_in_form(text: str) -> list[Report]:
     ]
 
 
-def reports_in_json(body: bytes) -> list[Report]:
+def reports_in_json(body: bytes) -> list[TrackerReport]:
     """Return the reports in a JSON body, of one location or of several; raises ReportError."""
     try:
         root = decode_json(body, _JSON)
@@ -81,7 +85,7 @@ def reports_in_json(body: bytes) -> list[Report]:
     return [_location(device, one) for one in (locations if isinstance(locations, list) else [locations])]
 
 
-def _location(device: str, location: Any) -> Report:
+def _location(device: str, location: Any) -> TrackerReport:
     coords = location.get("coords") if isinstance(location, dict) else None
     if not isinstance(coords, dict):
         raise ReportError("location.coords is missing")
@@ -110,7 +114,7 @@ def _report(
     accuracy: float | None,
     battery: float | None,
     fix_t: float | None,
-) -> Report:
+) -> TrackerReport:
     # Whoever stands has no course, and some receivers say 0 then, which would be north.
     heading = course % 360 if course is not None and v is not None and v > MOVING else None
     try:
@@ -128,7 +132,7 @@ def _report(
         raise ReportError(str(error)) from None
     if not fix.has_fix:
         raise ReportError("lat and lon are 0: the device has no fix")
-    return Report(device, fix)
+    return TrackerReport(device, fix)
 
 
 def _device(value: Any) -> str:
@@ -184,3 +188,126 @@ def _moment(text: str) -> float:
         return (moment if moment.tzinfo else moment.replace(tzinfo=UTC)).timestamp()
     except (ValueError, OverflowError):
         raise ReportError(f"timestamp is {text[:40]!r}; give seconds or a date") from None
+
+
+# --- The HTTP server that phones report to: small requests, answered at once, each bounded in size and time
+
+log = logging.getLogger(__name__)
+
+MOST_CONNECTIONS = 500
+REQUEST_WITHIN = 15.0
+"""seconds for a request, from its first byte to its last, and for the next one on the same connection."""
+LARGEST_HEAD = 16 << 10
+LARGEST_BODY = 256 << 10
+
+Accept = Callable[[TrackerReport], None]
+"""Takes a report; raises ReportError for one that counts for nothing."""
+
+
+class RequestError(Exception):
+    """A request that is not dealt with, and the connection is closed behind the answer."""
+
+    def __init__(self, status: str, text: str) -> None:
+        super().__init__(text)
+        self.status = status
+
+
+class HttpReports:
+    """Answers phones: 200 for a report that is shown, 400 with the reason for one that is not."""
+
+    def __init__(self, accept: Accept) -> None:
+        self._accept = accept
+        self._open = 0
+
+    async def serve(self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
+        """Serve one connection to its end."""
+        self._open += 1
+        try:
+            if self._open > MOST_CONNECTIONS:
+                await _answer(writer, "503 Service Unavailable", "too many connections", goes_on=False)
+                return
+            while await self._request(reader, writer):
+                pass
+        except (OSError, EOFError, TimeoutError, ValueError):
+            # It went away in the middle of a request, or never ended one.
+            return
+        finally:
+            self._open -= 1
+            writer.close()
+            with contextlib.suppress(OSError):
+                await writer.wait_closed()
+
+    async def _request(self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> bool:
+        """Deal with one request; return whether the client may send another."""
+        try:
+            async with asyncio.timeout(REQUEST_WITHIN):
+                method, target, headers = _head(await _head_of(reader))
+                body = await reader.readexactly(_length(headers))
+            for report in _reports(method, target, headers, body):
+                self._accept(report)
+        except RequestError as error:
+            await _answer(writer, error.status, str(error), goes_on=False)
+            return False
+        except ReportError as error:
+            goes_on = headers.get("connection", "").lower() != "close"
+            await _answer(writer, "400 Bad Request", str(error), goes_on=goes_on)
+            return goes_on
+        goes_on = headers.get("connection", "").lower() != "close"
+        await _answer(writer, "200 OK", "", goes_on=goes_on)
+        return goes_on
+
+
+async def _head_of(reader: asyncio.StreamReader) -> bytes:
+    try:
+        return await reader.readuntil(b"\r\n\r\n")
+    except asyncio.LimitOverrunError:
+        raise RequestError("431 Request Header Fields Too Large", "the request is too large") from None
+
+
+def _head(head: bytes) -> tuple[str, str, dict[str, str]]:
+    lines = head.decode("latin-1").split("\r\n")
+    parts = lines[0].split(" ")
+    if len(parts) != 3 or not parts[2].startswith("HTTP/1."):
+        raise RequestError("400 Bad Request", "this is no HTTP request")
+    headers = {}
+    for line in lines[1:]:
+        name, colon, value = line.partition(":")
+        if colon:
+            headers[name.strip().lower()] = value.strip()
+    if parts[2] == "HTTP/1.0":
+        headers.setdefault("connection", "close")
+    return parts[0], parts[1], headers
+
+
+def _length(headers: dict[str, str]) -> int:
+    if "transfer-encoding" in headers:
+        raise RequestError("411 Length Required", "say how long the body is (Content-Length)")
+    text = headers.get("content-length", "0")
+    if not (text.isascii() and text.isdigit() and len(text) < 12):
+        raise RequestError("400 Bad Request", "Content-Length is no number")
+    if int(text) > LARGEST_BODY:
+        raise RequestError("413 Content Too Large", f"a body has at most {LARGEST_BODY} bytes")
+    return int(text)
+
+
+def _reports(method: str, target: str, headers: dict[str, str], body: bytes) -> list[TrackerReport]:
+    if method not in ("GET", "POST"):
+        raise RequestError("405 Method Not Allowed", "report with GET or POST")
+    try:
+        query = urlsplit(target).query
+    except ValueError:
+        raise RequestError("400 Bad Request", "the address cannot be read") from None
+    if method == "POST" and (headers.get("content-type", "").startswith("application/json")):
+        return reports_in_json(body)
+    return reports_in_form(query or body.decode("utf-8", "replace"))
+
+
+async def _answer(writer: asyncio.StreamWriter, status: str, text: str, *, goes_on: bool) -> None:
+    content = f"{text}\n".encode() if text else b""
+    head = (
+        f"HTTP/1.1 {status}\r\nContent-Type: text/plain; charset=utf-8\r\nContent-Length: {len(content)}\r\n"
+        f"Connection: {'keep-alive' if goes_on else 'close'}\r\n\r\n"
+    )
+    writer.write(head.encode() + content)
+    async with asyncio.timeout(REQUEST_WITHIN):
+        await writer.drain()

@@ -11,20 +11,25 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import ClassVar
 
-from ...messages import Ability, Alive, SendPos, SetPath, SetPosEnd, SetPosIni, Stopped
-from ...monitoring.repeated_lines import RepeatedLines
-from ...sites.frame import SiteFrame
-from ..base.adapter import Adapter, Command
+from ...core.logs import RepeatedLines
+from ...core.messages import Ability, Alive, SendPos, SetPath, SetPosEnd, SetPosIni, Stopped
+from ...core.sites.frame import SiteFrame
+from ..base.adapter import Adapter, Command, Link
 from ..base.errors import CommandRefusedError
 from ..base.frames import LinkFrame
-from ..base.link import Link
 from ..base.settings import LinkSettings, read_settings
 from .broker import Broker
-from .effects import Effect, Halted, Keep, Publish, Report, Settled
-from .errors import Vda5050Error, VehicleMessageError
-from .inbound import Header, decode_message
-from .memory import Memory, Remembered
-from .outbound import MessageWriter, Order, Topics, VehicleId
+from .ledger import Effect, Halted, Keep, Publish, Settled, VehicleReport
+from .messages import (
+    MessageWriter,
+    Order,
+    Topics,
+    Vda5050Error,
+    VdaHeader,
+    VehicleId,
+    VehicleMessageError,
+    decode_message,
+)
 from .presence import MapFrame
 from .settings import (
     AnyMap,
@@ -36,6 +41,7 @@ from .settings import (
     topics,
     vehicle_settings,
 )
+from .tasks import Memory, Remembered
 from .vehicle import VehicleController
 
 log = logging.getLogger(__name__)
@@ -198,7 +204,7 @@ class Vda5050Adapter(Adapter):
         identity, kind = parsed
         try:
             message = decode_message(kind, payload, self._topics.major)
-            if isinstance(message, Header) and identity != VehicleId(
+            if isinstance(message, VdaHeader) and identity != VehicleId(
                 message.manufacturer, message.serial_number
             ):
                 raise VehicleMessageError(
@@ -325,7 +331,7 @@ class Vda5050Adapter(Adapter):
                 link.give_up(vehicle.robot, effect.command_id, effect.reason)
         elif isinstance(effect, Halted):
             vehicle.halted()
-        elif isinstance(effect, Report) and link is not None and vehicle.is_told:
+        elif isinstance(effect, VehicleReport) and link is not None and vehicle.is_told:
             if isinstance(effect.request, SendPos):
                 link.position(vehicle.robot, effect.request)
             elif isinstance(effect.request, Alive):

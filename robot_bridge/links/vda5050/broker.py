@@ -11,7 +11,7 @@ from typing import Any
 
 import aiomqtt
 
-from .errors import Vda5050Error
+from .messages import Vda5050Error
 from .settings import BrokerAddress
 
 log = logging.getLogger(__name__)

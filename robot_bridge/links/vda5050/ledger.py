@@ -1,14 +1,57 @@
-"""What one vehicle is occupied with, kept, and the effects of all that happens to it."""
+"""Ledger of one vehicle: what is to be sent and reported, actions that are waited for, initial position."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Literal
 
-from ...messages import Request
-from .effects import Effect, Halted, Keep, Publish, Report, Settled
-from .memory import Remembered
-from .outbound import Action, ActionParameter, InstantActions, Order
-from .tasks import Task, recalled
+from ...core.messages import Request, SetPosIni
+from .messages import Action, ActionParameter, InstantActions, Order, State
+from .presence import VehiclePresence
+from .tasks import Remembered, VehicleTask, recalled
+
+# --- What comes of a message or of time going by: what is to be published, told to the gateway, and kept
+
+
+@dataclass(frozen=True)
+class Publish:
+    """A message to the vehicle. One that finds no broker is lost; while it is due it comes again."""
+
+    message: Order | InstantActions
+
+
+@dataclass(frozen=True)
+class VehicleReport:
+    """What the vehicle says to the gateway."""
+
+    request: Request
+
+
+@dataclass(frozen=True)
+class Settled:
+    """What came of command ``command_id``: taken on, or with a reason refused, or given up later."""
+
+    command_id: int
+    reason: str | None = None
+
+
+@dataclass(frozen=True)
+class Halted:
+    """The vehicle shows that it stands: what was asked to stop it is done."""
+
+
+@dataclass(frozen=True)
+class Keep:
+    """What is to be kept before any effect that comes after it."""
+
+    remembered: Remembered
+
+
+Effect = Publish | VehicleReport | Settled | Halted | Keep
+
+
+# --- What one vehicle is occupied with, kept, and the effects of all that happens to it ---
 
 MOST_REMEMBERED = 50
 """Orders that are remembered as not to be carried out any more, and commands that are over."""
@@ -24,7 +67,7 @@ class Ledger:
         self._effects: list[Effect] = []
 
     @property
-    def task(self) -> Task | None:
+    def task(self) -> VehicleTask | None:
         """The motion command under way."""
         return self._task
 
@@ -40,7 +83,7 @@ class Ledger:
 
     def report(self, request: Request) -> None:
         """Say something to the gateway."""
-        self._effects.append(Report(request))
+        self._effects.append(VehicleReport(request))
 
     def publish(self, message: Order | InstantActions) -> None:
         """Publish a message to the vehicle."""
@@ -70,7 +113,7 @@ class Ledger:
         """Say that the vehicle shows that it stands."""
         self._effects.append(Halted())
 
-    def begin(self, task: Task) -> None:
+    def begin(self, task: VehicleTask) -> None:
         """Take a task on."""
         self._task = task
         self.keep()
@@ -113,10 +156,87 @@ class Ledger:
         kept = Remembered(task=task, paused=self._paused, revoked=revoked, ended=ended)
         self._effects.append(Keep(kept))
 
-    def _revoke_task(self) -> Task | None:
+    def _revoke_task(self) -> VehicleTask | None:
         task, self._task = self._task, None
         if task is not None and task.plan is not None:
             self._revoked = [*self._revoked, task.plan.order_id][-MOST_REMEMBERED:]
         if task is not None:
             self.keep()
         return task
+
+
+# --- SetPosIni as the instant action initPosition: where a vehicle is to take itself to be ---
+
+
+@dataclass(frozen=True)
+class _Init:
+    """An initPosition that the vehicle has not finished yet."""
+
+    command_id: int
+    action_id: str
+    begun_at: float
+
+
+class PositionInit:
+    """Has the vehicle take a position, and settles that once the vehicle has done so."""
+
+    def __init__(
+        self, ledger: Ledger, presence: VehiclePresence, new_id: Callable[[], str], finish_within: float
+    ) -> None:
+        self._ledger = ledger
+        self._presence = presence
+        self._new_id = new_id
+        self._finish_within = finish_within
+        self._init: _Init | None = None
+
+    @property
+    def is_waiting(self) -> bool:
+        """Whether the vehicle has not answered yet."""
+        return self._init is not None
+
+    def begin(self, message: SetPosIni, command_id: int, now: float) -> None:
+        """Send the position to the vehicle, or refuse it with the reason."""
+        if self._init is not None and self._init.command_id == command_id:
+            return
+        presence, state = self._presence, self._presence.state
+        map_id = presence.default_map()
+        if self._ledger.task is not None or (state is not None and state.has_active_order):
+            self._ledger.settle(command_id, "the vehicle carries out an order; abort that first")
+        elif not presence.is_there(now):
+            self._ledger.settle(command_id, presence.obstacle(now))
+        elif map_id is None:
+            self._ledger.settle(command_id, "it is not known on which map of [vda5050.maps] the vehicle is")
+        else:
+            self._init = _Init(command_id, self._new_id(), now)
+            parameters = self._parameters(message, map_id)
+            self._ledger.publish_action("initPosition", self._init.action_id, "HARD", parameters)
+
+    def note_state(self, state: State) -> None:
+        """Settle it where the vehicle shows what became of it."""
+        init = self._init
+        if init is None:
+            return
+        action = state.action(init.action_id)
+        fault = next((one for one in state.errors if one.refers("actionId", init.action_id)), None)
+        if fault is None and (action is None or not action.has_ended):
+            return
+        self._init = None
+        done = fault is None and action is not None and action.action_status == "FINISHED"
+        reason = fault.summary if fault is not None else "the vehicle failed initPosition"
+        self._ledger.settle(init.command_id, None if done else reason)
+
+    def advance(self, now: float) -> None:
+        """Refuse it where the vehicle does not answer."""
+        if self._init is not None and now - self._init.begun_at > self._finish_within:
+            command_id, self._init = self._init.command_id, None
+            self._ledger.settle(command_id, "the vehicle has not finished initPosition")
+
+    def _parameters(self, message: SetPosIni, map_id: str) -> list[ActionParameter]:
+        presence = self._presence
+        theta = message.theta
+        if theta is None:
+            theta = 0.0 if presence.pose is None else presence.pose.theta
+        x, y, theta = presence.frame_of(map_id).from_site(message.x, message.y, theta)
+        node = "" if presence.state is None else presence.state.last_node_id
+        values: dict[str, str | float] = {"x": x, "y": y, "theta": theta, "mapId": map_id, "lastNodeId": node}
+        return [ActionParameter(key, value) for key, value in values.items()]

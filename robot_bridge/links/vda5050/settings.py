@@ -11,17 +11,15 @@ from urllib.parse import urlsplit
 import msgspec
 from msgspec import field
 
-from ...access.credentials import client_context
-from ...access.errors import AccessError
-from ...messages import ROBOT_NAME
+from ...core.messages import ROBOT_NAME
+from ...protocol.credentials import AccessError, client_context
 from ..base.errors import LinkError
 from ..base.frames import FrameSettings, LinkFrame
 from ..base.settings import LinkSettings
-from .errors import Vda5050Error
-from .outbound import Topics, VehicleId
+from .messages import Topics, Vda5050Error, VehicleId
 from .presence import MapFrame
-from .route import RouteLimits
 from .stopping import StopLimits
+from .tasks import RouteLimits
 from .vehicle import VehicleSettings
 
 PLAIN, ENCRYPTED = "mqtt", "mqtts"
@@ -42,7 +40,7 @@ class Vda5050Settings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     ``names`` makes a robot's name of ``{manufacturer}`` and ``{serial}``; with ``vehicles`` only those listed
     are led. ``major_version`` v3 is for vehicles of 3.0, all else for those of 2.x. Without ``maps`` every
     map lies as ``[frame]`` says, else each as its own table. Lengths are metres, times seconds: see
-    :class:`.route.RouteLimits` and :class:`.stopping.StopLimits`.
+    :class:`.tasks.RouteLimits` and :class:`.stopping.StopLimits`.
     """
 
     broker: str = "mqtt://127.0.0.1:1883"

@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from .inbound import State
-from .outbound import Action, InstantActions
+from .messages import Action, InstantActions, State
 
 
 @dataclass(frozen=True)

@@ -9,25 +9,12 @@ import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 
-from ...messages import (
-    Alive,
-    MessageError,
-    Request,
-    SetPath,
-    SetPosEnd,
-    SetPosIni,
-    Stopped,
-)
-from .effects import Effect
-from .inbound import Connection, Factsheet, Inbound, State, Visualization
-from .ledger import Ledger
-from .memory import Remembered
-from .outbound import VehicleId
-from .positioning import PositionInit
-from .presence import MapFrame, Presence
-from .route import RouteLimits, begin_plan
+from ...core.messages import Alive, MessageError, Request, SetPath, SetPosEnd, SetPosIni, Stopped
+from .ledger import Effect, Ledger, PositionInit
+from .messages import Connection, Factsheet, Inbound, State, VehicleId, Visualization
+from .presence import MapFrame, VehiclePresence
 from .stopping import StopLimits, StopProcedure
-from .tasks import Progress, Task
+from .tasks import Progress, Remembered, RouteLimits, VehicleTask, begin_plan
 
 ALIVE_EVERY = 1.0
 REPEAT_EVERY = 2.0
@@ -76,7 +63,7 @@ class VehicleController:
         self._settings = settings
         self._new_id = new_id
         self._ledger = Ledger(remembered or Remembered(), now)
-        self._presence = Presence(maps, settings.silent_after, settings.version)
+        self._presence = VehiclePresence(maps, settings.silent_after, settings.version)
         self._init = PositionInit(self._ledger, self._presence, new_id, settings.accept_within)
         self._stop: StopProcedure | None = None
         self._admitted = self._awaits_halt = False
@@ -141,7 +128,7 @@ class VehicleController:
                 # It may be on its way still, and the vehicle would refuse the next one behind it.
                 self._begin_stop(now)
             ledger.drop_task("another task came in its place")
-        ledger.begin(Task(command_id, message, now))
+        ledger.begin(VehicleTask(command_id, message, now))
         self._advance_task(now)
 
     def withdraw(self, command_id: int) -> None:
@@ -243,7 +230,7 @@ class VehicleController:
 
     # --- tasks ----------------------------------------------------------------------------------------
 
-    def _judge_task(self, task: Task, state: State, now: float) -> None:
+    def _judge_task(self, task: VehicleTask, state: State, now: float) -> None:
         ledger = self._ledger
         progress, reason = task.judge(state)
         if task.accepted and not task.acknowledged:
@@ -263,7 +250,7 @@ class VehicleController:
         elif progress is Progress.FORGOTTEN:
             self._resume(task, now)
 
-    def _resume(self, task: Task, now: float) -> None:
+    def _resume(self, task: VehicleTask, now: float) -> None:
         """Give the vehicle once more what it forgot: what is left of its way, as a new order."""
         plan, passed = task.plan, task.passed
         task.forget_plan(now)
@@ -290,7 +277,7 @@ class VehicleController:
         else:
             self._advance_order(task, now)
 
-    def _advance_order(self, task: Task, now: float) -> None:
+    def _advance_order(self, task: VehicleTask, now: float) -> None:
         """Publish what the vehicle does not show yet, and the next update when half of its base is driven."""
         state, limits = self._presence.state, self._limits()
         if task.accepted and state is not None and task.is_shown(state):
@@ -302,7 +289,7 @@ class VehicleController:
         if task.sent_at is None or now - task.sent_at >= REPEAT_EVERY:
             self._ledger.publish(task.sent(state, limits, now))
 
-    def _plan(self, task: Task, now: float) -> None:
+    def _plan(self, task: VehicleTask, now: float) -> None:
         """Make the order of a task as soon as the vehicle can be given one."""
         state = self._presence.state
         obstacle = self._presence.obstacle(now)
@@ -325,7 +312,7 @@ class VehicleController:
             self._ledger.publish_action("stopPause", self._new_id())
         return "the vehicle does not end its pause" if state.paused else None
 
-    def _begin_order(self, task: Task) -> None:
+    def _begin_order(self, task: VehicleTask) -> None:
         position, frame = self._presence.position, self._presence.frame()
         assert position is not None and frame is not None
         points = [frame.from_site(x, y, 0.0)[:2] for x, y in task.path]

@@ -92,8 +92,7 @@ class Endurance:
         yield self._connected()
 
     def _keep_connection(self) -> None:
-        from fleet_supervisor.plugin.settings.connections import Connections
-        from fleet_supervisor.plugin.settings.gateway_connection import GatewayConnection
+        from fleet_supervisor.plugin.settings.connections import Connections, GatewayConnection
 
         kept = GatewayConnection(CONNECTION, self._plan["gateway"], self._plan["operator"])
         Connections().put(kept)

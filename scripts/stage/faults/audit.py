@@ -12,7 +12,7 @@ from typing import Any
 
 from sqlalchemy import Connection, text
 
-from robot_bridge.store.database import run_once
+from robot_bridge.gateway.storage.database import run_once
 
 from .desk import ENDS, Ledger
 from .yard import GATEWAY_KILLED, ROBOTS_KILLED, Death, Fault, Yard

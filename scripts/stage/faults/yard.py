@@ -17,10 +17,10 @@ from typing import Any
 from plugin_files import ROOT
 from sqlalchemy import Connection, func, make_url, select
 
-from robot_bridge.store import revisions
-from robot_bridge.store.accounts.choice import keeper_on
-from robot_bridge.store.database import run_once
-from robot_bridge.store.schema import trajectories
+from robot_bridge.gateway.storage import revisions
+from robot_bridge.gateway.storage.database import run_once
+from robot_bridge.gateway.storage.roles.choice import role_manager_on
+from robot_bridge.gateway.storage.schema import trajectories
 
 from ..database_server import DatabaseServer
 from ..desk_wire import ask
@@ -292,7 +292,7 @@ def server_place(server: DatabaseServer, network: Proxy, count: int) -> Place:
 
 
 def _accounts(connection: Connection, robots: list[str], url: Any) -> dict[str, str]:
-    keeper = keeper_on(connection)
+    keeper = role_manager_on(connection)
     for name in robots:
         keeper.add_robot(name, PASSWORD)
     shared = url.set(database=keeper.robots_database(), password=PASSWORD)

@@ -7,11 +7,9 @@ import tracemalloc
 
 import numpy as np
 import pytest
-from fleet_supervisor.plugin.desk.command_book import CommandBook, in_words, place_of
-from fleet_supervisor.plugin.wire.command_news import command_in, commands_in
-from fleet_supervisor.plugin.wire.mailbox import Mailbox
-from fleet_supervisor.plugin.wire.path_points import PathPoints
-from fleet_supervisor.plugin.wire.protocol import DeskProtocol
+from fleet_supervisor.plugin.gateway_client.buffers import PathPoints, UpdateBuffer, command_in, commands_in
+from fleet_supervisor.plugin.gateway_client.command_cache import CommandCache, command_in_words, place_of
+from fleet_supervisor.plugin.gateway_client.protocol import GatewayProtocol
 
 WAY = [[0.5 * k, 20.0 + 0.25 * k] for k in range(600)]
 """Along 300 m of roads."""
@@ -44,7 +42,7 @@ def test_whoever_reads_a_path_finds_its_points():
     assert (len(points), points[0], points[-1][:2]) == (600, (0.0, 20.0), (299.5, 169.75))
     assert points[1:3] == [(0.5, 20.25), (1.0, 20.5)]
     assert np.array_equal(np.array(points, dtype=np.float64), WAY)
-    assert in_words(report) == "route of 600 points"
+    assert command_in_words(report) == "route of 600 points"
     assert place_of(report) == (299.5, 169.75)
     assert report.params["theta"] == 1.5
 
@@ -56,7 +54,7 @@ def test_points_are_nobodys_to_change():
 
 
 def test_a_path_told_again_is_nothing_new_and_another_one_is():
-    book = CommandBook()
+    book = CommandCache()
     assert len(book.merge([command_in(told())])) == 1
     assert book.merge([command_in(told())]) == []
     assert len(book.merge([command_in(told(WAY[:-1]))])) == 1
@@ -77,7 +75,7 @@ def test_every_way_on_which_commands_come_packs_them():
     for reports in (commands_in(answer), commands_in(told())):
         assert all(isinstance(report.params["points"], PathPoints) for report in reports)
     assert [report.command for report in commands_in(answer)] == ["c1", "c2"]
-    mailbox = Mailbox()
-    protocol = DeskProtocol("anna", 10.0, "ws://here/desk", mailbox, lambda: 0.0)
+    mailbox = UpdateBuffer()
+    protocol = GatewayProtocol("anna", 10.0, "ws://here/desk", mailbox, lambda: 0.0)
     protocol.receive(json.dumps({"jsonrpc": "2.0", "method": "command", "params": told()}))
     assert isinstance(mailbox.take().commands["c1"].params["points"], PathPoints)

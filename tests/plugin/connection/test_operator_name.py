@@ -5,8 +5,8 @@ from __future__ import annotations
 import json
 
 import pytest
-from fleet_supervisor.plugin.wire.mailbox import Mailbox
-from fleet_supervisor.plugin.wire.protocol import DeskProtocol
+from fleet_supervisor.plugin.gateway_client.buffers import UpdateBuffer
+from fleet_supervisor.plugin.gateway_client.protocol import GatewayProtocol
 
 
 @pytest.mark.parametrize(
@@ -19,5 +19,5 @@ from fleet_supervisor.plugin.wire.protocol import DeskProtocol
     ],
 )
 def test_it_is_one_line_that_is_not_too_long(name, said):
-    (hello,) = DeskProtocol(name, 5.0, "ws://127.0.0.1:1", Mailbox(), lambda: 0.0).begin()
+    (hello,) = GatewayProtocol(name, 5.0, "ws://127.0.0.1:1", UpdateBuffer(), lambda: 0.0).begin()
     assert json.loads(hello)["params"]["operator"] == said

@@ -13,7 +13,12 @@ from pathlib import Path
 import pytest
 from websockets.asyncio.server import serve
 
-PLUGIN_FILES = ("__init__.py", "plugin/__init__.py", "plugin/errors.py", "plugin/websocket_library.py")
+PLUGIN_FILES = (
+    "__init__.py",
+    "plugin/__init__.py",
+    "plugin/ui/errors.py",
+    "plugin/gateway_client/websocket_library.py",
+)
 
 UNTRANSLATED = """
 def tr(text, /, **values):
@@ -29,7 +34,7 @@ def released(tmp_path, root) -> Path:
         (folder / name).parent.mkdir(parents=True, exist_ok=True)
         shutil.copy(root / name, folder / name)
     # There is no QGIS in that Python whose language could be asked.
-    (folder / "plugin" / "language.py").write_text(UNTRANSLATED, encoding="utf-8")
+    (folder / "plugin" / "ui" / "language.py").write_text(UNTRANSLATED, encoding="utf-8")
     return folder
 
 
@@ -57,8 +62,8 @@ def run(folder: Path, script: str, *more_paths: Path) -> str:
 
 
 FIND = """
-    from fleet_supervisor.plugin.errors import LibraryMissingError
-    from fleet_supervisor.plugin.websocket_library import websocket_library
+    from fleet_supervisor.plugin.ui.errors import LibraryMissingError
+    from fleet_supervisor.plugin.gateway_client.websocket_library import websocket_library
     before = list(sys.path)
     try:
         print(websocket_library().__name__)
@@ -114,7 +119,7 @@ async def test_the_plugins_own_copy_talks_to_a_real_server(released):
         port = server.sockets[0].getsockname()[1]
         script = f"""
             import asyncio
-            from fleet_supervisor.plugin.websocket_library import websocket_library
+            from fleet_supervisor.plugin.gateway_client.websocket_library import websocket_library
             library = websocket_library()
             async def talk():
                 async with library.connect("ws://127.0.0.1:{port}", proxy=None) as socket:

@@ -11,7 +11,7 @@ from collections.abc import Callable
 from dataclasses import replace
 
 import pytest
-from fleet_supervisor.robot_bridge.messages import (
+from fleet_supervisor.robot_bridge.core.messages import (
     CommandReport,
     CommandState,
     CommandStep,
@@ -359,9 +359,9 @@ def let_deleted_go() -> None:
 
 @pytest.fixture
 def plugin(iface):
-    from fleet_supervisor.plugin.supervisor import FleetSupervisor
+    from fleet_supervisor.plugin.plugin import FleetPlugin
 
-    loaded = FleetSupervisor(iface)
+    loaded = FleetPlugin(iface)
     loaded.initGui()
     yield loaded
     loaded.unload()

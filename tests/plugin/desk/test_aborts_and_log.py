@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from fleet_supervisor.plugin.desk.wall_clock import short_time
-from fleet_supervisor.robot_bridge.messages import CommandState
+from fleet_supervisor.plugin.ui.times import short_time
+from fleet_supervisor.robot_bridge.core.messages import CommandState
 from qgis.PyQt.QtWidgets import (
     QApplication,
     QLabel,

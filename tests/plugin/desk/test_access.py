@@ -8,14 +8,23 @@ import sys
 from pathlib import Path
 
 import pytest
-from fleet_supervisor.plugin.connection import Connection
-from fleet_supervisor.plugin.desk.access_fields import AccessFields
-from fleet_supervisor.plugin.errors import AddressError
-from fleet_supervisor.plugin.settings.token_store import TokenStore
-from fleet_supervisor.plugin.wire.addresses import Credentials
-from fleet_supervisor.plugin.wire.role_words import ROLES
-from fleet_supervisor.plugin.wire.status import LinkStatus, Phase
-from fleet_supervisor.robot_bridge.messages import AbortAll, ClearEmergencyStop, EmergencyStop, Role, Send
+from fleet_supervisor.plugin.gateway_client.connection import ConnectionThread
+from fleet_supervisor.plugin.gateway_client.link import (
+    ROLES,
+    ConnectionPhase,
+    ConnectionStatus,
+    OperatorCredentials,
+)
+from fleet_supervisor.plugin.panel.connection_panel import AccessFields
+from fleet_supervisor.plugin.settings.connections import TokenStore
+from fleet_supervisor.plugin.ui.errors import AddressError
+from fleet_supervisor.robot_bridge.core.messages import (
+    AbortAll,
+    ClearEmergencyStop,
+    EmergencyStop,
+    Role,
+    Send,
+)
 from qgis.core import QgsApplication, QgsSettings
 from qgis.gui import QgsFileWidget
 from qgis.PyQt.QtCore import Qt
@@ -58,7 +67,7 @@ def bridge(root, tmp_path_factory):
 
 @pytest.fixture
 def connection():
-    connection = Connection()
+    connection = ConnectionThread()
     yield connection
     connection.shut_down()
 
@@ -70,13 +79,13 @@ def link_when(connection, wait, phase):
 
 
 def test_a_desk_connects_over_tls_with_its_token(connection, bridge, wait):
-    connection.open(bridge.url, "Ada", Credentials(bridge.token, str(bridge.ca)))
-    link_when(connection, wait, Phase.CONNECTED)
+    connection.open(bridge.url, "Ada", OperatorCredentials(bridge.token, str(bridge.ca)))
+    link_when(connection, wait, ConnectionPhase.CONNECTED)
 
 
 def failure(connection, bridge, wait, token, ca, url=None):
-    connection.open(url or bridge.url, "Ada", Credentials(token, str(ca or "")))
-    return link_when(connection, wait, Phase.FAILED)
+    connection.open(url or bridge.url, "Ada", OperatorCredentials(token, str(ca or "")))
+    return link_when(connection, wait, ConnectionPhase.FAILED)
 
 
 def test_without_a_token_the_desk_says_that_it_needs_one(connection, bridge, wait):
@@ -110,12 +119,12 @@ def test_another_name_than_the_certificates_is_named(connection, bridge, wait):
 
 def test_a_link_without_tls_says_that_the_other_may_be_meant(connection, bridge, wait):
     connection.open(f"ws://127.0.0.1:{bridge.port}/desk", "Ada")
-    assert "ws:// or wss://" in link_when(connection, wait, Phase.RETRYING).reason
+    assert "ws:// or wss://" in link_when(connection, wait, ConnectionPhase.RETRYING).reason
 
 
 def test_tls_to_a_gateway_without_it_says_so(connection, gateway, bridge, wait):
-    connection.open(gateway.url.replace("ws://", "wss://"), "Ada", Credentials("", str(bridge.ca)))
-    reason = link_when(connection, wait, Phase.RETRYING).reason
+    connection.open(gateway.url.replace("ws://", "wss://"), "Ada", OperatorCredentials("", str(bridge.ca)))
+    reason = link_when(connection, wait, ConnectionPhase.RETRYING).reason
     assert "If the gateway has no TLS, write ws:// instead of wss://." in reason
 
 
@@ -124,13 +133,13 @@ def test_tls_to_a_gateway_without_it_says_so(connection, gateway, bridge, wait):
     [
         (
             "ws://gateway.example.org:8765/desk",
-            Credentials(SECRET),
+            OperatorCredentials(SECRET),
             "everybody on the way could read",
         ),
-        ("ws://127.0.0.1:8765/desk", Credentials("two words"), "it is one word"),
+        ("ws://127.0.0.1:8765/desk", OperatorCredentials("two words"), "it is one word"),
         (
             "wss://127.0.0.1:8765/desk",
-            Credentials("", "/nowhere/ca.pem"),
+            OperatorCredentials("", "/nowhere/ca.pem"),
             "CA file /nowhere/ca.pem cannot",
         ),
     ],
@@ -143,22 +152,22 @@ def test_what_cannot_be_right_is_refused_before_anything_is_sent(connection, url
 
 def test_a_revoked_token_ends_the_link_and_it_is_not_tried_again(connection, bridge, wait):
     token = bridge.run("operators", "add", "Bob", "--role", "viewer")
-    connection.open(bridge.url, "Bob", Credentials(token, str(bridge.ca)))
-    link_when(connection, wait, Phase.CONNECTED)
+    connection.open(bridge.url, "Bob", OperatorCredentials(token, str(bridge.ca)))
+    link_when(connection, wait, ConnectionPhase.CONNECTED)
     bridge.run("operators", "revoke", "Bob")
-    link = link_when(connection, wait, Phase.FAILED)
+    link = link_when(connection, wait, ConnectionPhase.FAILED)
     assert "this token of Bob was revoked" in link.reason
     assert "new token" in link.reason
     assert link.wants_token
 
 
 def test_a_session_that_was_ended_is_not_brought_back_by_itself(connection, bridge, wait):
-    connection.open(bridge.url, "Ada", Credentials(bridge.token, str(bridge.ca)))
-    link_when(connection, wait, Phase.CONNECTED)
+    connection.open(bridge.url, "Ada", OperatorCredentials(bridge.token, str(bridge.ca)))
+    link_when(connection, wait, ConnectionPhase.CONNECTED)
     wait(lambda: bridge.run("sessions", "list"))
     session = bridge.run("sessions", "list").split("\t")[0]
     bridge.run("sessions", "end", session, "--reason", "shift is over")
-    link = link_when(connection, wait, Phase.FAILED)
+    link = link_when(connection, wait, ConnectionPhase.FAILED)
     assert "ended your session: shift is over" in link.reason
     assert not link.wants_token
 
@@ -242,7 +251,7 @@ def test_what_is_typed_is_not_shown_and_the_ca_file_is_remembered(tmp_path):
 
 
 def test_credentials_do_not_show_the_token():
-    assert SECRET not in repr(Credentials(SECRET))
+    assert SECRET not in repr(OperatorCredentials(SECRET))
 
 
 def test_an_operator_connects_by_the_panel_alone_and_sees_what_is_missing(plugin, bridge, wait):
@@ -274,17 +283,17 @@ def test_an_operator_connects_by_the_panel_alone_and_sees_what_is_missing(plugin
 def test_the_role_stands_there_in_the_operators_words(plugin, site, monkeypatch):
     monkeypatch.setitem(ROLES, Role.SUPERVISOR, "felügyelő")
     panel = plugin.window.dock.connection_panel
-    panel.show_link(LinkStatus(Phase.CONNECTED, operator="Ada", role="supervisor"), site, 0.0)
+    panel.show_link(ConnectionStatus(ConnectionPhase.CONNECTED, operator="Ada", role="supervisor"), site, 0.0)
     assert panel.findChild(QLabel, "fleet_link_state").text().endswith("Yard · Ada, felügyelő")
 
 
 def test_the_fields_open_when_the_gateway_asks_for_a_token(plugin, bridge, wait):
     panel = plugin.window.dock.connection_panel
     button = panel.findChild(QToolButton, "fleet_access_button")
-    panel.show_link(LinkStatus(Phase.FAILED, "no", wants_token=True), None, 0.0)
+    panel.show_link(ConnectionStatus(ConnectionPhase.FAILED, "no", wants_token=True), None, 0.0)
     assert button.isChecked()
     button.setChecked(False)
-    panel.show_link(LinkStatus(Phase.FAILED, "no", wants_token=True), None, 0.0)
+    panel.show_link(ConnectionStatus(ConnectionPhase.FAILED, "no", wants_token=True), None, 0.0)
     assert not button.isChecked()
 
 
@@ -301,8 +310,8 @@ def test_each_role_reaches_as_far_as_it_may_and_is_told_where_it_ends(
     window, answers = plugin.window, []
     desk = window.desk
     token = bridge.run("operators", "add", role.title(), "--role", role)
-    desk.open_link(bridge.url, role.title(), Credentials(token, str(bridge.ca)))
-    wait(lambda: desk.link.phase is Phase.CONNECTED and desk.site is not None, 10)
+    desk.open_link(bridge.url, role.title(), OperatorCredentials(token, str(bridge.ca)))
+    wait(lambda: desk.link.phase is ConnectionPhase.CONNECTED and desk.site is not None, 10)
     desk.answered.connect(answers.append)
 
     def error_of(request, action) -> str:

@@ -5,8 +5,8 @@ from __future__ import annotations
 import time
 
 import pytest
-from fleet_supervisor.plugin.desk.drafts import CONE, ROUTE, Draft, Findings
-from fleet_supervisor.robot_bridge.messages import CommandState
+from fleet_supervisor.plugin.control.pending_command import CONE, ROUTE, Findings, PendingCommand
+from fleet_supervisor.robot_bridge.core.messages import CommandState
 from qgis.PyQt.QtTest import QTest
 from qgis.PyQt.QtWidgets import QAbstractButton, QToolButton
 
@@ -42,16 +42,16 @@ def test_no_button_moves_whatever_is_reported(panel, gateway, make_robot, wait, 
     watched.check("a robot is selected")
     found = Findings(refused=(LONG,), warnings=(LONG,))
     for words, draft in (
-        ("a draft", Draft(names[0], CONE, ((60.0, 50.0),), is_checked=True)),
-        ("a route", Draft(names[0], ROUTE, ((60.0, 50.0), (70.0, 50.0)), is_checked=True)),
-        ("a refused draft", Draft(names[0], CONE, ((60.0, 50.0),), found, is_checked=True)),
+        ("a draft", PendingCommand(names[0], CONE, ((60.0, 50.0),), is_checked=True)),
+        ("a route", PendingCommand(names[0], ROUTE, ((60.0, 50.0), (70.0, 50.0)), is_checked=True)),
+        ("a refused draft", PendingCommand(names[0], CONE, ((60.0, 50.0),), found, is_checked=True)),
         (
             "one that can be overridden",
-            Draft(names[0], CONE, ((60.0, 50.0),), Findings(overridable=(LONG,)), is_checked=True),
+            PendingCommand(names[0], CONE, ((60.0, 50.0),), Findings(overridable=(LONG,)), is_checked=True),
         ),
         (
             "one that was overridden",
-            Draft(
+            PendingCommand(
                 names[0], CONE, ((60.0, 50.0),), Findings(overridable=(LONG,)), override=LONG, is_checked=True
             ),
         ),

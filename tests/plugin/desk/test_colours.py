@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from fleet_supervisor.plugin.desk.colours import COMMAND_COLOURS, STATE_COLOURS, for_letters
+from fleet_supervisor.plugin.ui.glyphs import COMMAND_COLOURS, STATE_COLOURS, for_letters
 from qgis.PyQt.QtGui import QColor, QPalette
 from qgis.PyQt.QtWidgets import QApplication
 

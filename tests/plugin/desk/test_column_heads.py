@@ -2,7 +2,7 @@ from __future__ import annotations
 
 import gc
 
-from fleet_supervisor.plugin.desk.column_heads import fit_heads
+from fleet_supervisor.plugin.ui.tables import fit_headers
 from qgis.PyQt.QtCore import Qt
 from qgis.PyQt.QtWidgets import QTableWidget
 
@@ -11,7 +11,7 @@ def table_with_narrow_heads() -> QTableWidget:
     table = QTableWidget(1, 2)
     table.setHorizontalHeaderLabels(["Battery", "Last message of the robot"])
     table.setSortingEnabled(True)
-    fit_heads(table)
+    fit_headers(table)
     return table
 
 

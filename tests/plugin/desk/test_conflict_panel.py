@@ -254,7 +254,7 @@ def test_an_older_gateway_lets_give_way_be_tried_and_nobody_be_sent_aside(confli
 def test_what_the_robots_can_do_is_asked_again_while_somebody_looks(
     conflicts, tell, gateway, wait, monkeypatch
 ):
-    monkeypatch.setattr("fleet_supervisor.plugin.desk.ways_out.ASK_EVERY", 0.2)
+    monkeypatch.setattr("fleet_supervisor.plugin.panel.conflict_panel.ASK_EVERY", 0.2)
     tell(meeting("r1", "r2"))
     wait(lambda: len(gateway.asked("get_ways_out")) >= 3, what="three questions")
     assert gateway.asked("get_ways_out")[-1] == {"robot": "r1", "other": "r2"}

@@ -10,17 +10,17 @@ import time
 import warnings
 
 import pytest
-from fleet_supervisor.plugin.connection import Connection
-from fleet_supervisor.plugin.errors import AddressError, NotSentError
-from fleet_supervisor.plugin.wire.outbox import Order
-from fleet_supervisor.plugin.wire.status import Phase
-from fleet_supervisor.robot_bridge.steady_time import steady_time
+from fleet_supervisor.plugin.gateway_client.buffers import OperatorRequest
+from fleet_supervisor.plugin.gateway_client.connection import ConnectionThread
+from fleet_supervisor.plugin.gateway_client.link import ConnectionPhase
+from fleet_supervisor.plugin.ui.errors import AddressError, NotSentError
+from fleet_supervisor.robot_bridge.core.steady_time import steady_time
 from qgis.PyQt.QtCore import QThread
 
 
 @pytest.fixture
 def connection(qgis_app):
-    made = Connection()
+    made = ConnectionThread()
     yield made
     made.shut_down()
     assert not made.findChildren(QThread)
@@ -64,7 +64,7 @@ def test_nothing_listening_is_said_with_place_and_remedy(connection, wait):
         probe.bind(("127.0.0.1", 0))
         port = probe.getsockname()[1]
     connection.open(f"ws://127.0.0.1:{port}/desk", "anna")
-    reason = reason_when(connection, wait, Phase.RETRYING)
+    reason = reason_when(connection, wait, ConnectionPhase.RETRYING)
     assert reason.startswith(f"Nothing listens at 127.0.0.1:{port}.")
     assert "robot-bridge serve" in reason
 
@@ -127,7 +127,7 @@ class Babbler:
 def test_what_is_no_gateway_is_named_and_tried_again(connection, wait, answer, says):
     babbler = Babbler(answer)
     connection.open(f"ws://127.0.0.1:{babbler.port}/desk", "anna")
-    reason = reason_when(connection, wait, Phase.RETRYING)
+    reason = reason_when(connection, wait, ConnectionPhase.RETRYING)
     babbler.close()
     assert says in reason
     assert str(babbler.port) in reason
@@ -137,23 +137,23 @@ def test_what_is_no_gateway_is_named_and_tried_again(connection, wait, answer, s
 def test_a_websocket_that_does_not_speak_the_desks_protocol_is_named(connection, gateway, wait, text):
     gateway.raw = text
     connection.open(gateway.url, "anna")
-    reason = reason_when(connection, wait, Phase.RETRYING)
+    reason = reason_when(connection, wait, ConnectionPhase.RETRYING)
     assert "not the desk's protocol" in reason
     assert gateway.url in reason
 
 
 def test_numbers_that_are_none_are_the_gateways_fault_and_no_crash(connection, gateway, make_robot, wait):
     connection.open(gateway.url, "anna")
-    wait(lambda: phase_of(connection) is Phase.CONNECTED)
+    wait(lambda: phase_of(connection) is ConnectionPhase.CONNECTED)
     wait(lambda: gateway._sockets)
     gateway.show(make_robot("r1", x=float("nan")))
-    assert "x of robot r1 is nan" in reason_when(connection, wait, Phase.RETRYING)
+    assert "x of robot r1 is nan" in reason_when(connection, wait, ConnectionPhase.RETRYING)
 
 
 def test_another_protocol_ends_the_attempts_and_says_what_to_update(connection, gateway, wait):
     gateway.protocol = 2
     connection.open(gateway.url, "anna")
-    reason = reason_when(connection, wait, Phase.FAILED)
+    reason = reason_when(connection, wait, ConnectionPhase.FAILED)
     assert "speaks protocol 2, this plugin protocol 1" in reason
     assert len(gateway.asked("hello")) == 1
 
@@ -176,7 +176,7 @@ def test_what_knows_no_desk_ends_the_attempts_and_names_the_path(connection, gat
     """As a gateway answers at the address of robots, behind whatever path a proxy gave that."""
     gateway.answers["hello"] = lambda _params: {"error": {"code": -32601, "message": "unknown operation"}}
     connection.open(gateway.url, "anna")
-    reason = reason_when(connection, wait, Phase.FAILED)
+    reason = reason_when(connection, wait, ConnectionPhase.FAILED)
     assert "knows no desk" in reason and "ws://127.0.0.1:8765/desk" in reason
     assert len(gateway.asked("hello")) == 1
 
@@ -186,21 +186,21 @@ def test_a_hello_that_cannot_be_right_is_not_said_for_ever(connection, gateway, 
     error = {"code": -32602, "message": "hello: Object missing required field `kind`"}
     gateway.answers["hello"] = lambda _params: {"error": error}
     connection.open(gateway.url, "anna")
-    assert "required field `kind`" in reason_when(connection, wait, Phase.FAILED)
+    assert "required field `kind`" in reason_when(connection, wait, ConnectionPhase.FAILED)
     assert len(gateway.asked("hello")) == 1
 
 
 def test_a_gateway_that_turns_the_desk_away_is_quoted(connection, gateway, wait):
     gateway.refuse["hello"] = "operator 'anna' is not known here; ask the site's supervisor"
     connection.open(gateway.url, "anna")
-    assert "operator 'anna' is not known here" in reason_when(connection, wait, Phase.RETRYING)
+    assert "operator 'anna' is not known here" in reason_when(connection, wait, ConnectionPhase.RETRYING)
 
 
 def test_a_killed_gateway_is_found_again_on_its_port(connection, gateway, make_robot, wait):
     connection.open(gateway.url, "anna")
-    wait(lambda: phase_of(connection) is Phase.CONNECTED)
+    wait(lambda: phase_of(connection) is ConnectionPhase.CONNECTED)
     gateway.stop()
-    wait(lambda: phase_of(connection) is Phase.RETRYING, 3)
+    wait(lambda: phase_of(connection) is ConnectionPhase.RETRYING, 3)
     gateway.show(make_robot("r9"))
     gateway.start()
     robots = set()
@@ -208,7 +208,7 @@ def test_a_killed_gateway_is_found_again_on_its_port(connection, gateway, make_r
     def again():
         news = connection.take()
         robots.update(news.robots.names)
-        return news.link.phase is Phase.CONNECTED and "r9" in robots
+        return news.link.phase is ConnectionPhase.CONNECTED and "r9" in robots
 
     wait(again, 6, what="the second link")
     assert len(gateway.asked("hello")) == 2
@@ -216,13 +216,13 @@ def test_a_killed_gateway_is_found_again_on_its_port(connection, gateway, make_r
 
 def test_an_unanswered_order_is_repeated_with_its_id_and_done_once(connection, gateway, wait):
     connection.open(gateway.url, "anna")
-    wait(lambda: phase_of(connection) is Phase.CONNECTED)
+    wait(lambda: phase_of(connection) is ConnectionPhase.CONNECTED)
     gateway.mute.add("send")
     params = {"command": "command-1", "robot": "r1", "op": "SetPosEnd", "params": {"x": 1.0, "y": 2.0}}
-    connection.submit(Order("command-1", "send", params, steady_time()))
+    connection.submit(OperatorRequest("command-1", "send", params, steady_time()))
     wait(lambda: gateway.asked("send"))
     gateway.stop()
-    wait(lambda: phase_of(connection) is Phase.RETRYING, 3)
+    wait(lambda: phase_of(connection) is ConnectionPhase.RETRYING, 3)
     gateway.mute.clear()
     gateway.start()
     answers = []
@@ -234,13 +234,13 @@ def test_an_unanswered_order_is_repeated_with_its_id_and_done_once(connection, g
 
 def test_an_answered_order_is_not_repeated_on_the_next_link(connection, gateway, wait):
     connection.open(gateway.url, "anna")
-    wait(lambda: phase_of(connection) is Phase.CONNECTED)
+    wait(lambda: phase_of(connection) is ConnectionPhase.CONNECTED)
     params = {"command": "command-1", "robot": "r1", "op": "Abort", "params": {}}
-    connection.submit(Order("command-1", "send", params, steady_time()))
+    connection.submit(OperatorRequest("command-1", "send", params, steady_time()))
     answers = []
     wait(lambda: answers.extend(connection.take().answers) or answers)
     gateway.stop()
-    wait(lambda: phase_of(connection) is Phase.RETRYING, 3)
+    wait(lambda: phase_of(connection) is ConnectionPhase.RETRYING, 3)
     gateway.start()
     wait(lambda: len(gateway.asked("get_commands")) == 2, 6)
     assert len(gateway.asked("send")) == 1
@@ -248,13 +248,13 @@ def test_an_answered_order_is_not_repeated_on_the_next_link(connection, gateway,
 
 def test_an_order_that_became_old_without_a_link_is_handed_back_and_not_sent(connection, gateway, wait):
     connection.open(gateway.url, "anna")
-    wait(lambda: phase_of(connection) is Phase.CONNECTED)
+    wait(lambda: phase_of(connection) is ConnectionPhase.CONNECTED)
     gateway.mute.add("send")
     params = {"command": "command-1", "robot": "r1", "op": "Abort", "params": {}}
-    connection.submit(Order("command-1", "send", params, steady_time() - 60.0))
+    connection.submit(OperatorRequest("command-1", "send", params, steady_time() - 60.0))
     wait(lambda: gateway.asked("send"))
     gateway.stop()
-    wait(lambda: phase_of(connection) is Phase.RETRYING, 3)
+    wait(lambda: phase_of(connection) is ConnectionPhase.RETRYING, 3)
     gateway.start()
     answers = []
     wait(lambda: answers.extend(connection.take().answers) or answers, 6)
@@ -264,10 +264,10 @@ def test_an_order_that_became_old_without_a_link_is_handed_back_and_not_sent(con
 
 def test_closing_hands_back_what_was_not_answered(connection, gateway, wait):
     connection.open(gateway.url, "anna")
-    wait(lambda: phase_of(connection) is Phase.CONNECTED)
+    wait(lambda: phase_of(connection) is ConnectionPhase.CONNECTED)
     gateway.mute.add("send")
     params = {"command": "command-1", "robot": "r1", "op": "Abort", "params": {}}
-    connection.submit(Order("command-1", "send", params, steady_time()))
+    connection.submit(OperatorRequest("command-1", "send", params, steady_time()))
     wait(lambda: gateway.asked("send"))
     connection.close()
     answers = []
@@ -277,12 +277,12 @@ def test_closing_hands_back_what_was_not_answered(connection, gateway, wait):
 
 def test_without_a_link_nothing_can_be_submitted(connection):
     with pytest.raises(NotSentError, match="not connected"):
-        connection.submit(Order("key", "abort_all"))
+        connection.submit(OperatorRequest("key", "abort_all"))
 
 
 def test_a_slow_reader_gets_the_newest_state_and_no_queue(connection, gateway, make_robot, wait):
     connection.open(gateway.url, "anna")
-    wait(lambda: phase_of(connection) is Phase.CONNECTED)
+    wait(lambda: phase_of(connection) is ConnectionPhase.CONNECTED)
     wait(lambda: gateway._sockets)
     for x in range(2000):
         gateway.show(make_robot("r1", x=float(x)))
@@ -301,11 +301,11 @@ def test_a_slow_reader_gets_the_newest_state_and_no_queue(connection, gateway, m
 
 def test_a_gateway_that_hangs_is_noticed_within_five_seconds(connection, gateway, wait):
     connection.open(gateway.url, "anna")
-    wait(lambda: phase_of(connection) is Phase.CONNECTED)
+    wait(lambda: phase_of(connection) is ConnectionPhase.CONNECTED)
     release = threading.Event()
     gateway._loop.call_soon_threadsafe(release.wait)
     began = time.monotonic()
-    wait(lambda: phase_of(connection) is not Phase.CONNECTED, 10, what="the silence")
+    wait(lambda: phase_of(connection) is not ConnectionPhase.CONNECTED, 10, what="the silence")
     took = time.monotonic() - began
     release.set()
     assert took < 15
@@ -324,16 +324,16 @@ def test_a_fault_in_the_worker_becomes_a_state_and_not_a_crash(connection, gatew
         await asyncio.sleep(0)
         raise RuntimeError("a screw came loose")
 
-    monkeypatch.setattr("fleet_supervisor.plugin.wire.client.DeskClient.run", broken)
+    monkeypatch.setattr("fleet_supervisor.plugin.gateway_client.connection.GatewayClient.run", broken)
     connection.open(gateway.url, "anna")
-    assert "a screw came loose" in reason_when(connection, wait, Phase.FAILED)
+    assert "a screw came loose" in reason_when(connection, wait, ConnectionPhase.FAILED)
 
 
 def test_every_thread_has_ended_after_shut_down(connection, gateway, wait):
     before = threading.active_count()
     for _ in range(3):
         connection.open(gateway.url, "anna")
-        wait(lambda: phase_of(connection) is Phase.CONNECTED)
+        wait(lambda: phase_of(connection) is ConnectionPhase.CONNECTED)
     workers = [connection._worker, *connection._ending]
     connection.shut_down()
     assert all(worker.isFinished() for worker in workers)
@@ -342,7 +342,7 @@ def test_every_thread_has_ended_after_shut_down(connection, gateway, wait):
 
 def test_a_link_that_is_cut_off_because_it_does_not_close_leaves_no_socket_behind(connection, gateway, wait):
     connection.open(gateway.url, "anna")
-    wait(lambda: connection.take().link.phase is Phase.CONNECTED)
+    wait(lambda: connection.take().link.phase is ConnectionPhase.CONNECTED)
     release = threading.Event()
     gc.collect()  # what earlier tests left is not told of here
     with warnings.catch_warnings(record=True) as told:

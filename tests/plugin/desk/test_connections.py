@@ -6,11 +6,8 @@ import json
 from pathlib import Path
 
 import pytest
-from fleet_supervisor.plugin.settings.connection_dialog import ConnectionDialog
-from fleet_supervisor.plugin.settings.connections import Connections
-from fleet_supervisor.plugin.settings.connections_widget import ConnectionsWidget
-from fleet_supervisor.plugin.settings.gateway_connection import GatewayConnection
-from fleet_supervisor.plugin.settings.token_store import TITLE, TokenStore
+from fleet_supervisor.plugin.settings.connections import TITLE, Connections, GatewayConnection, TokenStore
+from fleet_supervisor.plugin.settings.connections_widget import ConnectionDialog, ConnectionsWidget
 from qgis.core import QgsApplication, QgsAuthMethodConfig, QgsSettings
 from qgis.PyQt.QtCore import Qt
 from qgis.PyQt.QtTest import QTest
@@ -174,8 +171,8 @@ def menu_of(panel):
 
 
 def test_a_connection_is_picked_in_the_panel_and_is_there_next_time(plugin, gateway, wait):
-    from fleet_supervisor.plugin.desk.actions import Actions
-    from fleet_supervisor.plugin.desk.connection_panel import ConnectionPanel
+    from fleet_supervisor.plugin.panel.connection_panel import ConnectionPanel
+    from fleet_supervisor.plugin.ui.actions import Actions
 
     for name, who in (("Yard", "anna"), ("Track", "bob")):
         Connections().put(GatewayConnection(name, gateway.url, who, f"/{name}.pem"))

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import pytest
-from fleet_supervisor.plugin.desk.clear_dialog import ClearDialog
-from fleet_supervisor.plugin.desk.emergency_banner import in_words
-from fleet_supervisor.plugin.desk.tall_content import TallContent
-from fleet_supervisor.robot_bridge.messages import EmergencyReport, SetPosEnd
+from fleet_supervisor.plugin.panel.emergency import ClearDialog, in_words
+from fleet_supervisor.plugin.ui.dialogs import ShrinkableScrollArea
+from fleet_supervisor.robot_bridge.core.messages import EmergencyReport, SetPosEnd
 from qgis.PyQt.QtCore import QEvent, Qt
 from qgis.PyQt.QtTest import QTest
 from qgis.PyQt.QtWidgets import (
@@ -56,7 +55,7 @@ def test_on_a_low_screen_the_window_does_not_grow_and_what_stops_robots_stays_in
     for name in ("fleet_emergency_stop_button", "fleet_abort_all_button", "fleet_clear_emergency_button"):
         button = body.findChild(QAbstractButton, name)
         assert button.visibleRegion().boundingRect() == button.rect(), name
-    middle = body.findChild(TallContent)
+    middle = body.findChild(ShrinkableScrollArea)
     assert middle.verticalScrollBar().maximum() > 0
     widest = middle.widget().minimumSizeHint().width()
     wait(lambda: middle.viewport().width() >= widest, what="room beside the scroll bar")

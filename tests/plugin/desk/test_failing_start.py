@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import pytest
-from fleet_supervisor.plugin.desk.menu_letters import MenuLetters
-from fleet_supervisor.plugin.desk.tour.tour_action import TourAction
-from fleet_supervisor.plugin.desk.window_alarms import WindowAlarms
-from fleet_supervisor.plugin.locator.robot_locator import RobotLocator
-from fleet_supervisor.plugin.supervisor import FleetSupervisor
+from fleet_supervisor.plugin.locator import RobotLocator
+from fleet_supervisor.plugin.panel.window import WindowAlarms
+from fleet_supervisor.plugin.plugin import FleetPlugin
+from fleet_supervisor.plugin.tour.tour_panel import TourAction
+from fleet_supervisor.plugin.ui.actions import MenuLetters
 from qgis.core import QgsExpression
 
 from tests.plugin.desk.left_behind import left_behind
@@ -23,7 +23,7 @@ def test_what_was_there_before_it_failed_is_taken_out(iface, monkeypatch, part):
         raise RuntimeError("no such thing")
 
     before = state_of(iface)
-    plugin = FleetSupervisor(iface)
+    plugin = FleetPlugin(iface)
     with monkeypatch.context() as broken:
         broken.setattr(part, "__init__", fail)
         with pytest.raises(RuntimeError, match="no such thing"):

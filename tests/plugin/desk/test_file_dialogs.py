@@ -3,7 +3,7 @@
 import time
 
 import pytest
-from fleet_supervisor.plugin.file_dialogs import file_field, file_to_read, file_to_write
+from fleet_supervisor.plugin.ui.dialogs import file_field, file_to_read, file_to_write
 from qgis.gui import QgsFileWidget
 from qgis.PyQt.QtCore import Qt, QTimer
 from qgis.PyQt.QtTest import QTest

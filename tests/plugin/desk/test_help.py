@@ -3,8 +3,18 @@
 from __future__ import annotations
 
 import pytest
-from fleet_supervisor.plugin.help.help_window import DOCS, HelpWindow, heading_link
-from fleet_supervisor.plugin.help.topics import ACCOUNTS, CONNECTIONS, OPTIONS, SITES, START, TOPICS, topic_of
+from fleet_supervisor.plugin.help import (
+    ACCOUNTS,
+    CONNECTIONS,
+    DOCS,
+    OPTIONS,
+    SITES,
+    START,
+    TOPICS,
+    HelpWindow,
+    heading_link,
+    topic_of,
+)
 from qgis.PyQt.QtCore import Qt, QUrl
 from qgis.PyQt.QtTest import QTest
 from qgis.PyQt.QtWidgets import (

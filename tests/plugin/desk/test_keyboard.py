@@ -7,9 +7,8 @@ from itertools import pairwise
 from pathlib import Path
 
 import pytest
-from fleet_supervisor.plugin.desk.menu_letters import with_letters
-from fleet_supervisor.plugin.desk.shortcuts import KEYS
-from fleet_supervisor.plugin.language import CONTEXT, FOLDER
+from fleet_supervisor.plugin.ui.actions import KEYS, with_letters
+from fleet_supervisor.plugin.ui.language import CONTEXT, FOLDER
 from qgis.gui import QgsGui
 from qgis.PyQt import sip
 from qgis.PyQt.QtCore import QEvent, Qt, QTranslator

@@ -8,19 +8,22 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from fleet_supervisor.plugin.desk.command_book import CommandBook, in_words
-from fleet_supervisor.plugin.desk.picture import STATES, RobotPicture
-from fleet_supervisor.plugin.desk.placement_book import PlacementBook
-from fleet_supervisor.plugin.desk.queue_book import QueueBook
-from fleet_supervisor.plugin.errors import LinkError
-from fleet_supervisor.plugin.wire.backoff import Backoff
-from fleet_supervisor.plugin.wire.mailbox import MOST_COMMANDS, Mailbox
-from fleet_supervisor.plugin.wire.outbox import Order, Outbox
-from fleet_supervisor.plugin.wire.placement_news import PlacementNews
-from fleet_supervisor.plugin.wire.position_rows import sightings
-from fleet_supervisor.plugin.wire.protocol import DeskProtocol
-from fleet_supervisor.plugin.wire.queue_news import QueueNews
-from fleet_supervisor.robot_bridge.messages import (
+from fleet_supervisor.plugin.gateway_client.buffers import (
+    MOST_COMMANDS,
+    OperatorRequest,
+    PlacedConeUpdates,
+    QueueUpdates,
+    RequestOutbox,
+    UpdateBuffer,
+)
+from fleet_supervisor.plugin.gateway_client.command_cache import CommandCache, command_in_words
+from fleet_supervisor.plugin.gateway_client.connection import Backoff
+from fleet_supervisor.plugin.gateway_client.protocol import GatewayProtocol
+from fleet_supervisor.plugin.gateway_client.report_caches import PlacedConeCache, QueueCache
+from fleet_supervisor.plugin.gateway_client.robot_states import RobotStates
+from fleet_supervisor.plugin.gateway_client.robot_table import STATES, table_from_rows
+from fleet_supervisor.plugin.ui.errors import GatewayLinkError
+from fleet_supervisor.robot_bridge.core.messages import (
     CommandReport,
     CommandState,
     CommandStep,
@@ -54,17 +57,17 @@ def test_desks_do_not_come_back_in_the_same_moment():
 
 
 def test_the_same_order_is_kept_once_and_answered_once():
-    outbox = Outbox()
-    assert outbox.put(Order("a", "send"))
-    assert not outbox.put(Order("a", "send"))
+    outbox = RequestOutbox()
+    assert outbox.put(OperatorRequest("a", "send"))
+    assert not outbox.put(OperatorRequest("a", "send"))
     assert outbox.answered("a").key == "a"
     assert outbox.answered("a") is None
 
 
 def test_orders_are_repeated_in_the_order_in_which_they_were_asked():
-    outbox = Outbox()
+    outbox = RequestOutbox()
     for number in range(5):
-        outbox.put(Order(f"order {number}", "send", asked_at=float(number)))
+        outbox.put(OperatorRequest(f"order {number}", "send", asked_at=float(number)))
     again, too_old = outbox.renew(now=32.5)
     assert [order.key for order in again] == ["order 3", "order 4"]
     assert [order.key for order in too_old] == ["order 0", "order 1", "order 2"]
@@ -72,7 +75,7 @@ def test_orders_are_repeated_in_the_order_in_which_they_were_asked():
 
 
 def sighting(report, received=100.0):
-    return sightings([to_json(report)], received)
+    return table_from_rows([to_json(report)], received)
 
 
 @pytest.mark.parametrize(
@@ -88,7 +91,7 @@ def sighting(report, received=100.0):
     ],
 )
 def test_robots_age_by_this_computers_clock_when_nothing_comes(make_robot, age, stopped, later, state):
-    picture = RobotPicture(stale_after=3.0, lost_after=10.0)
+    picture = RobotStates(stale_after=3.0, lost_after=10.0)
     picture.merge(sighting(make_robot(age=age, stopped=stopped)))
     view = picture.view("r1", 100.0 + later)
     assert view.state is state
@@ -97,26 +100,26 @@ def test_robots_age_by_this_computers_clock_when_nothing_comes(make_robot, age, 
 
 @pytest.mark.parametrize("told", [RobotState.STALE, RobotState.LOST, RobotState.OFFLINE])
 def test_a_state_that_the_gateway_knows_better_is_kept(make_robot, told):
-    picture = RobotPicture()
+    picture = RobotStates()
     picture.merge(sighting(make_robot(state=told, age=0.5)))
     assert picture.view("r1", 100.0).state is told
 
 
 def test_the_sites_own_limits_decide(make_robot):
-    picture = RobotPicture(stale_after=1.0, lost_after=2.0)
+    picture = RobotStates(stale_after=1.0, lost_after=2.0)
     picture.merge(sighting(make_robot()))
     assert [picture.view("r1", 100.0 + t).state for t in (0.5, 1.5, 2.5)] == list(STATES[:3])
 
 
 def test_an_older_sighting_does_not_replace_a_newer_one(make_robot):
-    picture = RobotPicture()
+    picture = RobotStates()
     picture.merge(sighting(make_robot(x=2.0), received=101.0))
     picture.merge(sighting(make_robot(x=1.0), received=100.0))
     assert picture.view("r1", 101.0).report.x == 2.0
 
 
 def test_a_robot_without_a_pose_is_known_but_not_drawn(make_robot):
-    picture = RobotPicture()
+    picture = RobotStates()
     picture.merge(sighting(make_robot("r2", x=None, y=None, theta=None, v=None)))
     picture.merge(sighting(make_robot("r1", theta=None)))
     arrays = picture.arrays(100.0)
@@ -134,14 +137,14 @@ def command(state=CommandState.QUEUED, steps=1, **more):
 
 
 def test_a_report_that_was_overtaken_does_not_set_a_command_back():
-    book = CommandBook()
+    book = CommandCache()
     book.merge([command(CommandState.ACKNOWLEDGED, steps=3)])
     assert book.merge([command(CommandState.QUEUED, steps=1)]) == []
     assert book.get("c1234567").state is CommandState.ACKNOWLEDGED
 
 
 def test_what_robots_do_is_their_newest_unfinished_target_or_path():
-    book = CommandBook()
+    book = CommandCache()
     book.merge(
         [
             command(CommandState.SUPERSEDED, command="c1000000"),
@@ -154,13 +157,13 @@ def test_what_robots_do_is_their_newest_unfinished_target_or_path():
 
 
 def test_commands_are_told_in_words():
-    assert in_words(command()) == "cone at 12.30, 40.00"
-    assert in_words(command(op="SetPath", params={"points": [[0, 0], [1, 1]]})) == "route of 2 points"
-    assert in_words(command(op="Abort", params={})) == "abort"
+    assert command_in_words(command()) == "cone at 12.30, 40.00"
+    assert command_in_words(command(op="SetPath", params={"points": [[0, 0], [1, 1]]})) == "route of 2 points"
+    assert command_in_words(command(op="Abort", params={})) == "abort"
 
 
 def test_a_window_that_does_not_look_costs_a_bounded_memory(make_robot):
-    mailbox = Mailbox()
+    mailbox = UpdateBuffer()
     for number in range(3 * MOST_COMMANDS):
         mailbox.put_commands([command(command=f"command-{number}")])
         mailbox.put_robots(sighting(make_robot(x=float(number)), float(number)))
@@ -172,8 +175,8 @@ def test_a_window_that_does_not_look_costs_a_bounded_memory(make_robot):
 
 
 def greeted(site):
-    mailbox = Mailbox()
-    protocol = DeskProtocol("anna", 10.0, "ws://here/desk", mailbox, clock=lambda: 50.0)
+    mailbox = UpdateBuffer()
+    protocol = GatewayProtocol("anna", 10.0, "ws://here/desk", mailbox, clock=lambda: 50.0)
     (hello,) = protocol.begin()
     answer = {"jsonrpc": "2.0", "id": json.loads(hello)["id"]}
     sent = protocol.receive(json.dumps({**answer, "result": {"protocol": 1, "site": to_json(site)}}))
@@ -220,7 +223,7 @@ def test_commands_come_newest_first_and_are_kept_oldest_first(site):
 )
 def test_positions_that_are_none_are_refused_in_words(site, params):
     protocol, mailbox, _ = greeted(site)
-    with pytest.raises(LinkError, match="ws://here/desk"):
+    with pytest.raises(GatewayLinkError, match="ws://here/desk"):
         protocol.receive(json.dumps({"jsonrpc": "2.0", "method": "positions", "params": params}))
     assert len(mailbox.take().robots) == 0
 
@@ -247,7 +250,7 @@ def told(protocol, **message):
 
 def answer_to(protocol, method, **params):
     """Ask for something and return the id that its answer names."""
-    (text,) = protocol.submit(Order(method, method, params))
+    (text,) = protocol.submit(OperatorRequest(method, method, params))
     return json.loads(text)["id"]
 
 
@@ -273,19 +276,19 @@ def test_queues_and_placed_cones_are_taken_from_news_answers_and_refusals(site):
 
 
 def test_a_robot_without_a_queue_has_revision_0_and_one_that_is_gone_is_forgotten():
-    book, news = QueueBook(), QueueNews()
+    book, news = QueueCache(), QueueUpdates()
     news.take_all([queue_report(queue("r1", 4)), queue_report(queue("r2", 2))])
     assert sorted(book.merge(news)) == ["r1", "r2"]
     assert (book.revision("r1"), book.revision("r9")) == (4, 0)
-    fewer = QueueNews()
+    fewer = QueueUpdates()
     fewer.take_all([queue_report(queue("r2", 2))])
     assert book.merge(fewer) == ["r1"] and book.get("r1") is None
     assert book.merge(fewer) == []
 
 
 def test_of_very_many_placed_cones_the_newest_are_kept(monkeypatch):
-    monkeypatch.setattr("fleet_supervisor.plugin.desk.placement_book.MOST_PLACEMENTS", 3)
-    book, news = PlacementBook(), PlacementNews()
+    monkeypatch.setattr("fleet_supervisor.plugin.gateway_client.report_caches.MOST_PLACEMENTS", 3)
+    book, news = PlacedConeCache(), PlacedConeUpdates()
     news.take([placement_report(placement(number)) for number in (4, 1, 5, 2)])
     assert book.merge(news) == [4, 1, 5, 2]
     assert sorted(one.placement for one in book) == [2, 4, 5]

@@ -6,12 +6,12 @@ import math
 
 import numpy as np
 import pytest
-from fleet_supervisor.plugin.desk import cone_file
-from fleet_supervisor.plugin.desk.cone_store import ConeStore
-from fleet_supervisor.plugin.desk.layout_action import LayoutAction
-from fleet_supervisor.plugin.desk.layout_dimensions import GROUP, _value, remembered
-from fleet_supervisor.plugin.sites.roles import OBSTACLE, ROAD_SURFACE, set_role
-from fleet_supervisor.robot_bridge.layouts.catalogue import LAYOUTS
+from fleet_supervisor.plugin.layers.roles import OBSTACLE, ROAD_SURFACE, set_role
+from fleet_supervisor.plugin.planning.layouts import layout_layer
+from fleet_supervisor.plugin.planning.layouts.dimensions import GROUP, _value, remembered
+from fleet_supervisor.plugin.planning.layouts.layout_layer import LayoutLayer
+from fleet_supervisor.plugin.planning.layouts.layout_tool import LayoutAction
+from fleet_supervisor.robot_bridge.core.layouts.catalogue import LAYOUTS
 from qgis.core import (
     QgsCoordinateReferenceSystem,
     QgsFeature,
@@ -227,7 +227,7 @@ def test_a_layout_that_was_placed_is_taken_back_and_done_again(slalom, entry, if
 def test_in_another_project_nothing_is_taken_back(slalom, iface):
     iface.click(40, 50)
     QgsProject.instance().clear()
-    ConeStore(QgsProject.instance()).add(
+    LayoutLayer(QgsProject.instance()).add(
         slalom.layout.cones("slalom"), "slalom", QgsCoordinateReferenceSystem("EPSG:32633")
     )
     QTest.keyClick(iface.canvas, Qt.Key.Key_Z, Qt.KeyboardModifier.ControlModifier)
@@ -263,7 +263,7 @@ def test_a_file_that_is_there_already_is_not_written_over(slalom, iface, tmp_pat
 
 
 def test_cones_that_cannot_be_saved_with_the_project_are_told(slalom, iface, tmp_path, monkeypatch):
-    monkeypatch.setattr(cone_file, "_free_path", lambda _project: tmp_path / "no_such" / "cones.gpkg")
+    monkeypatch.setattr(layout_layer, "_free_path", lambda _project: tmp_path / "no_such" / "cones.gpkg")
     iface.click(40, 50)
     assert QgsProject.instance().write(str(tmp_path / "yard.qgz"))
     text, complaint = iface.said[-1]
@@ -314,9 +314,9 @@ def test_escape_and_another_tool_take_the_preview_away(slalom, iface):
 
 
 def test_the_plugin_has_an_entry_for_each_layout_and_leaves_none(iface):
-    from fleet_supervisor.plugin.supervisor import FleetSupervisor
+    from fleet_supervisor.plugin.plugin import FleetPlugin
 
-    loaded = FleetSupervisor(iface)
+    loaded = FleetPlugin(iface)
     loaded.initGui()
     entry = iface.findChild(QAction, "fleet_cone_layout")
     names = {one.objectName() for one in entry.menu().actions()}

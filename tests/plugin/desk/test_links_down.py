@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from fleet_supervisor.plugin.desk.messages import LinkNotices
-from fleet_supervisor.robot_bridge.messages import LinkReport, Links, links_report, to_json
+from fleet_supervisor.plugin.control.messages import LinkNotices
+from fleet_supervisor.robot_bridge.core.messages import LinkReport, Links, links_report, to_json
 
 
 def report(**more):

@@ -6,7 +6,7 @@ import zipfile
 from xml.etree import ElementTree
 
 import pytest
-from fleet_supervisor.plugin.desk.live_layers import MARK, LiveLayers
+from fleet_supervisor.plugin.layers.live_layers import MARK, LiveLayers
 from qgis.core import QgsExpression, QgsProject, QgsSingleSymbolRenderer, QgsVectorLayer
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import gc
 import threading
 
-from fleet_supervisor.plugin.supervisor import FleetSupervisor
+from fleet_supervisor.plugin.plugin import FleetPlugin
 from qgis.core import (
     QgsApplication,
     QgsExpression,
@@ -49,7 +49,7 @@ def test_loaded_ten_times_nothing_is_doubled_and_nothing_left(iface, gateway, ma
     manager.registerAllChildren(iface)
     before, loaded = registered(iface), None
     for _ in range(10):
-        plugin = FleetSupervisor(iface)
+        plugin = FleetPlugin(iface)
         plugin.initGui()
         plugin.window.dock.findChild(QLineEdit, "fleet_url").setText(gateway.url)
         plugin.window.actions.connect.trigger()

@@ -5,9 +5,8 @@ from __future__ import annotations
 import threading
 
 import pytest
-from fleet_supervisor.plugin.locator.robot_filter import RobotFilter, ranked
-from fleet_supervisor.plugin.locator.robot_locator import PREFIX_KEY
-from fleet_supervisor.plugin.supervisor import FleetSupervisor
+from fleet_supervisor.plugin.locator import PREFIX_KEY, RobotFilter, rank_robots
+from fleet_supervisor.plugin.plugin import FleetPlugin
 from qgis.core import (
     QgsExpression,
     QgsLocatorContext,
@@ -110,7 +109,7 @@ def test_a_prefix_of_the_users_own_stays(iface, plugin):
     plugin.unload()
     assert QgsSettings().value(PREFIX_KEY, "") == ""
     QgsSettings().setValue(PREFIX_KEY, "bot")
-    again = FleetSupervisor(iface)
+    again = FleetPlugin(iface)
     again.initGui()
     try:
         assert "bot" in [one.activePrefix() for one in iface.locator.filters()]
@@ -122,4 +121,4 @@ def test_a_prefix_of_the_users_own_stays(iface, plugin):
 
 def test_the_same_name_comes_first_then_those_that_begin_so():
     names = ["x-r1", "r10", "r1", "b2"]
-    assert [name for _, name in ranked("R1", names)] == ["r1", "r10", "x-r1"]
+    assert [name for _, name in rank_robots("R1", names)] == ["r1", "r10", "x-r1"]

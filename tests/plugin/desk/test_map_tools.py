@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from fleet_supervisor.plugin.desk import time_slices
+from fleet_supervisor.plugin.ui import scheduling
 from inside_qgis.mouse import move_mouse
 from qgis.core import QgsFeature, QgsGeometry, QgsProject, QgsVectorLayer
 from qgis.gui import QgsRubberBand
@@ -25,7 +25,7 @@ def drawn(at_desk):
 @pytest.fixture(autouse=True)
 def time_enough(monkeypatch):
     """Have small drafts looked at before their click has ended, as on a machine with nothing else to do."""
-    monkeypatch.setattr(time_slices, "SLICE_SECONDS", 60.0)
+    monkeypatch.setattr(scheduling, "SLICE_SECONDS", 60.0)
 
 
 @pytest.fixture
@@ -215,7 +215,7 @@ def test_a_filter_that_is_none_is_told_with_its_layer_and_nothing_is_drafted(con
 def test_a_filter_that_is_none_refuses_the_draft_where_the_layer_is_come_to_later(
     cone, iface, wait, monkeypatch
 ):
-    monkeypatch.setattr(time_slices, "SLICE_SECONDS", time_slices.ONE_STEP)
+    monkeypatch.setattr(scheduling, "SLICE_SECONDS", scheduling.ONE_STEP)
     layer = layer_with_role("keepout", 60, 50, 80, 60)
     layer.setCustomProperty("fleet/filter", "1 +")
     iface.click(70, 55)

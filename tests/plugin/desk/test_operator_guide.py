@@ -7,8 +7,7 @@ import re
 from pathlib import Path
 
 import pytest
-from fleet_supervisor.plugin.desk.actions import EMERGENCY_KEYS
-from fleet_supervisor.plugin.desk.shortcuts import KEYS
+from fleet_supervisor.plugin.ui.actions import EMERGENCY_KEYS, KEYS
 from qgis.PyQt.QtWidgets import QAction, QMenu
 from syntax import tree_of
 

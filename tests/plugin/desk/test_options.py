@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import pytest
-from fleet_supervisor.plugin.help.help_window import HelpWindow
-from fleet_supervisor.plugin.help.topics import OPTIONS
+from fleet_supervisor.plugin.help import OPTIONS, HelpWindow
+from fleet_supervisor.plugin.plugin import FleetPlugin
 from fleet_supervisor.plugin.settings.preferences import Preferences, read_preferences, write_preferences
-from fleet_supervisor.plugin.supervisor import FleetSupervisor
 from qgis.core import (
     QgsSettings,
 )
@@ -49,7 +48,7 @@ def test_what_is_set_is_kept_and_works_at_once(page, plugin):
 
 def test_what_was_set_counts_after_a_restart(iface):
     write_preferences(Preferences(robot_size=1.5))
-    plugin = FleetSupervisor(iface)
+    plugin = FleetPlugin(iface)
     plugin.initGui()
     try:
         assert plugin.window.view.overlay._painter.robots.magnification == 1.5
@@ -59,7 +58,7 @@ def test_what_was_set_counts_after_a_restart(iface):
 
 def test_positions_are_asked_for_at_the_rate_that_was_set(iface, gateway, wait):
     write_preferences(Preferences(positions_rate=4.0))
-    plugin = FleetSupervisor(iface)
+    plugin = FleetPlugin(iface)
     plugin.initGui()
     try:
         plugin.window.dock.findChild(QLineEdit, "fleet_url").setText(gateway.url)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from fleet_supervisor.plugin.supervisor import FleetSupervisor
+from fleet_supervisor.plugin.plugin import FleetPlugin
 from qgis.core import QgsSettings
 from qgis.PyQt.QtCore import QSize, Qt
 from qgis.PyQt.QtTest import QTest
@@ -36,7 +36,7 @@ def browser(iface):
 @pytest.fixture
 def loaded(browser, iface):
     """The plugin in a window that has a browser."""
-    plugin = FleetSupervisor(iface)
+    plugin = FleetPlugin(iface)
     plugin.initGui()
     yield plugin
     plugin.unload()
@@ -106,7 +106,7 @@ def test_a_panel_that_was_dragged_away_is_not_fetched_back(loaded, browser, ifac
 
 def test_a_browser_that_the_user_put_elsewhere_stays_alone(browser, iface):
     iface.addDockWidget(Qt.DockWidgetArea.RightDockWidgetArea, browser)
-    plugin = FleetSupervisor(iface)
+    plugin = FleetPlugin(iface)
     plugin.initGui()
     try:
         QTest.keyClick(iface, Qt.Key.Key_F12, ALT)

@@ -6,8 +6,8 @@ import dataclasses
 
 import numpy as np
 import pytest
-from fleet_supervisor.plugin.desk.placement import Placement
-from fleet_supervisor.plugin.errors import PlacementError
+from fleet_supervisor.plugin.layers.site_transform import SiteToMapTransform
+from fleet_supervisor.plugin.ui.errors import MapTransformError
 from qgis.core import QgsCoordinateReferenceSystem, QgsPointXY, QgsProject
 
 YARD = 'ENGCRS["yard",EDATUM["yard"],CS[Cartesian,2],AXIS["x",east],AXIS["y",north],LENGTHUNIT["metre",1]]'
@@ -15,8 +15,8 @@ YARD = 'ENGCRS["yard",EDATUM["yard"],CS[Cartesian,2],AXIS["x",east],AXIS["y",nor
 
 
 def test_a_site_crs_that_qgis_does_not_know_is_named(site):
-    with pytest.raises(PlacementError, match="EPSG:999999"):
-        Placement(
+    with pytest.raises(MapTransformError, match="EPSG:999999"):
+        SiteToMapTransform(
             dataclasses.replace(site, crs="EPSG:999999"),
             QgsCoordinateReferenceSystem("EPSG:4326"),
             QgsProject.instance().transformContext(),
@@ -24,27 +24,29 @@ def test_a_site_crs_that_qgis_does_not_know_is_named(site):
 
 
 def test_a_position_beyond_the_map_projection_is_an_error_in_words(site):
-    placement = Placement(
+    placement = SiteToMapTransform(
         site, QgsCoordinateReferenceSystem("EPSG:3857"), QgsProject.instance().transformContext()
     )
-    with pytest.raises(PlacementError, match="Choose the site's CRS"):
+    with pytest.raises(MapTransformError, match="Choose the site's CRS"):
         placement.to_map(np.array([(1e12, 1e12)]))
 
 
 def test_on_a_map_of_which_nobody_knows_where_it_is_no_robot_is_drawn_and_no_click_counts(site):
-    placement = Placement(site, QgsCoordinateReferenceSystem(YARD), QgsProject.instance().transformContext())
+    placement = SiteToMapTransform(
+        site, QgsCoordinateReferenceSystem(YARD), QgsProject.instance().transformContext()
+    )
     for look in (
         lambda: placement.to_map(np.array([(12.5, 80.25)])),
         lambda: placement.to_site(QgsPointXY(4, 5)),
     ):
-        with pytest.raises(PlacementError, match=r"yard.*nothing is known of how the two lie"):
+        with pytest.raises(MapTransformError, match=r"yard.*nothing is known of how the two lie"):
             look()
 
 
 def test_points_come_back_from_every_crs(site):
     site = dataclasses.replace(site, rotation=-0.9)
     for crs in ("EPSG:32633", "EPSG:3857", "EPSG:4326", "EPSG:23700"):
-        placement = Placement(
+        placement = SiteToMapTransform(
             site, QgsCoordinateReferenceSystem(crs), QgsProject.instance().transformContext()
         )
         ((x, y),) = placement.to_map(np.array([(12.5, 80.25)]))

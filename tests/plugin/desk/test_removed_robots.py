@@ -6,24 +6,23 @@ import time
 
 import numpy as np
 import pytest
-from fleet_supervisor.plugin.desk.alarms.latches import PairLatch, RowLatch
-from fleet_supervisor.plugin.desk.live.trails import LENGTHS, Trails
-from fleet_supervisor.plugin.desk.messages import Level, robot_topic
-from fleet_supervisor.plugin.desk.picture import RobotPicture
-from fleet_supervisor.plugin.wire.mailbox import Mailbox
-from fleet_supervisor.plugin.wire.position_rows import sightings
-from fleet_supervisor.plugin.wire.position_table import sightings_in
-from fleet_supervisor.robot_bridge.messages import to_json
+from fleet_supervisor.plugin.control.messages import Level, robot_topic
+from fleet_supervisor.plugin.gateway_client.buffers import UpdateBuffer
+from fleet_supervisor.plugin.gateway_client.robot_states import RobotStates
+from fleet_supervisor.plugin.gateway_client.robot_table import table_from_frame, table_from_rows
+from fleet_supervisor.plugin.map.overlay.trails import LENGTHS, Trails
+from fleet_supervisor.plugin.panel.alarms.rules import PairHysteresis, RowHysteresis
+from fleet_supervisor.robot_bridge.core.messages import to_json
 from qgis.core import QgsExpression
 
-from robot_bridge.position_columns import frame
-from robot_bridge.robots import Robots
+from robot_bridge.gateway.fleet.operator_updates import table_frame
+from robot_bridge.gateway.model.robots import Robots
 
 FRESH = {"state": "fresh", "age": 0.0, "link": "sql"}
 
 
 def told(*names, received=0.0, **absent):
-    return sightings([{"robot": name, **FRESH} for name in names], received, absent)
+    return table_from_rows([{"robot": name, **FRESH} for name in names], received, absent)
 
 
 def remove(gateway, *names, **params):
@@ -113,7 +112,7 @@ def test_one_that_was_removed_while_the_link_was_away_is_gone_when_it_is_back(at
 
 
 def test_rows_move_up_and_what_was_known_of_the_others_moves_with_them():
-    picture = RobotPicture()
+    picture = RobotStates()
     picture.merge(told("a", "b", "c", received=1.0))
     before = picture.arrangement, picture.by_name()
     gone = picture.merge(told("d", received=2.0, removed=["b", "x"]))
@@ -126,7 +125,7 @@ def test_rows_move_up_and_what_was_known_of_the_others_moves_with_them():
 
 
 def test_everything_takes_out_who_is_not_in_it():
-    picture = RobotPicture()
+    picture = RobotStates()
     picture.merge(told("a", "b", received=1.0))
     assert picture.merge(told("b", received=2.0, everything=True)).names == {"a"}
     assert picture.merge(told(received=3.0, everything=True)).names == {"b"}
@@ -145,7 +144,7 @@ def test_everything_takes_out_who_is_not_in_it():
     ],
 )
 def test_what_arrives_between_two_looks_counts_in_its_order(messages, left):
-    picture, mailbox = RobotPicture(), Mailbox()
+    picture, mailbox = RobotStates(), UpdateBuffer()
     picture.merge(told("a", "b", "c"))
     for message in messages:
         mailbox.put_robots(message)
@@ -156,9 +155,9 @@ def test_what_arrives_between_two_looks_counts_in_its_order(messages, left):
 def test_a_table_of_numbers_tells_it_too():
     robots = Robots()
     robots.ready("a", 1, "sql", 0.0)
-    made = sightings_in(frame(0.0, robots.changed(-1), 0.0, ["b"]), 0.0)
+    made = table_from_frame(table_frame(0.0, robots.changed(-1), 0.0, ["b"]), 0.0)
     assert (made.names, made.removed, made.everything) == (["a"], {"b"}, False)
-    made = sightings_in(frame(0.0, [], 0.0, everything=True), 0.0)
+    made = table_from_frame(table_frame(0.0, [], 0.0, everything=True), 0.0)
     assert (made.names, made.removed, made.everything) == ([], set(), True)
 
 
@@ -193,7 +192,7 @@ def test_trails_that_grew_shorter_stay_so_until_all_are_forgotten():
 
 
 def test_what_is_on_stays_on_for_the_others():
-    rows, pairs = RowLatch(), PairLatch()
+    rows, pairs = RowHysteresis(), PairHysteresis()
     rows.update(np.array([False, False, True]), np.array([True, True, False]), 0.0, 0.0, 0.0)
     rows.drop(np.array([0]))
     assert rows.on.tolist() == [False, True]

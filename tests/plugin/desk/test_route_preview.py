@@ -3,11 +3,21 @@
 from __future__ import annotations
 
 import pytest
-from fleet_supervisor.plugin.desk.orders import SLOW_AFTER
-from fleet_supervisor.plugin.desk.route_preview import UNANSWERED_AFTER, Question, RoutePreview, in_words
-from fleet_supervisor.plugin.desk.way_wishes import SHORTEST, WayWishes, WayWishesDialog, surfaces_of
-from fleet_supervisor.plugin.wire.outbox import Answer
-from fleet_supervisor.robot_bridge.messages import RouteReport, SurfaceMetres
+from fleet_supervisor.plugin.control.request_tracker import SLOW_AFTER
+from fleet_supervisor.plugin.control.roads import (
+    SHORTEST,
+    RoutePreferences,
+    RoutePreferencesDialog,
+    surfaces_of,
+)
+from fleet_supervisor.plugin.control.route_queries import (
+    UNANSWERED_AFTER,
+    RouteQuery,
+    RouteQuestion,
+    route_in_words,
+)
+from fleet_supervisor.plugin.gateway_client.buffers import RequestResult
+from fleet_supervisor.robot_bridge.core.messages import RouteReport, SurfaceMetres
 from qgis.PyQt.QtWidgets import QLineEdit, QPushButton, QWidget
 
 
@@ -20,7 +30,7 @@ class Gateway:
 
     def answer(self, preview, **how):
         result = {"points": [[0, 0], [1, 1]], "metres": 1.4, "seconds": 1.0}
-        return preview.accept_answer(Answer(self.orders[-1], **(how or {"result": result})))
+        return preview.accept_answer(RequestResult(self.orders[-1], **(how or {"result": result})))
 
     def goals(self):
         return [order.params["x"] for order in self.orders]
@@ -33,11 +43,11 @@ def gateway():
 
 @pytest.fixture
 def preview(qgis_app, gateway):
-    return RoutePreview(gateway.orders.append, lambda: gateway.now)
+    return RouteQuery(gateway.orders.append, lambda: gateway.now)
 
 
 def to(x, **how):
-    return Question("r1", None, (x, 0.0), **how)
+    return RouteQuestion("r1", None, (x, 0.0), **how)
 
 
 def test_while_one_is_under_way_only_the_newest_waits(preview, gateway):
@@ -69,7 +79,7 @@ def test_a_lost_question_holds_nothing_up_and_its_late_answer_shows_nothing(prev
     gateway.now = 3.1
     preview.want(to(2.0))
     assert gateway.goals() == [1.0, 2.0]
-    assert preview.accept_answer(Answer(lost, result={"points": [[9, 9]], "metres": 9, "seconds": 9}))
+    assert preview.accept_answer(RequestResult(lost, result={"points": [[9, 9]], "metres": 9, "seconds": 9}))
     assert preview.route is None
 
 
@@ -89,7 +99,7 @@ def test_a_click_that_stays_unanswered_is_told_once_and_its_late_answer_leads_no
     assert len(refused) == 1 and "5 s" in refused[0] and "Click there again" in refused[0]
     assert gateway.goals() == [1.0, 2.0], "what the mouse leads to meanwhile"
     assert not preview.awaits_click
-    preview.accept_answer(Answer(lost, result={"points": [[9, 9]], "metres": 9, "seconds": 9}))
+    preview.accept_answer(RequestResult(lost, result={"points": [[9, 9]], "metres": 9, "seconds": 9}))
     assert taken == []
 
 
@@ -127,7 +137,7 @@ def test_what_is_no_way_is_said_and_other_answers_are_left_alone(preview, gatewa
 
 
 def test_what_is_wanted_of_the_way_is_asked_of_the_gateway(preview, gateway):
-    wishes = WayWishes(fastest=True, surfaces=("asphalt",), least_width=3.5, avoid_reserved=True)
+    wishes = RoutePreferences(fastest=True, surfaces=("asphalt",), least_width=3.5, avoid_reserved=True)
     preview.want(to(1.0))
     gateway.answer(preview)
     preview.want(to(2.0, wishes=wishes))
@@ -139,12 +149,14 @@ def test_what_is_wanted_of_the_way_is_asked_of_the_gateway(preview, gateway):
 
 def test_what_was_wanted_stands_beside_the_way():
     route = RouteReport([(0.0, 0.0), (9.0, 0.0)], 9.0, 5.0)
-    wishes = WayWishes(fastest=True, surfaces=("asphalt", "gravel"), least_width=3.5, avoid_reserved=True)
-    assert in_words(route, SHORTEST) == "9.0 m, 5 s"
+    wishes = RoutePreferences(
+        fastest=True, surfaces=("asphalt", "gravel"), least_width=3.5, avoid_reserved=True
+    )
+    assert route_in_words(route, SHORTEST) == "9.0 m, 5 s"
     told = (
         "the fastest way, off the roads of other robots, only on asphalt, gravel, roads at least 3.5 m wide"
     )
-    assert in_words(route, wishes, apart="\n") == f"9.0 m, 5 s\n{told}"
+    assert route_in_words(route, wishes, apart="\n") == f"9.0 m, 5 s\n{told}"
 
 
 def test_names_of_surfaces_are_read_with_commas_between():
@@ -155,23 +167,25 @@ def test_names_of_surfaces_are_read_with_commas_between():
 def test_a_way_on_one_surface_tells_its_metres_once():
     def words(*surfaces):
         route = RouteReport([], 336.9, 59.0, [SurfaceMetres(name, metres) for name, metres in surfaces])
-        return in_words(route, SHORTEST)
+        return route_in_words(route, SHORTEST)
 
     assert words(("", 338.0)) == "336.9 m, 59 s, surface not known"
     assert words(("asphalt", 300.0), ("", 38.0)) == "336.9 m, 59 s, 300 m asphalt, 38 m surface not known"
 
 
 def test_the_dialog_begins_with_what_holds_and_gives_what_was_changed(qgis_app):
-    wishes = WayWishes(fastest=True, surfaces=("asphalt", "gravel"), least_width=3.5, avoid_reserved=True)
+    wishes = RoutePreferences(
+        fastest=True, surfaces=("asphalt", "gravel"), least_width=3.5, avoid_reserved=True
+    )
     window = QWidget()
     confirmed = []
     for begin in (wishes, SHORTEST):
-        dialog = WayWishesDialog(begin, window)
+        dialog = RoutePreferencesDialog(begin, window)
         dialog.confirmed.connect(confirmed.append)
         if begin is SHORTEST:
             dialog.findChild(QLineEdit, "fleet_way_wishes_surfaces").setText("gravel")
         dialog.findChild(QPushButton, "fleet_way_wishes_confirm").click()
-    dialog = WayWishesDialog(wishes, window)
+    dialog = RoutePreferencesDialog(wishes, window)
     dialog.confirmed.connect(confirmed.append)
     dialog.findChild(QPushButton, "fleet_way_wishes_dialog_cancel").click()
-    assert confirmed == [wishes, WayWishes(surfaces=("gravel",))]
+    assert confirmed == [wishes, RoutePreferences(surfaces=("gravel",))]

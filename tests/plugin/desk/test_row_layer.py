@@ -6,10 +6,8 @@ from dataclasses import replace
 from itertools import groupby
 
 import pytest
-from fleet_supervisor.plugin.desk import time_slices
-from fleet_supervisor.plugin.desk.live_layers import MARK
-from fleet_supervisor.plugin.desk.row_layer import AT_ONCE, RowLayer
-from fleet_supervisor.plugin.sites.fleet_group import GROUP, fleet_group
+from fleet_supervisor.plugin.layers.live_layers import AT_ONCE, GROUP, MARK, RowLayer, fleet_group
+from fleet_supervisor.plugin.ui import scheduling
 from qgis.core import QgsProject
 from qgis.PyQt.QtCore import QTimer
 from qgis.PyQt.QtWidgets import QApplication
@@ -135,7 +133,7 @@ def test_it_comes_again_in_a_project_that_is_opened_and_not_before_that_is_read(
 @pytest.fixture
 def one_step(monkeypatch):
     """Slices of one step each."""
-    monkeypatch.setattr(time_slices, "SLICE_SECONDS", time_slices.ONE_STEP)
+    monkeypatch.setattr(scheduling, "SLICE_SECONDS", scheduling.ONE_STEP)
 
 
 def test_many_are_written_bit_by_bit_after_the_news_and_painted_once(

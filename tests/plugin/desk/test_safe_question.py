@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 
 import pytest
-from fleet_supervisor.plugin.desk.safe_question import safe_question
+from fleet_supervisor.plugin.ui.dialogs import confirm
 from qgis.PyQt.QtCore import Qt
 from qgis.PyQt.QtTest import QTest
 from qgis.PyQt.QtWidgets import QApplication, QPushButton, QWidget
@@ -15,7 +15,7 @@ from qgis.PyQt.QtWidgets import QApplication, QPushButton, QWidget
 def asked(qgis_app):
     """An open question and how often it was confirmed."""
     window, done = QWidget(), []
-    box = safe_question(window, "question", "Really?", ("yes", "Yes"), "No", lambda: done.append(1))
+    box = confirm(window, "question", "Really?", ("yes", "Yes"), "No", lambda: done.append(1))
     window.show()
     box.open()
     QApplication.processEvents()
@@ -57,4 +57,4 @@ def test_every_message_box_of_the_plugin_is_such_a_question(root):
         for path in sorted((root / "plugin").rglob("*.py"))
         if made.search(path.read_text(encoding="utf-8"))
     ]
-    assert files == ["plugin/desk/safe_question.py"]
+    assert files == ["plugin/ui/dialogs.py"]

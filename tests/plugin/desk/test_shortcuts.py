@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from fleet_supervisor.plugin.desk.shortcuts import KEYS
-from fleet_supervisor.plugin.supervisor import FleetSupervisor
+from fleet_supervisor.plugin.plugin import FleetPlugin
+from fleet_supervisor.plugin.ui.actions import KEYS
 from qgis.gui import QgsGui
 from qgis.PyQt.QtCore import Qt
 from qgis.PyQt.QtTest import QTest
@@ -29,7 +29,7 @@ def test_a_key_that_something_else_has_stays_with_it(iface):
 
     other = QAction("Something else", iface)
     QgsGui.shortcutsManager().registerAction(other, "F8")
-    plugin = FleetSupervisor(iface)
+    plugin = FleetPlugin(iface)
     plugin.initGui()
     try:
         assert plugin.window.actions.cone.shortcut().isEmpty()

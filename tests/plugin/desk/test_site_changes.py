@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import replace
 
 import pytest
-from fleet_supervisor.plugin.desk import time_slices
-from fleet_supervisor.robot_bridge.messages import to_json
+from fleet_supervisor.plugin.ui import scheduling
+from fleet_supervisor.robot_bridge.core.messages import to_json
 from qgis.PyQt.QtCore import Qt
 from qgis.PyQt.QtTest import QTest
 from qgis.PyQt.QtWidgets import QLabel
@@ -52,7 +52,7 @@ def test_a_draft_is_held_against_the_site_that_was_published_anew(drawn, gateway
 
 
 def test_an_order_to_send_outlasts_it(drawn, gateway, site, wait, monkeypatch):
-    monkeypatch.setattr(time_slices, "SLICE_SECONDS", 0.0)
+    monkeypatch.setattr(scheduling, "SLICE_SECONDS", 0.0)
     drawn.desk.sending.send()
     drawn.desk.connection._mailbox.put_site(replace(site, version="2"))
     drawn.desk.pull()

@@ -6,11 +6,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from fleet_supervisor.plugin.sites.published_layers import PLAIN, PLAIN_EDGE
-from fleet_supervisor.robot_bridge.robotmap.model import ShapeType
-from fleet_supervisor.robot_bridge.robotmap.outlines import OutlineRow, Outlines
-from fleet_supervisor.robot_bridge.sites.publication import write_site
-from fleet_supervisor.robot_bridge.sites.settings import Bounds, SiteSettings
+from fleet_supervisor.plugin.layers.publishing.published_layers import PLAIN, PLAIN_EDGE
+from fleet_supervisor.robot_bridge.core.robotmap.model import ShapeType
+from fleet_supervisor.robot_bridge.core.robotmap.outlines import OutlineRow, Outlines
+from fleet_supervisor.robot_bridge.core.sites.settings import SiteBounds, SiteSettings
+from fleet_supervisor.robot_bridge.core.sites.site import write_site
 from qgis.core import (
     QgsDirectoryItem,
     QgsMapRendererSequentialJob,
@@ -52,7 +52,7 @@ def test_obstacles_of_every_shape_are_drawn(plugin, iface, tmp_path):
     for number, shape in enumerate(ShapeType):
         outline = square if shape.name.startswith(("CLOSED", "RAMP")) else square[:4]
         rows.append(OutlineRow(outline + np.array([10.0 * number, 0.0]), shape, 1.0, "", shape.name))
-    settings = SiteSettings("yard", "Yard", 1, "EPSG:32633", (0.0, 0.0), Bounds(0.0, 0.0, 60.0, 10.0))
+    settings = SiteSettings("yard", "Yard", 1, "EPSG:32633", (0.0, 0.0), SiteBounds(0.0, 0.0, 60.0, 10.0))
     write_site(tmp_path, settings, Outlines.from_rows(rows))
     drop(iface, tmp_path)
     (layer,) = QgsProject.instance().mapLayersByName("Obstacles")

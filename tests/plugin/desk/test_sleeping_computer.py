@@ -6,10 +6,10 @@ import time
 from types import SimpleNamespace
 
 import pytest
-from fleet_supervisor.plugin.wire import client
-from fleet_supervisor.plugin.wire.sightings import STATES
-from fleet_supervisor.robot_bridge import steady_time as clock_module
-from fleet_supervisor.robot_bridge.messages import RobotState, to_json
+from fleet_supervisor.plugin.gateway_client import connection
+from fleet_supervisor.plugin.gateway_client.robot_table import STATES
+from fleet_supervisor.robot_bridge.core import steady_time as clock_module
+from fleet_supervisor.robot_bridge.core.messages import RobotState, to_json
 from qgis.PyQt.QtWidgets import QToolButton
 
 from tests.plugin.desk.fleet_panel import press
@@ -62,7 +62,7 @@ def test_robots_are_lost_at_once_and_come_back_with_the_link(laptop, lid, gatewa
 
 def test_what_had_come_in_before_is_not_taken_for_new(lid, monkeypatch, plugin, gateway, wait, make_robot):
     # Here the message itself has to bring it to light.
-    monkeypatch.setattr(client, "AWAKE_EVERY", HOUR)
+    monkeypatch.setattr(connection, "AWAKE_EVERY", HOUR)
     window = plugin.window
     window.dock.connection_panel._url.setText(gateway.url)
     window.dock.connection_panel._operator.setText("anna")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from fleet_supervisor.robot_bridge.messages import CommandState, PlacementReport, to_json
+from fleet_supervisor.robot_bridge.core.messages import CommandState, PlacementReport, to_json
 from qgis.core import QgsProject
 
 E, N = 488000.0, 5190000.0

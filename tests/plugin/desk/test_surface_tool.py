@@ -5,9 +5,9 @@ from __future__ import annotations
 import time
 
 import pytest
-from fleet_supervisor.plugin.desk.surface_action import SurfaceAction
-from fleet_supervisor.plugin.sites.roles import ROAD_SURFACE, set_role
-from fleet_supervisor.plugin.sites.surface_store import SurfaceStore
+from fleet_supervisor.plugin.layers.road_surfaces import SurfaceStore
+from fleet_supervisor.plugin.layers.roles import ROAD_SURFACE, set_role
+from fleet_supervisor.plugin.map.tools.surface_tool import SurfaceAction
 from qgis.core import (
     QgsCoordinateReferenceSystem,
     QgsCoordinateTransform,

@@ -4,16 +4,16 @@ from __future__ import annotations
 
 import json
 
-from fleet_supervisor.plugin.wire.mailbox import Mailbox
-from fleet_supervisor.plugin.wire.protocol import DeskProtocol
+from fleet_supervisor.plugin.gateway_client.buffers import UpdateBuffer
+from fleet_supervisor.plugin.gateway_client.protocol import GatewayProtocol
 
 
 def told(desk, *robots):
     """Have the desk hear what a gateway sends."""
-    mailbox = Mailbox()
+    mailbox = UpdateBuffer()
     mailbox.put_link(desk.link)
     frame = {"jsonrpc": "2.0", "method": "suspensions", "params": {"robots": list(robots)}}
-    DeskProtocol("Ada", 1.0, "ws://gateway/desk", mailbox, lambda: 0.0).receive(json.dumps(frame))
+    GatewayProtocol("Ada", 1.0, "ws://gateway/desk", mailbox, lambda: 0.0).receive(json.dumps(frame))
     desk._take_news(mailbox.take())
 
 

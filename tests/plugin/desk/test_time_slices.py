@@ -3,9 +3,9 @@
 from itertools import groupby
 
 import pytest
-from fleet_supervisor.plugin.desk import time_slices
-from fleet_supervisor.plugin.desk.time_slices import ONE_STEP, TimeSlices, part_of
-from fleet_supervisor.plugin.errors import FleetError
+from fleet_supervisor.plugin.ui import scheduling
+from fleet_supervisor.plugin.ui.errors import FleetError
+from fleet_supervisor.plugin.ui.scheduling import ONE_STEP, CooperativeTask, scaled_progress
 from qgis.PyQt.QtCore import QTimer
 
 
@@ -15,7 +15,7 @@ class Diary:
     def __init__(self):
         self.told = []
         self.now = 0.0
-        self.slices = TimeSlices(clock=self.tick)
+        self.slices = CooperativeTask(clock=self.tick)
 
     def tick(self):
         self.now += 0.001
@@ -59,7 +59,7 @@ def test_more_goes_on_by_itself_a_slice_at_a_time(diary, wait):
 
 
 def test_one_step_is_done_however_late_it_is(diary, wait, monkeypatch):
-    monkeypatch.setattr(time_slices, "SLICE_SECONDS", 0.0)
+    monkeypatch.setattr(scheduling, "SLICE_SECONDS", 0.0)
     diary.begin(steps(4))
     wait(lambda: ("done", "result") in diary.told)
     assert diary.told == [0.25, 0.5, 0.75, ("done", "result")]
@@ -156,7 +156,7 @@ def test_slices_of_one_step_each_leave_the_window_its_time_after_every_step(qgis
     events = QTimer()
     events.timeout.connect(lambda: told.append("events"))
     events.start(0)
-    slices = TimeSlices(seconds=ONE_STEP, clock=lambda: 0.0)
+    slices = CooperativeTask(seconds=ONE_STEP, clock=lambda: 0.0)
     slices.begin_soon(work())
     wait(lambda: not slices.is_busy)
     events.stop()
@@ -165,8 +165,8 @@ def test_slices_of_one_step_each_leave_the_window_its_time_after_every_step(qgis
 
 def test_parts_make_up_a_whole():
     def whole():
-        first = yield from part_of(steps(2, 1), 0, 2)
-        second = yield from part_of(steps(2, 2), 1, 2)
+        first = yield from scaled_progress(steps(2, 1), 0, 2)
+        second = yield from scaled_progress(steps(2, 2), 1, 2)
         return first + second
 
     work, shares = whole(), []

@@ -5,7 +5,7 @@ from __future__ import annotations
 import threading
 import time
 
-from fleet_supervisor.plugin.supervisor import FleetSupervisor
+from fleet_supervisor.plugin.plugin import FleetPlugin
 from qgis.core import QgsApplication, QgsProject, QgsVectorLayer
 from qgis.PyQt.QtWidgets import (
     QAction,
@@ -19,7 +19,7 @@ PANELS = ("fleet_plan_panel", "fleet_observations", "fleet_replay")
 
 def connected(iface, gateway, wait):
     """Return the plugin, loaded and with one robot seen."""
-    plugin = FleetSupervisor(iface)
+    plugin = FleetPlugin(iface)
     plugin.initGui()
     plugin.window.dock.findChild(QLineEdit, "fleet_url").setText(gateway.url)
     plugin.window.actions.connect.trigger()
@@ -76,7 +76,7 @@ def test_qgis_keeps_no_connection_to_what_was_unloaded(iface, gateway, make_robo
 
 
 def test_unloading_while_a_gateway_hangs_does_not_hang(iface, gateway, wait):
-    plugin = FleetSupervisor(iface)
+    plugin = FleetPlugin(iface)
     plugin.initGui()
     plugin.window.dock.findChild(QLineEdit, "fleet_url").setText(gateway.url)
     plugin.window.actions.connect.trigger()
@@ -104,7 +104,7 @@ def test_a_group_with_layers_of_the_users_own_is_left_to_the_user(iface, plugin,
 
 
 def test_unloading_twice_or_before_loading_does_no_harm(iface):
-    plugin = FleetSupervisor(iface)
+    plugin = FleetPlugin(iface)
     plugin.unload()
     plugin.initGui()
     plugin.unload()
@@ -113,7 +113,7 @@ def test_unloading_twice_or_before_loading_does_no_harm(iface):
 
 def test_without_a_window_only_processing_is_loaded():
     before = len(QgsApplication.processingRegistry().providers())
-    plugin = FleetSupervisor(None)
+    plugin = FleetPlugin(None)
     plugin.initGui()
     assert plugin.window is None
     assert len(QgsApplication.processingRegistry().providers()) == before + 1

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from fleet_supervisor.plugin.expressions.functions import ExpressionFunctions
-from fleet_supervisor.plugin.expressions.robots_now import FleetNow
-from fleet_supervisor.plugin.sites.roles import ROAD_SURFACE, set_role
-from fleet_supervisor.plugin.sites.surface_store import SurfaceStore
+from fleet_supervisor.plugin.expressions.robot_snapshot import SnapshotHolder
+from fleet_supervisor.plugin.layers.road_surfaces import SurfaceStore
+from fleet_supervisor.plugin.layers.roles import ROAD_SURFACE, set_role
 from qgis.core import (
     NULL,
     QgsCoordinateReferenceSystem,
@@ -31,7 +31,7 @@ def store(qgis_app):
     QgsProject.instance().clear()
     QgsProject.instance().setCrs(QgsCoordinateReferenceSystem("EPSG:32633"))
     store = SurfaceStore(QgsProject.instance())
-    functions = ExpressionFunctions(store, FleetNow())
+    functions = ExpressionFunctions(store, SnapshotHolder())
     yield store
     functions.remove()
     store.remove()
@@ -129,7 +129,7 @@ def test_changes_of_the_layer_count_at_once(ground):
 
 
 def test_a_layer_is_read_once_for_all_features(ground, store, make_layer, monkeypatch):
-    from fleet_supervisor.plugin.sites import surface_store
+    from fleet_supervisor.plugin.layers import road_surfaces as surface_store
 
     reads = []
     real = surface_store.read_surface_map
@@ -151,7 +151,7 @@ def test_a_layer_is_read_once_for_all_features(ground, store, make_layer, monkey
 
 def test_the_help_is_in_its_place_and_the_function_goes_with_the_plugin(qgis_app):
     store = SurfaceStore(QgsProject.instance())
-    functions = ExpressionFunctions(store, FleetNow())
+    functions = ExpressionFunctions(store, SnapshotHolder())
     known = QgsExpression.Functions()[QgsExpression.functionIndex("road_surface")]
     assert "class of the road surface at a place" in known.helpText()
     assert known.group() == "Fleet"

@@ -7,9 +7,9 @@ import time
 import numpy as np
 import pytest
 from fleet_supervisor.plugin.expressions.functions import ExpressionFunctions
-from fleet_supervisor.plugin.expressions.robots_now import FleetNow, RobotsNow
-from fleet_supervisor.plugin.sites.surface_store import SurfaceStore
-from fleet_supervisor.robot_bridge.steady_time import steady_time
+from fleet_supervisor.plugin.expressions.robot_snapshot import RobotSnapshot, SnapshotHolder
+from fleet_supervisor.plugin.layers.road_surfaces import SurfaceStore
+from fleet_supervisor.robot_bridge.core.steady_time import steady_time
 from qgis.core import (
     NULL,
     QgsCoordinateReferenceSystem,
@@ -29,7 +29,7 @@ YARD = 'ENGCRS["yard",EDATUM["yard"],CS[Cartesian,2],AXIS["x",east],AXIS["y",nor
 @pytest.fixture
 def fleet(qgis_app):
     QgsProject.instance().clear()
-    fleet = FleetNow()
+    fleet = SnapshotHolder()
     store = SurfaceStore(QgsProject.instance())
     functions = ExpressionFunctions(store, fleet)
     yield fleet
@@ -40,7 +40,7 @@ def fleet(qgis_app):
 def robots(**places):
     """Robots at these places of the site, None for one that never said where it is."""
     xy = [(np.nan, np.nan) if at is None else (EAST + at[0], NORTH + at[1]) for at in places.values()]
-    return RobotsNow(
+    return RobotSnapshot(
         crs=QgsCoordinateReferenceSystem("EPSG:32633"),
         rows={name: row for row, name in enumerate(places)},
         states=["fresh", "lost", "stale"][: len(places)],
@@ -161,7 +161,7 @@ def test_each_is_listed_where_expressions_are_written(fleet, name):
 
 def test_they_go_with_the_plugin(qgis_app):
     store = SurfaceStore(QgsProject.instance())
-    functions = ExpressionFunctions(store, FleetNow())
+    functions = ExpressionFunctions(store, SnapshotHolder())
     assert all(QgsExpression.isFunctionName(name) for name in NAMES)
     functions.remove()
     store.remove()

@@ -55,7 +55,7 @@ def speak(language: str):
         stretched = StretchedLanguage()
         QCoreApplication.installTranslator(stretched)
         return stretched
-    from fleet_supervisor.plugin.language import Language
+    from fleet_supervisor.plugin.ui.language import Language
 
     return Language(language)
 
@@ -155,7 +155,7 @@ def show_all(show: Show) -> None:
     """Load the plugin into a window, connect it, and look at all of it."""
     desk_tests = loaded("desk_tests", ROOT / "tests" / "plugin" / "desk" / "conftest.py")
     from every_dialog import dialogs
-    from fleet_supervisor.plugin.supervisor import FleetSupervisor
+    from fleet_supervisor.plugin.plugin import FleetPlugin
 
     QgsSettings().setValue("fleet_supervisor/tour_offered", True)
     window = desk_tests.Window()
@@ -164,7 +164,7 @@ def show_all(show: Show) -> None:
     window.show()
     gateway = desk_tests.SmallGateway(yard())
     gateway.start()
-    plugin = FleetSupervisor(window)
+    plugin = FleetPlugin(window)
     plugin.initGui()
     try:
         look_at_panel(show, window, plugin.window, gateway, desk_tests)
@@ -198,7 +198,7 @@ def arrange_as_qgis_does(window) -> None:
 
 
 def yard():
-    from fleet_supervisor.robot_bridge.messages import SiteReport
+    from fleet_supervisor.robot_bridge.core.messages import SiteReport
 
     return SiteReport(
         id="yard",
@@ -217,7 +217,7 @@ def yard():
 
 def look_at_panel(show: Show, window, desk_window, gateway, desk_tests) -> None:
     """The fleet panel: before a link, with one, each of its tabs, with a draft, under an emergency stop."""
-    from fleet_supervisor.plugin.desk.drafts import CONE, Draft, Findings
+    from fleet_supervisor.plugin.control.pending_command import CONE, Findings, PendingCommand
 
     dock, desk = desk_window.dock, desk_window.desk
     show.look("panel_alone", window)
@@ -240,7 +240,7 @@ def look_at_panel(show: Show, window, desk_window, gateway, desk_tests) -> None:
     if window.canvas.width() < MAP_AT_LEAST:
         show.faults["map"] = [f"the fleet panel leaves {window.canvas.width()} pixels for the map"]
     found = Findings(overridable=("A cone target of r2 is 0.3 m from it",), warnings=("It is off the road",))
-    desk.drafts.put(Draft("r1", CONE, ((60.0, 50.0),), found))
+    desk.drafts.put(PendingCommand("r1", CONE, ((60.0, 50.0),), found))
     dock.connection_panel._more.setChecked(True)
     show.look("panel_with_draft_and_access", window)
     desk.drafts.done()
@@ -287,7 +287,7 @@ def alarm_bar(window) -> QWidget | None:
 
 def order(desk, gateway, desk_tests) -> None:
     """Put a command, a queue, observations and a conflict before the operator."""
-    from fleet_supervisor.robot_bridge.messages import CommandState
+    from fleet_supervisor.robot_bridge.core.messages import CommandState
 
     gateway._queue("c1", "r1", "SetPosEnd", {"x": 60.0, "y": 50.0, "cone": True})
     gateway.step("c1", CommandState.DELIVERED, "r1")
@@ -358,8 +358,7 @@ def look_at_options(show: Show, window) -> None:
 
 def look_at_tour(show: Show, window) -> None:
     """Each step of the tour, with all that may be said in it."""
-    from fleet_supervisor.plugin.desk.tour.steps import STEPS
-    from fleet_supervisor.plugin.desk.tour.tour_panel import TourPanel
+    from fleet_supervisor.plugin.tour.tour_panel import STEPS, TourPanel
 
     panel = TourPanel(window)
     panel.set_practice(True)

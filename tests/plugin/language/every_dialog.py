@@ -6,36 +6,32 @@ import time
 from collections.abc import Iterator
 from pathlib import Path
 
-from fleet_supervisor.plugin.desk.accounts.account_model import Account
-from fleet_supervisor.plugin.desk.accounts.accounts_dialog import AccountsDialog
-from fleet_supervisor.plugin.desk.accounts.questions import (
-    AnotherRole,
-    AnotherToken,
-    NewAccount,
-    revocation,
+from fleet_supervisor.plugin.admin.accounts_dialog import (
+    Account,
+    AccountsDialog,
+    ChangeRoleDialog,
+    NewAccountDialog,
+    RenewTokenDialog,
+    TokenDialog,
+    confirm_revocation,
 )
-from fleet_supervisor.plugin.desk.accounts.token_dialog import TokenDialog
-from fleet_supervisor.plugin.desk.alarms.log_dialog import AlarmLogDialog
-from fleet_supervisor.plugin.desk.alarms.thresholds import Thresholds
-from fleet_supervisor.plugin.desk.alarms.thresholds_dialog import ThresholdsDialog
-from fleet_supervisor.plugin.desk.clear_dialog import ClearDialog
-from fleet_supervisor.plugin.desk.closure_tool import ClosureDialog
-from fleet_supervisor.plugin.desk.commands.coordinates_dialog import CoordinatesDialog
-from fleet_supervisor.plugin.desk.commands.override_dialog import OverrideDialog
-from fleet_supervisor.plugin.desk.drafts import CONE, Draft
-from fleet_supervisor.plugin.desk.replay.recordings_dialog import RecordingsDialog
-from fleet_supervisor.plugin.desk.robots.removal import RemovalDialog
-from fleet_supervisor.plugin.desk.site_choice.site_choice_dialog import SiteChoiceDialog
-from fleet_supervisor.plugin.desk.site_choice.site_question import site_question
-from fleet_supervisor.plugin.help.help_window import HelpWindow
-from fleet_supervisor.plugin.help.topics import START
-from fleet_supervisor.plugin.language import tr
-from fleet_supervisor.plugin.roles.roles_dialog import RolesDialog
-from fleet_supervisor.plugin.settings.connection_dialog import ConnectionDialog
-from fleet_supervisor.plugin.settings.connections import Connections
-from fleet_supervisor.plugin.settings.connections_dialog import ConnectionsDialog
-from fleet_supervisor.plugin.settings.gateway_connection import GatewayConnection
-from fleet_supervisor.robot_bridge.messages import (
+from fleet_supervisor.plugin.admin.recordings import RecordingsDialog
+from fleet_supervisor.plugin.admin.robot_removal import RemovalDialog
+from fleet_supervisor.plugin.admin.site_choice import SiteChoiceDialog, confirm_site_choice
+from fleet_supervisor.plugin.control.pending_command import CONE, PendingCommand
+from fleet_supervisor.plugin.help import START, HelpWindow
+from fleet_supervisor.plugin.layers.role_editor.roles_dialog import RolesDialog
+from fleet_supervisor.plugin.map.tools.closure_tool import ClosureDialog
+from fleet_supervisor.plugin.panel.alarms.alarm_panel import AlarmLogDialog
+from fleet_supervisor.plugin.panel.alarms.rules import Thresholds
+from fleet_supervisor.plugin.panel.alarms.thresholds_form import ThresholdsDialog
+from fleet_supervisor.plugin.panel.command_sources import CoordinatesDialog
+from fleet_supervisor.plugin.panel.emergency import ClearDialog
+from fleet_supervisor.plugin.panel.pending_command_panel import OverrideDialog
+from fleet_supervisor.plugin.settings.connections import Connections, GatewayConnection
+from fleet_supervisor.plugin.settings.connections_widget import ConnectionDialog, ConnectionsDialog
+from fleet_supervisor.plugin.ui.language import tr
+from fleet_supervisor.robot_bridge.core.messages import (
     EmergencyReport,
     NewToken,
     OperatorReport,
@@ -73,7 +69,7 @@ def _of_the_desk(window, desk_window) -> Dialogs:
     yield "closure", ClosureDialog(window)
     yield "coordinates", CoordinatesDialog(desk_window.desk, window)
     found = "A cone target of r2 is 0.3 m from it", "It is on the obstacle bin-4"
-    draft, then = Draft("r1", CONE, ((60.0, 50.0),)).in_words(), tr("Nothing is sent yet.")
+    draft, then = PendingCommand("r1", CONE, ((60.0, 50.0),)).in_words(), tr("Nothing is sent yet.")
     yield "override", OverrideDialog(draft, found, then, window, is_safe=False)
     queue = tr("the queue of {robot}", robot="r1")
     then = tr("The plan is sent on at once, and robots set off.")
@@ -88,10 +84,10 @@ def _of_the_desk(window, desk_window) -> Dialogs:
 def _of_accounts(window, desk_window) -> Dialogs:
     yield "accounts", AccountsDialog(desk_window.desk, window)
     own = Account(OperatorReport("Ada", Role.SUPERVISOR, time.time(), TokenState.VALID), is_own=True)
-    yield "new_account", NewAccount(True, window)
-    yield "role", AnotherRole(own, window)
-    yield "new_token", AnotherToken(own, window)
-    yield "revocation", revocation(own, window, lambda: None)
+    yield "new_account", NewAccountDialog(True, window)
+    yield "role", ChangeRoleDialog(own, window)
+    yield "new_token", RenewTokenDialog(own, window)
+    yield "revocation", confirm_revocation(own, window, lambda: None)
     made = NewToken("Ada", Role.SUPERVISOR, f"fleet_op_{0:043d}", time.time())
     yield "token", TokenDialog(made, ends_link=True, parent=window)
 
@@ -99,7 +95,7 @@ def _of_accounts(window, desk_window) -> Dialogs:
 def _of_sites(window, desk_window) -> Dialogs:
     yield "sites", SiteChoiceDialog(desk_window.desk, window)
     offer = SiteOffer("south", False, "south", "South field", 1)
-    yield "site_question", site_question(offer, window, lambda: None)
+    yield "site_question", confirm_site_choice(offer, window, lambda: None)
 
 
 def _of_the_menu(window) -> Dialogs:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import shutil
 
 import pytest
-from fleet_supervisor.plugin.language import CONTEXT, FOLDER, Language, tr, tr_count
+from fleet_supervisor.plugin.ui.language import CONTEXT, FOLDER, Language, tr, tr_count
 from qgis.PyQt.QtCore import QCoreApplication
 
 

@@ -79,7 +79,7 @@ TEXTS = {
             "stopped unasked",
             "low battery",
         ),
-        "the value that a kind of alarm is kept under; plugin/desk/alarms/words.py has its words",
+        "the value that a kind of alarm is kept under; plugin/panel/alarms/board.py has its words",
     ),
 }
 """Texts that nobody reads as they are, or that have to stay as they are, and why."""
@@ -220,7 +220,7 @@ def test_every_text_that_people_read_is_translated():
         name = path.relative_to(ROOT).as_posix()
         for line, text in forgotten(path.read_text(encoding="utf-8")):
             left[f"{name}:{line}"] = text
-    assert not left, "wrap them in tr(...) of plugin/language.py, or say above why nobody reads them"
+    assert not left, "wrap them in tr(...) of plugin/ui/language.py, or say above why nobody reads them"
 
 
 def test_no_exception_is_for_what_is_gone():

@@ -7,7 +7,7 @@ import re
 from pathlib import Path
 
 import pytest
-from fleet_supervisor.plugin.language import first_of
+from fleet_supervisor.plugin.ui.language import first_of
 from syntax import tree_of
 
 ROOT = Path(__file__).parents[3]

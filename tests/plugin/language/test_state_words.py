@@ -3,8 +3,13 @@
 from __future__ import annotations
 
 import pytest
-from fleet_supervisor.plugin.desk.state_words import COMMAND_STATES, ROBOT_STATES, TASK_STATES, longest
-from fleet_supervisor.robot_bridge.messages import CommandState, RobotState, TaskState
+from fleet_supervisor.plugin.gateway_client.state_texts import (
+    COMMAND_STATES,
+    ROBOT_STATES,
+    TASK_STATES,
+    longest_word,
+)
+from fleet_supervisor.robot_bridge.core.messages import CommandState, RobotState, TaskState
 
 
 @pytest.mark.parametrize(
@@ -17,4 +22,4 @@ def test_no_state_is_without_a_word(words, states):
 
 
 def test_the_longest_word_makes_the_column(qgis_app):
-    assert longest(COMMAND_STATES) == "acknowledged"
+    assert longest_word(COMMAND_STATES) == "acknowledged"

@@ -12,9 +12,9 @@ from pathlib import Path
 
 import pytest
 from fleet_supervisor.plugin.processing.provider import FleetProvider
-from fleet_supervisor.robot_bridge.robotmap.binary import decode_text
-from fleet_supervisor.robot_bridge.robotmap.model import RobotMap
-from fleet_supervisor.robot_bridge.robotmap.text import read_text
+from fleet_supervisor.robot_bridge.core.robotmap.binary import decode_text
+from fleet_supervisor.robot_bridge.core.robotmap.model import RobotMap
+from fleet_supervisor.robot_bridge.core.robotmap.text_format import read_text
 from qgis.core import (
     QgsApplication,
     QgsCoordinateReferenceSystem,

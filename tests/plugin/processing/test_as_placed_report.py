@@ -10,13 +10,24 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from fleet_supervisor.plugin.processing import as_placed_report
-from fleet_supervisor.plugin.processing.column_room import shared, shortened
-from fleet_supervisor.plugin.processing.histogram_svg import bars, histogram, ticks
-from fleet_supervisor.plugin.processing.placed_cones import PlacedCone, deviations
-from fleet_supervisor.plugin.processing.report_items import widths_of
-from fleet_supervisor.plugin.processing.report_layers import extent_of, factor_of, map_layers
-from fleet_supervisor.plugin.processing.report_layout import Report, laid_out
+from fleet_supervisor.plugin.processing.algorithms import as_placed_report
+from fleet_supervisor.plugin.processing.common.placed_cones import (
+    PlacedCone,
+    bars,
+    cone_deviations,
+    extent_of,
+    factor_of,
+    histogram,
+    map_layers,
+    ticks,
+)
+from fleet_supervisor.plugin.processing.common.report_layout import (
+    ReportContent,
+    build_layout,
+    shared_widths,
+    shortened,
+    widths_of,
+)
 from qgis.core import (
     QgsCoordinateReferenceSystem,
     QgsLayoutItemLabel,
@@ -29,10 +40,9 @@ from qgis.core import (
 )
 from qgis.gui import QgsMessageBar
 
-from robot_bridge.store import placements
-from robot_bridge.store.address import read_address
-from robot_bridge.store.database import Database
-from robot_bridge.store.placements import NewPlacement
+from robot_bridge.gateway.storage.database import Database, read_address
+from robot_bridge.gateway.storage.repositories import records
+from robot_bridge.gateway.storage.repositories.records import NewPlacement
 
 FIELDS = (
     "&field=planned_easting:double&field=planned_northing:double&field=easting:double&field=northing:double"
@@ -95,8 +105,8 @@ def test_the_layout_says_it_all(qgis_app, tmp_path):
     project, offs = QgsProject(), [(0.03, 0.04), (0.0, 0.1), (-0.3, 0.0)]
     project.setCrs(QgsCoordinateReferenceSystem(UTM))
     given = sorted(cones(*offs), key=lambda cone: -cone.deviation)
-    report = Report("Slalom", given, deviations(given, 0.2), 0.2, project.crs())
-    layout = laid_out(report, project, tmp_path)
+    report = ReportContent("Slalom", given, cone_deviations(given, 0.2), 0.2, project.crs())
+    layout = build_layout(report, project, tmp_path)
     texts = "\n".join(item.text() for item in layout.items() if isinstance(item, QgsLayoutItemLabel))
     assert "Slalom" in texts
     assert "2 of 3 cones (67 %) stand within 20 cm" in texts
@@ -120,7 +130,9 @@ def test_the_layout_says_it_all(qgis_app, tmp_path):
 def text_of(given, tmp_path):
     project = QgsProject()
     project.setCrs(QgsCoordinateReferenceSystem(UTM))
-    layout = laid_out(Report("Slalom", given, deviations(given, 0.2), 0.2, project.crs()), project, tmp_path)
+    layout = build_layout(
+        ReportContent("Slalom", given, cone_deviations(given, 0.2), 0.2, project.crs()), project, tmp_path
+    )
     return "\n".join(item.text() for item in layout.items() if isinstance(item, QgsLayoutItemLabel))
 
 
@@ -148,8 +160,10 @@ def test_long_names_are_told_apart_on_every_page_of_the_table(qgis_app, tmp_path
     names = [f"constant-radius-circle-{k:03d}" for k in range(100)]
     given = [replace(cones((0.01, 0.0))[0], name=name, layout="circle-of-a-hundred-metres") for name in names]
     project = QgsProject()
-    report = Report("Circle", given, deviations(given, 0.2), 0.2, QgsCoordinateReferenceSystem(UTM))
-    layout = laid_out(report, project, tmp_path)
+    report = ReportContent(
+        "Circle", given, cone_deviations(given, 0.2), 0.2, QgsCoordinateReferenceSystem(UTM)
+    )
+    layout = build_layout(report, project, tmp_path)
     (table,) = (frame for frame in layout.multiFrames() if isinstance(frame, QgsLayoutItemTextTable))
     letters = widths_of(layout, table.contentTextFormat())
     contents = [
@@ -172,7 +186,7 @@ def test_long_names_are_told_apart_on_every_page_of_the_table(qgis_app, tmp_path
     ],
 )
 def test_what_a_column_does_not_need_the_longest_gets(needs, given):
-    assert shared(60, needs) == given
+    assert shared_widths(60, needs) == given
 
 
 def test_a_text_loses_its_middle():
@@ -274,7 +288,8 @@ async def exported(root, tmp_path):
             "layout": "slalom",
         }
         await database.run(
-            placements.add, NewPlacement(**values, **known, deviation=off, placed_at=1_790_000_000.0 + n)
+            records.add_placed_cones,
+            NewPlacement(**values, **known, deviation=off, placed_at=1_790_000_000.0 + n),
         )
     await database.close()
 

@@ -10,11 +10,10 @@ import numpy as np
 import pyogrio
 import pytest
 import shapely
-from fleet_supervisor.plugin.processing import assign_cones, job_travel
-from fleet_supervisor.robot_bridge.assignment import road_travel, solving, stages
-from fleet_supervisor.robot_bridge.assignment.checks import check_plan
-from fleet_supervisor.robot_bridge.assignment.plan import Plan
-from fleet_supervisor.robot_bridge.assignment.plan_json import from_json
+from fleet_supervisor.plugin.processing.algorithms import assign_cones
+from fleet_supervisor.plugin.processing.algorithms import assign_cones as job_travel
+from fleet_supervisor.robot_bridge.core.assignment import job, solver
+from fleet_supervisor.robot_bridge.core.assignment.plan import ConePlan, check_plan, plan_from_json
 from qgis.core import QgsProcessingContext, QgsProcessingException, QgsProject
 
 UTM = "EPSG:32633"
@@ -53,7 +52,7 @@ def run(provider, listener, tmp_path):
 
     project = QgsProject()
 
-    def do(feedback=None, **parameters) -> tuple[dict, Plan | None]:
+    def do(feedback=None, **parameters) -> tuple[dict, ConePlan | None]:
         context = QgsProcessingContext()
         context.setProject(project)
         file = tmp_path / "plan.json"
@@ -63,7 +62,7 @@ def run(provider, listener, tmp_path):
         results = processing.run(
             "fleet:assigncones", everything, context=context, feedback=feedback or listener
         )
-        return results, from_json(file.read_text("utf-8")) if file.exists() else None
+        return results, plan_from_json(file.read_text("utf-8")) if file.exists() else None
 
     return do
 
@@ -140,11 +139,11 @@ def test_pyvrp_is_used_where_it_is(run, layers):
 
 PHASES = {
     "network": (job_travel, "network_of_roads"),
-    "distances": (road_travel, "road_matrix"),
-    "savings": (stages, "trips_by_savings"),
-    "improving": (stages, "improved"),
-    "pyvrp": (stages, "trips_by_pyvrp"),
-    "paths": (solving, "plan_of"),
+    "distances": (job, "road_matrix"),
+    "savings": (solver, "trips_by_savings"),
+    "improving": (solver, "improved"),
+    "pyvrp": (solver, "trips_by_pyvrp"),
+    "paths": (solver, "plan_of"),
     "writing": (assign_cones, "write_whole"),
 }
 """What comes one after the other, and who does it."""
@@ -245,7 +244,7 @@ def test_a_layout_is_assigned_headless(qgis_process, root, files, packages):
         packages=packages,
     )  # fmt: skip
     assert done.status == 0, done.said
-    plan = from_json((files / "plan.json").read_text("utf-8"))
+    plan = plan_from_json((files / "plan.json").read_text("utf-8"))
     assert check_plan(plan) == []
     assert plan.method.startswith("pyvrp" if packages else "preview")
     cones = pyogrio.read_info(files / "cones.gpkg")["features"]
@@ -272,7 +271,7 @@ def test_it_runs_as_the_guide_says(qgis_process, root, tmp_path):
     ]
     done = qgis_process(*words)
     assert done.status == 0, done.said
-    plan = from_json((tmp_path / "plan.json").read_text("utf-8"))
+    plan = plan_from_json((tmp_path / "plan.json").read_text("utf-8"))
     assert check_plan(plan) == []
     assert [(one.robot.id, one.robot.capacity, one.robot.speed) for one in plan.robots] == [
         ("r1", 4, 1.0),
@@ -283,4 +282,4 @@ def test_it_runs_as_the_guide_says(qgis_process, root, tmp_path):
 def test_the_document_has_what_the_guide_shows(root):
     guide = (root / "docs" / "assignment.md").read_text(encoding="utf-8")
     shown = re.search(r"^    \{\"format\"(?:.*\n)+?\n", guide, re.MULTILINE)[0]
-    assert from_json(shown).robots[0].trips[0].stops[0].id == "shed"
+    assert plan_from_json(shown).robots[0].trips[0].stops[0].id == "shed"

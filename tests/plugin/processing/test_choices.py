@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import pytest
-from fleet_supervisor.plugin.assignment_words import FINISHES, FOUND, METHODS, OBJECTIVES, TASKS
-from fleet_supervisor.plugin.processing.export_navigation_map import FORMAT_NAMES
-from fleet_supervisor.plugin.processing.find_route import ENGINE_NAMES, QGIS
-from fleet_supervisor.plugin.processing.navigation_files import FORMATS
-from fleet_supervisor.robot_bridge.assignment import job, scheduling, solving
-from fleet_supervisor.robot_bridge.roads.engines.choice import ENGINES
+from fleet_supervisor.plugin.cone_texts import FINISHES, METHODS, OBJECTIVES, RESULT_QUALITY, TASKS
+from fleet_supervisor.plugin.processing.algorithms.export_navigation_map import FORMAT_NAMES
+from fleet_supervisor.plugin.processing.algorithms.find_route import ENGINE_NAMES, QGIS
+from fleet_supervisor.plugin.processing.common.navigation_files import FORMAT_WRITERS
+from fleet_supervisor.robot_bridge.core.assignment import job, schedules, solver
+from fleet_supervisor.robot_bridge.core.roads.engines import ENGINES
 from qgis.core import QgsProcessingContext, QgsProcessingParameterEnum
 from qgis.gui import QgsCheckableComboBox, QgsProcessingModelerParameterWidget
 from qgis.PyQt.QtWidgets import QComboBox, QDialog
@@ -103,10 +103,10 @@ def test_in_a_model_the_value_can_be_that_of_another_step(shown):
 
 
 def test_every_value_has_a_name():
-    assert set(FORMAT_NAMES) == set(FORMATS)
+    assert set(FORMAT_NAMES) == set(FORMAT_WRITERS)
     assert set(ENGINE_NAMES) == {*ENGINES, QGIS}
     assert set(FINISHES) == set(job.FINISHES)
     assert set(TASKS) == {job.PLACE, job.COLLECT}
-    assert set(OBJECTIVES) == set(scheduling.OBJECTIVES)
-    assert set(METHODS) == set(solving.METHODS)
-    assert set(FOUND) == {solving.PREVIEW, solving.PYVRP, solving.PREVIEW_KEPT}
+    assert set(OBJECTIVES) == set(schedules.OBJECTIVES)
+    assert set(METHODS) == set(solver.METHODS)
+    assert set(RESULT_QUALITY) == {solver.PREVIEW, solver.PYVRP, solver.PREVIEW_KEPT}

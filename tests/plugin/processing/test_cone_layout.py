@@ -7,7 +7,7 @@ import shlex
 from functools import partial
 
 import pytest
-from fleet_supervisor.robot_bridge.layouts.catalogue import LAYOUTS
+from fleet_supervisor.robot_bridge.core.layouts.catalogue import LAYOUTS
 from qgis.core import (
     QgsCoordinateReferenceSystem,
     QgsFeature,

@@ -11,11 +11,11 @@ import numpy as np
 import pyogrio
 import pytest
 import yaml
-from fleet_supervisor.plugin.processing.navigation_files import FORMATS
-from fleet_supervisor.robot_bridge.robotmap.binary import encode
-from fleet_supervisor.robot_bridge.robotmap.exporters.geopackage import write_geopackage
-from fleet_supervisor.robot_bridge.robotmap.text import read_text
-from fleet_supervisor.robot_bridge.sites.map_frame import frame_of_map
+from fleet_supervisor.plugin.processing.common.navigation_files import FORMAT_WRITERS
+from fleet_supervisor.robot_bridge.core.robotmap.binary import encode
+from fleet_supervisor.robot_bridge.core.robotmap.exporters.vector_files import write_geopackage
+from fleet_supervisor.robot_bridge.core.robotmap.text_format import read_text
+from fleet_supervisor.robot_bridge.core.sites.transforms import frame_of_map
 from PIL import Image
 from pyproj import Transformer
 from qgis.core import (
@@ -168,7 +168,7 @@ def test_the_occupancy_grid_is_what_comes_without_further_words(export, robot_ma
 def test_every_format_is_written_and_named_in_the_results(export, robot_map, areas):
     results, folder, _ = export(
         robot_map,
-        FORMATS=list(FORMATS),
+        FORMATS=list(FORMAT_WRITERS),
         KEEPOUTS=areas,
         SPEED_AREAS=areas,
         SPEED="limit",
@@ -181,7 +181,7 @@ def test_every_format_is_written_and_named_in_the_results(export, robot_map, are
         *("yard_obstacles.geojson", "yard_segments.geojson"),
     }
     assert results["FILE_COUNT"] == 13
-    assert all(Path(results[format.upper()]).is_file() for format in FORMATS)
+    assert all(Path(results[format.upper()]).is_file() for format in FORMAT_WRITERS)
 
 
 def test_a_binary_map_gives_the_same_grid(export, robot_map, tmp_path):

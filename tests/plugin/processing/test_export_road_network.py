@@ -7,9 +7,8 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 import pytest
-from fleet_supervisor.plugin.processing.export_road_network import FORMAT_NAMES
-from fleet_supervisor.plugin.processing.map_file import SITE_METRES
-from fleet_supervisor.plugin.processing.road_network_files import FORMATS
+from fleet_supervisor.plugin.processing.algorithms.export_road_network import FORMAT_NAMES, FORMAT_WRITERS
+from fleet_supervisor.plugin.processing.common.map_files import SITE_METRES
 from qgis.core import (
     QgsCoordinateReferenceSystem,
     QgsCoordinateTransform,
@@ -66,7 +65,7 @@ def nav2(file):
 
 
 def test_the_dialog_offers_what_is_written():
-    assert list(FORMAT_NAMES) == list(FORMATS)
+    assert list(FORMAT_NAMES) == list(FORMAT_WRITERS)
 
 
 def test_the_nav2_graph_is_in_the_site_frame(export, roads, listener):

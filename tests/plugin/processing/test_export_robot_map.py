@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 
 import pytest
-from fleet_supervisor.plugin.sites.roles import LayerExpressions, set_expressions, set_role
-from fleet_supervisor.robot_bridge.robotmap.model import ShapeType
+from fleet_supervisor.plugin.layers.roles import LayerExpressions, set_expressions, set_role
+from fleet_supervisor.robot_bridge.core.robotmap.model import ShapeType
 from qgis.core import (
     QgsCoordinateReferenceSystem,
     QgsExpressionContextUtils,

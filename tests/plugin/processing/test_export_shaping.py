@@ -8,8 +8,8 @@ import numpy as np
 import pyogrio
 import pytest
 import shapely
-from fleet_supervisor.robot_bridge.robotmap.binary import decode, decode_text
-from fleet_supervisor.robot_bridge.robotmap.model import ShapeType
+from fleet_supervisor.robot_bridge.core.robotmap.binary import decode, decode_text
+from fleet_supervisor.robot_bridge.core.robotmap.model import ShapeType
 from qgis.core import (
     QgsProcessingContext,
     QgsProcessingException,

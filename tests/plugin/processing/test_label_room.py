@@ -5,7 +5,7 @@ from __future__ import annotations
 import xml.etree.ElementTree as ET
 
 import pytest
-from fleet_supervisor.plugin.processing.label_room import OPTIONAL, ROOM, shortened_label
+from fleet_supervisor.plugin.processing.common.algorithm import OPTIONAL, ROOM, shortened_label
 from qgis.core import QgsProcessingParameterDefinition
 
 LEEWAY = 6

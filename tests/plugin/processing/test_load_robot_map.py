@@ -7,8 +7,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from fleet_supervisor.robot_bridge.robotmap.binary import encode
-from fleet_supervisor.robot_bridge.robotmap.text import read_text
+from fleet_supervisor.robot_bridge.core.robotmap.binary import encode
+from fleet_supervisor.robot_bridge.core.robotmap.text_format import read_text
 from qgis.core import (
     QgsCoordinateReferenceSystem,
     QgsLayerTreeRegistryBridge,

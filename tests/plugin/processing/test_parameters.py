@@ -5,8 +5,8 @@ from __future__ import annotations
 import re
 
 import pytest
-from fleet_supervisor.plugin.processing import parameter_labels
-from fleet_supervisor.plugin.processing.fleet_algorithm import plain_text
+from fleet_supervisor.plugin.processing.common import algorithm as parameter_labels
+from fleet_supervisor.plugin.processing.common.algorithm import plain_text
 from fleet_supervisor.plugin.processing.provider import FleetProvider
 from qgis.core import (
     QgsApplication,
@@ -68,7 +68,7 @@ def documented_calls(root):
     files = [
         root / "README.md",
         *(root / "docs").glob("*.md"),
-        *(root / "plugin" / "processing").glob("*.py"),
+        *(root / "plugin" / "processing").rglob("*.py"),
     ]
     for file in files:
         text = re.sub(r"\\+\n\s*", " ", file.read_text(encoding="utf-8"))

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import pytest
-from fleet_supervisor.plugin.processing.cone_layout import ConeLayout
-from fleet_supervisor.plugin.processing.errors import ParameterError
-from fleet_supervisor.plugin.processing.export_robot_map import ExportRobotMap
-from fleet_supervisor.plugin.processing.places import extent_in, point_in
+from fleet_supervisor.plugin.processing.algorithms.cone_layout import ConeLayout
+from fleet_supervisor.plugin.processing.algorithms.export_robot_map import ExportRobotMap
+from fleet_supervisor.plugin.processing.common.algorithm import ParameterError
+from fleet_supervisor.plugin.processing.common.parameters import extent_in, point_in
 from qgis.core import (
     QgsCoordinateReferenceSystem,
     QgsPointXY,

@@ -10,13 +10,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from fleet_supervisor.plugin.sites.obstacle_source import obstacle_sources
-from fleet_supervisor.plugin.sites.roles import LayerExpressions, LayerSetup, keep_setup
-from fleet_supervisor.robot_bridge.robotmap.binary import decode_text
-from fleet_supervisor.robot_bridge.robotmap.model import ShapeType
-from fleet_supervisor.robot_bridge.robotmap.text import read_text, write_text
-from fleet_supervisor.robot_bridge.sites.errors import LayerError
-from fleet_supervisor.robot_bridge.sites.publication import read_site
+from fleet_supervisor.plugin.layers.layer_source import obstacle_sources
+from fleet_supervisor.plugin.layers.roles import LayerExpressions, LayerSetup, keep_setup
+from fleet_supervisor.robot_bridge.core.errors import LayerError
+from fleet_supervisor.robot_bridge.core.robotmap.binary import decode_text
+from fleet_supervisor.robot_bridge.core.robotmap.model import ShapeType
+from fleet_supervisor.robot_bridge.core.robotmap.text_format import read_text, write_text
+from fleet_supervisor.robot_bridge.core.sites.site import read_site
 from qgis.core import (
     QgsExpressionContext,
     QgsProcessingContext,

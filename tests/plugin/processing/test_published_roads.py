@@ -5,8 +5,8 @@ from __future__ import annotations
 import sqlite3
 
 import pytest
-from fleet_supervisor.robot_bridge.sites.features import Centreline
-from fleet_supervisor.robot_bridge.sites.publication import read_site, write_site
+from fleet_supervisor.robot_bridge.core.sites.geopackage import Centreline
+from fleet_supervisor.robot_bridge.core.sites.site import read_site, write_site
 from qgis.core import QgsProcessingContext, QgsProject
 
 FIELDS = (

@@ -8,9 +8,9 @@ import sys
 from concurrent.futures import ThreadPoolExecutor
 
 import pytest
-from fleet_supervisor.plugin.sites.errors import PublicationError
-from fleet_supervisor.plugin.sites.publication_lock import LOCK_FILE, only_publication
-from fleet_supervisor.robot_bridge.sites.publication import read_site
+from fleet_supervisor.plugin.layers.errors import PublicationError
+from fleet_supervisor.plugin.layers.publishing.publication import LOCK_FILE, exclusive_publication
+from fleet_supervisor.robot_bridge.core.sites.site import read_site
 
 HOLD = """
 import sys
@@ -37,7 +37,7 @@ def test_a_publication_that_is_under_way_is_told_with_its_process(holder, tmp_pa
     (tmp_path / "site.toml").write_text("as it was")
     with (
         pytest.raises(PublicationError, match=f"is under way, by process {holder.pid} on .*: wait until"),
-        only_publication(tmp_path),
+        exclusive_publication(tmp_path),
     ):
         pytest.fail("two at once")
     assert holder.poll() is None
@@ -48,15 +48,15 @@ def test_a_process_that_was_killed_holds_nobody_up(holder, tmp_path):
     holder.kill()
     holder.wait()
     assert (tmp_path / LOCK_FILE).exists()
-    with only_publication(tmp_path):
+    with exclusive_publication(tmp_path):
         assert (tmp_path / LOCK_FILE).exists()
     assert list(tmp_path.iterdir()) == []
 
 
 def test_one_process_does_not_publish_twice_at_once_and_may_again_after_an_error(qgis_app, tmp_path):
     def publish_in_vain():
-        with only_publication(tmp_path):
-            with pytest.raises(PublicationError, match="is under way"), only_publication(tmp_path):
+        with exclusive_publication(tmp_path):
+            with pytest.raises(PublicationError, match="is under way"), exclusive_publication(tmp_path):
                 pytest.fail("two at once")
             raise KeyError
 
@@ -66,7 +66,7 @@ def test_one_process_does_not_publish_twice_at_once_and_may_again_after_an_error
 
 
 def test_a_folder_that_was_made_in_vain_is_taken_away(qgis_app, tmp_path):
-    with only_publication(tmp_path / "site"):
+    with exclusive_publication(tmp_path / "site"):
         assert (tmp_path / "site").is_dir()
     assert list(tmp_path.iterdir()) == []
 

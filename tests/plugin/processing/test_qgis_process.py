@@ -11,8 +11,8 @@ import numpy as np
 import pyogrio
 import pytest
 import shapely
-from fleet_supervisor.robot_bridge.robotmap.binary import decode_text
-from fleet_supervisor.robot_bridge.robotmap.text import read_text
+from fleet_supervisor.robot_bridge.core.robotmap.binary import decode_text
+from fleet_supervisor.robot_bridge.core.robotmap.text_format import read_text
 
 CAMPUS_LAYERS = ("buildings", "walls", "furniture")
 HELSINKI_LAYERS = ("buildings", "barriers")

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import pytest
-from fleet_supervisor.plugin.processing.find_route import FindRoute
-from fleet_supervisor.plugin.processing.graph_engine import GraphEngine
-from fleet_supervisor.plugin.sites.roles import LayerExpressions, LayerSetup, keep_setup
-from fleet_supervisor.robot_bridge.roads import noding
-from fleet_supervisor.robot_bridge.roads.centrelines import centrelines
-from fleet_supervisor.robot_bridge.roads.errors import NoRouteError
-from fleet_supervisor.robot_bridge.roads.network import build_network
-from fleet_supervisor.robot_bridge.roads.routes import Router
+from fleet_supervisor.plugin.layers.roles import LayerExpressions, LayerSetup, keep_setup
+from fleet_supervisor.plugin.processing.algorithms.find_route import FindRoute, GraphEngine
+from fleet_supervisor.robot_bridge.core.errors import NoRouteError
+from fleet_supervisor.robot_bridge.core.roads import network as noding
+from fleet_supervisor.robot_bridge.core.roads.centrelines import centrelines
+from fleet_supervisor.robot_bridge.core.roads.network import build_network
+from fleet_supervisor.robot_bridge.core.roads.routes import Router
 from qgis.core import (
     QgsProcessingContext,
     QgsProcessingException,

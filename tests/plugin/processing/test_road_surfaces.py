@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from fleet_supervisor.plugin.sites.roles import LayerExpressions, LayerSetup, keep_setup
+from fleet_supervisor.plugin.layers.roles import LayerExpressions, LayerSetup, keep_setup
 from qgis.core import (
     NULL,
     QgsCoordinateReferenceSystem,

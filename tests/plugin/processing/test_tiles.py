@@ -7,11 +7,16 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from fleet_supervisor.plugin.processing.errors import ParameterError
-from fleet_supervisor.plugin.processing.tile_windows import TileSize, area_of, grid_tiles, route_tiles
-from fleet_supervisor.robot_bridge.robotmap.binary import decode
-from fleet_supervisor.robot_bridge.robotmap.model import Border
-from fleet_supervisor.robot_bridge.robotmap.text import read_text
+from fleet_supervisor.plugin.processing.common.algorithm import ParameterError
+from fleet_supervisor.plugin.processing.common.export_parameters import (
+    TileSize,
+    area_of,
+    grid_tiles,
+    route_tiles,
+)
+from fleet_supervisor.robot_bridge.core.robotmap.binary import decode
+from fleet_supervisor.robot_bridge.core.robotmap.model import Border
+from fleet_supervisor.robot_bridge.core.robotmap.text_format import read_text
 from qgis.core import (
     QgsProcessingContext,
     QgsProcessingException,

@@ -9,7 +9,7 @@ import sys
 import time
 
 import pytest
-from fleet_supervisor.robot_bridge.messages import SendPos
+from fleet_supervisor.robot_bridge.core.messages import SendPos
 from osgeo import ogr
 from qgis.core import (
     QgsCoordinateTransformContext,
@@ -21,10 +21,9 @@ from qgis.core import (
 )
 from qgis.PyQt.QtCore import QDateTime, Qt
 
-from robot_bridge.store import trajectories
-from robot_bridge.store.address import read_address
-from robot_bridge.store.database import Database
-from robot_bridge.store.trajectories import Fix, pack
+from robot_bridge.gateway.storage.database import Database, read_address
+from robot_bridge.gateway.storage.repositories import trajectories
+from robot_bridge.gateway.storage.repositories.trajectories import Fix, pack
 
 ogr.UseExceptions()
 T0 = 1_790_000_000

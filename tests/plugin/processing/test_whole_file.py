@@ -7,7 +7,7 @@ import resource
 from contextlib import contextmanager
 
 import pytest
-from fleet_supervisor.plugin.processing.whole_file import OutputError, check_target, write_whole
+from fleet_supervisor.plugin.processing.common.outputs import OutputError, check_target, write_whole
 
 
 @contextmanager

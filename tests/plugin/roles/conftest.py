@@ -5,8 +5,8 @@ from __future__ import annotations
 import time
 
 import pytest
-from fleet_supervisor.plugin.roles.roles_dialog import RolesDialog
-from fleet_supervisor.plugin.sites.roles import LayerExpressions, LayerSetup, keep_setup
+from fleet_supervisor.plugin.layers.role_editor.roles_dialog import RolesDialog
+from fleet_supervisor.plugin.layers.roles import LayerExpressions, LayerSetup, keep_setup
 from qgis.core import QgsCoordinateReferenceSystem, QgsProject
 from qgis.PyQt.QtCore import QCoreApplication, QEvent
 from qgis.PyQt.QtWidgets import QApplication

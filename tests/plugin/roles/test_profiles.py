@@ -7,16 +7,21 @@ from collections import Counter
 
 import numpy as np
 import pytest
-from fleet_supervisor.plugin.sites.errors import ProfileError
-from fleet_supervisor.plugin.sites.layer_rules import LayerRules, as_metres
-from fleet_supervisor.plugin.sites.obstacle_source import names_of, obstacle_sources
-from fleet_supervisor.plugin.sites.placing import SitePlacing
-from fleet_supervisor.plugin.sites.profile import Profile, ProfileRule
-from fleet_supervisor.plugin.sites.profile_file import find_profile, read_profile, shipped_profiles
-from fleet_supervisor.plugin.sites.reading import read_outlines
-from fleet_supervisor.plugin.sites.roles import LayerExpressions, LayerSetup, keep_setup
-from fleet_supervisor.robot_bridge.robotmap.model import ShapeType
-from fleet_supervisor.robot_bridge.sites.frame import SiteFrame
+from fleet_supervisor.plugin.layers.errors import ProfileError
+from fleet_supervisor.plugin.layers.layer_expressions import LayerRules, as_metres
+from fleet_supervisor.plugin.layers.layer_source import names_of, obstacle_sources
+from fleet_supervisor.plugin.layers.obstacle_layers import read_outlines
+from fleet_supervisor.plugin.layers.profiles import (
+    Profile,
+    ProfileRule,
+    find_profile,
+    read_profile,
+    shipped_profiles,
+)
+from fleet_supervisor.plugin.layers.roles import LayerExpressions, LayerSetup, keep_setup
+from fleet_supervisor.plugin.layers.site_transform import SiteGeoreference
+from fleet_supervisor.robot_bridge.core.robotmap.model import ShapeType
+from fleet_supervisor.robot_bridge.core.sites.frame import SiteFrame
 from qgis.core import (
     QgsExpression,
     QgsExpressionContext,
@@ -175,7 +180,7 @@ def read_by_profile(qgis_app):
     def run(file, profile, *names):
         layers = [QgsVectorLayer(f"{file}|layername={name}", name, "ogr") for name in names]
         project.addMapLayers(layers)
-        site = SitePlacing(
+        site = SiteGeoreference(
             layers[0].crs(), SiteFrame("EPSG:32635", (0.0, 0.0)), project.transformContext(), True
         )
         setups = read_profile(find_profile(profile)).setup_over

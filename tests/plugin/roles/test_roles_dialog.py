@@ -6,11 +6,9 @@ import threading
 import time
 
 import pytest
-from fleet_supervisor.plugin.roles.picture import COLOURS, GROUND
-from fleet_supervisor.plugin.roles.preview_view import PreviewView
-from fleet_supervisor.plugin.roles.roles_action import RolesAction
-from fleet_supervisor.plugin.roles.roles_dialog import WIDEST_NAME, RolesDialog
-from fleet_supervisor.plugin.roles.table_model import (
+from fleet_supervisor.plugin.layers.profiles import PROFILES, find_profile
+from fleet_supervisor.plugin.layers.role_editor.preview import COLOURS, GROUND, PreviewView
+from fleet_supervisor.plugin.layers.role_editor.role_table import (
     BASE,
     ESTIMATE,
     FILTER,
@@ -24,8 +22,8 @@ from fleet_supervisor.plugin.roles.table_model import (
     TEMPLATE,
     WIDTH,
 )
-from fleet_supervisor.plugin.sites.profile_file import PROFILES, find_profile
-from fleet_supervisor.plugin.sites.roles import LayerExpressions, LayerSetup, setup_of
+from fleet_supervisor.plugin.layers.role_editor.roles_dialog import WIDEST_NAME, RolesAction, RolesDialog
+from fleet_supervisor.plugin.layers.roles import LayerExpressions, LayerSetup, setup_of
 from qgis.core import QgsApplication, QgsCoordinateReferenceSystem
 from qgis.gui import QgsFieldExpressionWidget, QgsMessageBar
 from qgis.PyQt import sip

@@ -6,7 +6,7 @@ import pyogrio.raw
 import pytest
 import shapely
 
-from robot_bridge.sites.publication import read_site
+from robot_bridge.core.sites.site import read_site
 
 
 @pytest.fixture(scope="module")

@@ -7,7 +7,7 @@ import sys
 import pytest
 from qgis.core import Qgis
 
-from robot_bridge.sites.publication import read_site
+from robot_bridge.core.sites.site import read_site
 
 RANDOM_ELEVATION_COLOURS = 32600
 """from this QGIS on, a project holds symbols for elevation, and QGIS draws their colours by lot."""

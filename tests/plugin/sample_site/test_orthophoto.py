@@ -5,7 +5,7 @@ import pytest
 import shapely
 from osgeo import gdal
 
-from robot_bridge.sites.publication import read_site
+from robot_bridge.core.sites.site import read_site
 
 
 @pytest.fixture

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 import shapely
 
-from robot_bridge.sites.publication import read_site
+from robot_bridge.core.sites.site import read_site
 
 
 @pytest.fixture(scope="module")

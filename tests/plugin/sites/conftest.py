@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import pytest
-from fleet_supervisor.plugin.sites.obstacle_source import obstacle_sources
-from fleet_supervisor.plugin.sites.placing import SitePlacing
-from fleet_supervisor.plugin.sites.reading import read_outlines
-from fleet_supervisor.plugin.sites.roles import LayerExpressions
-from fleet_supervisor.robot_bridge.sites.frame import SiteFrame
+from fleet_supervisor.plugin.layers.layer_source import obstacle_sources
+from fleet_supervisor.plugin.layers.obstacle_layers import read_outlines
+from fleet_supervisor.plugin.layers.roles import LayerExpressions
+from fleet_supervisor.plugin.layers.site_transform import SiteGeoreference
+from fleet_supervisor.robot_bridge.core.sites.frame import SiteFrame
 from qgis.core import (
     QgsCoordinateReferenceSystem,
     QgsCoordinateTransformContext,
@@ -21,7 +21,7 @@ def read(qgis_app):
     """Read layers into a :class:`Reading`; the site frame is EPSG:32633 itself unless told otherwise."""
 
     def run(*layers, crs="EPSG:32633", origin=(0.0, 0.0), rotation=0.0, local=False, feedback=None, **more):
-        site = SitePlacing(
+        site = SiteGeoreference(
             QgsCoordinateReferenceSystem(crs),
             SiteFrame(crs, origin, rotation),
             QgsCoordinateTransformContext(),

@@ -5,16 +5,15 @@ from __future__ import annotations
 import json
 
 import pytest
-from fleet_supervisor.plugin.sites.feature_tags import LONGEST_TEXT, read_tags
-from fleet_supervisor.plugin.sites.ground_reading import read_centrelines
-from fleet_supervisor.plugin.sites.layer_rules import as_metres
-from fleet_supervisor.plugin.sites.obstacle_source import obstacle_sources
-from fleet_supervisor.plugin.sites.placing import SitePlacing
-from fleet_supervisor.plugin.sites.profile_file import find_profile, read_profile
-from fleet_supervisor.plugin.sites.reading import read_outlines
-from fleet_supervisor.plugin.sites.roles import LayerExpressions
-from fleet_supervisor.robot_bridge.roads.centrelines import BACKWARD, BOTH, FORWARD
-from fleet_supervisor.robot_bridge.sites.frame import SiteFrame
+from fleet_supervisor.plugin.layers.layer_expressions import LONGEST_TEXT, as_metres, read_tags
+from fleet_supervisor.plugin.layers.layer_source import obstacle_sources
+from fleet_supervisor.plugin.layers.obstacle_layers import read_outlines
+from fleet_supervisor.plugin.layers.profiles import find_profile, read_profile
+from fleet_supervisor.plugin.layers.road_layers import read_centrelines
+from fleet_supervisor.plugin.layers.roles import LayerExpressions
+from fleet_supervisor.plugin.layers.site_transform import SiteGeoreference
+from fleet_supervisor.robot_bridge.core.roads.centrelines import BACKWARD, BOTH, FORWARD
+from fleet_supervisor.robot_bridge.core.sites.frame import SiteFrame
 from osgeo import gdal
 from qgis.core import (
     QgsCoordinateReferenceSystem,
@@ -92,7 +91,7 @@ def sources(layer):
 @pytest.fixture
 def site():
     crs = QgsCoordinateReferenceSystem("EPSG:32633")
-    return SitePlacing(
+    return SiteGeoreference(
         crs, SiteFrame("EPSG:32633", (0.0, 0.0)), QgsProject.instance().transformContext(), False
     )
 

@@ -3,18 +3,18 @@
 from __future__ import annotations
 
 import pytest
-from fleet_supervisor.plugin.sites.errors import ExpressionError
-from fleet_supervisor.plugin.sites.ground_reading import check_ground_sources, read_areas, read_centrelines
-from fleet_supervisor.plugin.sites.obstacle_source import obstacle_sources
-from fleet_supervisor.plugin.sites.placing import SitePlacing
-from fleet_supervisor.plugin.sites.roles import (
+from fleet_supervisor.plugin.layers.errors import ExpressionError
+from fleet_supervisor.plugin.layers.layer_source import obstacle_sources
+from fleet_supervisor.plugin.layers.road_layers import check_ground_sources, read_areas, read_centrelines
+from fleet_supervisor.plugin.layers.roles import (
     KEEPOUT,
     ROAD_CENTRELINE,
     ROAD_SURFACE,
     LayerExpressions,
     set_expressions,
 )
-from fleet_supervisor.robot_bridge.sites.frame import SiteFrame
+from fleet_supervisor.plugin.layers.site_transform import SiteGeoreference
+from fleet_supervisor.robot_bridge.core.sites.frame import SiteFrame
 from qgis.core import (
     NULL,
     QgsCoordinateReferenceSystem,
@@ -49,7 +49,7 @@ SITE = ("EPSG:32633", (0.0, 0.0))
 
 def placing():
     crs = QgsCoordinateReferenceSystem(SITE[0])
-    return SitePlacing(crs, SiteFrame(*SITE), QgsCoordinateTransformContext())
+    return SiteGeoreference(crs, SiteFrame(*SITE), QgsCoordinateTransformContext())
 
 
 def test_only_features_that_the_filter_is_true_of_are_read(filtered, read):

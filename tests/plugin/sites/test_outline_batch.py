@@ -4,15 +4,15 @@ import random
 
 import numpy as np
 import pytest
-from fleet_supervisor.plugin.sites import outline_batch
-from fleet_supervisor.plugin.sites.feature_values import Values
-from fleet_supervisor.plugin.sites.feature_warnings import FeatureWarnings
-from fleet_supervisor.plugin.sites.outline_batch import OutlineBatch, ReadFeature
-from fleet_supervisor.plugin.sites.placing import LayerPlacing
-from fleet_supervisor.plugin.sites.roles import LayerExpressions, set_expressions, set_role
-from fleet_supervisor.plugin.sites.wkb import line_wkb, multi_line_wkb, polygon_wkb, rings_of
-from fleet_supervisor.robot_bridge.robotmap.outlines import Outlines
-from fleet_supervisor.robot_bridge.sites.frame import SiteFrame
+from fleet_supervisor.plugin.layers import obstacle_layers
+from fleet_supervisor.plugin.layers.errors import FeatureWarnings
+from fleet_supervisor.plugin.layers.geometry import line_wkb, multi_line_wkb, polygon_wkb, rings_of
+from fleet_supervisor.plugin.layers.layer_expressions import ObstacleValues
+from fleet_supervisor.plugin.layers.obstacle_layers import OutlineBatch, ReadFeature
+from fleet_supervisor.plugin.layers.roles import LayerExpressions, set_expressions, set_role
+from fleet_supervisor.plugin.layers.site_transform import LayerToSiteTransform
+from fleet_supervisor.robot_bridge.core.robotmap.outlines import Outlines
+from fleet_supervisor.robot_bridge.core.sites.frame import SiteFrame
 from qgis.core import QgsGeometry
 
 SOUND = (
@@ -41,14 +41,16 @@ def outlines(qgis_app):
 
     def run(shapes, heights, plain, rotation=0.0):
         warnings = FeatureWarnings()
-        batch = OutlineBatch("all", "", LayerPlacing(None, SiteFrame("", (3.0, 4.0), rotation)), warnings)
+        batch = OutlineBatch(
+            "all", "", LayerToSiteTransform(None, SiteFrame("", (3.0, 4.0), rotation)), warnings
+        )
         features = [
             ReadFeature(
                 number,
                 geometry,
                 rings_of(geometry.asWkb().data()) if plain else None,
                 None,
-                Values(height, height == 3.0, height == 3.0, 0.0, f"label {height}", True, []),
+                ObstacleValues(height, height == 3.0, height == 3.0, 0.0, f"label {height}", True, []),
             )
             for number, (shape, height) in enumerate(zip(shapes, heights, strict=True))
             for geometry in [QgsGeometry.fromWkt(shape)]
@@ -74,7 +76,7 @@ def test_features_read_by_their_bytes_are_those_that_qgis_takes_apart(outlines, 
 
 @pytest.mark.parametrize("shape", SOUND)
 def test_what_is_sound_is_not_taken_apart(outlines, monkeypatch, shape):
-    monkeypatch.setattr(outline_batch, "shapes_of", None)
+    monkeypatch.setattr(obstacle_layers, "shapes_of", None)
     made, said = outlines([shape], [2.0], plain=True)
     assert len(made) and said == ["feature "]
 

@@ -7,9 +7,9 @@ import math
 import numpy as np
 import pyproj
 import pytest
-from fleet_supervisor.plugin.sites.errors import LayerCrsError
-from fleet_supervisor.plugin.sites.placing import SitePlacing
-from fleet_supervisor.robot_bridge.sites.frame import SiteFrame
+from fleet_supervisor.plugin.layers.errors import LayerCrsError
+from fleet_supervisor.plugin.layers.site_transform import SiteGeoreference
+from fleet_supervisor.robot_bridge.core.sites.frame import SiteFrame
 from osgeo import ogr
 from qgis.core import QgsCoordinateReferenceSystem, QgsCoordinateTransformContext, QgsVectorLayer
 
@@ -51,7 +51,7 @@ def test_a_geopackage_that_only_says_that_it_has_no_crs_is_placed_nowhere(qgis_a
     source = None
     crs = QgsVectorLayer(f"{file}|layername=roads", "roads", "ogr").crs()
     site = QgsCoordinateReferenceSystem("EPSG:32633")
-    placing = SitePlacing(site, SiteFrame("EPSG:32633", ORIGIN), QgsCoordinateTransformContext())
+    placing = SiteGeoreference(site, SiteFrame("EPSG:32633", ORIGIN), QgsCoordinateTransformContext())
     with pytest.raises(LayerCrsError, match="The layer roads has no CRS"):
         placing.of_layer("roads", crs)
 
@@ -61,7 +61,7 @@ def test_a_geopackage_that_only_says_that_it_has_no_crs_is_placed_nowhere(qgis_a
 )
 def test_where_nobody_is_asked_whether_a_layer_is_local_no_such_choice_is_advised(qgis_app, crs, why):
     site = QgsCoordinateReferenceSystem("EPSG:32633")
-    placing = SitePlacing(site, SiteFrame("EPSG:32633", ORIGIN), QgsCoordinateTransformContext())
+    placing = SiteGeoreference(site, SiteFrame("EPSG:32633", ORIGIN), QgsCoordinateTransformContext())
     with pytest.raises(LayerCrsError, match=f"The layer scan {why}") as error:
         placing.of_layer("scan", QgsCoordinateReferenceSystem.fromWkt(crs))
     assert "LOCAL" not in str(error.value)
@@ -79,7 +79,7 @@ def test_the_window_in_the_layers_crs_holds_the_window_on_the_site(qgis_app):
     crs = QgsCoordinateReferenceSystem("EPSG:32633")
     frame = SiteFrame("EPSG:32633", ORIGIN, 0.3)
     degrees = QgsCoordinateReferenceSystem("EPSG:4326")
-    placing = SitePlacing(crs, frame, QgsCoordinateTransformContext()).of_layer("any", degrees)
+    placing = SiteGeoreference(crs, frame, QgsCoordinateTransformContext()).of_layer("any", degrees)
     area = placing.area_of((-50, -20, 80, 90))
     to_degrees = pyproj.Transformer.from_crs("EPSG:32633", "EPSG:4326", always_xy=True)
     for x, y in np.random.default_rng(3).uniform((-50, -20), (80, 90), (200, 2)):

@@ -5,10 +5,10 @@ from __future__ import annotations
 import math
 
 import pytest
-from fleet_supervisor.plugin.sites.errors import LayerCrsError, LayerReadingError
-from fleet_supervisor.plugin.sites.placing import SitePlacing
-from fleet_supervisor.plugin.sites.point_rows import point_rows
-from fleet_supervisor.robot_bridge.sites.frame import SiteFrame
+from fleet_supervisor.plugin.layers.errors import LayerCrsError, LayerReadingError
+from fleet_supervisor.plugin.layers.layer_source import point_rows
+from fleet_supervisor.plugin.layers.site_transform import SiteGeoreference
+from fleet_supervisor.robot_bridge.core.sites.frame import SiteFrame
 from qgis.core import QgsCoordinateReferenceSystem, QgsCoordinateTransformContext
 
 UTM = "EPSG:32633"
@@ -20,7 +20,7 @@ def rows(make_layer):
     """Return the points of a layer; the site's origin is 100 m east and 200 m north in its CRS."""
 
     def read(*features, kind="Point", crs=UTM):
-        site = SitePlacing(
+        site = SiteGeoreference(
             QgsCoordinateReferenceSystem(UTM),
             SiteFrame(UTM, (500100.0, 5200200.0)),
             QgsCoordinateTransformContext(),

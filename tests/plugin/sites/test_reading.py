@@ -6,9 +6,9 @@ import math
 
 import pytest
 import shapely
-from fleet_supervisor.plugin.sites.errors import ExpressionError, LayerTypeError
-from fleet_supervisor.plugin.sites.missing_geometry import subset_without_geometry
-from fleet_supervisor.plugin.sites.roles import (
+from fleet_supervisor.plugin.layers.errors import ExpressionError, LayerTypeError
+from fleet_supervisor.plugin.layers.layer_source import subset_without_geometry
+from fleet_supervisor.plugin.layers.roles import (
     KEEPOUT,
     RAMP,
     STAIRS,
@@ -16,7 +16,7 @@ from fleet_supervisor.plugin.sites.roles import (
     set_expressions,
     set_role,
 )
-from fleet_supervisor.robot_bridge.robotmap.model import ShapeType
+from fleet_supervisor.robot_bridge.core.robotmap.model import ShapeType
 from qgis.core import (
     NULL,
     QgsCoordinateTransformContext,

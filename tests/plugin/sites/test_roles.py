@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from fleet_supervisor.plugin.sites.roles import (
+from fleet_supervisor.plugin.layers.roles import (
     EXPRESSIONS,
     OBSTACLE,
     STAIRS,

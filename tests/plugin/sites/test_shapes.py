@@ -7,9 +7,9 @@ import math
 import numpy as np
 import pytest
 import shapely
-from fleet_supervisor.plugin.sites.roles import RAMP, STAIRS
-from fleet_supervisor.plugin.sites.shapes import NO_PLACE, SAGITTA_M, shapes_of
-from fleet_supervisor.robot_bridge.robotmap.model import ShapeType
+from fleet_supervisor.plugin.layers.geometry import NO_PLACE, SAGITTA_M, shapes_of
+from fleet_supervisor.plugin.layers.roles import RAMP, STAIRS
+from fleet_supervisor.robot_bridge.core.robotmap.model import ShapeType
 from qgis.core import QgsGeometry, QgsPointXY
 
 SQUARE = "(0 0, 10 0, 10 10, 0 10, 0 0)"

@@ -7,7 +7,7 @@ import time
 import pytest
 from stage.patience import BUSY
 
-from robot_bridge.store.database import Database
+from robot_bridge.gateway.storage.database import Database
 
 
 @pytest.fixture(params=["sqlite", "postgresql", "mariadb"])

@@ -6,20 +6,18 @@ import asyncio
 
 import pytest
 
-from robot_bridge.access import accounts, audit, session_rows
-from robot_bridge.access.account_book import AccountBook
-from robot_bridge.access.audit import Entry
-from robot_bridge.access.errors import AccessError
-from robot_bridge.access.journal import Journal
-from robot_bridge.access.session_rows import SessionRow
-from robot_bridge.access.tokens import TokenKind, digest
-from robot_bridge.errors import StoreError
-from robot_bridge.messages import MessageError, Role
-from robot_bridge.store.schema import metadata
+from robot_bridge.core.errors import StoreError
+from robot_bridge.core.messages import MessageError, Role
+from robot_bridge.gateway.auth import accounts, audit
+from robot_bridge.gateway.auth import audit as session_rows
+from robot_bridge.gateway.auth.accounts import AccountCache, TokenKind, digest
+from robot_bridge.gateway.auth.audit import AuditEntry, AuditJournal, SessionRow
+from robot_bridge.gateway.storage.schema import metadata
+from robot_bridge.protocol.credentials import AccessError
 
 
 async def test_a_token_opens_until_it_is_revoked_or_expires(database):
-    book = AccountBook(database)
+    book = AccountCache(database)
     token = await database.run(accounts.add_operator, "Ada", Role.SUPERVISOR, 100.0, 200.0)
     assert await book.refresh()
     grant = book.find(token)
@@ -46,7 +44,7 @@ async def test_only_a_tokens_hash_is_in_the_database(database):
 
 
 async def test_a_new_token_takes_the_place_of_the_old(database):
-    book = AccountBook(database)
+    book = AccountCache(database)
     old = await database.run(accounts.add_operator, "Ada", Role.VIEWER, 100.0)
     new = await database.run(accounts.rotate_operator, "Ada", 101.0)
     robots = [await database.run(accounts.issue_robot_token, "r1", 100.0 + n) for n in range(2)]
@@ -60,7 +58,7 @@ async def test_a_new_token_takes_the_place_of_the_old(database):
 
 
 async def test_what_changed_is_noticed_and_nothing_else(database):
-    book = AccountBook(database)
+    book = AccountCache(database)
     assert await book.refresh()
     assert not await book.refresh()
     changes = [
@@ -78,7 +76,7 @@ async def test_what_changed_is_noticed_and_nothing_else(database):
 
 
 async def test_doors_that_were_closed_once_stay_closed(database):
-    book = AccountBook(database)
+    book = AccountCache(database)
     await book.refresh()
     assert book.is_open(TokenKind.OPERATOR)
     await database.run(accounts.add_operator, "Ada", Role.SUPERVISOR, 100.0)
@@ -128,11 +126,11 @@ async def test_a_robots_name_is_checked(database):
 
 
 async def written(database, **filters):
-    return await database.run(lambda c: audit.newest(c, 1000, **filters))
+    return await database.run(lambda c: audit.newest_entries(c, 1000, **filters))
 
 
 async def test_what_is_noted_is_written_in_order_and_found_again(database, clock):
-    journal = Journal(database, clock)
+    journal = AuditJournal(database, clock)
     for number in range(5):
         clock.now += 1
         journal.note("Ada" if number % 2 else "Bob", f"step {number}", done=number != 3)
@@ -146,8 +144,8 @@ async def test_what_is_noted_is_written_in_order_and_found_again(database, clock
 
 
 async def test_what_is_too_long_or_no_text_is_cut_and_not_lost(database):
-    entry = Entry(1.0, "x" * 500, "y" * 99, True, detail="z" * 10_000, subject="\ud800\0")
-    await database.run(audit.add, [entry])
+    entry = AuditEntry(1.0, "x" * 500, "y" * 99, True, detail="z" * 10_000, subject="\ud800\0")
+    await database.run(audit.add_entries, [entry])
     (found,) = await written(database)
     assert (len(found.who), len(found.action), len(found.detail)) == (128, 32, 2000)
     assert found.subject == "?�"
@@ -166,9 +164,9 @@ class Outage:
 
 
 async def test_what_is_noted_while_the_database_is_away_is_written_later(database, clock, monkeypatch):
-    monkeypatch.setattr("robot_bridge.access.journal.RETRY_AFTER", 0.01)
+    monkeypatch.setattr("robot_bridge.gateway.auth.audit.RETRY_AFTER", 0.01)
     outage = Outage(database)
-    journal = Journal(outage, clock)
+    journal = AuditJournal(outage, clock)
     running = asyncio.create_task(journal.run())
     outage.away = True
     journal.note("Ada", "first")
@@ -185,8 +183,8 @@ async def test_what_is_noted_while_the_database_is_away_is_written_later(databas
 async def test_a_long_outage_costs_no_memory_and_the_oldest_are_counted_as_lost(
     database, monkeypatch, caplog
 ):
-    monkeypatch.setattr("robot_bridge.access.journal.LARGEST_BACKLOG", 10)
-    journal = Journal(database)
+    monkeypatch.setattr("robot_bridge.gateway.auth.audit.LARGEST_BACKLOG", 10)
+    journal = AuditJournal(database)
     for number in range(25):
         journal.note("Ada", str(number))
     await journal.flush()
@@ -195,7 +193,7 @@ async def test_a_long_outage_costs_no_memory_and_the_oldest_are_counted_as_lost(
 
 
 async def test_one_piece_that_the_database_refuses_keeps_none_of_the_others_back(database, caplog):
-    journal = Journal(database)
+    journal = AuditJournal(database)
     session = SessionRow("id", "Ada", None, "viewer", "here", 1.0)
     journal.note("Ada", "before")
     journal.began(session)
@@ -216,7 +214,7 @@ async def test_one_piece_that_the_database_refuses_keeps_none_of_the_others_back
 async def test_on_a_full_disk_nothing_is_given_up(database, clock, caplog):
     """It can be read, and takes transactions that write nothing."""
     full = FullDisk(database)
-    journal = Journal(full, clock)
+    journal = AuditJournal(full, clock)
     for number in range(3):
         journal.note("Ada", str(number))
     for _ in range(5):
@@ -242,7 +240,7 @@ class FullDisk:
 
 async def test_a_piece_that_failed_while_the_database_came_back_is_written(database, clock, caplog):
     outage = Outage(database)
-    journal = Journal(outage, clock)
+    journal = AuditJournal(outage, clock)
     journal.note("Ada", "sent")
     real, outage.run = outage.run, _failing_once(outage)
     await journal.flush()
@@ -264,31 +262,31 @@ def _failing_once(outage):
 
 async def test_an_ended_session_is_found_beside_one_that_is_only_taken_for_open(database):
     for id in ("aa11", "bb22"):
-        await database.run(session_rows.begin, SessionRow(id, "Ada", None, "viewer", "here", 1.0))
-    await database.run(session_rows.end, "aa", 2.0, "why")
+        await database.run(session_rows.begin_session, SessionRow(id, "Ada", None, "viewer", "here", 1.0))
+    await database.run(session_rows.end_session, "aa", 2.0, "why")
     # The gateway does not hold bb22 open any more, whose end could not be written.
-    assert await database.run(session_rows.ended_among, ["aa11"]) == {"aa11": "why"}
-    assert await database.run(session_rows.ended_among, []) == {}
+    assert await database.run(session_rows.ended_sessions, ["aa11"]) == {"aa11": "why"}
+    assert await database.run(session_rows.ended_sessions, []) == {}
 
 
 async def test_a_session_can_be_ended_by_how_its_id_begins(database):
     for id in ("aa11", "aa22", "bb33"):
-        await database.run(session_rows.begin, SessionRow(id, "Ada", None, "viewer", "here", 1.0))
+        await database.run(session_rows.begin_session, SessionRow(id, "Ada", None, "viewer", "here", 1.0))
     for id in ("aa", "", "cc", "%"):
         with pytest.raises(AccessError, match="sessions list"):
-            await database.run(session_rows.end, id, 2.0, "why")
-    await database.run(session_rows.end, "bb", 2.0, "why")
-    assert await database.run(session_rows.ended_among, ["aa11", "aa22", "bb33"]) == {"bb33": "why"}
+            await database.run(session_rows.end_session, id, 2.0, "why")
+    await database.run(session_rows.end_session, "bb", 2.0, "why")
+    assert await database.run(session_rows.ended_sessions, ["aa11", "aa22", "bb33"]) == {"bb33": "why"}
     with pytest.raises(AccessError):
-        await database.run(session_rows.end, "bb33", 3.0, "again")
-    left = await database.run(lambda c: session_rows.listed(c, everything=False, limit=9))
+        await database.run(session_rows.end_session, "bb33", 3.0, "again")
+    left = await database.run(lambda c: session_rows.list_sessions(c, everything=False, limit=9))
     assert [session.id for session in left] == ["aa11", "aa22"]
 
 
 async def test_what_an_earlier_gateway_left_open_is_ended_and_old_ones_are_forgotten(database):
-    await database.run(session_rows.begin, SessionRow("aa", "Ada", None, "viewer", "here", 1.0))
-    await database.run(session_rows.end_all, 5.0, "the gateway ended")
-    (session,) = await database.run(lambda c: session_rows.listed(c, everything=True, limit=9))
+    await database.run(session_rows.begin_session, SessionRow("aa", "Ada", None, "viewer", "here", 1.0))
+    await database.run(session_rows.end_all_sessions, 5.0, "the gateway ended")
+    (session,) = await database.run(lambda c: session_rows.list_sessions(c, everything=True, limit=9))
     assert (session.ended_at, session.reason) == (5.0, "the gateway ended")
-    await database.run(session_rows.forget_ended, 6.0, 9)
-    assert await database.run(lambda c: session_rows.listed(c, everything=True, limit=9)) == []
+    await database.run(session_rows.forget_ended_sessions, 6.0, 9)
+    assert await database.run(lambda c: session_rows.list_sessions(c, everything=True, limit=9)) == []

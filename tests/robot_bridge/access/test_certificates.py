@@ -10,9 +10,9 @@ import subprocess
 
 import pytest
 
-from robot_bridge.access import certificates, tls
-from robot_bridge.access.errors import AccessError
-from robot_bridge.access.tls import ServerFiles, ServerTls, server_files
+from robot_bridge.gateway.auth import certificates, tls
+from robot_bridge.gateway.auth.tls import ServerFiles, ServerTls, server_files
+from robot_bridge.protocol.credentials import AccessError
 
 
 @pytest.fixture

@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from websockets.frames import Frame, Opcode
 
-from robot_bridge.access.frame_edges import LONGEST, FrameEdges, short_text
+from robot_bridge.gateway.auth.connection import LONGEST, FrameParser, short_text
 
 payloads = st.one_of(st.binary(max_size=200), st.integers(0, 70_000).map(lambda size: b"a" * size))
 frames = st.builds(
@@ -26,7 +26,7 @@ def test_the_edge_after_every_frame_is_found_however_the_stream_is_cut(sent, dat
     stream = b"".join(sent)
     ends = {0, *itertools.accumulate(len(frame) for frame in sent)}
     cuts = data.draw(st.lists(st.integers(0, len(stream)), max_size=20))
-    edges, at = FrameEdges(), 0
+    edges, at = FrameParser(), 0
     for cut in [*sorted(cuts), *range(max(0, len(stream) - 20), len(stream) + 1)]:
         if cut >= at:
             edges.pass_over(stream[at:cut])

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from robot_bridge.access.hosts import host_fault
+from robot_bridge.gateway.auth.port import host_fault
 
 OURS = ("fleet.example.org", "*.site.example")
 

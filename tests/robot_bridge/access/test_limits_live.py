@@ -15,7 +15,7 @@ from bridge_wires import RefusedError
 from websockets.exceptions import ConnectionClosed
 from websockets.sync.client import connect
 
-from robot_bridge.jsonrpc import TOO_MANY
+from robot_bridge.protocol.jsonrpc import TOO_MANY
 
 LIMITS = """
 [limits]

@@ -18,8 +18,8 @@ from bridge_wires import Desk
 from stage.patience import START
 from stage.processes import Processes
 
-from robot_bridge.messages import Role
-from robot_bridge.sites.limit_settings import LimitSettings
+from robot_bridge.core.messages import Role
+from robot_bridge.core.sites.settings_tables import LimitSettings
 
 ROOT = Path(__file__).resolve().parents[3]
 PAGE = (ROOT / "docs" / "operation.md").read_text(encoding="utf-8")

@@ -7,8 +7,8 @@ import uuid
 import pytest
 from bridge_wires import RefusedError
 
-from robot_bridge.jsonrpc import FORBIDDEN
-from robot_bridge.messages import DESK_REQUESTS
+from robot_bridge.core.messages import DESK_REQUESTS
+from robot_bridge.protocol.jsonrpc import FORBIDDEN
 
 VIEWER, OPERATOR, SUPERVISOR = "viewer", "operator", "supervisor"
 ROLES = [VIEWER, OPERATOR, SUPERVISOR]

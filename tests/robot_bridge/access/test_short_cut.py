@@ -5,8 +5,7 @@ from __future__ import annotations
 import pytest
 from websockets.frames import Frame, Opcode
 
-from robot_bridge.access.buckets import Bucket
-from robot_bridge.access.short_cut import ShortCut
+from robot_bridge.gateway.auth.connection import FastPath, RateLimit
 
 REQUEST = b"GET /robot HTTP/1.1\r\nHost: x\r\n\r\n"
 
@@ -32,7 +31,7 @@ def taken():
 
 @pytest.fixture
 def short_cut(taken):
-    way = ShortCut()
+    way = FastPath()
     way.handler = taken
     way.begin(REQUEST)
     return way
@@ -40,7 +39,7 @@ def short_cut(taken):
 
 @pytest.fixture
 def plenty():
-    return Bucket(1000.0, 1000.0)
+    return RateLimit(1000.0, 1000.0)
 
 
 def test_short_messages_are_taken_up_to_the_first_that_is_not(short_cut, taken, plenty):
@@ -68,21 +67,21 @@ def test_nothing_is_taken_out_of_the_middle_of_a_frame(short_cut, taken, plenty)
 
 
 def test_frames_behind_the_request_leave_no_short_cut(taken, plenty):
-    way = ShortCut()
+    way = FastPath()
     way.handler = taken
     way.begin(REQUEST + text("a message whose edges nobody followed")[:9])
     assert way.take(text("p1"), plenty) == 0
 
 
 def test_every_message_counts_once(short_cut, taken):
-    bucket = Bucket(1e-9, 3.0)
+    bucket = RateLimit(1e-9, 3.0)
     data = text("p1") + text("other")
     assert short_cut.take(data, bucket) == len(text("p1"))
     assert [bucket.take(), bucket.take(), bucket.take()] == [True, True, False]
 
 
 def test_what_is_too_much_is_left_to_be_refused(short_cut, taken):
-    bucket = Bucket(1e-9, 2.0)
+    bucket = RateLimit(1e-9, 2.0)
     data = b"".join(text(f"p{number}") for number in range(5))
     assert len(data) - short_cut.take(data, bucket) == 3 * len(text("p0"))
     assert taken == ["p0", "p1"]

@@ -12,7 +12,7 @@ import pytest
 from bridge_wires import Desk
 from stage.patience import BUSY
 
-from robot_bridge.access import certificates
+from robot_bridge.gateway.auth import certificates
 
 
 @pytest.fixture(scope="module")

@@ -6,11 +6,10 @@ import hashlib
 
 import pytest
 
-from robot_bridge.access.buckets import Bucket
-from robot_bridge.access.credentials import Credentials, read_token
-from robot_bridge.access.errors import AccessError
-from robot_bridge.access.reach import check_reach
-from robot_bridge.access.tokens import TokenKind, bearer, digest, new_token
+from robot_bridge.gateway.auth.accounts import TokenKind, bearer, digest, new_token
+from robot_bridge.gateway.auth.connection import RateLimit
+from robot_bridge.gateway.auth.port import check_reach
+from robot_bridge.protocol.credentials import AccessError, ClientCredentials, read_token
 
 
 def test_no_token_comes_twice_and_each_says_whose_kind_it_is():
@@ -49,7 +48,7 @@ def test_only_a_bearers_token_is_read(header, token):
 
 
 def test_a_bucket_lets_a_burst_through_and_then_its_rate(clock):
-    bucket = Bucket(10.0, 3, clock)
+    bucket = RateLimit(10.0, 3, clock)
     assert [bucket.take() for _ in range(4)] == [True, True, True, False]
     assert bucket.wait() == pytest.approx(0.1)
     clock.now += 0.11
@@ -77,10 +76,10 @@ def test_a_robots_token_does_not_travel_for_everybody_to_read(tmp_path):
     file.write_text("fleet_robot_x\n")
     file.chmod(0o600)
     with pytest.raises(AccessError, match="use wss://"):
-        Credentials(file).options("ws://gateway.example.org/robot")
-    options = Credentials(file).options("ws://127.0.0.1:8765/robot")
+        ClientCredentials(file).options("ws://gateway.example.org/robot")
+    options = ClientCredentials(file).options("ws://127.0.0.1:8765/robot")
     assert options == {"additional_headers": {"Authorization": "Bearer fleet_robot_x"}}
-    assert "ssl" in Credentials(file).options("wss://gateway.example.org/robot")
+    assert "ssl" in ClientCredentials(file).options("wss://gateway.example.org/robot")
 
 
 @pytest.mark.parametrize("content", ["", " \n", "two words", "schlüssel"])

@@ -14,7 +14,7 @@ from bridge_wires import RefusedError, is_refused, is_shut
 from stage.patience import BUSY
 from websockets.sync.client import connect
 
-from robot_bridge.access.tokens import TokenKind, new_token
+from robot_bridge.gateway.auth.accounts import TokenKind, new_token
 
 
 @pytest.fixture(scope="module")

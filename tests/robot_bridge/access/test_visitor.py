@@ -10,9 +10,9 @@ from websockets.asyncio.client import connect
 from websockets.asyncio.server import serve
 from websockets.exceptions import ConnectionClosed
 
-from robot_bridge.access.tokens import TokenKind
-from robot_bridge.access.visitor import Identity, Visitor
-from robot_bridge.sites.limit_settings import LimitSettings
+from robot_bridge.core.sites.settings_tables import LimitSettings
+from robot_bridge.gateway.auth.accounts import TokenKind
+from robot_bridge.gateway.auth.connection import ClientConnection, Identity
 
 
 class OpenDoor:
@@ -63,7 +63,7 @@ async def host():
 
 @pytest.fixture
 async def client(host):
-    options = {"create_connection": partial(Visitor, OpenDoor()), "compression": None}
+    options = {"create_connection": partial(ClientConnection, OpenDoor()), "compression": None}
     async with serve(host.serve, "127.0.0.1", 0, process_request=host.let_in, **options) as server:
         port = server.sockets[0].getsockname()[1]
         async with connect(f"ws://127.0.0.1:{port}", compression=None) as wire:

@@ -8,8 +8,8 @@ import pytest
 from bridge_accounts import bearing
 from websockets.sync.client import connect
 
-from robot_bridge.access.errors import AccessError
-from robot_bridge.access.tokens import TokenKind, chosen_protocol, new_token, token_in
+from robot_bridge.gateway.auth.accounts import TokenKind, chosen_protocol, new_token, token_in
+from robot_bridge.protocol.credentials import AccessError
 
 PAGE = "https://fleet.example.org"
 OTHER = "https://evil.example.org"

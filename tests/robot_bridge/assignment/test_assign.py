@@ -10,12 +10,21 @@ import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
-from robot_bridge.assignment.checks import check_plan
-from robot_bridge.assignment.errors import CancelledError, JobError, MissingSolverError, UnservedError
-from robot_bridge.assignment.job import COLLECT, FINISHES, PLACE, STAY, TO_START, Job, Robot, Store, Target
-from robot_bridge.assignment.plan import HOME, STORE, Plan
-from robot_bridge.assignment.solving import PREVIEW, PYVRP, Wanted, assign
-from robot_bridge.assignment.travel import StraightTravel
+from robot_bridge.core.assignment.job import (
+    COLLECT,
+    FINISHES,
+    PLACE,
+    STAY,
+    TO_START,
+    AssignmentJob,
+    ConeTarget,
+    PlanRobot,
+    Store,
+    StraightTravel,
+)
+from robot_bridge.core.assignment.plan import HOME, STORE, ConePlan, check_plan
+from robot_bridge.core.assignment.solver import PREVIEW, PYVRP, Objective, assign
+from robot_bridge.core.errors import AssignmentCancelledError, JobError, MissingSolverError, UnservedError
 
 from .jobs import scattered
 
@@ -27,14 +36,16 @@ def method(request: pytest.FixtureRequest) -> str:
     return request.param
 
 
-def planned(job: Job, objective: str = "balanced", method: str = PREVIEW, seconds: float = 1.0) -> Plan:
+def planned(
+    job: AssignmentJob, objective: str = "balanced", method: str = PREVIEW, seconds: float = 1.0
+) -> ConePlan:
     """Return a plan that the checker finds nothing wrong with."""
-    plan = assign(job, StraightTravel(job), Wanted(objective, method, seconds))
+    plan = assign(job, StraightTravel(job), Objective(objective, method, seconds))
     assert check_plan(plan) == []
     return plan
 
 
-def shortest_by_trying(job: Job) -> float:
+def shortest_by_trying(job: AssignmentJob) -> float:
     """Return the least metres of one robot that begins at the only store, by trying every order."""
     metres = StraightTravel(job).metres
     store, targets = job.first_store, range(job.first_target, len(job.places))
@@ -86,9 +97,9 @@ def test_robots_come_back_to_load(method: str) -> None:
 
 
 def test_times_are_metres_by_speed_and_service() -> None:
-    job = Job(
-        (Target("a", 30.0, 0.0, service_s=7.0), Target("b", 30.0, 40.0, service_s=5.0)),
-        (Robot("R", 0.0, 0.0, 2, speed=2.0, ready_s=100.0),),
+    job = AssignmentJob(
+        (ConeTarget("a", 30.0, 0.0, service_s=7.0), ConeTarget("b", 30.0, 40.0, service_s=5.0)),
+        (PlanRobot("R", 0.0, 0.0, 2, speed=2.0, ready_s=100.0),),
         (Store("s", 0.0, 0.0, service_s=20.0),),
     )
     stops = {stop.id: stop for _, stop in planned(job).all_stops()}
@@ -110,8 +121,8 @@ def test_stages_wait_for_one_another(method: str) -> None:
 
 
 def test_what_was_loaded_for_an_earlier_stage_is_used_in_the_next() -> None:
-    targets = (Target("a", 10.0, 0.0, stage=1), Target("b", 20.0, 0.0, stage=2))
-    job = Job(targets, (Robot("R", 0.0, 0.0, 2),), (Store("s", 0.0, 0.0),))
+    targets = (ConeTarget("a", 10.0, 0.0, stage=1), ConeTarget("b", 20.0, 0.0, stage=2))
+    job = AssignmentJob(targets, (PlanRobot("R", 0.0, 0.0, 2),), (Store("s", 0.0, 0.0),))
     (one,) = planned(job, "distance").robots
     assert [stop.kind for stop in one.stops] == [STORE, PLACE, PLACE, STORE]
 
@@ -126,16 +137,21 @@ def test_collected_cones_are_brought_to_a_store(method: str) -> None:
 
 
 def test_what_is_aboard_is_placed_without_a_store() -> None:
-    job = Job((Target("a", 5.0, 0.0), Target("b", 9.0, 0.0)), (Robot("R", 0.0, 0.0, 4, aboard=2),), (), STAY)
+    job = AssignmentJob(
+        (ConeTarget("a", 5.0, 0.0), ConeTarget("b", 9.0, 0.0)),
+        (PlanRobot("R", 0.0, 0.0, 4, aboard=2),),
+        (),
+        STAY,
+    )
     (one,) = planned(job).robots
     assert [stop.id for stop in one.stops] == ["a", "b"]
 
 
 def test_robots_go_where_they_are_to_end() -> None:
-    robot = Robot("R", 0.0, 0.0, 4)
+    robot = PlanRobot("R", 0.0, 0.0, 4)
     ends = {}
     for finish in FINISHES:
-        job = Job((Target("a", 50.0, 0.0),), (robot,), (Store("s", 20.0, 0.0),), finish)
+        job = AssignmentJob((ConeTarget("a", 50.0, 0.0),), (robot,), (Store("s", 20.0, 0.0),), finish)
         stop = planned(job).robots[0].stops[-1]
         ends[finish] = stop.kind, stop.x
     assert ends == {"store": (STORE, 20.0), TO_START: (HOME, 0.0), STAY: (PLACE, 50.0)}
@@ -151,14 +167,14 @@ def test_a_battery_is_not_driven_empty(method: str) -> None:
 
 def test_a_cone_beyond_every_battery_is_named() -> None:
     job = scattered(5, robots=2)
-    far = Target("far", 1000.0, 0.0)
+    far = ConeTarget("far", 1000.0, 0.0)
     robots = tuple(replace(robot, range_m=800.0) for robot in job.robots)
     with pytest.raises(UnservedError, match=r"battery for cone far|battery for far") as refused:
         assign(replace(job, targets=(*job.targets, far), robots=robots), StraightTravel(_with(job, far)))
     assert refused.value.targets == ("far",)
 
 
-def _with(job: Job, target: Target) -> Job:
+def _with(job: AssignmentJob, target: ConeTarget) -> AssignmentJob:
     return replace(job, targets=(*job.targets, target))
 
 
@@ -175,7 +191,7 @@ def test_a_cone_that_no_way_leads_to_is_named() -> None:
     travel = StraightTravel(job)
     travel.metres[:, job.place_of["cone-3"]] = math.inf
     with pytest.raises(UnservedError, match="no way leads from any robot to cone-3") as refused:
-        assign(job, travel, Wanted(method=PREVIEW))
+        assign(job, travel, Objective(method=PREVIEW))
     assert refused.value.targets == ("cone-3",)
 
 
@@ -187,7 +203,7 @@ def test_one_way_roads_are_driven_their_way(method: str) -> None:
     for a in range(begin, n):
         for b in range(begin, n):
             travel.metres[a, b] = 1.0 if b == a + 1 else 500.0
-    plan = assign(job, travel, Wanted("distance", method, 1.0))
+    plan = assign(job, travel, Objective("distance", method, 1.0))
     assert plan.robots[0].trips[0].targets == tuple(target.id for target in job.targets)
 
 
@@ -199,8 +215,8 @@ def test_a_cancel_ends_it(method: str) -> None:
         return len(told) < 5
 
     job = scattered(30)
-    with pytest.raises(CancelledError):
-        assign(job, StraightTravel(job), Wanted("distance", method, 60.0), progress)
+    with pytest.raises(AssignmentCancelledError):
+        assign(job, StraightTravel(job), Objective("distance", method, 60.0), progress)
     assert told == sorted(told)
     assert len(told) == 5
 
@@ -211,8 +227,8 @@ def test_without_pyvrp_it_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "pyvrp", None)
     job = scattered(3)
     with pytest.raises(MissingSolverError, match="pip install"):
-        assign(job, StraightTravel(job), Wanted(method=PYVRP))
-    assert assign(job, StraightTravel(job), Wanted(method="automatic")).method == PREVIEW
+        assign(job, StraightTravel(job), Objective(method=PYVRP))
+    assert assign(job, StraightTravel(job), Objective(method="automatic")).method == PREVIEW
 
 
 @pytest.mark.parametrize(
@@ -221,13 +237,19 @@ def test_without_pyvrp_it_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
         ({"robots": ()}, "no robot"),
         ({"stores": ()}, "no store"),
         ({"finish": "moon"}, "'moon'"),
-        ({"targets": (Target("a", 0, 0), Target("a", 1, 1))}, "more than one cone has the id a"),
-        ({"targets": (Target("a", math.nan, 0),)}, "x of cone a is nan"),
-        ({"targets": (Target("a", 0, 0, demand=9),)}, "cone a takes room 9, and no robot has more than 4"),
-        ({"targets": (Target("a", 0, 0, kind="eat"),)}, "cone a is to be 'eat'"),
-        ({"robots": (Robot("R", 0, 0, 0),)}, "capacity of robot R is 0"),
-        ({"robots": (Robot("R", 0, 0, 2, aboard=2, collected=1),)}, "robot R carries 3 and has room for 2"),
-        ({"robots": (Robot("R", 0, 0, 2, range_m=-1),)}, "range of -1 m"),
+        ({"targets": (ConeTarget("a", 0, 0), ConeTarget("a", 1, 1))}, "more than one cone has the id a"),
+        ({"targets": (ConeTarget("a", math.nan, 0),)}, "x of cone a is nan"),
+        (
+            {"targets": (ConeTarget("a", 0, 0, demand=9),)},
+            "cone a takes room 9, and no robot has more than 4",
+        ),
+        ({"targets": (ConeTarget("a", 0, 0, kind="eat"),)}, "cone a is to be 'eat'"),
+        ({"robots": (PlanRobot("R", 0, 0, 0),)}, "capacity of robot R is 0"),
+        (
+            {"robots": (PlanRobot("R", 0, 0, 2, aboard=2, collected=1),)},
+            "robot R carries 3 and has room for 2",
+        ),
+        ({"robots": (PlanRobot("R", 0, 0, 2, range_m=-1),)}, "range of -1 m"),
     ],
 )
 def test_bad_jobs_are_refused_by_name(change: dict, told: str) -> None:
@@ -236,11 +258,11 @@ def test_bad_jobs_are_refused_by_name(change: dict, told: str) -> None:
 
 
 @st.composite
-def jobs(draw: st.DrawFn) -> Job:
+def jobs(draw: st.DrawFn) -> AssignmentJob:
     """Draw jobs of all kinds at once, with enough battery."""
     number = st.floats(0, 200).map(lambda value: round(value, 1))
     targets = tuple(
-        Target(
+        ConeTarget(
             f"c{k}", draw(number), draw(number), 0.0, draw(st.integers(0, 2)),
             draw(st.sampled_from([PLACE, COLLECT])), draw(st.integers(1, 2)), draw(st.floats(0, 30)),
         )
@@ -253,21 +275,25 @@ def jobs(draw: st.DrawFn) -> Job:
         collected = draw(st.integers(0, room - aboard))
         speed, ready = draw(st.sampled_from([0.5, 1.0, 2.0])), draw(st.floats(0, 60))
         robots.append(
-            Robot(f"R{k}", draw(number), draw(number), room, speed, 20_000.0, aboard, collected, ready)
+            PlanRobot(f"R{k}", draw(number), draw(number), room, speed, 20_000.0, aboard, collected, ready)
         )
     stores = tuple(Store(f"s{k}", draw(number), draw(number)) for k in range(draw(st.integers(1, 2))))
-    return Job(targets, tuple(robots), stores, draw(st.sampled_from(FINISHES)))
+    return AssignmentJob(targets, tuple(robots), stores, draw(st.sampled_from(FINISHES)))
 
 
 @settings(max_examples=60, deadline=None)
 @given(job=jobs(), objective=st.sampled_from(["balanced", "distance"]))
-def test_whatever_the_job_the_checker_finds_nothing(job: Job, objective: str) -> None:
+def test_whatever_the_job_the_checker_finds_nothing(job: AssignmentJob, objective: str) -> None:
     planned(job, objective, seconds=0.3)
 
 
-COLLECTED_ON_THE_WAY = Job(
-    (Target("c0", 0, 0, stage=1), *(Target(f"c{k}", 0, 0) for k in (1, 2)), Target("c3", 0, 0, kind=COLLECT)),
-    (Robot("R0", 0, 0, 3, 0.5, 20_000.0, aboard=3),),
+COLLECTED_ON_THE_WAY = AssignmentJob(
+    (
+        ConeTarget("c0", 0, 0, stage=1),
+        *(ConeTarget(f"c{k}", 0, 0) for k in (1, 2)),
+        ConeTarget("c3", 0, 0, kind=COLLECT),
+    ),
+    (PlanRobot("R0", 0, 0, 3, 0.5, 20_000.0, aboard=3),),
     (Store("s0", 0, 0),),
     "store",
 )
@@ -277,7 +303,7 @@ COLLECTED_ON_THE_WAY = Job(
 @example(job=COLLECTED_ON_THE_WAY)
 @settings(max_examples=8, deadline=None)
 @given(job=jobs())
-def test_whatever_the_job_pyvrp_keeps_to_it(job: Job) -> None:
+def test_whatever_the_job_pyvrp_keeps_to_it(job: AssignmentJob) -> None:
     pytest.importorskip("pyvrp")
     planned(job, "balanced", PYVRP, seconds=0.3)
 
@@ -287,14 +313,14 @@ def test_a_public_instance_is_solved_to_its_optimum() -> None:
     from benchmarks import e_n51_k5
 
     x, y = map(float, e_n51_k5.DEPOT)
-    job = Job(
-        tuple(Target(f"c{k}", *row[:2], demand=row[2]) for k, row in enumerate(e_n51_k5.customers(), 1)),
-        (Robot("R", x, y, e_n51_k5.CAPACITY),),
+    job = AssignmentJob(
+        tuple(ConeTarget(f"c{k}", *row[:2], demand=row[2]) for k, row in enumerate(e_n51_k5.customers(), 1)),
+        (PlanRobot("R", x, y, e_n51_k5.CAPACITY),),
         (Store("s", x, y),),
     )
     travel = StraightTravel(job)
     travel.metres = e_n51_k5.rounded(travel.metres)
     # It ends early; the limit is for machines that have much else to do.
-    plan = assign(job, travel, Wanted("distance", PYVRP, 60.0))
+    plan = assign(job, travel, Objective("distance", PYVRP, 60.0))
     assert plan.metres == e_n51_k5.OPTIMUM
-    assert assign(job, travel, Wanted("distance", PREVIEW, 20.0)).metres < 1.12 * e_n51_k5.OPTIMUM
+    assert assign(job, travel, Objective("distance", PREVIEW, 20.0)).metres < 1.12 * e_n51_k5.OPTIMUM

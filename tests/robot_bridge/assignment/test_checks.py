@@ -7,26 +7,26 @@ from dataclasses import replace
 
 import pytest
 
-from robot_bridge.assignment.checks import check_plan
-from robot_bridge.assignment.job import COLLECT, PLACE
-from robot_bridge.assignment.plan import STORE, LeftOut, Plan, Stop
-from robot_bridge.assignment.solving import PREVIEW, Wanted, assign
-from robot_bridge.assignment.travel import StraightTravel
+from robot_bridge.core.assignment.job import COLLECT, PLACE, StraightTravel
+from robot_bridge.core.assignment.plan import STORE, ConePlan, LeftOut, PlanStop, check_plan
+from robot_bridge.core.assignment.solver import PREVIEW, Objective, assign
 
 from .jobs import scattered
 
 
-def good() -> Plan:
+def good() -> ConePlan:
     job = scattered(7, robots=2, capacity=3)
     targets = tuple(
         replace(target, stage=int(k > 4), kind=COLLECT if k == 2 else PLACE)
         for k, target in enumerate(job.targets)
     )
     job = replace(job, targets=targets)
-    return assign(job, StraightTravel(job), Wanted(method=PREVIEW))
+    return assign(job, StraightTravel(job), Objective(method=PREVIEW))
 
 
-def changed(plan: Plan, of: Callable[[Stop], bool], change: Callable[[Stop], Stop | None]) -> Plan:
+def changed(
+    plan: ConePlan, of: Callable[[PlanStop], bool], change: Callable[[PlanStop], PlanStop | None]
+) -> ConePlan:
     """Return ``plan`` with the first stop that is ``of`` a kind changed, or left out for None."""
     for r, one in enumerate(plan.robots):
         for t, trip in enumerate(one.trips):
@@ -40,7 +40,7 @@ def changed(plan: Plan, of: Callable[[Stop], bool], change: Callable[[Stop], Sto
     raise AssertionError("no such stop")
 
 
-def is_kind(kind: str) -> Callable[[Stop], bool]:
+def is_kind(kind: str) -> Callable[[PlanStop], bool]:
     return lambda stop: stop.kind == kind
 
 
@@ -66,7 +66,9 @@ def test_nothing_is_wrong_with_a_good_plan() -> None:
         (PLACE, lambda stop: replace(stop, metres=stop.metres / 2), "are counted"),
     ],
 )
-def test_a_stop_that_is_wrong_is_found(kind: str, change: Callable[[Stop], Stop | None], told: str) -> None:
+def test_a_stop_that_is_wrong_is_found(
+    kind: str, change: Callable[[PlanStop], PlanStop | None], told: str
+) -> None:
     faults = check_plan(changed(good(), is_kind(kind), change))
     assert any(told in fault for fault in faults), faults
 
@@ -110,6 +112,6 @@ def test_a_stage_begun_too_early_is_found() -> None:
 def test_collected_cones_that_stay_aboard_are_found() -> None:
     job = scattered(3, robots=1, capacity=3)
     job = replace(job, targets=tuple(replace(target, kind=COLLECT) for target in job.targets))
-    plan = assign(job, StraightTravel(job), Wanted(method=PREVIEW))
+    plan = assign(job, StraightTravel(job), Objective(method=PREVIEW))
     faults = check_plan(changed(plan, is_kind(STORE), lambda stop: None))
     assert faults == ["Robot R1 ends with 3 collected cones not unloaded."]

@@ -12,14 +12,26 @@ import pytest
 
 pytest.importorskip("pyvrp")
 
-from robot_bridge.assignment.checks import check_plan
-from robot_bridge.assignment.days import Day, Days
-from robot_bridge.assignment.job import STAY, TO_START, TO_STORE, Job, Robot, Store, Target
-from robot_bridge.assignment.loaded_by_pyvrp import loaded_days_by_pyvrp
-from robot_bridge.assignment.pyvrp_search import Clock
-from robot_bridge.assignment.scheduling import BALANCED, LEAST_DISTANCE, Aim
-from robot_bridge.assignment.solving import PREVIEW, PYVRP, Wanted, assign
-from robot_bridge.assignment.travel import StraightTravel
+from robot_bridge.core.assignment.job import (
+    STAY,
+    TO_START,
+    TO_STORE,
+    AssignmentJob,
+    ConeTarget,
+    PlanRobot,
+    Store,
+    StraightTravel,
+)
+from robot_bridge.core.assignment.plan import check_plan
+from robot_bridge.core.assignment.pyvrp_search import SearchClock, loaded_days_by_pyvrp
+from robot_bridge.core.assignment.schedules import (
+    BALANCED,
+    LEAST_DISTANCE,
+    Schedule,
+    ScheduleEvaluator,
+    StageObjective,
+)
+from robot_bridge.core.assignment.solver import PREVIEW, PYVRP, Objective, assign
 
 ROUNDING = 0.05 * 10
 """Metres or seconds by which a plan may be longer than the best: half a decimetre on each of its ways."""
@@ -27,14 +39,14 @@ NO_HURRY = 600.0
 """Seconds; the search ends of itself long before."""
 
 
-def loaded(seed: int, finish: str, cones: int, room: int, robots: int = 2, stores: int = 0) -> Job:
+def loaded(seed: int, finish: str, cones: int, room: int, robots: int = 2, stores: int = 0) -> AssignmentJob:
     """Return a job of robots here and there, of two speeds, that have ``room`` cones aboard."""
     random = np.random.default_rng(seed)
     places, starts = random.uniform(0, 100, (cones, 2)).tolist(), random.uniform(0, 100, (robots, 2)).tolist()
-    return Job(
-        tuple(Target(f"c{k}", *place, service_s=10.0 + k) for k, place in enumerate(places)),
+    return AssignmentJob(
+        tuple(ConeTarget(f"c{k}", *place, service_s=10.0 + k) for k, place in enumerate(places)),
         tuple(
-            Robot(f"R{k}", *at, room, 1.0 + k % 2, aboard=room, ready_s=20.0 * k)
+            PlanRobot(f"R{k}", *at, room, 1.0 + k % 2, aboard=room, ready_s=20.0 * k)
             for k, at in enumerate(starts)
         ),
         tuple(Store(f"s{k}", 100.0 * k, 50.0) for k in range(stores)),
@@ -42,7 +54,7 @@ def loaded(seed: int, finish: str, cones: int, room: int, robots: int = 2, store
     )
 
 
-def every_plan(job: Job, before: list[Day]) -> Iterator[list[Day]]:
+def every_plan(job: AssignmentJob, before: list[Schedule]) -> Iterator[list[Schedule]]:
     """Yield all plans of two robots in which what is not in ``before`` follows it."""
     there = {place for day in before for place in day[0]}
     targets = [place for place in range(job.first_target, len(job.places)) if place not in there]
@@ -51,7 +63,7 @@ def every_plan(job: Job, before: list[Day]) -> Iterator[list[Day]]:
             yield [[before[0][0] + list(order[:split])], [before[1][0] + list(order[split:])]]
 
 
-def by_hand(job: Job, plan: list[Day], gate_s: float) -> tuple[float, float]:
+def by_hand(job: AssignmentJob, plan: list[Schedule], gate_s: float) -> tuple[float, float]:
     """Return when the last robot ends and the metres of all; infinite where room or battery is not enough.
 
     Cones of stage 1 may not be begun before ``gate_s``.
@@ -80,25 +92,25 @@ def by_hand(job: Job, plan: list[Day], gate_s: float) -> tuple[float, float]:
     return max(ends), total
 
 
-def found(job: Job, objective: str, before: list[Day], gate_s: float = 0.0) -> list[Day]:
+def found(job: AssignmentJob, objective: str, before: list[Schedule], gate_s: float = 0.0) -> list[Schedule]:
     """Return what is found from the plan in which the first robot places all, as far as it can."""
-    days = Days(job, StraightTravel(job).metres)
+    days = ScheduleEvaluator(job, StraightTravel(job).metres)
     days.gates[1] = gate_s
     start = next(
         plan for plan in reversed(list(every_plan(job, before))) if by_hand(job, plan, gate_s)[0] < math.inf
     )
-    clock = Clock(NO_HURRY, lambda share: None)
-    return loaded_days_by_pyvrp(days, before, start, Aim(objective), clock)
+    clock = SearchClock(NO_HURRY, lambda share: None)
+    return loaded_days_by_pyvrp(days, before, start, StageObjective(objective), clock)
 
 
-def assert_is_best(job: Job, objective: str, before: list[Day], gate_s: float = 0.0) -> None:
+def assert_is_best(job: AssignmentJob, objective: str, before: list[Schedule], gate_s: float = 0.0) -> None:
     plan = found(job, objective, before, gate_s)
     which = 0 if objective == BALANCED else 1
     least = min(by_hand(job, one, gate_s)[which] for one in every_plan(job, before))
     assert least - 1e-6 <= by_hand(job, plan, gate_s)[which] <= least + ROUNDING
 
 
-NOTHING: list[Day] = [[[]], [[]]]
+NOTHING: list[Schedule] = [[[]], [[]]]
 OBJECTIVES = pytest.mark.parametrize("objective", [BALANCED, LEAST_DISTANCE])
 
 
@@ -130,12 +142,12 @@ def test_a_battery_is_not_driven_empty(objective: str) -> None:
     assert_is_best(replace(job, robots=robots), objective, NOTHING)
 
 
-def second_stage(seed: int) -> tuple[Job, list[Day], float]:
+def second_stage(seed: int) -> tuple[AssignmentJob, list[Schedule], float]:
     """Return a job of which the second robot has placed one cone, far off, for which the others waited."""
     job = loaded(seed, STAY, 5, 4)
     targets = (replace(job.targets[0], x=180.0, y=150.0), *(replace(one, stage=1) for one in job.targets[1:]))
     job = replace(job, targets=targets)
-    before: list[Day] = [[[]], [[job.first_target]]]
+    before: list[Schedule] = [[[]], [[job.first_target]]]
     return job, before, by_hand(job, before, 0.0)[0]
 
 
@@ -159,7 +171,8 @@ def test_what_was_driven_in_earlier_stages_is_gone_from_the_battery(objective: s
 def test_it_is_better_than_a_preview_and_says_who_found_it(objective: str) -> None:
     job = loaded(1, TO_START, 32, 12, robots=4)
     preview, plan = (
-        assign(job, StraightTravel(job), Wanted(objective, method, NO_HURRY)) for method in (PREVIEW, PYVRP)
+        assign(job, StraightTravel(job), Objective(objective, method, NO_HURRY))
+        for method in (PREVIEW, PYVRP)
     )
     assert check_plan(plan) == []
     assert plan.method == PYVRP
@@ -169,5 +182,5 @@ def test_it_is_better_than_a_preview_and_says_who_found_it(objective: str) -> No
 
 def test_what_cannot_be_better_is_told_to_be_the_preview() -> None:
     job = loaded(0, STAY, 1, 4)
-    plan = assign(job, StraightTravel(job), Wanted(method=PYVRP))
+    plan = assign(job, StraightTravel(job), Objective(method=PYVRP))
     assert plan.method == "pyvrp, which found nothing better than the preview"

@@ -8,33 +8,32 @@ from dataclasses import replace
 
 import pytest
 
-from robot_bridge.assignment.errors import PlanFileError
-from robot_bridge.assignment.plan import LeftOut, Plan
-from robot_bridge.assignment.plan_json import from_json, to_json
-from robot_bridge.assignment.solving import PREVIEW, Wanted, assign
-from robot_bridge.assignment.travel import StraightTravel
+from robot_bridge.core.assignment.job import StraightTravel
+from robot_bridge.core.assignment.plan import ConePlan, LeftOut, plan_from_json, plan_to_json
+from robot_bridge.core.assignment.solver import PREVIEW, Objective, assign
+from robot_bridge.core.errors import PlanFileError
 
 from .jobs import scattered
 
 
 @pytest.fixture(scope="module")
-def plan() -> Plan:
+def plan() -> ConePlan:
     job = scattered(5, robots=2)
-    made = assign(job, StraightTravel(job), Wanted(method=PREVIEW))
+    made = assign(job, StraightTravel(job), Objective(method=PREVIEW))
     first = made.robots[0]
     with_history = replace(first, done=first.stops[:1], robot=replace(first.robot, range_m=812.5))
     left_out = (LeftOut(replace(job.targets[0], id="ä-9"), "fell over"),)
     return replace(made, robots=(with_history, *made.robots[1:]), left_out=left_out, crs="EPSG:32633")
 
 
-def test_a_plan_comes_back_as_it_was(plan: Plan) -> None:
-    again = from_json(to_json(plan))
+def test_a_plan_comes_back_as_it_was(plan: ConePlan) -> None:
+    again = plan_from_json(plan_to_json(plan))
     assert again == plan
     assert again.robots[1].robot.range_m == math.inf
 
 
-def test_what_the_document_says_is_what_is_documented(plan: Plan) -> None:
-    document = json.loads(to_json(plan))
+def test_what_the_document_says_is_what_is_documented(plan: ConePlan) -> None:
+    document = json.loads(plan_to_json(plan))
     assert (document["format"], document["version"]) == ("fleet-supervisor-assignment", 1)
     stop = document["robots"][0]["trips"][0]["stops"][0]
     assert list(stop) == [
@@ -67,25 +66,25 @@ def put(at: list, value: object):
         (lambda document: document.pop("stores"), "'stores' is missing"),
     ],
 )
-def test_what_is_wrong_with_a_file_is_named(plan: Plan, change, told: str) -> None:
-    document = json.loads(to_json(plan))
+def test_what_is_wrong_with_a_file_is_named(plan: ConePlan, change, told: str) -> None:
+    document = json.loads(plan_to_json(plan))
     change(document)
     with pytest.raises(PlanFileError, match=told):
-        from_json(json.dumps(document))
+        plan_from_json(json.dumps(document))
 
 
 def test_what_is_no_json_is_told() -> None:
     with pytest.raises(PlanFileError, match="no JSON"):
-        from_json("{")
+        plan_from_json("{")
 
 
-def test_numbers_are_finite(plan: Plan) -> None:
+def test_numbers_are_finite(plan: ConePlan) -> None:
     with pytest.raises(PlanFileError, match="out of range"):
-        from_json(to_json(plan).replace('"theta":0.0', '"theta":1e999', 1))
+        plan_from_json(plan_to_json(plan).replace('"theta":0.0', '"theta":1e999', 1))
 
 
 def test_numbers_and_depths_beyond_all_bounds_are_refused(plan):
     with pytest.raises(PlanFileError, match="more than 40 digits"):
-        from_json(to_json(plan).replace('"theta":0.0', '"theta":1' + 400 * "0", 1))
+        plan_from_json(plan_to_json(plan).replace('"theta":0.0', '"theta":1' + 400 * "0", 1))
     with pytest.raises(PlanFileError, match="no JSON document"):
-        from_json(100_000 * "[")
+        plan_from_json(100_000 * "[")

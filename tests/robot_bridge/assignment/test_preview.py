@@ -5,23 +5,29 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from robot_bridge.assignment.checks import check_plan
-from robot_bridge.assignment.job import STAY, TO_START, Job, Robot, Store, Target
-from robot_bridge.assignment.plan import Plan
-from robot_bridge.assignment.solving import PREVIEW, Wanted, assign
-from robot_bridge.assignment.travel import StraightTravel
+from robot_bridge.core.assignment.job import (
+    STAY,
+    TO_START,
+    AssignmentJob,
+    ConeTarget,
+    PlanRobot,
+    Store,
+    StraightTravel,
+)
+from robot_bridge.core.assignment.plan import ConePlan, check_plan
+from robot_bridge.core.assignment.solver import PREVIEW, Objective, assign
 
 CASES = range(4)
 
 
-def previewed(job: Job, objective: str = "distance") -> Plan:
+def previewed(job: AssignmentJob, objective: str = "distance") -> ConePlan:
     # It ends where no small change makes it better, long before the time is over.
-    plan = assign(job, StraightTravel(job), Wanted(objective, PREVIEW, 60.0))
+    plan = assign(job, StraightTravel(job), Objective(objective, PREVIEW, 60.0))
     assert check_plan(plan) == []
     return plan
 
 
-def shortest(job: Job) -> float:
+def shortest(job: AssignmentJob) -> float:
     """Return the metres of the best plan that PyVRP finds for robots that have all cones aboard."""
     pyvrp = pytest.importorskip("pyvrp")
     from pyvrp.stop import MaxIterations
@@ -51,13 +57,13 @@ def shortest(job: Job) -> float:
     return float(best.distance()) / 10
 
 
-def loaded(seed: int, finish: str, cones: int = 20, robots: int = 4, room: int = 8) -> Job:
+def loaded(seed: int, finish: str, cones: int = 20, robots: int = 4, room: int = 8) -> AssignmentJob:
     """Return a job of robots here and there that have all cones aboard, without a store."""
     random = np.random.default_rng(seed)
     places, starts = random.uniform(0, 100, (cones, 2)), random.uniform(0, 100, (robots, 2))
-    return Job(
-        tuple(Target(f"c{k}", *place) for k, place in enumerate(places.tolist())),
-        tuple(Robot(f"R{k}", *start, room, aboard=room) for k, start in enumerate(starts.tolist())),
+    return AssignmentJob(
+        tuple(ConeTarget(f"c{k}", *place) for k, place in enumerate(places.tolist())),
+        tuple(PlanRobot(f"R{k}", *start, room, aboard=room) for k, start in enumerate(starts.tolist())),
         (),
         finish,
     )
@@ -73,8 +79,8 @@ def test_without_a_store_it_is_nearly_the_shortest(finish: str) -> None:
 
 @pytest.mark.parametrize("objective", ["distance", "balanced"])
 def test_without_a_store_the_robot_beside_the_cones_places_them(objective: str) -> None:
-    robots = (Robot("far", 0.0, 0.0, 2, aboard=2), Robot("near", 100.0, 0.0, 2, aboard=2))
-    job = Job((Target("a", 99.0, 0.0), Target("b", 101.0, 0.0)), robots, (), STAY)
+    robots = (PlanRobot("far", 0.0, 0.0, 2, aboard=2), PlanRobot("near", 100.0, 0.0, 2, aboard=2))
+    job = AssignmentJob((ConeTarget("a", 99.0, 0.0), ConeTarget("b", 101.0, 0.0)), robots, (), STAY)
     plan = previewed(job, objective)
     assert [len(one.stops) for one in plan.robots] == [0, 2]
     assert plan.metres == pytest.approx(3.0)
@@ -85,9 +91,9 @@ def test_with_a_store_it_is_not_much_longer_than_by_pyvrp() -> None:
     ratios = []
     for seed in range(2):
         places = np.random.default_rng(seed).uniform(0, 100, (24, 2)).tolist()
-        targets = tuple(Target(f"c{k}", *place) for k, place in enumerate(places))
-        job = Job(targets, (Robot("R", 50.0, 50.0, 4),), (Store("s", 50.0, 50.0),))
-        best = assign(job, StraightTravel(job), Wanted("distance", "pyvrp", 60.0))
+        targets = tuple(ConeTarget(f"c{k}", *place) for k, place in enumerate(places))
+        job = AssignmentJob(targets, (PlanRobot("R", 50.0, 50.0, 4),), (Store("s", 50.0, 50.0),))
+        best = assign(job, StraightTravel(job), Objective("distance", "pyvrp", 60.0))
         ratios.append(previewed(job).metres / best.metres)
     assert min(ratios) > 1.0 - 1e-9
     assert np.mean(ratios) < 1.05

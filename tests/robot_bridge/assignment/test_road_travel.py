@@ -7,22 +7,20 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from robot_bridge.assignment.checks import check_plan
-from robot_bridge.assignment.errors import UnservedError
-from robot_bridge.assignment.job import Job, Robot, Store, Target
-from robot_bridge.assignment.road_travel import RoadTravel
-from robot_bridge.assignment.solving import PREVIEW, Wanted, assign
-from robot_bridge.roads.centrelines import BOTH, FORWARD, centrelines
-from robot_bridge.roads.dense import Driving
-from robot_bridge.roads.errors import OffNetworkError
-from robot_bridge.roads.network import build_network
-from robot_bridge.roads.routes import Router
+from robot_bridge.core.assignment.job import AssignmentJob, ConeTarget, PlanRobot, RoadTravel, Store
+from robot_bridge.core.assignment.plan import check_plan
+from robot_bridge.core.assignment.solver import PREVIEW, Objective, assign
+from robot_bridge.core.errors import OffNetworkError, UnservedError
+from robot_bridge.core.roads.centrelines import BOTH, FORWARD, centrelines
+from robot_bridge.core.roads.network import build_network
+from robot_bridge.core.roads.path_smoothing import Driving
+from robot_bridge.core.roads.routes import Router
 
 # A block of 100 by 40 m; the south road runs east, the east road north, the north road west.
 BLOCK = [[(0, 0), (100, 0)], [(100, 0), (100, 40)], [(100, 40), (0, 40)], [(0, 40), (0, 0)]]
-JOB = Job(
-    (Target("south", 50.0, 1.5), Target("north", 50.0, 38.0), Target("east", 101.0, 20.0)),
-    (Robot("R", 0.0, 20.0, 3),),
+JOB = AssignmentJob(
+    (ConeTarget("south", 50.0, 1.5), ConeTarget("north", 50.0, 38.0), ConeTarget("east", 101.0, 20.0)),
+    (PlanRobot("R", 0.0, 20.0, 3),),
     (Store("s", 0.0, 10.0),),
 )
 
@@ -33,7 +31,7 @@ def block(direction: int = FORWARD) -> Router:
 
 def test_a_one_way_block_is_driven_round() -> None:
     travel = RoadTravel(JOB, block(), Driving(spacing=0.5))
-    plan = assign(JOB, travel, Wanted("distance", PREVIEW))
+    plan = assign(JOB, travel, Objective("distance", PREVIEW))
     assert check_plan(plan) == []
     assert plan.robots[0].trips[0].targets == ("south", "east", "north")
     # Round the block, to each cone and back to the road, and from the robot to the store.
@@ -42,7 +40,7 @@ def test_a_one_way_block_is_driven_round() -> None:
 
 
 def test_paths_lie_on_roads_and_lead_to_the_cones() -> None:
-    plan = assign(JOB, RoadTravel(JOB, block(), Driving(spacing=0.5)), Wanted("distance", PREVIEW))
+    plan = assign(JOB, RoadTravel(JOB, block(), Driving(spacing=0.5)), Objective("distance", PREVIEW))
     for _, stop in plan.all_stops():
         points = np.array(stop.path)
         assert max(np.hypot(*(b - a)) for a, b in pairwise(points)) <= 0.51
@@ -64,7 +62,7 @@ def test_a_closed_road_is_not_driven() -> None:
 
 def test_a_cone_behind_a_gap_is_named() -> None:
     islands = Router(build_network(centrelines([*BLOCK, [(300, 0), (400, 0)]], width=6.0)))
-    job = Job((*JOB.targets, Target("beyond", 350.0, 0.0)), JOB.robots, JOB.stores)
+    job = AssignmentJob((*JOB.targets, ConeTarget("beyond", 350.0, 0.0)), JOB.robots, JOB.stores)
     with pytest.raises(UnservedError, match="no way leads from any robot to beyond") as refused:
-        assign(job, RoadTravel(job, islands), Wanted(method=PREVIEW))
+        assign(job, RoadTravel(job, islands), Objective(method=PREVIEW))
     assert refused.value.targets == ("beyond",)

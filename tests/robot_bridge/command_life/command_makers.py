@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import dataclasses
 
-from robot_bridge.command_life.open_command import OpenCommand, Order, drafted
-from robot_bridge.messages import Abort, CommandState, SendPos, SetPath, SetPosEnd
+from robot_bridge.core.messages import Abort, CommandState, SendPos, SetPath, SetPosEnd
+from robot_bridge.gateway.commands.active_command import ActiveCommand, CommandOrder, create_command
 
 TARGET = SetPosEnd(10.0, 5.0)
 PATH = SetPath([(0.0, 0.0), (10.0, 0.0)])
@@ -18,9 +18,9 @@ QUEUED, DELIVERED, ACKNOWLEDGED = (
 )
 
 
-def command(sa_id, message=TARGET, *states, reason=None, **fields) -> OpenCommand:
+def command(sa_id, message=TARGET, *states, reason=None, **fields) -> ActiveCommand:
     """Return command ``c-<sa_id>`` by Ada, issued at 100 s, with steps a second apart."""
-    made = drafted(Order(f"c-{sa_id}", "r1", message, "Ada", reason), 100.0)
+    made = create_command(CommandOrder(f"c-{sa_id}", "r1", message, "Ada", reason), 100.0)
     made = dataclasses.replace(made, sa_id=sa_id, **fields)
     for number, state in enumerate(states, 1):
         made = made.step(state, 100.0 + number, "r1")

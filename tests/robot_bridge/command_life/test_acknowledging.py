@@ -11,16 +11,16 @@ sys.path.insert(0, str(Path(__file__).parent))
 
 from command_makers import ABORT, ACKNOWLEDGED, DELIVERED, EMERGENCY, PATH, TARGET, command, last, pose
 
-from robot_bridge.command_life.acknowledging import answered, started_anew
-from robot_bridge.command_life.arrival import TargetArrival
-from robot_bridge.messages import OpAck
+from robot_bridge.core.messages import OpAck
+from robot_bridge.gateway.commands.active_command import acknowledge_command, restart_commands
+from robot_bridge.gateway.model.arrival import TargetArrival
 
 TOLERANCE = 0.2
 OK = OpAck(id=1)
 
 
 def steps(made, ack=OK, mine=(), unseen=False):
-    found = answered(made, ack, list(mine), 200.0, TOLERANCE, unseen=unseen)
+    found = acknowledge_command(made, ack, list(mine), 200.0, TOLERANCE, unseen=unseen)
     return [(step.report.command, *last(step)) for step in found]
 
 
@@ -39,7 +39,7 @@ def test_what_a_robot_answers_to_has_reached_it():
 
 
 def test_what_was_taken_on_is_judged_from_then_on():
-    (taken,) = answered(command(1, TARGET, DELIVERED), OK, [], 200.0, TOLERANCE, unseen=False)
+    (taken,) = acknowledge_command(command(1, TARGET, DELIVERED), OK, [], 200.0, TOLERANCE, unseen=False)
     assert taken.arrival == TargetArrival(TARGET, TOLERANCE)
 
 
@@ -47,7 +47,7 @@ def test_an_acknowledgement_said_twice_is_noted_once_and_judged_only_where_it_wa
     taken = command(1, TARGET, DELIVERED, ACKNOWLEDGED)
     assert steps(taken.judged(TOLERANCE)) == []
     assert steps(taken) == [("c-1", "acknowledged", 200.0, "r1", "acknowledged again")]
-    (again,) = answered(taken, OK, [], 200.0, TOLERANCE, unseen=False)
+    (again,) = acknowledge_command(taken, OK, [], 200.0, TOLERANCE, unseen=False)
     assert again.arrival == TargetArrival(TARGET, TOLERANCE)
 
 
@@ -76,7 +76,7 @@ def seen(robot):
 
 
 def anew(mine, now=200.0):
-    return started_anew(mine, REASON, now, AFTER, seen)
+    return restart_commands(mine, REASON, now, AFTER, seen)
 
 
 def test_a_robot_that_has_nothing_open_is_sent_nothing():

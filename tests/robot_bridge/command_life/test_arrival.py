@@ -7,14 +7,14 @@ import math
 
 import pytest
 
-from robot_bridge.command_life.arrival import (
+from robot_bridge.core.messages import Abort, SendPos, SetPath, SetPosEnd, SetPosIni
+from robot_bridge.gateway.model.arrival import (
     HEADING_TOLERANCE,
     STANDING_SPEED,
     AbortArrival,
     PathArrival,
-    judge,
+    arrival_judge,
 )
-from robot_bridge.messages import Abort, SendPos, SetPath, SetPosEnd, SetPosIni
 
 TOLERANCE = 0.2
 
@@ -48,7 +48,7 @@ def walk(arrival, points, v=1.0, step=0.2):
     ],
 )
 def test_a_target_is_reached_standing_within_the_tolerance(x, y, v, arrived):
-    deviation = judge(SetPosEnd(10.0, 5.0), TOLERANCE).deviation(pose(x, y, v=v))
+    deviation = arrival_judge(SetPosEnd(10.0, 5.0), TOLERANCE).deviation(pose(x, y, v=v))
     assert (deviation is not None) is arrived
     if arrived:
         assert deviation == pytest.approx(math.hypot(x - 10, y - 5))
@@ -56,7 +56,7 @@ def test_a_target_is_reached_standing_within_the_tolerance(x, y, v, arrived):
 
 @pytest.mark.parametrize("turns", [0, 1, -3])
 def test_a_target_with_a_heading_is_reached_in_that_heading(turns):
-    arrival = judge(SetPosEnd(0.0, 0.0, theta=math.pi), TOLERANCE)
+    arrival = arrival_judge(SetPosEnd(0.0, 0.0, theta=math.pi), TOLERANCE)
     heading = -math.pi + math.tau * turns
     assert arrival.deviation(pose(0, 0, heading)) == 0.0
     assert arrival.deviation(pose(0, 0, heading + 0.9 * HEADING_TOLERANCE)) == 0.0
@@ -76,28 +76,30 @@ def test_a_path_that_ends_where_it_began_is_not_reached_at_its_start():
 
 def test_a_path_that_was_driven_before_its_acknowledgement_came_is_reached():
     path = SetPath([(0.0, 0.0), (10.0, 0.0), (10.0, 10.0)])
-    arrival = judge(path, TOLERANCE, handed=pose(0.0, 0.5))
+    arrival = arrival_judge(path, TOLERANCE, handed=pose(0.0, 0.5))
     assert arrival.deviation(pose(10.0, 10.1)) == pytest.approx(0.1)
 
 
 def test_a_path_is_not_reached_by_a_robot_that_stands_where_it_was_handed_it():
-    arrival = judge(SetPath([(0.0, 0.0), (10.0, 0.0), (10.0, 10.0)]), TOLERANCE, handed=pose(10.0, 10.0))
+    arrival = arrival_judge(
+        SetPath([(0.0, 0.0), (10.0, 0.0), (10.0, 10.0)]), TOLERANCE, handed=pose(10.0, 10.0)
+    )
     assert arrival.deviation(pose(10.0, 10.1)) is None
 
 
 def test_a_loop_is_not_reached_by_a_robot_that_came_to_its_beginning_before_it_acknowledged():
-    arrival = judge(SetPath(LOOP), TOLERANCE, handed=pose(-8.0, 0.0))
+    arrival = arrival_judge(SetPath(LOOP), TOLERANCE, handed=pose(-8.0, 0.0))
     assert arrival.deviation(pose(0.0, 0.05)) is None
     assert arrival.deviation(pose(0.05, 0.0)) is None
 
 
 def test_a_path_that_ends_beside_its_beginning_is_not_reached_by_a_robot_that_came_there_beforehand():
-    arrival = judge(SetPath([*LOOP[:-1], (0.0, 1.0)]), TOLERANCE, handed=pose(-8.0, 0.0))
+    arrival = arrival_judge(SetPath([*LOOP[:-1], (0.0, 1.0)]), TOLERANCE, handed=pose(-8.0, 0.0))
     assert arrival.deviation(pose(0.0, 1.0)) is None
 
 
 def test_a_path_is_reached_by_a_robot_that_was_not_heard_round_its_last_corner():
-    arrival = judge(SetPath([(0.0, 0.0), (19.0, 0.0), (19.0, 10.0)]), TOLERANCE)
+    arrival = arrival_judge(SetPath([(0.0, 0.0), (19.0, 0.0), (19.0, 10.0)]), TOLERANCE)
     walk(arrival, [(0.0, 0.0), (12.0, 0.0)], v=4.0)
     assert arrival.deviation(pose(12.0, 0.0, v=4.0)) is None
     assert arrival.deviation(pose(19.0, 10.0)) == 0.0
@@ -152,14 +154,14 @@ LAP = SetPath([*LOOP[:-1], (0.0, 1.0)])
 @pytest.mark.parametrize("handed", [(0.0, 1.0), (-8.0, 0.0)])
 def test_a_lap_that_was_driven_unseen_is_reached_when_the_robot_says_that_it_has_nothing_to_do(end, handed):
     for rests_first in (True, False):
-        arrival = judge(LAP, TOLERANCE, under_way=True, handed=pose(*handed))
+        arrival = arrival_judge(LAP, TOLERANCE, under_way=True, handed=pose(*handed))
         told = [arrival.rests(None)] if rests_first else [arrival.deviation(pose(*end))]
         told += [arrival.deviation(pose(*end))] if rests_first else [arrival.rests(pose(*end))]
         assert told == [None, pytest.approx(math.dist(end, (0.0, 1.0)))]
 
 
 def test_where_a_robot_was_before_it_took_its_lap_on_shows_nothing():
-    assert judge(LAP, TOLERANCE, under_way=True, handed=pose(0.0, 1.0)).rests(pose(0.0, 1.0)) is None
+    assert arrival_judge(LAP, TOLERANCE, under_way=True, handed=pose(0.0, 1.0)).rests(pose(0.0, 1.0)) is None
 
 
 def test_so_is_a_loop_of_which_only_the_beginning_was_seen():
@@ -171,23 +173,23 @@ def test_so_is_a_loop_of_which_only_the_beginning_was_seen():
 
 
 def test_a_robot_that_was_seen_all_along_has_driven_no_lap_because_it_says_that_it_has_nothing_to_do():
-    arrival = judge(LAP, TOLERANCE, handed=pose(0.0, 1.0))
+    arrival = arrival_judge(LAP, TOLERANCE, handed=pose(0.0, 1.0))
     assert arrival.deviation(pose(0.0, 1.0)) is None
     assert arrival.rests(pose(0.0, 1.0)) is None
-    arrival = judge(LAP, TOLERANCE, under_way=True, handed=pose(0.0, 1.0))
+    arrival = arrival_judge(LAP, TOLERANCE, under_way=True, handed=pose(0.0, 1.0))
     assert walk(arrival, [(0.0, 0.0), (10.0, 0.0), (0.0, 0.0), (0.0, 1.0)]) == (None, None)
     assert arrival.rests(pose(0.0, 1.0)) is None
 
 
 def test_what_a_robot_said_before_it_set_off_counts_no_more_when_it_has():
-    arrival = judge(LAP, TOLERANCE, under_way=True, handed=pose(0.0, 1.0))
+    arrival = arrival_judge(LAP, TOLERANCE, under_way=True, handed=pose(0.0, 1.0))
     arrival.rests(None)
     arrival.deviation(pose(1.0, 0.0, v=1.0))
     assert arrival.deviation(pose(0.0, 1.0)) is None
 
 
 def test_a_robot_that_says_nothing_to_do_elsewhere_has_not_reached_the_end():
-    arrival = judge(LAP, TOLERANCE, under_way=True, handed=pose(0.0, 1.0))
+    arrival = arrival_judge(LAP, TOLERANCE, under_way=True, handed=pose(0.0, 1.0))
     arrival.deviation(pose(0.0, 1.5))
     assert arrival.rests(pose(0.0, 1.5)) is None
 
@@ -200,7 +202,7 @@ def test_a_robot_that_stood_at_the_end_before_it_set_off_has_not_reached_it_by_a
 
 
 def test_a_robot_that_came_unseen_to_its_lap_has_not_driven_it():
-    arrival = judge(LAP, TOLERANCE, handed=pose(-8.0, 0.0))
+    arrival = arrival_judge(LAP, TOLERANCE, handed=pose(-8.0, 0.0))
     arrival.deviation(pose(-8.0, 0.0, v=1.0))
     assert arrival.deviation(pose(0.0, 1.0)) is None
 
@@ -233,7 +235,7 @@ def test_a_robot_that_crosses_its_path_far_ahead_has_not_driven_what_lies_betwee
 
 
 def test_an_abort_is_reached_when_the_robot_stands():
-    arrival = judge(Abort(), TOLERANCE)
+    arrival = arrival_judge(Abort(), TOLERANCE)
     assert isinstance(arrival, AbortArrival)
     assert arrival.deviation(pose(1, 2, v=1.0)) is None
     assert arrival.deviation(pose(1, 2, v=0.01)) == 0.0
@@ -304,16 +306,16 @@ def test_a_robot_that_stands_on_its_path_costs_no_search_of_it(monkeypatch):
     ],
 )
 def test_a_beginning_is_reached_when_the_robot_says_it_is_there_standing_or_not(x, theta, v, arrived):
-    deviation = judge(SetPosIni(10.0, 5.0, 1.0), TOLERANCE).deviation(pose(x, 5.0, theta, v))
+    deviation = arrival_judge(SetPosIni(10.0, 5.0, 1.0), TOLERANCE).deviation(pose(x, 5.0, theta, v))
     assert deviation == (pytest.approx(x - 10.0) if arrived else None)
 
 
 def test_a_beginning_without_a_heading_is_reached_in_any():
-    assert judge(SetPosIni(10.0, 5.0), TOLERANCE).deviation(pose(10.0, 5.0, 3.0)) == 0.0
+    assert arrival_judge(SetPosIni(10.0, 5.0), TOLERANCE).deviation(pose(10.0, 5.0, 3.0)) == 0.0
 
 
 def test_a_path_that_ends_in_a_heading_is_reached_in_that_heading():
-    arrival = judge(SetPath([(0.0, 0.0), (4.0, 0.0)], theta=math.pi / 2), TOLERANCE)
+    arrival = arrival_judge(SetPath([(0.0, 0.0), (4.0, 0.0)], theta=math.pi / 2), TOLERANCE)
     walk(arrival, [(0.0, 0.0), (4.0, 0.0)])
     assert arrival.deviation(pose(4.0, 0.0, 0.0)) is None
     assert arrival.deviation(pose(4.0, 0.0, math.pi / 2)) == 0.0

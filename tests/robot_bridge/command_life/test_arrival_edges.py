@@ -6,7 +6,8 @@ import math
 
 import pytest
 
-from robot_bridge.command_life.arrival import (
+from robot_bridge.core.messages import SendPos, SetPath, SetPosEnd, SetPosIni
+from robot_bridge.gateway.model.arrival import (
     CORRIDOR,
     HEADING_TOLERANCE,
     LOOK_AHEAD,
@@ -18,7 +19,6 @@ from robot_bridge.command_life.arrival import (
     TargetArrival,
     standing,
 )
-from robot_bridge.messages import SendPos, SetPath, SetPosEnd, SetPosIni
 
 TOLERANCE = 0.25
 STRAIGHT = SetPath([(0.0, 0.0), (100.0, 0.0)])

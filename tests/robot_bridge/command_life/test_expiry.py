@@ -4,15 +4,17 @@ from __future__ import annotations
 
 import pytest
 
-from robot_bridge.command_life.open_command import Order, drafted
-from robot_bridge.messages import Abort, SetPosEnd
+from robot_bridge.core.messages import Abort, SetPosEnd
+from robot_bridge.gateway.commands.active_command import CommandOrder, create_command
 
 ISSUED = 1_790_000_000.0
 AFTER = 300.0
 
 
 def command(message=None, expires_in=None):
-    return drafted(Order("command-1", "r1", message or SetPosEnd(1.0, 2.0), "Ada", None, expires_in), ISSUED)
+    return create_command(
+        CommandOrder("command-1", "r1", message or SetPosEnd(1.0, 2.0), "Ada", None, expires_in), ISSUED
+    )
 
 
 @pytest.mark.parametrize(("expires_in", "span"), [(None, AFTER), (10.0, 10.0), (7200.0, 7200.0)])

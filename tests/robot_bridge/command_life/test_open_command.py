@@ -22,30 +22,32 @@ from command_makers import (
     pose,
 )
 
-from robot_bridge.command_life.arrival import PathArrival, TargetArrival
-from robot_bridge.command_life.open_command import (
-    OpenCommand,
-    Order,
+from robot_bridge.core.messages import CommandReport, CommandState, CommandStep, SetPath, SetPosIni, to_json
+from robot_bridge.gateway.commands.active_command import (
+    ActiveCommand,
+    CommandOrder,
     Recall,
     because,
-    drafted,
+    create_command,
     ended_by,
     given_up_by,
     recalled,
     superseded,
 )
-from robot_bridge.messages import CommandReport, CommandState, CommandStep, SetPath, SetPosIni, to_json
+from robot_bridge.gateway.model.arrival import PathArrival, TargetArrival
 
 BEGIN = SetPosIni(1.0, 2.0)
 LOOP = SetPath([(0.0, 0.0), (10.0, 0.0), (10.0, 10.0), (0.0, 0.0)])
 
 
 def test_what_is_drafted_is_queued_by_its_operator_and_has_no_row_yet():
-    order = Order("c-1", "r1", TARGET, "Ada", "cones", expires_in=30.0)
+    order = CommandOrder("c-1", "r1", TARGET, "Ada", "cones", expires_in=30.0)
     step = CommandStep(QUEUED, 100.0, "Ada", "cones")
     report = CommandReport("c-1", "r1", "SetPosEnd", to_json(TARGET), "Ada", QUEUED, [step])
-    assert drafted(order, 100.0) == OpenCommand(report, 0, TARGET, expires_at=130.0, written_at=100.0)
-    assert drafted(Order("c-1", "r1", TARGET, "Ada"), 100.0).expires_at is None
+    assert create_command(order, 100.0) == ActiveCommand(
+        report, 0, TARGET, expires_at=130.0, written_at=100.0
+    )
+    assert create_command(CommandOrder("c-1", "r1", TARGET, "Ada"), 100.0).expires_at is None
 
 
 @pytest.mark.parametrize(
@@ -145,7 +147,7 @@ def test_what_was_fetched_before_it_could_be_recalled_was_delivered_then():
 
 
 def order(message, reason=None):
-    return Order("new", "r1", message, "Bob", reason)
+    return CommandOrder("new", "r1", message, "Bob", reason)
 
 
 MINE = [

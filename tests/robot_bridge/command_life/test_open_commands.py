@@ -10,7 +10,7 @@ sys.path.insert(0, str(Path(__file__).parent))
 
 from command_makers import ACKNOWLEDGED, DELIVERED, PATH, TARGET, command
 
-from robot_bridge.command_life.open_commands import OpenCommands
+from robot_bridge.gateway.commands.active_command import ActiveCommands
 
 
 def of_robot(made, robot):
@@ -18,7 +18,7 @@ def of_robot(made, robot):
 
 
 def test_a_command_is_found_by_its_id_its_robot_and_while_it_is_queued_by_its_message():
-    open_commands = OpenCommands()
+    open_commands = ActiveCommands()
     first, second, other = command(1), command(2), of_robot(command(3), "r2")
     for one in (first, second, other):
         open_commands.put(one)
@@ -37,7 +37,7 @@ def test_a_command_is_found_by_its_id_its_robot_and_while_it_is_queued_by_its_me
 
 
 def test_a_message_that_was_written_again_is_found_under_its_new_number_alone():
-    open_commands = OpenCommands()
+    open_commands = ActiveCommands()
     open_commands.put(command(1))
     again = dataclasses.replace(command(1), sa_id=7)
     open_commands.put(again)
@@ -45,7 +45,7 @@ def test_a_message_that_was_written_again_is_found_under_its_new_number_alone():
 
 
 def test_what_has_ended_is_found_no_more():
-    open_commands = OpenCommands()
+    open_commands = ActiveCommands()
     first, second = command(1), command(2)
     open_commands.put(first)
     open_commands.put(second)
@@ -63,7 +63,7 @@ def test_what_has_ended_is_found_no_more():
 
 
 def test_metres_are_to_be_stored_once_they_have_grown_by_a_step():
-    open_commands = OpenCommands()
+    open_commands = ActiveCommands()
     driving = command(1, PATH, DELIVERED, ACKNOWLEDGED).judged(0.2)
     for one in (driving, command(2, TARGET), command(3, PATH)):
         open_commands.put(one)

@@ -6,8 +6,8 @@ import itertools
 
 import pytest
 
-from robot_bridge.command_life.states import CommandLifeError, advance, is_open, may_become, note
-from robot_bridge.messages import CommandReport, CommandState, CommandStep
+from robot_bridge.core.messages import CommandReport, CommandState, CommandStep
+from robot_bridge.gateway.model.command_states import CommandLifeError, advance, is_open, may_become, note
 
 ENDS = {"reached", "aborted", "failed", "expired", "superseded"}
 MAY_BECOME = {

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from robot_bridge.commanding.holding import HeldRobots
-from robot_bridge.errors import StoreError, UncertainError
+from robot_bridge.core.errors import StoreError, UncertainError
+from robot_bridge.gateway.commands.persistence import RobotLocks
 
 
 class Database:
@@ -30,7 +30,7 @@ class Stored:
 
 def held_robots(meanwhile=None):
     stored = Stored(meanwhile)
-    return HeldRobots(Database(), stored.look_up), stored
+    return RobotLocks(Database(), stored.look_up), stored
 
 
 async def lose(held):

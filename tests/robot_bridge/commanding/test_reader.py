@@ -11,15 +11,15 @@ sys.path.insert(0, str(Path(__file__).parents[1] / "command_life"))
 
 from command_makers import ABORT, ACKNOWLEDGED, DELIVERED, EMERGENCY, PATH, TARGET, command
 
-from robot_bridge.command_life.open_commands import OpenCommands
-from robot_bridge.commanding.reader import CommandReader
-from robot_bridge.messages import CommandState, SetPosIni
+from robot_bridge.core.messages import CommandState, SetPosIni
+from robot_bridge.gateway.commands.active_command import ActiveCommands
+from robot_bridge.gateway.commands.validation import CommandReader
 
 BEGIN = SetPosIni(1.0, 2.0)
 
 
 def reader(*commands):
-    found = OpenCommands()
+    found = ActiveCommands()
     for one in commands:
         found.put(one)
     return CommandReader(found)

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import pytest
 
-from robot_bridge.command_life.open_command import Order
-from robot_bridge.commanding.unstored_aborts import UnstoredAborts
-from robot_bridge.messages import Abort, SetPosEnd
+from robot_bridge.core.messages import Abort, SetPosEnd
+from robot_bridge.gateway.commands.active_command import CommandOrder
+from robot_bridge.gateway.commands.persistence import UnstoredAborts
 
 
 def abort(id, robot="r1", **how):
-    return Order(id, robot, Abort(), "Ada", **how)
+    return CommandOrder(id, robot, Abort(), "Ada", **how)
 
 
 @pytest.fixture
@@ -20,8 +20,8 @@ def kept():
 
 def test_only_the_aborts_of_operators_are_kept_and_given_by_robot(kept):
     one, other = abort("abort-0001"), abort("abort-0002", "r2")
-    target = Order("target-01", "r1", SetPosEnd(1.0, 2.0), "Ada")
-    kept.keep([target, one, other, Order("stop-0001", "r3", Abort(emergency=True), "Ada")])
+    target = CommandOrder("target-01", "r1", SetPosEnd(1.0, 2.0), "Ada")
+    kept.keep([target, one, other, CommandOrder("stop-0001", "r3", Abort(emergency=True), "Ada")])
     assert kept.robots() == ["r1", "r2"]
     assert kept.of(["r2", "r3", "r1"]) == [other, one]
     assert kept.of(["r3"]) == []

@@ -6,9 +6,9 @@ from types import SimpleNamespace
 
 import pytest
 
-from robot_bridge.command_life.open_command import Order
-from robot_bridge.commanding.writing import _held
-from robot_bridge.messages import Abort, SetPosEnd, SetPosIni
+from robot_bridge.core.messages import Abort, SetPosEnd, SetPosIni
+from robot_bridge.gateway.commands.active_command import CommandOrder
+from robot_bridge.gateway.commands.persistence import _held
 
 TARGET = SetPosEnd(1.0, 2.0)
 STEP = SimpleNamespace(at=5.0)
@@ -16,7 +16,7 @@ COMMAND = SimpleNamespace(report=SimpleNamespace(steps=[STEP]))
 
 
 def held(message, **order):
-    draft = SimpleNamespace(order=Order("command-a", "r1", message, "Ada", **order), command=COMMAND)
+    draft = SimpleNamespace(order=CommandOrder("command-a", "r1", message, "Ada", **order), command=COMMAND)
     return _held(draft)
 
 

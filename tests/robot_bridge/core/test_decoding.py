@@ -12,10 +12,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robot_bridge import jsonrpc
-from robot_bridge.core import decoding
-from robot_bridge.core.decoding import MESSAGE, MOST_DIGITS, SHORT, DecodingError, decode_json
-from robot_bridge.wire import decode_position
+from robot_bridge.core import json_decoder
+from robot_bridge.core.json_decoder import MESSAGE, MOST_DIGITS, SHORT, DecodingError, decode_json
+from robot_bridge.protocol import jsonrpc
+from robot_bridge.protocol.codec import decode_position
 
 stored = st.characters(exclude_categories=["Cs"], exclude_characters="\0")
 values = st.recursive(
@@ -37,7 +37,7 @@ DEEPEST = "[" * MESSAGE.depth + "]" * MESSAGE.depth
 def parser(request, monkeypatch):
     """With msgspec, and without it as in QGIS."""
     if request.param == "careful":
-        monkeypatch.setattr(decoding, "_quickly", None)
+        monkeypatch.setattr(json_decoder, "_quickly", None)
 
 
 @given(values, st.booleans())
@@ -164,7 +164,7 @@ def test_the_code_of_an_error_is_a_whole_number_or_none(code):
 
 DECODERS = {"loads", "load", "JSONDecoder", "raw_decode", "decode", "Decoder"}
 MODULES = {"json", "msgspec"}
-ALLOWED = {("core/decoding.py", "json.JSONDecoder"), ("wire.py", "msgspec.json.Decoder")}
+ALLOWED = {("core/json_decoder.py", "json.JSONDecoder"), ("protocol/codec.py", "msgspec.json.Decoder")}
 
 
 def dotted(node):
@@ -187,7 +187,7 @@ def decoders_in(text):
             yield from (f"{node.module}.{alias.name}" for alias in node.names if alias.name in DECODERS)
 
 
-ALLOWED_IN_THE_PLUGIN = {("wire/protocol.py", "json.loads")}
+ALLOWED_IN_THE_PLUGIN = {("gateway_client/protocol.py", "json.loads")}
 """Behind check_bounds: what reads a number of it names what is none."""
 
 
@@ -201,8 +201,9 @@ def decoders_of(folder):
 
 def test_json_from_outside_is_decoded_by_this_decoder_alone(root):
     found = decoders_of(root / "robot_bridge")
-    assert found == {*ALLOWED, ("core/decoding.py", "msgspec.json.decode")}, "use core.decoding.decode_json"
-    assert decoders_of(root / "plugin") == ALLOWED_IN_THE_PLUGIN, "use core.decoding.decode_json"
+    own = ("core/json_decoder.py", "msgspec.json.decode")
+    assert found == {*ALLOWED, own}, "use core.json_decoder.decode_json"
+    assert decoders_of(root / "plugin") == ALLOWED_IN_THE_PLUGIN, "use core.json_decoder.decode_json"
 
 
 def test_the_reader_of_sources_sees_every_way_to_decode():
@@ -212,10 +213,8 @@ def test_the_reader_of_sources_sees_every_way_to_decode():
 
 
 def test_the_decoder_works_without_msgspec(root):
-    program = (
-        "import sys; sys.modules['msgspec'] = None; from robot_bridge.core.decoding import decode_json as d; "
-    )
-    program += "print(d('{\"a\": [1.5]}'))"
+    program = "import sys; sys.modules['msgspec'] = None; "
+    program += "from robot_bridge.core.json_decoder import decode_json as d; print(d('{\"a\": [1.5]}'))"
     done = subprocess.run(
         [sys.executable, "-c", program], cwd=root, capture_output=True, text=True, check=False
     )

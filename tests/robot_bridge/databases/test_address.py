@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from robot_bridge.errors import StoreError
-from robot_bridge.store.address import open_engine, read_address, shown
+from robot_bridge.core.errors import StoreError
+from robot_bridge.gateway.storage.database import open_engine, read_address, shown
 
 FORMS = "write (it like )?sqlite:////path/fleet.db, postgresql://"
 

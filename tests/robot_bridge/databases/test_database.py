@@ -12,9 +12,9 @@ from pathlib import Path
 import pytest
 from sqlalchemy import insert, select, text
 
-from robot_bridge.errors import DataRefusedError, StoreError
-from robot_bridge.store.database import Database
-from robot_bridge.store.schema import robots, rr, sa
+from robot_bridge.core.errors import DataRefusedError, StoreError
+from robot_bridge.gateway.storage.database import Database
+from robot_bridge.gateway.storage.schema import robots, rr, sa
 
 
 @pytest.fixture

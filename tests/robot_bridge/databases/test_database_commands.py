@@ -12,7 +12,7 @@ from database_client import DatabaseClient
 from old_database import make_old
 from sqlalchemy import make_url
 
-from robot_bridge.store.revisions import NEEDED
+from robot_bridge.gateway.storage.revisions import NEEDED
 
 
 def robot_bridge(*words, **environment):

@@ -10,8 +10,8 @@ import pytest
 from sqlalchemy import delete, insert, make_url
 from stage.patience import BUSY
 
-from robot_bridge.store.database import Database
-from robot_bridge.store.schema import rr, sa
+from robot_bridge.gateway.storage.database import Database
+from robot_bridge.gateway.storage.schema import rr, sa
 
 pytestmark = pytest.mark.parametrize("kind", ["postgresql"], indirect=True)
 

@@ -8,10 +8,9 @@ import stat
 
 import pytest
 
-from robot_bridge.store.address import read_address
-from robot_bridge.store.backups.backing_up import back_up, restore
-from robot_bridge.store.database import Database
-from robot_bridge.store.newest import newest_time
+from robot_bridge.gateway.storage.backup import back_up, restore
+from robot_bridge.gateway.storage.database import Database, read_address
+from robot_bridge.gateway.storage.repositories.metadata import newest_time
 
 
 def rights(file):

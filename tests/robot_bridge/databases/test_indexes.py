@@ -5,19 +5,12 @@ from __future__ import annotations
 import pytest
 from sqlalchemy import event
 
-from robot_bridge.messages import GetPlacements
-from robot_bridge.store import (
-    commands,
-    newest,
-    observations,
-    placements,
-    queues,
-    revisions,
-    tracks,
-    trajectories,
-)
-from robot_bridge.store.database import run_once
-from robot_bridge.store.trajectories import Mark, Wanted
+from robot_bridge.core.messages import GetPlacements
+from robot_bridge.gateway.storage import revisions
+from robot_bridge.gateway.storage.database import run_once
+from robot_bridge.gateway.storage.repositories import commands, metadata, queues, records, trajectories
+from robot_bridge.gateway.storage.repositories import commands as tracks
+from robot_bridge.gateway.storage.repositories.trajectories import PageMark, TrajectoryQuery
 
 LONG = {"commands", "command_steps", "queue_tasks", "placements", "trajectories", "observations", "audit"}
 """Tables that grow."""
@@ -26,22 +19,22 @@ QUESTIONS = {
     "what is open": (commands.still_open,),
     "the newest commands": (commands.newest, None, 200),
     "the newest commands of a robot": (commands.newest, "r1", 200),
-    "a robot's track": (tracks.last_given, "r1", ["SetPosEnd", "SetPath"]),
-    "where a robot has been": (trajectories.read, Wanted(("r1",), since=1.0), 100, Mark(2.0, 3)),
-    "where all have been": (trajectories.read, Wanted(since=1.0), 100, Mark(2.0, 3)),
+    "a robot's track": (tracks.last_given_track, "r1", ["SetPosEnd", "SetPath"]),
+    "where a robot has been": (trajectories.read, TrajectoryQuery(("r1",), since=1.0), 100, PageMark(2.0, 3)),
+    "where all have been": (trajectories.read, TrajectoryQuery(since=1.0), 100, PageMark(2.0, 3)),
     "whether a robot was ever seen": (trajectories.never_seen, ["r1"]),
     "all queues": (queues.load,),
     "a queue": (queues.load, ["r1"]),
     "a robot's tasks that ended": (queues.newest_ended, "r1", 20),
     "where tasks are": (queues.whereabouts, ["task-0001"]),
-    "what a robot told before": (observations.find_told, "r1", "1"),
-    "a page of placed cones": (placements.newest, GetPlacements(before=9)),
-    "when something was stored last": (newest.newest_time,),
+    "what a robot told before": (records.find_told, "r1", "1"),
+    "a page of placed cones": (records.newest_placed_cones, GetPlacements(before=9)),
+    "when something was stored last": (metadata.newest_time,),
     "commands to be deleted": (commands.forget, 1.0, 100),
     "positions to be deleted": (trajectories.forget, 1.0, 100),
     "tasks to be deleted": (queues.forget, 1.0, 100),
-    "cones to be deleted": (placements.forget, 1.0, 100),
-    "images to be deleted": (observations.forget_images, 1.0, 100),
+    "cones to be deleted": (records.forget, 1.0, 100),
+    "images to be deleted": (records.forget_images, 1.0, 100),
 }
 
 FEW = {"what is open", "all queues", "a queue"}

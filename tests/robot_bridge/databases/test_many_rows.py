@@ -5,13 +5,14 @@ from __future__ import annotations
 import pytest
 from sqlalchemy import func, select
 
-from robot_bridge.messages import OpAck, SendPos, SetMap
-from robot_bridge.robots import Robot
-from robot_bridge.store import answers, requests, robots, trajectories
-from robot_bridge.store.database import Database
-from robot_bridge.store.rows import TOGETHER
-from robot_bridge.store.schema import trajectories as stored_positions
-from robot_bridge.store.trajectories import Fix, pack
+from robot_bridge.core.messages import OpAck, SendPos, SetMap
+from robot_bridge.gateway.model.robots import Robot
+from robot_bridge.gateway.storage.database import Database
+from robot_bridge.gateway.storage.repositories import requests, robots, trajectories
+from robot_bridge.gateway.storage.repositories import requests as answers
+from robot_bridge.gateway.storage.repositories.trajectories import Fix, pack
+from robot_bridge.gateway.storage.rows import TOGETHER
+from robot_bridge.gateway.storage.schema import trajectories as stored_positions
 
 NOW = 1_790_000_000.25
 STATUS = "50 % 'full'; läuft ?"
@@ -74,13 +75,13 @@ async def test_every_position_is_stored_once(database, size):
 async def test_answers_with_large_maps_between_them_are_all_there_in_their_order(database):
     maps = {n: bytes([n]) * 1_000_000 for n in range(0, 120, 5)}  # more than MariaDB takes in one statement
     told = [("r1", SetMap(maps[n]) if n in maps else OpAck(id=n)) for n in range(120)]
-    await database.run(answers.add_all, told)
-    found = await database.read(answers.read, "r1")
+    await database.run(answers.add_answers, told)
+    found = await database.read(answers.read_answers, "r1")
     assert [row.op for row in found] == [type(answer).__name__ for _, answer in told]
     assert [row.payload for row in found] == [maps.get(n) for n in range(120)]
     assert sorted(row.id for row in found) == [row.id for row in found]
-    await database.run(answers.remove, [row.id for row in found])
-    assert await database.read(answers.read, "r1") == []
+    await database.run(answers.remove_answers, [row.id for row in found])
+    assert await database.read(answers.read_answers, "r1") == []
 
 
 async def test_requests_are_read_as_they_were_written_and_go_when_they_were_dealt_with(database):
@@ -88,10 +89,10 @@ async def test_requests_are_read_as_they_were_written_and_go_when_they_were_deal
     asked = [
         ("r1", "SendImage" if n in images else "Alive", f'{{"n": {n}}}', images.get(n)) for n in range(120)
     ]
-    await database.run(requests.add_all, asked)
-    found = await database.read(requests.read)
+    await database.run(requests.add_requests, asked)
+    found = await database.read(requests.read_requests)
     assert [(row.robot, row.op, row.params) for row in found] == [row[:3] for row in asked]
     sizes = [await database.read(requests.payload, row.id, lambda _size: None) for row in found]
     assert sizes == [images.get(n) for n in range(120)]
-    await database.run(requests.remove, [row.id for row in found][:-1])
-    assert [row.params for row in await database.read(requests.read)] == ['{"n": 119}']
+    await database.run(requests.remove_requests, [row.id for row in found][:-1])
+    assert [row.params for row in await database.read(requests.read_requests)] == ['{"n": 119}']

@@ -10,9 +10,9 @@ from database_client import DatabaseClient
 from old_database import make_old
 from sqlalchemy import Engine, event
 
-from robot_bridge.errors import StoreError
-from robot_bridge.store import revisions
-from robot_bridge.store.database import Database, run_once
+from robot_bridge.core.errors import StoreError
+from robot_bridge.gateway.storage import revisions
+from robot_bridge.gateway.storage.database import Database, run_once
 
 
 @pytest.fixture
@@ -149,10 +149,10 @@ def test_ids_go_on_after_an_upgrade_where_they_were(old_url):
 async def test_a_gateway_goes_on_with_the_commands_of_version_0_1_0(old_url, sample_site):
     import asyncio
 
-    from robot_bridge.fleet import Fleet
-    from robot_bridge.messages import Ready
-    from robot_bridge.site_maps import SiteMaps
-    from robot_bridge.sites.publication import read_site
+    from robot_bridge.core.messages import Ready
+    from robot_bridge.core.sites.site import read_site
+    from robot_bridge.gateway.fleet.service import Fleet
+    from robot_bridge.gateway.site.site_maps import SiteMaps
 
     await asyncio.to_thread(run_once, old_url, revisions.upgrade)
     database = Database(old_url)

@@ -12,9 +12,9 @@ from pathlib import Path
 import pytest
 from sqlalchemy import event, insert, select
 
-from robot_bridge.errors import StoreError, UncertainError
-from robot_bridge.store.database import Database
-from robot_bridge.store.schema import rr
+from robot_bridge.core.errors import StoreError, UncertainError
+from robot_bridge.gateway.storage.database import Database
+from robot_bridge.gateway.storage.schema import rr
 
 pytestmark = pytest.mark.parametrize("kind", ["postgresql", "mariadb"], indirect=True)
 

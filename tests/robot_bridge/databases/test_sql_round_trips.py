@@ -18,8 +18,8 @@ from accounts import Accounts
 from benchmarks.sql_robots import Plan, Seen
 from plugin_files import ROOT
 
-from robot_bridge.store.database import run_once
-from robot_bridge.store.schema import rr, sa
+from robot_bridge.gateway.storage.database import run_once
+from robot_bridge.gateway.storage.schema import rr, sa
 
 
 @pytest.fixture

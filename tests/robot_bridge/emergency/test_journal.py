@@ -14,9 +14,9 @@ from pathlib import Path
 import pytest
 from sqlalchemy import make_url
 
-from robot_bridge.emergency.journal import StopJournal, journal_file
-from robot_bridge.errors import BridgeError
-from robot_bridge.store.emergency_stops import StopRow
+from robot_bridge.core.errors import BridgeError
+from robot_bridge.gateway.fleet.emergency_persistence import StopJournal, journal_file
+from robot_bridge.gateway.storage.repositories.emergency_stops import StopRow
 
 FIRST = StopRow("stop-0001", 1000.5, "Ada", "child on the track")
 SECOND = StopRow("stop-0002", 1001.0, "Ben", None)

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from robot_bridge.emergency.tally import MOST_NAMES, Tally
-from robot_bridge.messages import CommandReport, CommandState
+from robot_bridge.core.messages import CommandReport, CommandState
+from robot_bridge.gateway.fleet.emergency_stop import MOST_NAMES, StopAnswers
 
 
 def report(state, robot="r1", op="Abort", params=None):
@@ -16,7 +16,7 @@ def report(state, robot="r1", op="Abort", params=None):
 
 @pytest.fixture
 def tally():
-    tally = Tally()
+    tally = StopAnswers()
     tally.begin(["r2", "r1"])
     return tally
 
@@ -93,7 +93,7 @@ def test_a_second_stop_is_counted_from_nought(tally):
 
 
 def test_so_many_robots_are_named_and_all_are_counted():
-    tally = Tally()
+    tally = StopAnswers()
     names = [f"r{k:03}" for k in range(MOST_NAMES + 1)]
     tally.begin(reversed(names))
     assert tally.counts()["waiting"] == names[:MOST_NAMES]

@@ -13,20 +13,14 @@ sys.path.insert(0, str(Path(__file__).parent))
 from queue_line import Line
 from yard import Yard
 
-from robot_bridge.errors import UncertainError
-from robot_bridge.fleet import Fleet
-from robot_bridge.messages import (
-    CloseRoad,
-    GetRoute,
-    OpenRoad,
-    ResolveConflict,
-)
-from robot_bridge.road_traffic.road_planning import RoadPlanner
-from robot_bridge.road_traffic.road_requests import route
-from robot_bridge.robot_api.sql import SqlLink
-from robot_bridge.site_maps import SiteMaps
-from robot_bridge.sites.publication import read_site
-from robot_bridge.store.database import Database
+from robot_bridge.core.errors import UncertainError
+from robot_bridge.core.messages import CloseRoad, GetRoute, OpenRoad, ResolveConflict
+from robot_bridge.core.sites.site import read_site
+from robot_bridge.gateway.api.robot_sql import SqlInterface
+from robot_bridge.gateway.fleet.service import Fleet
+from robot_bridge.gateway.site.site_maps import SiteMaps
+from robot_bridge.gateway.storage.database import Database
+from robot_bridge.gateway.traffic.road_planning import RoadPlanner, route_for_operator
 
 
 @pytest.fixture(scope="session")
@@ -90,7 +84,7 @@ class RoadYard(Yard):
         self.fleet = Fleet(self.site, self.database, clock=lambda: self.now, planner=planner)
         self.fleet.listeners.add(self)
         await self.fleet.start()
-        self.link = SqlLink(self.fleet, self.database)
+        self.link = SqlInterface(self.fleet, self.database)
 
     def notify(self, method, key, params):
         super().notify(method, key, params)
@@ -106,7 +100,9 @@ class RoadYard(Yard):
         return await self.route(GetRoute(*goal, start=start, **how))
 
     async def route(self, request):
-        return await route(self.fleet.roads.planner, self.fleet.robots, self.fleet.roads.ways, request)
+        return await route_for_operator(
+            self.fleet.roads.planner, self.fleet.robots, self.fleet.roads.ways, request
+        )
 
     async def drive(self, id, points, robot="r1"):
         """Send a robot, which has plugged in at the first point, along ``points``; it takes that on."""

@@ -17,14 +17,14 @@ import pytest
 from database_client import DatabaseClient
 from mortal_database import Killed, MortalDatabase
 
-from robot_bridge.command_life.states import is_open, may_become
-from robot_bridge.emergency.journal import StopJournal
-from robot_bridge.errors import OutdatedError, RefusedError, StoreError
-from robot_bridge.fleet import Fleet
-from robot_bridge.messages import CommandState, GetQueue, QueueTask, ResumeQueue, Send, SetQueue
-from robot_bridge.road_traffic.road_planning import RoadPlanner
-from robot_bridge.robot_api.sql import SqlLink
-from robot_bridge.site_maps import SiteMaps
+from robot_bridge.core.errors import OutdatedError, RefusedError, StoreError
+from robot_bridge.core.messages import CommandState, GetQueue, QueueTask, ResumeQueue, Send, SetQueue
+from robot_bridge.gateway.api.robot_sql import SqlInterface
+from robot_bridge.gateway.fleet.emergency_persistence import StopJournal
+from robot_bridge.gateway.fleet.service import Fleet
+from robot_bridge.gateway.model.command_states import is_open, may_become
+from robot_bridge.gateway.site.site_maps import SiteMaps
+from robot_bridge.gateway.traffic.road_planning import RoadPlanner
 
 DRIVE_ON, START_ANEW, STAY_AWAY = "drive on", "start anew", "stay away"
 """What robots do when the gateway dies: they drive on, they start anew as well, or they come back late."""
@@ -90,7 +90,7 @@ class Play:
                 self.fleet = Fleet(self.site, self.database, lambda: self.now, planner, journal)
                 self.fleet.emergency.reach(self._stop_all)
                 await self.fleet.start()
-                self._link = SqlLink(self.fleet, self.database)
+                self._link = SqlInterface(self.fleet, self.database)
                 return
             except (Killed, StoreError):
                 await self.database.close()

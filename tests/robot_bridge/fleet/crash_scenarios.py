@@ -11,7 +11,7 @@ from living_robots import SqlRobot, WebSocketRobot
 from queue_line import PLACES, task
 from road_places import SOUTH, highest
 
-from robot_bridge.messages import (
+from robot_bridge.core.messages import (
     AbortTask,
     ClearEmergencyStop,
     CloseRoad,

@@ -10,10 +10,10 @@ import json
 import math
 from dataclasses import dataclass, field
 
-from robot_bridge.emergency.stops import HELD_BACK
-from robot_bridge.errors import StoreError
-from robot_bridge.messages import OpAck, Ready, SendPos, SetObject, Stopped, to_json
-from robot_bridge.wire import parse_params
+from robot_bridge.core.errors import StoreError
+from robot_bridge.core.messages import OpAck, Ready, SendPos, SetObject, Stopped, to_json
+from robot_bridge.gateway.fleet.emergency_persistence import HELD_BACK
+from robot_bridge.protocol.codec import parse_params
 
 SPEED = 4.0
 """metres a second."""

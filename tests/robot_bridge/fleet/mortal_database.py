@@ -7,11 +7,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from robot_bridge.errors import StoreError, UncertainError
-from robot_bridge.store.address import shown
-from robot_bridge.store.database import Database
-from robot_bridge.store.engines.dialect import PATIENCE_S
-from robot_bridge.store.worker import Worker
+from robot_bridge.core.errors import StoreError, UncertainError
+from robot_bridge.gateway.storage.database import Database, DatabaseWorker, shown
+from robot_bridge.gateway.storage.dialects import PATIENCE_S
 
 _ENGINES: dict = {}
 """One for each address: to compile statements anew takes SQLAlchemy longer than the database to do them."""
@@ -51,7 +49,7 @@ class Death:
         return 0 < self.at <= self.count
 
 
-class WorkerInPlace(Worker):
+class WorkerInPlace(DatabaseWorker):
     """Does each job at once, in the thread that asks for it: plays are many, and wait for no other thread."""
 
     def submit(self, job):

@@ -2,15 +2,8 @@
 
 from __future__ import annotations
 
-from robot_bridge.messages import (
-    GetPlacements,
-    GetQueue,
-    QueueTask,
-    ResumeQueue,
-    SetQueue,
-    TaskKind,
-)
-from robot_bridge.store import placements
+from robot_bridge.core.messages import GetPlacements, GetQueue, QueueTask, ResumeQueue, SetQueue, TaskKind
+from robot_bridge.gateway.storage.repositories import records
 
 PLACES = {"a": (50.0, 40.0), "b": (60.0, 40.0), "c": (60.0, 50.0), "d": (70.0, 50.0)}
 
@@ -92,4 +85,4 @@ async def place(line, robot="r1", id="a", at=(50.0, 40.1), **more):
 
 
 async def placed(line, **which):
-    return await line.yard.database.run(placements.newest, GetPlacements(**which))
+    return await line.yard.database.run(records.newest_placed_cones, GetPlacements(**which))

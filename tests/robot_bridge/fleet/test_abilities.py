@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from robot_bridge.errors import RefusedError
-from robot_bridge.messages import AbortTask
+from robot_bridge.core.errors import RefusedError
+from robot_bridge.core.messages import AbortTask
 
 LANE = [(20.0, 40.0), (50.0, 40.0)]
 

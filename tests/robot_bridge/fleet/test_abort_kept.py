@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from robot_bridge.commanding.writing import write_drafts
-from robot_bridge.errors import DataRefusedError, StoreError, UncertainError
-from robot_bridge.messages import AbortTask, EmergencyStop
+from robot_bridge.core.errors import DataRefusedError, StoreError, UncertainError
+from robot_bridge.core.messages import AbortTask, EmergencyStop
+from robot_bridge.gateway.commands.persistence import insert_commands
 
 LOST = pytest.mark.parametrize(
     ("error", "done"),
@@ -26,7 +26,7 @@ async def driving(two):
 
 
 async def abort_in_vain(yard, lose, error=StoreError, done=False, **what):
-    lose(yard, write_drafts, done, error)
+    lose(yard, insert_commands, done, error)
     request = AbortTask("command-abort", **(what or {"robot": "r1"}))
     with pytest.raises(StoreError) as caught:
         await yard.fleet.orders.abort(request, "Ada")
@@ -92,7 +92,7 @@ async def test_one_of_a_command_that_has_ended_by_then_is_forgotten(driving, los
 async def test_it_is_kept_for_as_long_as_the_database_takes_nothing(driving, lose):
     await abort_in_vain(driving, lose)
     for _ in range(2):
-        lose(driving, write_drafts, False, StoreError)
+        lose(driving, insert_commands, False, StoreError)
         with pytest.raises(StoreError):
             await driving.fleet.save()
     await driving.fleet.save()
@@ -109,7 +109,7 @@ async def test_one_that_is_refused_as_data_is_not_kept(driving, lose):
 @pytest.mark.parametrize("error", [RuntimeError, DataRefusedError])
 async def test_one_that_is_refused_later_holds_up_nothing(driving, lose, caplog, error):
     await abort_in_vain(driving, lose)
-    lose(driving, write_drafts, False, error)
+    lose(driving, insert_commands, False, error)
     await driving.send("next")
     assert "Abort command-abort" in caplog.text and driving.waiting("r1") == ["SetPosEnd"]
 
@@ -119,7 +119,7 @@ async def test_an_emergency_stop_waits_for_none(driving, lose, monkeypatch):
     run, written = driving.database.run, []
 
     async def noted(asked, *arguments):
-        if asked is write_drafts:
+        if asked is insert_commands:
             written.append({draft.order.message.emergency for draft in arguments[0]})
         return await run(asked, *arguments)
 

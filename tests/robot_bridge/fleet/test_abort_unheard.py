@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from queue_line import PLACES, placed, task
 
-from robot_bridge.messages import AbortTask, EmergencyStop
+from robot_bridge.core.messages import AbortTask, EmergencyStop
 
 CONE = PLACES["a"]
 TOO_LATE = "it stood at its end when it was heard again, and the Abort came too late"

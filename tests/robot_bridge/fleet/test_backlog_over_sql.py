@@ -5,9 +5,9 @@ from __future__ import annotations
 import pytest
 from queue_line import Line, task
 
-from robot_bridge.errors import StoreError
-from robot_bridge.exchange import finish
-from robot_bridge.messages import Abort, AbortTask, Alive, OpAck, Ready, RobotState, SendPos, Stopped
+from robot_bridge.core.errors import StoreError
+from robot_bridge.core.messages import Abort, AbortTask, Alive, OpAck, Ready, RobotState, SendPos, Stopped
+from robot_bridge.gateway.fleet.outbox import finish_requests
 
 BEGIN = (20.0, 40.0)
 PATH = [BEGIN, (40.0, 40.0), (50.0, 40.0)]
@@ -98,7 +98,7 @@ async def fail_to_finish(yard, monkeypatch):
     jot = yard.database.jot
 
     async def fail(work, *arguments):
-        if work is finish:
+        if work is finish_requests:
             raise StoreError("the server is away")
         return await jot(work, *arguments)
 

@@ -11,16 +11,17 @@ import numpy as np
 import pytest
 from yard import Yard
 
-from robot_bridge.exchange import Outcome
-from robot_bridge.map_requests import send_map
-from robot_bridge.messages import Ready, SendMap, SetMap
-from robot_bridge.robotmap.binary import decode
-from robot_bridge.robotmap.model import PART_OF
-from robot_bridge.robotmap.outlines import OutlineRow, Outlines
-from robot_bridge.site_maps import AT_ONCE, SiteMaps
-from robot_bridge.sites.settings import Bounds, MapSettings, SiteSettings
-from robot_bridge.sites.site import Site
-from robot_bridge.store import answers
+from robot_bridge.core.messages import Ready, SendMap, SetMap
+from robot_bridge.core.robotmap.binary import decode
+from robot_bridge.core.robotmap.model import PART_OF
+from robot_bridge.core.robotmap.outlines import OutlineRow, Outlines
+from robot_bridge.core.sites.settings import SiteBounds, SiteSettings
+from robot_bridge.core.sites.settings_tables import MapSettings
+from robot_bridge.core.sites.site import Site
+from robot_bridge.gateway.api.operator_requests import send_map
+from robot_bridge.gateway.fleet.outbox import RequestOutcome
+from robot_bridge.gateway.site.site_maps import AT_ONCE, SiteMaps
+from robot_bridge.gateway.storage.repositories import requests
 
 HOUSE = np.array([[0.0, 0.0], [10.0, 0.0], [10.0, 10.0], [0.0, 10.0], [0.0, 0.0]])
 SIDE = 40
@@ -36,7 +37,7 @@ def city(**maps) -> Site:
         for y in range(SIDE)
         for x in range(SIDE)
     ]
-    bounds = Bounds(0.0, 0.0, 20.0 * SIDE, 20.0 * SIDE)
+    bounds = SiteBounds(0.0, 0.0, 20.0 * SIDE, 20.0 * SIDE)
     settings = SiteSettings("city", "City", 1, "EPSG:32633", (430000.0, 5100000.0), bounds)
     site = Site(replace(settings, maps=MapSettings(**maps)), Outlines.from_rows(rows), (), (), ())
     assert site.segment_count > AT_ONCE
@@ -137,7 +138,7 @@ async def test_the_whole_map_that_is_made_already_is_sent_at_once(start):
 
 async def test_a_whole_map_that_takes_long_to_be_stored_follows_a_window(start, monkeypatch):
     maps = SiteMaps(city())
-    monkeypatch.setattr("robot_bridge.site_maps.STORED_AT_ONCE", len(maps.whole_map()) - 1)
+    monkeypatch.setattr("robot_bridge.gateway.site.site_maps.STORED_AT_ONCE", len(maps.whole_map()) - 1)
     async with start(maps) as yard:
         await yard.ready()
         await yard.deliver()
@@ -149,7 +150,7 @@ async def test_a_whole_map_that_takes_long_to_be_stored_follows_a_window(start, 
 
 async def test_the_whole_map_is_stored_for_those_alone_who_read_rows_themselves(start, monkeypatch):
     maps = SiteMaps(city())
-    monkeypatch.setattr("robot_bridge.site_maps.STORED_AT_ONCE", len(maps.whole_map()) - 1)
+    monkeypatch.setattr("robot_bridge.gateway.site.site_maps.STORED_AT_ONCE", len(maps.whole_map()) - 1)
     sizes = "select length(payload) from sa where robot = ? and op = 'SetMap' order by id"
     async with start(maps) as yard:
         await yard.ready()
@@ -184,7 +185,7 @@ async def test_an_answer_goes_out_without_being_read_unless_more_was_written_mea
             return done
 
         async def ask():
-            answer = Outcome("r1", answer=SetMap(b"a map"))
+            answer = RequestOutcome("r1", answer=SetMap(b"a map"))
             await boxes.finish([answer], [], acks=False, reader=("r1", 0, 0))
 
         monkeypatch.setattr(database, "read", counted)
@@ -192,7 +193,7 @@ async def test_an_answer_goes_out_without_being_read_unless_more_was_written_mea
         assert [row.op for row in await boxes.outbox("r1", 0, 0)] == ["SetMap"]
         assert not looked
         (row,) = await boxes.outbox("r1", 0, 0)
-        assert row.payload == b"a map" and looked == [answers.read]
+        assert row.payload == b"a map" and looked == [requests.read_answers]
 
         await ask()
         assert await boxes.outbox("r1", 1000) == []

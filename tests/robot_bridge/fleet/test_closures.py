@@ -8,14 +8,8 @@ import numpy as np
 import pytest
 from road_places import SOUTH, highest
 
-from robot_bridge.errors import RefusedError
-from robot_bridge.messages import (
-    AbortTask,
-    CloseRoad,
-    EmergencyStop,
-    GetPath,
-    MessageError,
-)
+from robot_bridge.core.errors import RefusedError
+from robot_bridge.core.messages import AbortTask, CloseRoad, EmergencyStop, GetPath, MessageError
 
 
 async def test_a_closed_road_is_driven_round_until_it_is_opened_whoever_restarts(each):

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import pytest
 
-from robot_bridge.commanding import writing
-from robot_bridge.commanding.book import NOWHERE
-from robot_bridge.commanding.writing import write_acknowledged
-from robot_bridge.errors import UncertainError
-from robot_bridge.messages import SendPos, SetPath
+from robot_bridge.core.errors import UncertainError
+from robot_bridge.core.messages import SendPos, SetPath
+from robot_bridge.gateway.commands import persistence
+from robot_bridge.gateway.commands.persistence import write_acknowledged
+from robot_bridge.gateway.commands.service import NOWHERE
 
 LOOP = [(20.0, 40.0), (50.0, 40.0), (50.0, 60.0), (20.0, 40.0)]
 START = SendPos(20.0, 40.0, 0.0, 0.0)
@@ -198,7 +198,7 @@ async def test_a_command_knows_where_its_robot_was_as_it_was_ordered(two):
 
 async def test_a_robot_waits_for_another_until_it_is_told_something_else(two, monkeypatch):
     released = []
-    monkeypatch.setattr(writing.closures, "release", lambda _connection, robot: released.append(robot))
+    monkeypatch.setattr(persistence.closures, "release", lambda _connection, robot: released.append(robot))
     two.fleet._book.drafting.waits = {"r1"}.__contains__
     for robot in ("r1", "r2"):
         await two.send(f"begin-{robot}", "SetPosIni", robot, x=20.0, y=40.0)

@@ -7,8 +7,8 @@ import time
 
 import pytest
 
-from robot_bridge.errors import RefusedError, UncertainError
-from robot_bridge.messages import AbortTask, MessageError, Ready, Send, SendPos
+from robot_bridge.core.errors import RefusedError, UncertainError
+from robot_bridge.core.messages import AbortTask, MessageError, Ready, Send, SendPos
 
 LOOP = [(10.0, 10.0), (20.0, 10.0), (20.0, 20.0), (10.0, 20.0), (10.0, 10.0)]
 
@@ -199,7 +199,7 @@ async def test_the_latency_of_a_link_over_sql_is_from_the_writing_of_a_command_t
 
 
 def _opack(id):
-    from robot_bridge.messages import OpAck
+    from robot_bridge.core.messages import OpAck
 
     return OpAck(id=id)
 

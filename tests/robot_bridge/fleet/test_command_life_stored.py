@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from robot_bridge.errors import RefusedError, StoreError
-from robot_bridge.messages import MessageError, Send, TargetPosition
+from robot_bridge.core.errors import RefusedError, StoreError
+from robot_bridge.core.messages import MessageError, Send, TargetPosition
 
 FULL_LIFE = ["queued", "delivered", "acknowledged", "reached"]
 

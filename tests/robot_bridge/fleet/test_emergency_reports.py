@@ -9,12 +9,12 @@ import threading
 
 import pytest
 
-from robot_bridge.emergency import stops
-from robot_bridge.emergency.journal import StopJournal
-from robot_bridge.errors import RefusedError
-from robot_bridge.fleet import Fleet
-from robot_bridge.messages import ClearEmergencyStop, EmergencyReport, EmergencyStop
-from robot_bridge.store.database import Database
+from robot_bridge.core.errors import RefusedError
+from robot_bridge.core.messages import ClearEmergencyStop, EmergencyReport, EmergencyStop
+from robot_bridge.gateway.fleet import emergency_stop
+from robot_bridge.gateway.fleet.emergency_persistence import StopJournal
+from robot_bridge.gateway.fleet.service import Fleet
+from robot_bridge.gateway.storage.database import Database
 
 
 @pytest.fixture
@@ -25,7 +25,7 @@ def database_url(sqlite_url):
 @pytest.fixture(autouse=True)
 def patience(monkeypatch):
     # What is said of a disk that takes its time has a test elsewhere.
-    monkeypatch.setattr(stops, "STORED_WITHIN", 60.0)
+    monkeypatch.setattr(emergency_stop, "STORED_WITHIN", 60.0)
 
 
 class Listener:
@@ -61,7 +61,7 @@ def operator(two):
 
 
 def logged(caplog):
-    return [record.getMessage() for record in caplog.records if record.name == stops.log.name]
+    return [record.getMessage() for record in caplog.records if record.name == emergency_stop.log.name]
 
 
 WAITED_FOR = {"robots": 2, "waiting": ["r1", "r2"]}

@@ -9,9 +9,9 @@ import uuid
 
 import pytest
 
-from robot_bridge.emergency import stops
-from robot_bridge.errors import RefusedError, StoreError
-from robot_bridge.messages import ClearEmergencyStop, EmergencyStop, MessageError, Send
+from robot_bridge.core.errors import RefusedError, StoreError
+from robot_bridge.core.messages import ClearEmergencyStop, EmergencyStop, MessageError, Send
+from robot_bridge.gateway.fleet import emergency_stop
 
 
 class Control:
@@ -60,7 +60,7 @@ async def two(yard):
 @pytest.fixture
 def control(two, monkeypatch):
     # What is said of a disk that takes its time has a test of its own.
-    monkeypatch.setattr(stops, "STORED_WITHIN", 60.0)
+    monkeypatch.setattr(emergency_stop, "STORED_WITHIN", 60.0)
     return Control(two)
 
 
@@ -87,7 +87,7 @@ async def test_every_robot_is_told_before_anything_else(two, control):
 async def test_the_log_tells_who_made_a_stop_and_who_cleared_it(two, control, caplog):
     await control.stop(reason="child on the track")
     await control.clear(reason="all is well")
-    assert [record.message for record in caplog.records if record.name == stops.log.name] == [
+    assert [record.message for record in caplog.records if record.name == emergency_stop.log.name] == [
         "emergency stop by Ada (child on the track)",
         "emergency stop of Ada cleared by Eve (all is well)",
     ]
@@ -361,7 +361,7 @@ async def test_a_stop_that_cannot_be_stored_is_in_force_and_on_its_way_and_store
 
 async def test_a_database_that_does_not_answer_delays_no_stop(two, control, monkeypatch):
     await two.ready("r1", magic=1)
-    monkeypatch.setattr(stops, "STORED_WITHIN", 1.0)
+    monkeypatch.setattr(emergency_stop, "STORED_WITHIN", 1.0)
     thawed = threading.Event()
     frozen = asyncio.ensure_future(two.database.run(lambda connection: thawed.wait(60)))
     await asyncio.sleep(0.05)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from queue_line import PLACES, placed, task
 
-from robot_bridge.messages import AbortTask, EmergencyStop, OpAck, Ready, SendPos
+from robot_bridge.core.messages import AbortTask, EmergencyStop, OpAck, Ready, SendPos
 
 CONE = PLACES["a"]
 

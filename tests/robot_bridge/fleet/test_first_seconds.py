@@ -5,9 +5,9 @@ from __future__ import annotations
 import pytest
 from road_places import SOUTH, highest
 
-from robot_bridge.commanding.writing import write_again
-from robot_bridge.errors import RefusedError, StoreError
-from robot_bridge.messages import GetPath, ResolveConflict, Stopped
+from robot_bridge.core.errors import RefusedError, StoreError
+from robot_bridge.core.messages import GetPath, ResolveConflict, Stopped
+from robot_bridge.gateway.commands.persistence import write_again
 
 PATH = [(20.0, 40.0), (40.0, 40.0), (40.0, 60.0)]
 

@@ -7,12 +7,12 @@ from dataclasses import replace
 
 import pytest
 
-from robot_bridge.errors import StoreError
-from robot_bridge.geofence import watch
-from robot_bridge.geofence.stays import LEFT_AFTER_S
-from robot_bridge.messages import EmergencyStop, GetObservations, ReviewObservation, SetObject
-from robot_bridge.sites.fences import Fences
-from robot_bridge.sites.settings import GeofenceSettings
+from robot_bridge.core.errors import StoreError
+from robot_bridge.core.messages import EmergencyStop, GetObservations, ReviewObservation, SetObject
+from robot_bridge.core.sites.fences import Fences
+from robot_bridge.core.sites.settings_tables import GeofenceSettings
+from robot_bridge.gateway.fleet import geofence as watch
+from robot_bridge.gateway.fleet.geofence import LEFT_AFTER_S
 
 IN_THE_BASIN = 66.0, 32.0
 OUTSIDE = 60.0, 22.0
@@ -155,7 +155,7 @@ async def test_what_nobody_foresaw_of_places_is_told_and_ends_no_gateway(guarded
         raise ZeroDivisionError("no height")
 
     with monkeypatch.context() as patch:
-        patch.setattr(watch, "find", broken)
+        patch.setattr(watch, "find_stays", broken)
         assert [(await look(guarded)).fault for _ in range(3)] == [
             "the site's areas cannot be used: no height"
         ] * 3
@@ -175,7 +175,7 @@ async def test_what_nobody_foresaw_of_who_is_near_a_robot_is_told_and_ends_no_ga
     await guarded.at(*OUTSIDE, robot="phone")
     nearness = guarded.fleet.nearness
     with monkeypatch.context() as patch:
-        patch.setattr("robot_bridge.nearness.watch._judged", broken)
+        patch.setattr("robot_bridge.gateway.fleet.nearness._judged", broken)
         for _ in range(3):
             await nearness.watch()
         assert nearness.report().fault == "it cannot be judged: no speed"

@@ -8,13 +8,9 @@ import math
 import pytest
 from road_places import highest
 
-from robot_bridge.errors import RefusedError, StoreError
-from robot_bridge.messages import (
-    AbortTask,
-    GetPath,
-    ResolveConflict,
-)
-from robot_bridge.store import closures as stored_closures
+from robot_bridge.core.errors import RefusedError, StoreError
+from robot_bridge.core.messages import AbortTask, GetPath, ResolveConflict
+from robot_bridge.gateway.storage.repositories import closures as stored_closures
 
 
 async def test_a_conflict_is_told_with_place_and_time(roads):

@@ -10,8 +10,8 @@ import dataclasses
 import pytest
 from queue_line import task
 
-from robot_bridge.errors import OverridableError, RefusedError
-from robot_bridge.messages import (
+from robot_bridge.core.errors import OverridableError, RefusedError
+from robot_bridge.core.messages import (
     AddTasks,
     Send,
     SetQueue,
@@ -21,8 +21,8 @@ from robot_bridge.messages import (
     TargetPosition,
     TaskKind,
 )
-from robot_bridge.site_maps import SiteMaps
-from robot_bridge.sites.settings import ConeSettings
+from robot_bridge.core.sites.settings_tables import ConeSettings
+from robot_bridge.gateway.site.site_maps import SiteMaps
 
 BASIN = (66.0, 32.0)
 THROUGH = [(20.0, 40.0), (66.0, 25.0), (66.0, 40.0)]

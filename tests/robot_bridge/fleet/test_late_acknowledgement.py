@@ -6,8 +6,8 @@ import asyncio
 
 import pytest
 
-from robot_bridge.errors import StoreError
-from robot_bridge.messages import AbortTask
+from robot_bridge.core.errors import StoreError
+from robot_bridge.core.messages import AbortTask
 
 READ = "the robot had read it by then, and acknowledged it"
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from robot_bridge.errors import StoreError
-from robot_bridge.map_requests import send_map
-from robot_bridge.messages import GetPath, OpAck, Ready, SendMap, SendPos
+from robot_bridge.core.errors import StoreError
+from robot_bridge.core.messages import GetPath, OpAck, Ready, SendMap, SendPos
+from robot_bridge.gateway.api.operator_requests import send_map
 
 
 async def say(yard, *requests, robot="r1"):

@@ -8,8 +8,8 @@ import os
 
 import pytest
 
-from robot_bridge.errors import RefusedError
-from robot_bridge.messages import (
+from robot_bridge.core.errors import RefusedError
+from robot_bridge.core.messages import (
     GetObservations,
     MessageError,
     ObservationState,
@@ -17,8 +17,8 @@ from robot_bridge.messages import (
     SendImage,
     SetObject,
 )
-from robot_bridge.robotmap.binary import decode
-from robot_bridge.sites.settings import ObservationSettings
+from robot_bridge.core.robotmap.binary import decode
+from robot_bridge.core.sites.settings_tables import ObservationSettings
 
 PNG = b"\x89PNG\r\n\x1a\n"
 CONE = SetObject(100.0, 80.0, "Kegel ä 7 🚧", label="cone", height=0.75)

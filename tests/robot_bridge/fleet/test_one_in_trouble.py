@@ -7,9 +7,9 @@ from types import SimpleNamespace
 
 import pytest
 
-from robot_bridge.errors import DataRefusedError, StoreError
-from robot_bridge.listeners import Listeners
-from robot_bridge.messages import EmergencyStop, QueueTask, SetObject, SetQueue
+from robot_bridge.core.errors import DataRefusedError, StoreError
+from robot_bridge.core.messages import EmergencyStop, QueueTask, SetObject, SetQueue
+from robot_bridge.gateway.fleet.operator_updates import Listeners
 
 
 @pytest.fixture

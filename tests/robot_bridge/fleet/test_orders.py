@@ -7,10 +7,8 @@ import uuid
 
 import pytest
 
-from robot_bridge.command_life.open_command import NOTHING, Order
-from robot_bridge.commanding import orders as order_module
-from robot_bridge.errors import RefusedError, StoreError
-from robot_bridge.messages import (
+from robot_bridge.core.errors import RefusedError, StoreError
+from robot_bridge.core.messages import (
     Abort,
     AbortTask,
     EmergencyStop,
@@ -21,6 +19,8 @@ from robot_bridge.messages import (
     SetPosIni,
     TargetPosition,
 )
+from robot_bridge.gateway.commands import requests as order_module
+from robot_bridge.gateway.commands.active_command import NOTHING, CommandOrder
 
 BASIN = (66.0, 32.0)
 """In a keepout of the sample site."""
@@ -113,7 +113,7 @@ async def test_an_abort_is_asked_under_its_own_id_of_one_robot_or_of_one_command
 async def test_a_command_that_is_no_longer_the_robot_s_task_is_not_aborted(two):
     await two.send("a")
     await two.send("b")
-    order = Order("abort-0001", "r1", Abort(), "Bob", aborts="command-a")
+    order = CommandOrder("abort-0001", "r1", Abort(), "Bob", aborts="command-a")
     assert await refusal(two.fleet._book.issue([order])) == (
         "command command-a is no longer what robot 'r1' is doing; look at the log, "
         "and abort the robot if it is to stop all the same"
@@ -134,7 +134,7 @@ async def test_all_are_aborted_under_ids_made_from_one(two, orders):
 
 
 def instead(id, task, message=None, robot="r1"):
-    return Order(id, robot, message or SetPosEnd(50.0, 40.0), "Ada", instead_of=task)
+    return CommandOrder(id, robot, message or SetPosEnd(50.0, 40.0), "Ada", instead_of=task)
 
 
 OTHERWISE = "robot 'r1' has been told otherwise in the meantime"
@@ -181,7 +181,7 @@ async def test_a_way_to_a_task_is_told_only_as_long_as_that_is_the_task(two):
 async def test_a_beginning_is_sent_while_a_target_is_driven_and_ends_it_not(two):
     await two.send("a")
     await two.take("r1")
-    (report,) = await two.fleet._book.issue([Order("new-0001", "r1", SetPosIni(20.0, 40.0), "Ada")])
+    (report,) = await two.fleet._book.issue([CommandOrder("new-0001", "r1", SetPosIni(20.0, 40.0), "Ada")])
     assert report.state.value == "queued"
     assert (await two.states())["a"] == "acknowledged"
 

@@ -9,9 +9,8 @@ import math
 import pytest
 from queue_line import LANE, PLACES, placed, task
 
-from robot_bridge.commanding.writing import write_drafts
-from robot_bridge.errors import RefusedError, UncertainError
-from robot_bridge.messages import (
+from robot_bridge.core.errors import RefusedError, UncertainError
+from robot_bridge.core.messages import (
     AbortTask,
     ClearEmergencyStop,
     EmergencyStop,
@@ -24,7 +23,8 @@ from robot_bridge.messages import (
     ResolveConflict,
     SetQueue,
 )
-from robot_bridge.queues.life import STOPS_FIRST
+from robot_bridge.gateway.commands.persistence import insert_commands
+from robot_bridge.gateway.queues.task_life import STOPS_FIRST
 
 LAP = [(20.0, 40.0), (50.0, 40.0), (50.0, 60.0), (20.0, 60.0), (20.0, 40.0)]
 
@@ -322,7 +322,7 @@ async def test_a_command_that_comes_in_between_is_stopped_and_kept(line):
 async def test_a_pause_of_which_nobody_knows_whether_it_was_stored_is_asked_for_again(line, done, lose):
     await line.yard.send("x", x=60.0, y=40.0)
     await line.yard.take()
-    lose(line.yard, write_drafts, done)
+    lose(line.yard, insert_commands, done)
     with pytest.raises(UncertainError):
         await pause(line)
     report = await pause(line)

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import pytest
 
-from robot_bridge.desk_requests import Caller, answer
-from robot_bridge.errors import RefusedError
-from robot_bridge.messages import MessageError, Role
-from robot_bridge.wire import decode_desk_request
+from robot_bridge.core.errors import RefusedError
+from robot_bridge.core.messages import MessageError, Role
+from robot_bridge.gateway.api.operator_requests import Caller, answer
+from robot_bridge.protocol.codec import decode_desk_request
 
 ON_SITE = (66.0, 44.0)
 # By PROJ's cs2cs, of (640486, 5193524) in EPSG:32633.

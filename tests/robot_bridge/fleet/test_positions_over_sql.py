@@ -8,8 +8,8 @@ import threading
 
 import pytest
 
-from robot_bridge.errors import StoreError
-from robot_bridge.messages import Ready, SendPos
+from robot_bridge.core.errors import StoreError
+from robot_bridge.core.messages import Ready, SendPos
 
 
 @pytest.fixture

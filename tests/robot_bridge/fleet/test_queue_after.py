@@ -5,11 +5,7 @@ from __future__ import annotations
 import pytest
 from queue_line import PLACES, task
 
-from robot_bridge.messages import (
-    MessageError,
-    MoveTask,
-    RemoveTask,
-)
+from robot_bridge.core.messages import MessageError, MoveTask, RemoveTask
 
 
 async def test_a_task_waits_until_what_it_comes_after_is_done_by_another_robot(line):

@@ -7,8 +7,8 @@ import math
 import pytest
 from queue_line import LANE, PLACES, drive, place, placed, task
 
-from robot_bridge.errors import RefusedError
-from robot_bridge.messages import (
+from robot_bridge.core.errors import RefusedError
+from robot_bridge.core.messages import (
     AbortTask,
     CollectLayout,
     MakeCurrent,
@@ -17,7 +17,7 @@ from robot_bridge.messages import (
     SetPath,
     TaskKind,
 )
-from robot_bridge.store import placements, queues
+from robot_bridge.gateway.storage.repositories import queues, records
 
 
 async def test_a_cone_is_driven_to_along_its_path_and_put_down_where_the_robot_stood(line):
@@ -121,8 +121,8 @@ async def test_what_has_ended_is_forgotten_in_time_and_what_stands_or_waits_is_n
     await line.reach(50.0, 40.1)
     await line.set(task("c"), task("d"))
     forget = line.yard.database.run
-    assert [await forget(kind.forget, line.yard.now, 100) for kind in (queues, placements)] == [0, 0]
-    assert [await forget(kind.forget, line.yard.now + 1, 2) for kind in (queues, placements)] == [2, 1]
+    assert [await forget(kind.forget, line.yard.now, 100) for kind in (queues, records)] == [0, 0]
+    assert [await forget(kind.forget, line.yard.now + 1, 2) for kind in (queues, records)] == [2, 1]
     assert await forget(queues.forget, line.yard.now + 1, 2) == 1
     await line.yard.restart()
     assert await line.states() == {"c": "current", "d": "waiting"}

@@ -5,15 +5,9 @@ from __future__ import annotations
 import pytest
 from queue_line import LANE, PLACES, task
 
-from robot_bridge.errors import OutdatedError, RefusedError
-from robot_bridge.messages import (
-    AddTasks,
-    MakeCurrent,
-    MoveTask,
-    QueueTask,
-    RemoveTask,
-)
-from robot_bridge.store import queues
+from robot_bridge.core.errors import OutdatedError, RefusedError
+from robot_bridge.core.messages import AddTasks, MakeCurrent, MoveTask, QueueTask, RemoveTask
+from robot_bridge.gateway.storage.repositories import queues
 
 
 async def test_two_operators_do_not_overwrite_each_other(line):

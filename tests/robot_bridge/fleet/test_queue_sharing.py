@@ -5,12 +5,8 @@ from __future__ import annotations
 import pytest
 from queue_line import PLACES, task
 
-from robot_bridge.errors import RefusedError
-from robot_bridge.messages import (
-    Share,
-    SharedTask,
-    TakeOver,
-)
+from robot_bridge.core.errors import RefusedError
+from robot_bridge.core.messages import Share, SharedTask, TakeOver
 
 
 def share(robot, revision, *ids, **paths):

@@ -5,12 +5,10 @@ from __future__ import annotations
 import pytest
 from queue_line import PLACES, placed, task
 
-from robot_bridge.commanding.writing import write_drafts
-from robot_bridge.errors import UncertainError
-from robot_bridge.messages import (
-    PauseQueue,
-)
-from robot_bridge.queueing.settling import write_outcome
+from robot_bridge.core.errors import UncertainError
+from robot_bridge.core.messages import PauseQueue
+from robot_bridge.gateway.commands.persistence import insert_commands
+from robot_bridge.gateway.queues.runner import write_outcome
 
 
 @pytest.mark.parametrize("done", [True, False], ids=["done", "not done"])
@@ -40,7 +38,7 @@ async def test_a_queue_of_which_nobody_knows_whether_it_was_resumed_goes_on_if_i
 
 @pytest.mark.parametrize("done", [True, False], ids=["done", "not done"])
 async def test_a_task_of_which_nobody_knows_whether_it_was_sent_is_sent_once(line, done, lose):
-    lose(line.yard, write_drafts, done)
+    lose(line.yard, insert_commands, done)
     await line.set(task("a"), task("b"))
     await line.go()
     await line.reach(*PLACES["a"])

@@ -7,13 +7,7 @@ import asyncio
 import pytest
 from queue_line import PLACES, task
 
-from robot_bridge.messages import (
-    AbortTask,
-    ClearEmergencyStop,
-    EmergencyStop,
-    MakeCurrent,
-    PauseQueue,
-)
+from robot_bridge.core.messages import AbortTask, ClearEmergencyStop, EmergencyStop, MakeCurrent, PauseQueue
 
 
 async def test_the_next_task_is_sent_when_the_current_one_is_reached(line):

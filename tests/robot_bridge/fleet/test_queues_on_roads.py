@@ -9,7 +9,7 @@ from dataclasses import replace
 import pytest
 from road_places import SOUTH, highest
 
-from robot_bridge.messages import (
+from robot_bridge.core.messages import (
     GetQueue,
     PauseQueue,
     QueueState,

@@ -7,11 +7,11 @@ import json
 import pytest
 from queue_line import task
 
-from robot_bridge.commanding.writing import write_all
-from robot_bridge.errors import NotReadyError, RefusedError, StoreError, UncertainError
-from robot_bridge.messages import EmergencyStop, GetQueue, PositionForm, RemoveRobots
-from robot_bridge.snapshots import EVERYTHING
-from robot_bridge.trajectories import saving
+from robot_bridge.core.errors import NotReadyError, RefusedError, StoreError, UncertainError
+from robot_bridge.core.messages import EmergencyStop, GetQueue, PositionForm, RemoveRobots
+from robot_bridge.gateway.commands.persistence import write_steps
+from robot_bridge.gateway.fleet.operator_updates import EVERYTHING
+from robot_bridge.gateway.trajectories import recording
 
 
 def remove(yard, robot="r1"):
@@ -85,11 +85,11 @@ async def test_a_database_that_fails_then_is_tried_again(stored, lose, error):
     yard = stored.yard
     await yard.send("a")
     remove(yard)
-    lose(yard, saving._write, done=False, error=error)
+    lose(yard, recording._write, done=False, error=error)
     with pytest.raises(StoreError):
         await yard.fleet.save()
     assert "r1" in yard.fleet.robots
-    lose(yard, write_all, done=False, error=error)
+    lose(yard, write_steps, done=False, error=error)
     with pytest.raises(StoreError):
         await yard.fleet.save()
     await yard.fleet.save()
@@ -214,7 +214,7 @@ async def test_what_could_not_be_stored_of_a_removal_is_done_later(stored, lose,
     yard = stored.yard
     await yard.send("a")
     await silence(yard)
-    lose(yard, write_all, done=False, error=error)
+    lose(yard, write_steps, done=False, error=error)
     assert (await at_desk(yard, "r1")).removed == ["r1"]
     await yard.fleet.save()
     assert (await yard.states())["a"] == "failed"

@@ -7,10 +7,8 @@ from dataclasses import replace
 import pytest
 from road_places import highest
 
-from robot_bridge.errors import RefusedError
-from robot_bridge.messages import (
-    GetRoute,
-)
+from robot_bridge.core.errors import RefusedError
+from robot_bridge.core.messages import GetRoute
 
 
 async def test_a_route_says_its_length_surfaces_and_what_finds_it(roads):

@@ -8,12 +8,11 @@ import json
 import pytest
 from queue_line import PLACES, placed, task
 
-from robot_bridge.commanding.writing import write_all
-from robot_bridge.errors import StoreError, UncertainError
-from robot_bridge.messages import AbortTask, EmergencyStop
-from robot_bridge.robot_api import delivery
-from robot_bridge.robot_api.delivery import Delivery
-from robot_bridge.robot_api.own_connection import OwnChannel
+from robot_bridge.core.errors import StoreError, UncertainError
+from robot_bridge.core.messages import AbortTask, EmergencyStop
+from robot_bridge.gateway.api import robot_session
+from robot_bridge.gateway.api.robot_session import Delivery, RobotChannel
+from robot_bridge.gateway.commands.persistence import write_steps
 
 CONE = PLACES["a"]
 
@@ -43,7 +42,7 @@ class Wire:
 async def wire(line):
     """Robot r1's wire, on which its outbox goes out once its ``delivery`` begins."""
     wire = Wire(line.yard)
-    wire.delivery = Delivery(line.yard.fleet, OwnChannel(wire), "r1")
+    wire.delivery = Delivery(line.yard.fleet, RobotChannel(wire), "r1")
     yield wire
     wire.delivery.end()
 
@@ -120,9 +119,9 @@ async def test_what_is_no_commands_message_is_sent_as_it_is(line):
 async def test_a_target_is_sent_when_its_delivery_is_noted_however_often_that_fails(
     line, wire, lose, monkeypatch, done, error
 ):
-    monkeypatch.setattr(delivery, "RETRY_AFTER", 0.0)
+    monkeypatch.setattr(robot_session, "RETRY_AFTER", 0.0)
     await line.yard.send("target")
-    lose(line.yard, write_all, done=done, error=error)
+    lose(line.yard, write_steps, done=done, error=error)
     wire.delivery.begin()
     async with asyncio.timeout(60):
         await wire.is_cut.wait()
@@ -134,11 +133,11 @@ async def test_a_target_is_sent_when_its_delivery_is_noted_however_often_that_fa
 async def test_an_abort_waits_neither_until_it_is_noted_nor_until_what_is_before_it_is(
     line, wire, lose, monkeypatch, error
 ):
-    monkeypatch.setattr(delivery, "RETRY_AFTER", 0.0)
+    monkeypatch.setattr(robot_session, "RETRY_AFTER", 0.0)
     await line.yard.send("place", "SetPosIni", x=20.0, y=40.0)
     await abort(line.yard)
     if error is not None:
-        lose(line.yard, write_all, done=False, error=error)
+        lose(line.yard, write_steps, done=False, error=error)
     wire.delivery.begin()
     async with asyncio.timeout(60):
         while len(wire.sent) < 2:

@@ -10,11 +10,11 @@ import contextlib
 import pytest
 from mortal_database import Death, Killed, MortalDatabase
 
-from robot_bridge.exchange import Outcome, rows_of
-from robot_bridge.fleet import Fleet
-from robot_bridge.messages import OpAck, Ready, SendPos, SetMap
-from robot_bridge.robot_api.sql import SqlLink
-from robot_bridge.trajectories import saving
+from robot_bridge.core.messages import OpAck, Ready, SendPos, SetMap
+from robot_bridge.gateway.api.robot_sql import SqlInterface
+from robot_bridge.gateway.fleet.outbox import RequestOutcome, answer_rows
+from robot_bridge.gateway.fleet.service import Fleet
+from robot_bridge.gateway.trajectories import recording
 
 ROBOTS = [f"r{number}" for number in range(1, 9)]
 SHORT = 6
@@ -77,7 +77,7 @@ async def live(yard, robots, transactions):
     with contextlib.suppress(Killed):
         await yard.fleet.save()
         for _ in range(3):
-            await SqlLink(yard.fleet, yard.database).poll()
+            await SqlInterface(yard.fleet, yard.database).poll()
             robots.turn()
 
 
@@ -96,7 +96,7 @@ async def test_a_command_is_fetched_although_each_gateway_dies_after_a_few_trans
 @pytest.mark.parametrize("link", ["sql", "websocket"])
 async def test_a_robot_that_says_ready_is_stored_before_it_is_answered(yard, lose, link):
     outcome = await yard.fleet.receive("r1", link, Ready(1), 5)
-    lose(yard, saving._write, done=False)
+    lose(yard, recording._write, done=False)
     with pytest.raises(Exception, match="the connection was lost"):
         await yard.fleet.mailboxes.finish([outcome], [], acks=True)
     assert yard.waiting() == []
@@ -122,24 +122,24 @@ async def test_a_robot_that_started_anew_is_told_once_more_once_though_the_gatew
 
 def ready(id, robot="r1"):
     ack = OpAck(id=id, magic=7, robot=robot)
-    return Outcome(robot, ack, SetMap(b"map"), void=("Start", "OpAck"))
+    return RequestOutcome(robot, ack, SetMap(b"map"), void=("Start", "OpAck"))
 
 
 def told(*outcomes, acks=True):
     return [
         (robot, type(answer).__name__, getattr(answer, "id", None))
-        for robot, answer in rows_of(outcomes, acks=acks)
+        for robot, answer in answer_rows(outcomes, acks=acks)
     ]
 
 
 def test_a_robot_that_said_ready_many_times_is_answered_as_if_it_had_said_it_last_alone():
-    seen = Outcome("r1", OpAck(id=2))
+    seen = RequestOutcome("r1", OpAck(id=2))
     assert told(ready(1), seen, ready(3)) == [("r1", "OpAck", 3), ("r1", "SetMap", None)]
     assert told(ready(1), ready(2), acks=False) == [("r1", "SetMap", None)]
 
 
 def test_what_it_said_afterwards_is_answered_in_its_place():
-    later = [Outcome("r1", OpAck(id=2)), Outcome("r1", OpAck(id=3), SetMap(b"part"))]
+    later = [RequestOutcome("r1", OpAck(id=2)), RequestOutcome("r1", OpAck(id=3), SetMap(b"part"))]
     assert told(ready(1), *later)[2:] == [("r1", "OpAck", 2), ("r1", "OpAck", 3), ("r1", "SetMap", None)]
 
 
@@ -153,5 +153,5 @@ def test_ready_of_one_robot_takes_nothing_from_another():
 
 
 def test_a_ready_that_is_refused_takes_nothing_away():
-    refused = Outcome("r1", OpAck(id=2, ok=False, reason="another robot runs", magic=8))
+    refused = RequestOutcome("r1", OpAck(id=2, ok=False, reason="another robot runs", magic=8))
     assert told(ready(1), refused) == [("r1", "OpAck", 1), ("r1", "SetMap", None), ("r1", "OpAck", 2)]

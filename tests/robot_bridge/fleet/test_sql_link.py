@@ -6,9 +6,9 @@ import json
 
 import pytest
 
-from robot_bridge.errors import StoreError
-from robot_bridge.messages import Alive, GetMap, OpAck, Ready, SendPos, SetMap, Stopped
-from robot_bridge.robotmap.binary import decode
+from robot_bridge.core.errors import StoreError
+from robot_bridge.core.messages import Alive, GetMap, OpAck, Ready, SendPos, SetMap, Stopped
+from robot_bridge.core.robotmap.binary import decode
 
 
 async def hello(yard, robot="r1", magic=7):

@@ -10,14 +10,15 @@ import time
 import pytest
 from database_client import DatabaseClient
 
-from robot_bridge.commanding import book as book_module
-from robot_bridge.commanding.writing import write_late
-from robot_bridge.emergency import stops
-from robot_bridge.errors import DataRefusedError, StoreError
-from robot_bridge.messages import ClearEmergencyStop, EmergencyStop, OpAck, SendPos
-from robot_bridge.robot_api import sql
-from robot_bridge.store import answers, emergency_stops, requests
-from robot_bridge.store import robots as stored_robots
+from robot_bridge.core.errors import DataRefusedError, StoreError
+from robot_bridge.core.messages import ClearEmergencyStop, EmergencyStop, OpAck, SendPos
+from robot_bridge.gateway.api import robot_sql
+from robot_bridge.gateway.commands import service as book_module
+from robot_bridge.gateway.commands.persistence import write_late
+from robot_bridge.gateway.fleet import emergency_stop
+from robot_bridge.gateway.storage.repositories import emergency_stops, requests
+from robot_bridge.gateway.storage.repositories import requests as answers
+from robot_bridge.gateway.storage.repositories import robots as stored_robots
 
 LOST = 5.0
 """Seconds, of the processor alone or on an idle machine, that only trying again and again would take."""
@@ -61,7 +62,7 @@ ON_ONE = pytest.mark.parametrize("database_url", ["sqlite"], indirect=True)
 @pytest.fixture
 async def driven(yard, monkeypatch):
     """A yard in which r2 on SQL is sent a target that it has not read; r1, on SQL too, means harm."""
-    monkeypatch.setattr(stops, "STORED_WITHIN", 60.0)
+    monkeypatch.setattr(emergency_stop, "STORED_WITHIN", 60.0)
     for robot in ("r1", "r2", "r3"):
         await yard.ready(robot, link="websocket" if robot == "r3" else "sql")
         await yard.take(robot)
@@ -133,7 +134,7 @@ async def test_nonsense_that_comes_all_the_time_is_answered_and_keeps_no_stop_ba
 
 @ON_ONE
 async def test_rows_that_take_a_while_leave_turns_to_whatever_stops(driven, monkeypatch):
-    monkeypatch.setattr(sql, "TURN_S", 0.0)
+    monkeypatch.setattr(robot_sql, "TURN_S", 0.0)
     client = DatabaseClient(driven.url)
     for _ in range(50):
         client.sql("insert into rr (robot, op, params) values ('r1', 'OpAck', ?)", "[" * 2000)
@@ -192,8 +193,8 @@ def every_row_read(connection):
 @pytest.mark.parametrize("op", ["\ud800", "\udcff"])
 async def test_what_a_driver_cannot_even_send_is_refused_as_data(yard, op):
     with pytest.raises(DataRefusedError, match="refuses a value"):
-        await yard.database.run(requests.add_all, [("r1", op, "{}", None)])
-    await yard.database.run(requests.add_all, [("r1", "Alive", "{}", None)])
+        await yard.database.run(requests.add_requests, [("r1", op, "{}", None)])
+    await yard.database.run(requests.add_requests, [("r1", "Alive", "{}", None)])
     assert yard.sql("select op from rr") == [("Alive",)]
 
 
@@ -233,10 +234,10 @@ class Trap:
 
     def __init__(self, monkeypatch, error, robot="r1", bare_too=False):
         self.calls, self.error, self.robot = 0, error, robot
-        self._numbered, self._all = answers.add_numbered, answers.add_all
+        self._numbered, self._all = answers.add_numbered, answers.add_answers
         monkeypatch.setattr(answers, "add_numbered", self.add_numbered)
         if bare_too:
-            monkeypatch.setattr(answers, "add_all", self.add_all)
+            monkeypatch.setattr(answers, "add_answers", self.add_all)
 
     def add_numbered(self, connection, rows):
         self._check(rows)
@@ -526,14 +527,14 @@ async def test_a_status_of_any_length_keeps_no_robot_from_being_stored(driven):
 async def test_what_is_refused_of_one_robots_answers_is_left_out_and_all_others_are_answered(
     driven, monkeypatch
 ):
-    add = answers.add_all
+    add = answers.add_answers
 
     def refuse(connection, rows):
         if any(robot == "r1" for robot, _ in rows):
             raise DataRefusedError("refused")
         add(connection, rows)
 
-    monkeypatch.setattr(answers, "add_all", refuse)
+    monkeypatch.setattr(answers, "add_answers", refuse)
     driven.sql("delete from sa")
     for robot in ("r1", "r2", "r4"):
         driven.sql("insert into rr (robot, op) values (?, 'Stopped')", robot)

@@ -7,11 +7,11 @@ import logging
 import pytest
 from sqlalchemy.exc import ProgrammingError
 
-from robot_bridge.emergency import storing
-from robot_bridge.emergency.storing import StopWriter, abort_id
-from robot_bridge.errors import DataRefusedError, StoreError, UncertainError
-from robot_bridge.store import emergency_stops
-from robot_bridge.store.emergency_stops import StopRow
+from robot_bridge.core.errors import DataRefusedError, StoreError, UncertainError
+from robot_bridge.gateway.fleet import emergency_persistence
+from robot_bridge.gateway.fleet.emergency_persistence import StopWriter, abort_id
+from robot_bridge.gateway.storage.repositories import emergency_stops
+from robot_bridge.gateway.storage.repositories.emergency_stops import StopRow
 
 ROBOTS = ["r1", "r2", "r3", "r4", "r5"]
 STOP = StopRow("stop-0001", 1000.0, "Ada", "smoke")
@@ -82,7 +82,7 @@ async def storing_on(yard):
 
 
 def logged(caplog):
-    return [record.getMessage() for record in caplog.records if record.name == storing.log.name]
+    return [record.getMessage() for record in caplog.records if record.name == emergency_persistence.log.name]
 
 
 def test_the_id_of_an_abort_is_the_same_whenever_it_is_stored():
@@ -123,7 +123,9 @@ async def test_one_robot_that_is_in_the_way_is_found_and_left_with_a_bare_abort(
         f"the Abort of robot 'r3' cannot be stored{ends}",
         "robot 'r3' is sent an Abort that no command follows: look whether it stands",
     ]
-    assert {record.levelno for record in caplog.records if record.name == storing.log.name} == {logging.ERROR}
+    assert {record.levelno for record in caplog.records if record.name == emergency_persistence.log.name} == {
+        logging.ERROR
+    }
     if not text:
         assert "RuntimeError: unforeseen" in caplog.text
 
@@ -170,7 +172,7 @@ async def test_an_account_that_may_lock_nothing_waits_and_says_who_mends_that(
     def refuse(*_):
         raise ProgrammingError("select", {}, Exception("permission denied for table sa"))
 
-    monkeypatch.setattr(storing.answers, "remove_unlocked", refuse)
+    monkeypatch.setattr(emergency_persistence.requests, "remove_unlocked", refuse)
     storing_on.book.errors["r3"] = REFUSED
     await storing_on.write()
     assert storing_on.yard.waiting("r3") == ["Abort"]
@@ -239,7 +241,9 @@ async def test_a_robot_for_which_even_the_bare_abort_failed_is_owed_that_too(sto
 
     def fails(work, robots):
         return (
-            StoreError("locked") if work is storing._write_bare and "r2" in robots and bare["fails"] else None
+            StoreError("locked")
+            if work is emergency_persistence._write_bare and "r2" in robots and bare["fails"]
+            else None
         )
 
     storing_on.database.fails = fails
@@ -305,4 +309,4 @@ async def test_a_fleet_without_robots_stores_its_stop(storing_on):
 
 
 def test_only_what_sets_a_robot_in_motion_is_held_back():
-    assert storing.HELD_BACK == ("SetPosEnd", "SetPath")
+    assert emergency_persistence.HELD_BACK == ("SetPosEnd", "SetPath")

@@ -5,17 +5,17 @@ from __future__ import annotations
 import pytest
 from road_places import SOUTH
 
-from robot_bridge.commanding.writing import write_acknowledged, write_again, write_drafts
-from robot_bridge.errors import StoreError, UncertainError
-from robot_bridge.messages import (
+from robot_bridge.core.errors import StoreError, UncertainError
+from robot_bridge.core.messages import (
     GetObservations,
     OpenRoad,
     ResolveConflict,
     ReviewObservation,
     SetObject,
 )
-from robot_bridge.robotmap.binary import decode
-from robot_bridge.store import closures, observations
+from robot_bridge.core.robotmap.binary import decode
+from robot_bridge.gateway.commands.persistence import insert_commands, write_acknowledged, write_again
+from robot_bridge.gateway.storage.repositories import closures, records
 
 LANE = [(20.0, 40.0), (50.0, 40.0)]
 DONE = pytest.mark.parametrize("done", [True, False], ids=["done", "not done"])
@@ -129,7 +129,7 @@ async def plugged(roads):
 
 async def test_a_robot_that_could_not_be_led_round_is_when_the_database_is_back(roads, lose):
     await roads.drive("a", [(10.0, 8.0), (126.0, 8.0)])
-    lose(roads, write_drafts, False, StoreError)
+    lose(roads, insert_commands, False, StoreError)
     (led,) = (await roads.close_road(*SOUTH)).robots
     assert led.became == "later"
     assert "Look after it" in led.text
@@ -141,7 +141,7 @@ async def test_a_robot_that_could_not_be_led_round_is_when_the_database_is_back(
 async def test_a_robot_waits_if_that_is_stored(roads, lose, done):
     await roads.drive("one", [(16.0, 8.0), (44.0, 22.0), (90.0, 22.0)])
     await roads.drive("two", [(13.0, 22.0), (56.0, 22.0), (56.0, 40.0)], robot="r2")
-    lose(roads, write_drafts, done)
+    lose(roads, insert_commands, done)
     with pytest.raises(UncertainError):
         await roads.fleet.roads.traffic.resolve(ResolveConflict("r1", "r2", "waiting"), "Ada")
     await roads.fleet.watch_roads()
@@ -152,7 +152,7 @@ async def test_a_robot_waits_if_that_is_stored(roads, lose, done):
 @DONE
 async def test_an_observation_is_told_to_operators_if_it_is_stored(roads, lose, done):
     await roads.ready()
-    lose(roads, observations.add, done)
+    lose(roads, records.add_observations, done)
     with pytest.raises(UncertainError):
         await roads.fleet.receive("r1", "sql", SetObject(100.0, 80.0, "cone-7"), 7)
     assert "observation" not in roads.news
@@ -166,7 +166,7 @@ async def test_an_observation_is_told_to_operators_if_it_is_stored(roads, lose, 
 
 async def test_an_observation_that_its_robot_tells_again_meanwhile_is_told_to_operators_once(roads, lose):
     await roads.ready()
-    lose(roads, observations.add, True)
+    lose(roads, records.add_observations, True)
     with pytest.raises(UncertainError):
         await roads.fleet.receive("r1", "sql", SetObject(100.0, 80.0, "cone-7"), 7)
     await roads.fleet.receive("r1", "sql", SetObject(100.0, 80.0, "cone-7"), 7)
@@ -175,9 +175,7 @@ async def test_an_observation_that_its_robot_tells_again_meanwhile_is_told_to_op
     assert "observation" not in roads.news
 
 
-@pytest.mark.parametrize(
-    ("work", "error"), [(observations.review, UncertainError), (observations.on_map, StoreError)]
-)
+@pytest.mark.parametrize(("work", "error"), [(records.review, UncertainError), (records.on_map, StoreError)])
 async def test_a_review_is_told_to_operators_whatever_failed_after_it_was_stored(roads, lose, work, error):
     await roads.ready()
     await roads.fleet.receive("r1", "sql", SetObject(100.0, 80.0, "cone-7"), 7)
@@ -196,7 +194,7 @@ async def test_what_was_accepted_is_on_the_map_whatever_failed(roads, lose, erro
     await roads.fleet.receive("r1", "sql", SetObject(100.0, 80.0, "cone-7"), 7)
     (seen,) = await roads.fleet.observations.newest(GetObservations())
     # The review is stored; an UncertainError comes of its commit, a StoreError of drawing it.
-    lose(roads, observations.review if error is UncertainError else observations.on_map, True, error)
+    lose(roads, records.review if error is UncertainError else records.on_map, True, error)
     with pytest.raises(error):
         await roads.fleet.observations.review(ReviewObservation(seen.observation, True), "Ada")
     await roads.fleet.save()

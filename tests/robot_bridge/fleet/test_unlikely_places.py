@@ -6,8 +6,8 @@ from dataclasses import replace
 
 import pytest
 
-from robot_bridge.errors import RefusedError
-from robot_bridge.messages import Ready, SendGPS, SendPos
+from robot_bridge.core.errors import RefusedError
+from robot_bridge.core.messages import Ready, SendGPS, SendPos
 
 
 @pytest.fixture

@@ -6,8 +6,8 @@ import math
 
 import pytest
 
-from robot_bridge.errors import RefusedError
-from robot_bridge.messages import GetWaysOut, ResolveConflict
+from robot_bridge.core.errors import RefusedError
+from robot_bridge.core.messages import GetWaysOut, ResolveConflict
 
 
 async def ways_out(yard, robot="r1", other="r2"):

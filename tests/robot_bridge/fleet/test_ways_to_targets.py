@@ -10,8 +10,8 @@ from dataclasses import replace
 
 import pytest
 
-from robot_bridge.errors import RefusedError
-from robot_bridge.messages import (
+from robot_bridge.core.errors import RefusedError
+from robot_bridge.core.messages import (
     CloseRoad,
     GetPath,
     GetPlacements,
@@ -253,9 +253,9 @@ async def test_a_task_without_a_path_is_driven_by_the_road_and_its_cone_is_place
 
 
 def _placed(connection):
-    from robot_bridge.store import placements
+    from robot_bridge.gateway.storage.repositories import records as placements
 
-    return placements.newest(connection, GetPlacements())
+    return placements.newest_placed_cones(connection, GetPlacements())
 
 
 async def test_one_that_does_not_take_cones_with_a_path_is_not_sent_straight_through_a_keepout(roads):

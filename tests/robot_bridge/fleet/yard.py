@@ -6,11 +6,11 @@ import json
 
 from database_client import DatabaseClient
 
-from robot_bridge.fleet import Fleet
-from robot_bridge.messages import OpAck, Ready, Send, SendPos, to_json
-from robot_bridge.robot_api.sql import SqlLink
-from robot_bridge.site_maps import SiteMaps
-from robot_bridge.store.database import Database
+from robot_bridge.core.messages import OpAck, Ready, Send, SendPos, to_json
+from robot_bridge.gateway.api.robot_sql import SqlInterface
+from robot_bridge.gateway.fleet.service import Fleet
+from robot_bridge.gateway.site.site_maps import SiteMaps
+from robot_bridge.gateway.storage.database import Database
 
 
 class Yard:
@@ -29,7 +29,7 @@ class Yard:
         self.fleet = Fleet(self.site, self.database, clock=lambda: self.now)
         self.fleet.listeners.add(self)
         await self.fleet.start()
-        self.link = SqlLink(self.fleet, self.database)
+        self.link = SqlInterface(self.fleet, self.database)
 
     async def restart(self):
         await self.database.close()

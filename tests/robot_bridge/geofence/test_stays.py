@@ -7,12 +7,12 @@ import time
 import numpy as np
 import pytest
 
-from robot_bridge.geofence.stays import LEFT_AFTER_S, Clearances, Stays, find
-from robot_bridge.robotmap.model import ShapeType
-from robot_bridge.robotmap.outlines import OutlineRow, Outlines
-from robot_bridge.sites.features import Area
-from robot_bridge.sites.fences import Fences
-from robot_bridge.sites.settings import GeofenceSettings
+from robot_bridge.core.robotmap.model import ShapeType
+from robot_bridge.core.robotmap.outlines import OutlineRow, Outlines
+from robot_bridge.core.sites.fences import Fences
+from robot_bridge.core.sites.geopackage import Area
+from robot_bridge.core.sites.settings_tables import GeofenceSettings
+from robot_bridge.gateway.fleet.geofence import LEFT_AFTER_S, Clearances, Stays, find_stays
 
 RADIUS = 0.5
 
@@ -45,12 +45,12 @@ class Site:
     def at(self, x, y, seconds=1.0):
         self.now += seconds
         clearances = Clearances.of(self.settings, RADIUS)
-        found = find(["r1"], np.array([(x, y)], dtype=float), self.fences, clearances)
+        found = find_stays(["r1"], np.array([(x, y)], dtype=float), self.fences, clearances)
         return self.stays.update(found, self.settings, self.now)
 
     def silent(self, seconds):
         self.now += seconds
-        found = find([], np.empty((0, 2)), self.fences, Clearances.of(self.settings, RADIUS))
+        found = find_stays([], np.empty((0, 2)), self.fences, Clearances.of(self.settings, RADIUS))
         return self.stays.update(found, self.settings, self.now)
 
     @property
@@ -177,7 +177,7 @@ def test_ten_thousand_robots_among_five_thousand_obstacles_are_judged_in_a_blink
     took = []
     for _ in range(3):
         began = time.thread_time()
-        found = find(names, places, fences, Clearances(0.0, RADIUS))
+        found = find_stays(names, places, fences, Clearances(0.0, RADIUS))
         Stays().update(found, GeofenceSettings(), 0.0)
         took.append(time.thread_time() - began)
     assert len(found.inside) == pytest.approx(2000, rel=0.1)

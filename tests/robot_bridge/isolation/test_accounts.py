@@ -9,14 +9,14 @@ import pytest
 from command_line import run_command
 from yards import GATEWAY, MINE, OTHER, ROBOTS, RefusedError, Yard
 
-from robot_bridge.errors import StoreError
-from robot_bridge.robots import Robot
-from robot_bridge.store import revisions
-from robot_bridge.store import robots as stored_robots
-from robot_bridge.store.accounts.choice import keeper_on
-from robot_bridge.store.accounts.keeper import AccountError
-from robot_bridge.store.database import run_once
-from robot_bridge.store.schema import metadata
+from robot_bridge.core.errors import StoreError
+from robot_bridge.gateway.model.robots import Robot
+from robot_bridge.gateway.storage import revisions
+from robot_bridge.gateway.storage.database import run_once
+from robot_bridge.gateway.storage.repositories import robots as stored_robots
+from robot_bridge.gateway.storage.roles.choice import role_manager_on
+from robot_bridge.gateway.storage.roles.role_manager import AccountError
+from robot_bridge.gateway.storage.schema import metadata
 
 NAME = "Iso.3-x_1"
 
@@ -33,7 +33,7 @@ def added(yard):
     yard.passwords[NAME] = done.stdout.strip()
     yield yard
     with contextlib.suppress(Exception):
-        run_once(yard.admin, lambda connection: keeper_on(connection).remove_robot(NAME))
+        run_once(yard.admin, lambda connection: role_manager_on(connection).remove_robot(NAME))
 
 
 def test_the_password_is_printed_once_and_alone_and_stands_in_no_log(added):
@@ -115,11 +115,14 @@ def test_hostile_names_are_refused(yard, name):
     for make in ("add_robot", "add_gateway"):
         with pytest.raises(Exception, match="cannot be used"):
             run_once(
-                yard.admin, lambda connection, make=make: getattr(keeper_on(connection), make)(name, "x")
+                yard.admin,
+                lambda connection, make=make: getattr(role_manager_on(connection), make)(name, "x"),
             )
     for change in (("remove_robot",), ("rotate_robot", "x")):
         with pytest.raises(AccountError, match="has no account"):
-            run_once(yard.admin, lambda c, change=change: getattr(keeper_on(c), change[0])(name, *change[1:]))
+            run_once(
+                yard.admin, lambda c, change=change: getattr(role_manager_on(c), change[0])(name, *change[1:])
+            )
     assert yard.content() == before
 
 
@@ -130,15 +133,15 @@ def test_names_that_are_somebody_elses_are_refused_and_cannot_be_removed(yard, n
     own = {"postgresql": {"root", "mysql"}, "mariadb": {"postgres", "pg_monitor"}}[yard.kind]
     if name not in own:
         with pytest.raises(AccountError, match=r"another (name|one)"):
-            run_once(yard.admin, lambda connection: keeper_on(connection).add_robot(name, "x"))
+            run_once(yard.admin, lambda connection: role_manager_on(connection).add_robot(name, "x"))
     with pytest.raises(AccountError, match="has no account"):
-        run_once(yard.admin, lambda connection: keeper_on(connection).remove_robot(name))
+        run_once(yard.admin, lambda connection: role_manager_on(connection).remove_robot(name))
     assert yard.of(GATEWAY).run("select 1") == [(1,)]
 
 
 def test_names_that_mariadb_takes_for_the_same_are_refused(mariadb):
     with pytest.raises(AccountError, match="capital"):
-        run_once(mariadb.admin, lambda connection: keeper_on(connection).add_robot(MINE.upper(), "x"))
+        run_once(mariadb.admin, lambda connection: role_manager_on(connection).add_robot(MINE.upper(), "x"))
 
 
 def test_only_an_administrator_makes_accounts(yard):
@@ -153,14 +156,16 @@ def test_only_an_administrator_makes_accounts(yard):
             lambda keeper: keeper.add_gateway("iso-8", "x"),
         ):
             with pytest.raises((StoreError, AccountError), match=r"denied|must be|no account"):
-                run_once(yard.address(account), lambda connection, work=work: work(keeper_on(connection)))
-    assert run_once(yard.admin, lambda connection: keeper_on(connection).robots()) == sorted(ROBOTS)
+                run_once(
+                    yard.address(account), lambda connection, work=work: work(role_manager_on(connection))
+                )
+    assert run_once(yard.admin, lambda connection: role_manager_on(connection).robots()) == sorted(ROBOTS)
 
 
 def test_a_failure_on_the_way_leaves_no_half_account(yard, monkeypatch):
-    from robot_bridge.store.accounts import mariadb, postgresql
+    from robot_bridge.gateway.storage.roles import mariadb, postgresql
 
-    kind = {"postgresql": postgresql.PostgreSqlAccounts, "mariadb": mariadb.MariaDbAccounts}[yard.kind]
+    kind = {"postgresql": postgresql.PostgreSqlRoles, "mariadb": mariadb.MariaDbRoles}[yard.kind]
     original = kind._do
 
     def failing(self, statement):
@@ -170,9 +175,9 @@ def test_a_failure_on_the_way_leaves_no_half_account(yard, monkeypatch):
 
     monkeypatch.setattr(kind, "_do", failing)
     with pytest.raises(AccountError, match="the power went"):
-        run_once(yard.admin, lambda connection: keeper_on(connection).add_robot("iso-7", "x"))
+        run_once(yard.admin, lambda connection: role_manager_on(connection).add_robot("iso-7", "x"))
     monkeypatch.undo()
-    assert run_once(yard.admin, lambda connection: keeper_on(connection)._exists("iso-7")) is False
+    assert run_once(yard.admin, lambda connection: role_manager_on(connection)._exists("iso-7")) is False
 
 
 def test_two_databases_of_one_server_know_nothing_of_each_other(yard):
@@ -180,7 +185,7 @@ def test_two_databases_of_one_server_know_nothing_of_each_other(yard):
     run_once(url, revisions.create)
     other = Yard(yard.server, url, {})
     with pytest.raises(AccountError, match="no robot of this database"):
-        run_once(other.admin, lambda connection: keeper_on(connection).add_robot(MINE, "x"))
+        run_once(other.admin, lambda connection: role_manager_on(connection).add_robot(MINE, "x"))
     done = run(other, "robots", "add", "iso-6")
     assert done.returncode == 0, done.stderr
     try:
@@ -242,7 +247,7 @@ def test_what_robots_meet_is_replaced_where_an_older_version_made_it(mariadb, wo
     assert robots_side(mariadb) == made
     assert mariadb.of(MINE).run("select robot from sa") == [(MINE,)]
     if "add" in words:
-        run_once(mariadb.admin, lambda connection: keeper_on(connection).remove_robot(NAME))
+        run_once(mariadb.admin, lambda connection: role_manager_on(connection).remove_robot(NAME))
 
 
 def test_on_sqlite_a_robot_gets_a_token_and_no_password(tmp_path):

@@ -9,14 +9,14 @@ import pytest
 from sqlalchemy import make_url
 from yards import GATEWAY, MINE, OTHER, SECRET, RefusedError
 
-from robot_bridge.store.accounts.keeper import (
+from robot_bridge.gateway.storage.dialects import GATEWAY_DOZES
+from robot_bridge.gateway.storage.roles.role_manager import (
     LARGEST_PARAMS,
     LARGEST_PAYLOAD,
     MOST_CONNECTIONS,
     MOST_PAYLOADS,
     MOST_WAITING,
 )
-from robot_bridge.store.engines.postgresql import GATEWAY_DOZES
 
 POSTGRESQL = [
     "select * from rr",

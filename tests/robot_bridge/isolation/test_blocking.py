@@ -10,14 +10,14 @@ from concurrent.futures import ThreadPoolExecutor
 import pytest
 from yards import GATEWAY, MINE, OTHER, RefusedError
 
-from robot_bridge import exchange
-from robot_bridge.emergency import storing
-from robot_bridge.exchange import Outcome
-from robot_bridge.messages import Abort, OpAck, SetMap
-from robot_bridge.store import answers, requests
-from robot_bridge.store.accounts.choice import keeper_on
-from robot_bridge.store.accounts.stuck import end_stuck
-from robot_bridge.store.database import Database, run_once
+from robot_bridge.core.messages import Abort, OpAck, SetMap
+from robot_bridge.gateway.fleet import emergency_persistence, outbox
+from robot_bridge.gateway.fleet.outbox import RequestOutcome
+from robot_bridge.gateway.storage.database import Database, run_once
+from robot_bridge.gateway.storage.repositories import requests
+from robot_bridge.gateway.storage.repositories import requests as answers
+from robot_bridge.gateway.storage.roles.blocking_sessions import end_blocking_sessions
+from robot_bridge.gateway.storage.roles.choice import role_manager_on
 
 NO_LIMITS = {
     "postgresql": [
@@ -54,7 +54,7 @@ async def gateways_turn(yard) -> float:
     database = Database(yard.address(GATEWAY))
     began = time.monotonic()
     try:
-        await database.run(requests.read)
+        await database.run(requests.read_requests)
         for robot in (MINE, OTHER):
             await database.run(answers.remove_kinds, robot, ["Start"])
             await database.run(answers.add, robot, Abort())
@@ -111,10 +111,10 @@ def hesitating(yard):
 def answer_at_once(connection):
     """Deal with the other robot's requests, and stop everybody, as the gateway does; fail where it waits."""
     connection.exec_driver_sql(AT_ONCE["mariadb" if connection.dialect.name == "mariadb" else "postgresql"])
-    rows, _ = exchange.look(connection, [])
-    done = [Outcome(row.robot, OpAck(id=row.id), SetMap(b"")) for row in rows if row.robot == OTHER]
+    rows, _ = outbox.read_requests(connection, [])
+    done = [RequestOutcome(row.robot, OpAck(id=row.id), SetMap(b"")) for row in rows if row.robot == OTHER]
     told = [message for outcome in done for message in outcome.rows(acks=True)]
-    exchange.finish(connection, done, told, [row.id for row in rows if row.robot == OTHER], [])
+    outbox.finish_requests(connection, done, told, [row.id for row in rows if row.robot == OTHER], [])
     answers.remove_everywhere(connection, ["SetPath"])
 
 
@@ -137,7 +137,7 @@ def stop_at_once(connection):
     # Not 0 as above, for which MariaDB's "skip locked" has no answer but an error.
     limits = {**AT_ONCE, "mariadb": "set session innodb_lock_wait_timeout = 1"}
     connection.exec_driver_sql(limits[connection.dialect.name])
-    storing._write_bare(connection, [MINE, OTHER])
+    emergency_persistence._write_bare(connection, [MINE, OTHER])
 
 
 def aborted(yard):
@@ -163,7 +163,7 @@ def test_a_gateway_that_may_lock_no_rows_stops_all_the_same_and_an_upgrade_lets_
         assert postgresql.sql("select robot from sa where op = 'SetPosEnd'") == []
         assert aborted(postgresql) == [MINE] * times + [OTHER] * times
         assert caplog.text.count("robot-bridge database upgrade") == 1
-    run_once(postgresql.admin, lambda connection: keeper_on(connection).renew_rights())
+    run_once(postgresql.admin, lambda connection: role_manager_on(connection).renew_rights())
     caplog.clear()
     run_once(postgresql.address(GATEWAY), stop_at_once)
     assert "database upgrade" not in caplog.text
@@ -231,7 +231,7 @@ def test_a_robots_statement_ends_when_it_takes_too_long(yard):
             session.run(statement)
         sleeping = thread.submit(session.run, sleep)
         time.sleep(2.1)
-        run_once(yard.address(GATEWAY), end_stuck, 2)
+        run_once(yard.address(GATEWAY), end_blocking_sessions, 2)
         with pytest.raises(RefusedError):
             sleeping.result(timeout=5)
 
@@ -243,6 +243,6 @@ def test_others_transactions_are_left_alone(yard):
         admin.run("begin")
         admin.run("insert into bridge (name, value) values ('blocking', 'x')")
         time.sleep(1.1)
-        run_once(yard.address(GATEWAY), end_stuck, 1)
+        run_once(yard.address(GATEWAY), end_blocking_sessions, 1)
         assert gateway.run("select 1") == admin.run("select 1") == [(1,)]
         admin.run("rollback")

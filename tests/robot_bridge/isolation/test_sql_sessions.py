@@ -18,7 +18,7 @@ from stage.database_server import DatabaseServer
 from stage.patience import START
 from stage.processes import Processes
 
-from robot_bridge.robotmap.binary import decode
+from robot_bridge.core.robotmap.binary import decode
 
 ROOT = Path(__file__).resolve().parents[3]
 GUIDE = (ROOT / "docs" / "integrator.md").read_text(encoding="utf-8")

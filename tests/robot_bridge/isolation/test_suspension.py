@@ -17,12 +17,12 @@ from bridge_programs import Bridge, wait_until
 from stage.processes import Processes
 from yards import GATEWAY, MINE, OTHER, RefusedError
 
-from robot_bridge import account_suspensions
-from robot_bridge.account_suspensions import AccountSuspensions
-from robot_bridge.store.accounts import suspension
-from robot_bridge.store.accounts.choice import keeper_on
-from robot_bridge.store.database import Database, run_once
-from robot_bridge.store.wakeups import GATEWAY_CHANNEL
+from robot_bridge.gateway.fleet import link_supervision
+from robot_bridge.gateway.fleet.link_supervision import AccountSuspensions
+from robot_bridge.gateway.storage.database import Database, run_once
+from robot_bridge.gateway.storage.roles import blocking_sessions
+from robot_bridge.gateway.storage.roles.choice import role_manager_on
+from robot_bridge.gateway.storage.wakeups import GATEWAY_CHANNEL
 
 FLOOD = "select count(pg_notify('rr', n::text)) from generate_series(1, 2000) n"
 
@@ -68,8 +68,8 @@ async def database(yard):
     database = Database(yard.address(GATEWAY))
     yield database
     for robot in (MINE, OTHER):
-        await database.run_alone(suspension.set_suspended, robot, False)
-    await database.run(suspension.store, {})
+        await database.run_alone(blocking_sessions.set_suspended, robot, False)
+    await database.run(blocking_sessions.store_suspensions, {})
     await database.close()
 
 
@@ -100,13 +100,13 @@ async def test_who_blocks_three_times_in_a_minute_is_locked_out_and_let_in_again
     # The gateway is killed meanwhile, and the next one lets the robot in again.
     after = AccountSuspensions(database, Commands(), desks.announce, clock)
     await after.restore()
-    clock.now += account_suspensions.FIRST_S - 1
+    clock.now += link_supervision.FIRST_S - 1
     await after.update()
     assert desks.told[1:] == [[(MINE, True)]] and not can_connect(yard)
     clock.now += 2
     await after.update()
     assert desks.told[2:] == [[]] and can_connect(yard)
-    assert await database.read(suspension.stored) == {}
+    assert await database.read(blocking_sessions.stored_suspensions) == {}
 
 
 async def test_who_does_it_again_is_locked_out_for_twice_as_long(yard, database):
@@ -142,7 +142,7 @@ async def test_no_account_is_locked_while_its_robot_awaits_an_abort(yard, databa
 
 async def test_a_gateway_that_dies_before_the_lock_is_set_unlocks_all_the_same(yard, database):
     clock, desks = Clock(), Desks()
-    await database.run(suspension.store, {MINE: (clock.now + 60, "blocks")})
+    await database.run(blocking_sessions.store_suspensions, {MINE: (clock.now + 60, "blocks")})
     suspensions = AccountSuspensions(database, Commands(), desks.announce, clock)
     await suspensions.restore()
     clock.now += 61
@@ -152,7 +152,7 @@ async def test_a_gateway_that_dies_before_the_lock_is_set_unlocks_all_the_same(y
 
 async def test_nobody_but_a_robot_of_this_database_is_locked_out(yard, database):
     for name in (GATEWAY, "postgres", "root", "nobody'; --", "nobody\"'"):
-        await database.run_alone(suspension.set_suspended, name, True)
+        await database.run_alone(blocking_sessions.set_suspended, name, True)
     assert can_connect(yard, GATEWAY) and can_connect(yard) and can_connect(yard, "admin")
     for session in (yard.of(MINE), yard.of(OTHER)):
         call = (
@@ -176,7 +176,7 @@ async def test_who_only_reads_for_long_is_no_blocker(yard, database):
         reads.run("select * from sa")
         writes.run("delete from sa")
         time.sleep(2.1)
-        assert await database.read(suspension.blocking_robots, 1) == [OTHER]
+        assert await database.read(blocking_sessions.blocking_robots, 1) == [OTHER]
 
 
 async def test_an_older_set_up_is_said_and_an_upgrade_mends_it(yard, database, caplog):
@@ -193,8 +193,10 @@ async def test_an_older_set_up_is_said_and_an_upgrade_mends_it(yard, database, c
     await suspensions.update()
     assert desks.told == [[(MINE, False)]] and can_connect(yard)
     assert "cannot be locked: have an administrator run: robot-bridge database upgrade" in caplog.text
-    await asyncio.to_thread(run_once, yard.admin, lambda connection: keeper_on(connection).renew_rights())
-    assert await database.run_alone(suspension.set_suspended, MINE, True)
+    await asyncio.to_thread(
+        run_once, yard.admin, lambda connection: role_manager_on(connection).renew_rights()
+    )
+    assert await database.run_alone(blocking_sessions.set_suspended, MINE, True)
     assert not can_connect(yard)
 
 
@@ -269,8 +271,8 @@ def test_operators_are_told_who_it_is_and_send_as_before(yard, sample_site, tmp_
 
 def unlock(connection):
     with contextlib.suppress(Exception):
-        suspension.store(connection, {})
-    keeper = keeper_on(connection)
+        blocking_sessions.store_suspensions(connection, {})
+    keeper = role_manager_on(connection)
     keeper._do(
         f'alter role "{MINE}" login'
         if connection.dialect.name == "postgresql"
@@ -296,7 +298,7 @@ async def test_a_flood_of_notifications_is_named_and_costs_the_reader_few_looks(
             backends += database.offences.drain()[1]
         # One look in 20 ms, but for the first few: it was one for each notification that came.
         assert looks < 80 * (time.monotonic() - began)
-        assert await database.read(suspension.robots_of_backends, backends) == [MINE]
+        assert await database.read(blocking_sessions.robots_of_backends, backends) == [MINE]
         assert len(backends) == 1
     finally:
         over.set()

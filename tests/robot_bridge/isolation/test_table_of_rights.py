@@ -12,7 +12,7 @@ from __future__ import annotations
 import pytest
 from yards import GATEWAY, MINE, OTHER, RefusedError
 
-from robot_bridge.store.schema import metadata
+from robot_bridge.gateway.storage.schema import metadata
 
 SECONDARY = sorted(set(metadata.tables) - {"rr", "sa"})
 STATEMENTS = ("select", "insert", "update", "delete", "truncate")

@@ -12,10 +12,10 @@ import psycopg
 import pymysql
 import sqlalchemy
 
-from robot_bridge.store import revisions
-from robot_bridge.store.accounts.choice import keeper_on
-from robot_bridge.store.database import run_once
-from robot_bridge.store.schema import metadata
+from robot_bridge.gateway.storage import revisions
+from robot_bridge.gateway.storage.database import run_once
+from robot_bridge.gateway.storage.roles.choice import role_manager_on
+from robot_bridge.gateway.storage.schema import metadata
 
 MINE, OTHER = ROBOTS = ("iso-1", "iso-2")
 GATEWAY = "iso-gateway"
@@ -162,7 +162,7 @@ def make_yard(server: Any) -> Yard:
 
 
 def _add_accounts(connection: Any, passwords: dict[str, str]) -> None:
-    keeper = keeper_on(connection)
+    keeper = role_manager_on(connection)
     for name in ROBOTS:
         keeper.add_robot(name, passwords[name])
     keeper.add_gateway(GATEWAY, passwords[GATEWAY])
@@ -171,4 +171,4 @@ def _add_accounts(connection: Any, passwords: dict[str, str]) -> None:
 def remove_accounts(yard: Yard) -> None:
     """Take the accounts away again: they belong to the server, which other tests use."""
     for name in ROBOTS:
-        run_once(yard.admin, lambda connection, name=name: keeper_on(connection).remove_robot(name))
+        run_once(yard.admin, lambda connection, name=name: role_manager_on(connection).remove_robot(name))

@@ -7,10 +7,10 @@ from pathlib import Path
 
 import pytest
 
-from robot_bridge.layouts.catalogue import LAYOUTS
-from robot_bridge.layouts.cone import COLOURS, Cone
-from robot_bridge.layouts.errors import DimensionError
-from robot_bridge.layouts.table import Columns, cones_of, read_csv
+from robot_bridge.core.errors import DimensionError
+from robot_bridge.core.layouts.catalogue import LAYOUTS
+from robot_bridge.core.layouts.cone_files import ConeColumns, cones_of, read_csv
+from robot_bridge.core.layouts.layout import COLOURS, Cone
 
 BASE = 0.2
 HALF = 0.1
@@ -203,7 +203,7 @@ def test_what_cannot_be_is_refused_with_what_to_give(
 
 def test_with_the_width_of_a_real_acceleration_every_cone_stands_where_it_stood(data: Path) -> None:
     head, rows = read_csv(data / "cones" / "cone_layouts.csv")
-    columns = Columns(colour="colour", layout="track", only="fssim_acceleration")
+    columns = ConeColumns(colour="colour", layout="track", only="fssim_acceleration")
     real = {(c.colour, round(c.x, 6), round(c.y, 6)) for c in cones_of(rows, head, columns, "real")}
     made = LAYOUTS["fs_acceleration"].of({"width": 3.8, "cone_base": 0}).cones()
     assert {(c.colour, round(c.x, 6), round(c.y, 6)) for c in made} == real
@@ -211,7 +211,7 @@ def test_with_the_width_of_a_real_acceleration_every_cone_stands_where_it_stood(
 
 def test_with_the_size_of_a_real_skid_pad_every_cone_stands_within_2_cm_of_where_it_stood(data: Path) -> None:
     head, rows = read_csv(data / "cones" / "cone_layouts.csv")
-    columns = Columns(colour="colour", layout="track", only="eufs_skidpad")
+    columns = ConeColumns(colour="colour", layout="track", only="eufs_skidpad")
     real = cones_of(rows, head, columns, "real")
     sizes = {"centres": 18.5, "inner": 15.225, "outer": 21.225, "path_width": 3.275, "cone_base": 0.0}
     made = LAYOUTS["fs_skidpad"].of(sizes).cones()

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from robot_bridge.layouts.errors import TableError
-from robot_bridge.layouts.track_file import (
+from robot_bridge.core.errors import ConeTableError
+from robot_bridge.core.layouts.cone_files import (
     LARGEST_FILE,
     colour_table,
     headless_rows,
@@ -75,7 +75,7 @@ def test_a_table_without_a_head_line_begins_with_a_cone(track):
     file = track("blue,0,0,0,0.01,0.01,0\nbig_orange,4,5,0,0.01,0.01,0\n", "fsds.csv")
     assert cones(headless_rows(file)) == [("blue", 0.0, 0.0), ("big_orange", 4.0, 5.0)]
     assert headless_rows(track("colour,x_m,y_m\nblue,1,2\n", "head.csv")) is None
-    with pytest.raises(TableError, match=r"fsds\.csv, row 2: a table without a head line has a colour"):
+    with pytest.raises(ConeTableError, match=r"fsds\.csv, row 2: a table without a head line has a colour"):
         headless_rows(track("blue,0,0\ngreen,1,1\n", "fsds.csv"))
 
 
@@ -108,5 +108,5 @@ def test_a_wide_table_has_two_columns_for_each_colour(head):
     ],
 )
 def test_what_is_no_track_is_named_with_what_is_read(track, name, text, said):
-    with pytest.raises(TableError, match=said):
+    with pytest.raises(ConeTableError, match=said):
         read_track(track(text, name))

@@ -14,9 +14,9 @@ from bridge_programs import wait_until
 from bridge_wires import RefusedError, Wire
 from stage.patience import BUSY
 
-from robot_bridge import jsonrpc
-from robot_bridge.links.base.positions import frame_of
-from robot_bridge.messages import SendPos, SetObject, SetPosEnd
+from robot_bridge.core.messages import SendPos, SetObject, SetPosEnd
+from robot_bridge.links.base.linked_robots import frame_of
+from robot_bridge.protocol import jsonrpc
 
 DRIVES = ("targets", "paths")
 NUMBERS = itertools.count(1)

@@ -7,7 +7,7 @@ from dataclasses import replace
 import pytest
 from adapter_on_the_line import LinkOnTheLine
 
-from robot_bridge.messages import SendPos
+from robot_bridge.core.messages import SendPos
 
 ROBOT = SendPos(60.0, 22.0, 0.0, 0.0)
 

@@ -13,9 +13,9 @@ from types import SimpleNamespace
 import pytest
 from bridge_programs import wait_until
 
-from robot_bridge import link_processes
-from robot_bridge.link_processes import LinkProcesses
-from robot_bridge.sites.settings_tables import LinkOptions
+from robot_bridge.core.sites.settings_tables import LinkOptions
+from robot_bridge.gateway.fleet import link_supervision
+from robot_bridge.gateway.fleet.link_supervision import LinkProcesses
 
 SETTINGS = 'kind = "tracker"\n[tracker]\nnmea_udp = "127.0.0.1:0"\n[tracker.names]\n1 = "car-1"\n'
 
@@ -94,8 +94,8 @@ def test_links_are_started_again_and_told_of_and_end_with_their_gateway(bridge):
 
 
 async def test_a_link_that_cannot_even_be_tried_keeps_no_other_from_going_on(tmp_path, monkeypatch):
-    monkeypatch.setattr(link_processes, "sys", SimpleNamespace(executable="/bin/false", stderr=sys.stderr))
-    monkeypatch.setattr(link_processes, "FIRST_WAIT", 0.01)
+    monkeypatch.setattr(link_supervision, "sys", SimpleNamespace(executable="/bin/false", stderr=sys.stderr))
+    monkeypatch.setattr(link_supervision, "FIRST_WAIT", 0.01)
     links = LinkProcesses(LinkOptions(tracker=("cars.toml", "no\0file.toml")), tmp_path)
     running = asyncio.create_task(links.run("ws://127.0.0.1:1/link"))
     cars, wrong = links.states

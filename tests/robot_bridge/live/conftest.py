@@ -7,7 +7,7 @@ import itertools
 import pytest
 from either_wire import WIRES
 
-from robot_bridge.robotmap.binary import decode
+from robot_bridge.core.robotmap.binary import decode
 
 NUMBERS = itertools.count(1)
 

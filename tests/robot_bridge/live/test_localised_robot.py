@@ -8,7 +8,7 @@ import typer
 from click.testing import Result
 from typer.testing import CliRunner
 
-from robot_bridge.commands.robot import robot
+from robot_bridge.cli.robot import robot
 
 SETTINGS = """
 [laser]

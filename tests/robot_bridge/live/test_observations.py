@@ -8,7 +8,7 @@ import pytest
 from bridge_wires import RefusedError
 from either_wire import WIRES
 
-from robot_bridge.robotmap.binary import decode
+from robot_bridge.core.robotmap.binary import decode
 
 PNG = b"\x89PNG\r\n\x1a\n" + bytes(range(256)) * 40
 JPEG = b"\xff\xd8\xff\xe0" + b"jpeg" * 100

@@ -7,7 +7,7 @@ from bridge_programs import wait_until
 from bridge_wires import RefusedError
 from either_wire import WIRES
 
-from robot_bridge.jsonrpc import FORBIDDEN
+from robot_bridge.protocol.jsonrpc import FORBIDDEN
 
 WHY = "enters the keepout Loading bay; because: the bay is cleared"
 

@@ -13,7 +13,7 @@ from either_wire import SqlRobot
 from websockets.exceptions import InvalidStatus
 from websockets.sync.client import connect
 
-from robot_bridge.robotmap.binary import decode
+from robot_bridge.core.robotmap.binary import decode
 
 SITE_BORDER = (0.0, 0.0, 200.0, 160.0)
 POSE = {"x": 1.0, "y": 2.0, "theta": 0.5, "v": 0.0}

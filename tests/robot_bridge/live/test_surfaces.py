@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from bridge_wires import RefusedError
 
-from robot_bridge.sites.publication import read_site
+from robot_bridge.core.sites.site import read_site
 
 PLACES = {
     (20.0, 8.0): "asphalt",

@@ -7,9 +7,15 @@ import weakref
 
 import pytest
 
-from robot_bridge.messages import SendPos
-from robot_bridge.monitoring.garbage import MOST_GONE, REST, YOUNG, Leavings, spare_what_lasts
-from robot_bridge.store.trajectories import Fix
+from robot_bridge.core.messages import SendPos
+from robot_bridge.gateway.monitoring.tasks import (
+    MOST_GONE,
+    REST,
+    YOUNG,
+    GarbageCollection,
+    freeze_permanent_objects,
+)
+from robot_bridge.gateway.storage.repositories.trajectories import Fix
 
 
 class Ring:
@@ -24,7 +30,7 @@ def looks():
     """The looks that begin in a gateway that has started."""
     begun, thresholds = [], gc.get_threshold()
     gc.unfreeze()  # what tests/conftest.py has spared
-    spare_what_lasts()
+    freeze_permanent_objects()
 
     def note(phase, info):
         if phase == "start":
@@ -56,7 +62,7 @@ def test_what_was_loaded_is_not_looked_at(looks):
 
 
 def test_what_many_connections_left_is_looked_for_at_once_and_only_once(looks):
-    leavings, old = Leavings(lambda: 0.0), weakref.ref(Ring())
+    leavings, old = GarbageCollection(lambda: 0.0), weakref.ref(Ring())
     leavings.clear_away(MOST_GONE - 1)
     assert looks == [] and old() is not None
     leavings.clear_away(MOST_GONE)
@@ -71,7 +77,7 @@ def test_a_look_that_took_long_is_not_followed_by_another_for_much_longer(looks)
     """However many connections go: everybody waits while Python looks."""
     begins, ends, too_soon, in_time = 10.0, 12.0, 11.9 + 2.0 * REST, 12.0 + 2.0 * REST
     times = iter([begins, ends, too_soon, in_time, in_time])
-    leavings = Leavings(lambda: next(times))
+    leavings = GarbageCollection(lambda: next(times))
     leavings.clear_away(MOST_GONE)
     leavings.clear_away(9 * MOST_GONE)
     assert looks == [2]

@@ -6,8 +6,8 @@ import logging
 
 import pytest
 
-from robot_bridge.access.tokens import TokenKind, new_token
-from robot_bridge.monitoring.logs import set_up_log, without_secrets
+from robot_bridge.core.logs import set_up_log, without_secrets
+from robot_bridge.gateway.auth.accounts import TokenKind, new_token
 
 
 @pytest.fixture

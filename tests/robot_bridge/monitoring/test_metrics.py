@@ -2,8 +2,7 @@
 
 from prometheus_client.parser import text_string_to_metric_families
 
-from robot_bridge.monitoring.metrics import Metrics, Reading
-from robot_bridge.monitoring.tally import Tally
+from robot_bridge.gateway.monitoring.metrics import Counters, MetricReading, Metrics
 
 
 def samples(metrics):
@@ -12,7 +11,7 @@ def samples(metrics):
 
 
 def test_what_was_counted_is_on_the_page():
-    tally = Tally()
+    tally = Counters()
     metrics = Metrics(tally)
     tally.requests["sql", "SendPos"] += 3
     tally.requests["websocket", "Ready"] += 1
@@ -29,14 +28,14 @@ def test_what_was_counted_is_on_the_page():
 
 def test_numbers_are_looked_up_when_somebody_asks():
     robots = {("fresh",): 1.0}
-    metrics = Metrics(Tally())
-    metrics.add([Reading("robot_bridge_robots", "Robots by state.", ("state",), lambda: robots)])
+    metrics = Metrics(Counters())
+    metrics.add([MetricReading("robot_bridge_robots", "Robots by state.", ("state",), lambda: robots)])
     robots["lost",] = 2.0
     assert samples(metrics)["robot_bridge_robots", ("lost",)] == 2.0
 
 
 def test_two_gateways_in_one_process_keep_their_numbers_apart():
-    first, second = Tally(), Tally()
+    first, second = Counters(), Counters()
     pages = Metrics(first), Metrics(second)
     first.steps["reached"] += 1
     assert samples(pages[0])["robot_bridge_command_steps_total", ("reached",)] == 1

@@ -6,7 +6,7 @@ import logging
 
 import pytest
 
-from robot_bridge.monitoring.repeated_lines import IN_FULL, MOST_KEYS, RepeatedLines
+from robot_bridge.core.logs import IN_FULL, MOST_KEYS, RepeatedLines
 
 log = logging.getLogger("robot_bridge.test")
 R1, R2 = ("link sql:", "robot", "'r1'", "SendPos"), ("link sql:", "robot", "'r2'", "SendPos")

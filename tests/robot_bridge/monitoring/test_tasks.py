@@ -6,10 +6,10 @@ import socket
 
 import pytest
 
-from robot_bridge.errors import HopelessError, StoreError
-from robot_bridge.monitoring import tasks
-from robot_bridge.monitoring.notify import notify, watchdog_interval
-from robot_bridge.monitoring.tally import Tally
+from robot_bridge.core.errors import FatalError, StoreError
+from robot_bridge.core.logs import notify, watchdog_interval
+from robot_bridge.gateway.monitoring import tasks
+from robot_bridge.gateway.monitoring.metrics import Counters
 
 
 @pytest.fixture(autouse=True)
@@ -32,7 +32,7 @@ def failing(times, error):
 
 
 async def test_what_fails_is_logged_counted_and_tried_again(caplog):
-    tally = Tally()
+    tally = Counters()
     work, attempts = failing(3, ZeroDivisionError("3 / 0"))
     await tasks.keep_going("sql link", work, tally)
     assert len(attempts) == 4 and tally.failures == {"sql link": 3}
@@ -41,7 +41,7 @@ async def test_what_fails_is_logged_counted_and_tried_again(caplog):
 
 
 async def test_what_the_bridge_foresaw_is_one_line_and_may_last_as_long_as_it_likes(caplog):
-    tally = Tally()
+    tally = Counters()
     work, attempts = failing(3 * tasks.LAST_ATTEMPT, StoreError("database away"))
     await tasks.keep_going("save", work, tally)
     assert len(attempts) == 3 * tasks.LAST_ATTEMPT + 1
@@ -52,15 +52,15 @@ async def test_what_the_bridge_foresaw_is_one_line_and_may_last_as_long_as_it_li
 
 async def test_what_fails_again_and_again_for_a_reason_nobody_foresaw_ends_the_gateway():
     work, attempts = failing(1000, KeyError("x"))
-    with pytest.raises(HopelessError, match=r"age failed 20 times, last with KeyError: 'x'"):
-        await tasks.keep_going("age", work, Tally())
+    with pytest.raises(FatalError, match=r"age failed 20 times, last with KeyError: 'x'"):
+        await tasks.keep_going("age", work, Counters())
     assert len(attempts) == tasks.LAST_ATTEMPT
 
 
 async def test_what_cannot_go_on_is_not_tried_again():
-    work, attempts = failing(1, HopelessError("another gateway took over"))
-    with pytest.raises(HopelessError, match="another gateway took over"):
-        await tasks.keep_going("lock", work, Tally())
+    work, attempts = failing(1, FatalError("another gateway took over"))
+    with pytest.raises(FatalError, match="another gateway took over"):
+        await tasks.keep_going("lock", work, Counters())
     assert len(attempts) == 1
 
 
@@ -73,27 +73,27 @@ async def test_one_that_cannot_go_on_ends_them_all():
         finally:
             ended.append(True)
 
-    lost, _ = failing(1, HopelessError("another gateway took over"))
-    with pytest.raises(HopelessError, match=r"^another gateway took over$"):
-        await tasks.keep_all_going({"save": others, "lock": lost}, Tally())
+    lost, _ = failing(1, FatalError("another gateway took over"))
+    with pytest.raises(FatalError, match=r"^another gateway took over$"):
+        await tasks.keep_all_going({"save": others, "lock": lost}, Counters())
     assert ended == [True]
 
 
 async def test_failures_long_before_do_not_count(monkeypatch):
     monkeypatch.setattr(tasks, "SOUND", -1.0)
     work, attempts = failing(2 * tasks.LAST_ATTEMPT, KeyError("x"))
-    await tasks.keep_going("age", work, Tally())
+    await tasks.keep_going("age", work, Counters())
     assert len(attempts) == 2 * tasks.LAST_ATTEMPT + 1
 
 
 async def test_a_task_that_works_has_a_beat():
-    tally = Tally()
+    tally = Counters()
 
     async def work():
         if tally.age("save") is not None:
-            raise HopelessError("enough")
+            raise FatalError("enough")
 
-    with pytest.raises(HopelessError):
+    with pytest.raises(FatalError):
         await tasks.every(0.001, work, "save", tally)
     assert 0 <= tally.age("save") < 5 and tally.age("other") is None
 
@@ -102,7 +102,7 @@ async def test_a_task_that_is_cancelled_ends():
     async def work():
         await asyncio.sleep(60)
 
-    task = asyncio.create_task(tasks.keep_going("age", work, Tally()))
+    task = asyncio.create_task(tasks.keep_going("age", work, Counters()))
     await asyncio.sleep(0.01)
     task.cancel()
     with pytest.raises(asyncio.CancelledError):

@@ -3,7 +3,7 @@
 import logging
 import re
 
-from robot_bridge.monitoring.unforeseen import note_unforeseen
+from robot_bridge.core.logs import log_unforeseen
 
 log = logging.getLogger("robot_bridge.test")
 
@@ -12,7 +12,7 @@ def told(secret):
     try:
         raise ValueError(secret)
     except ValueError:
-        return note_unforeseen(log, "desk of Ada")
+        return log_unforeseen(log, "desk of Ada")
 
 
 def test_the_log_says_what_happened_under_the_number_that_is_told(caplog):

@@ -6,11 +6,11 @@ import math
 
 import pytest
 
-from robot_bridge.nearness.approach import MARGIN_M, Limits, Mover, meetings
-from robot_bridge.traffic.movement import driving
+from robot_bridge.gateway.fleet.nearness import MARGIN_M, Mover, NearnessLimits, find_meetings
+from robot_bridge.gateway.traffic.conflicts import driving_movement
 
 NOW = 1000.0
-LIMITS = Limits(5.0, 10.0)
+LIMITS = NearnessLimits(5.0, 10.0)
 
 
 def at(name, x, y, vx=0.0, vy=0.0):
@@ -20,7 +20,7 @@ def at(name, x, y, vx=0.0, vy=0.0):
 def found(people, robots, near=()):
     return [
         (one.seen, one.robot, round(one.metres, 2), round(one.seconds, 2))
-        for one in meetings(people, robots, LIMITS, NOW, near)
+        for one in find_meetings(people, robots, LIMITS, NOW, near)
     ]
 
 
@@ -56,7 +56,7 @@ def test_who_goes_away_comes_later_keeps_apart_or_passes_beside_is_not(person, r
 
 
 def test_a_robot_is_followed_along_its_way_and_not_straight_on():
-    corner = driving("r1", [(0.0, 0.0), (4.0, 0.0), (4.0, 40.0)], 2.0, NOW, 0.0)
+    corner = driving_movement("r1", [(0.0, 0.0), (4.0, 0.0), (4.0, 40.0)], 2.0, NOW, 0.0)
     assert found([at("straight-on", 12.0, 0.0)], [corner]) == []
     ((seen, _, _, seconds),) = found([at("round-the-corner", 4.0, 15.0)], [corner])
     assert (seen, seconds) == ("round-the-corner", pytest.approx(7.0, abs=0.01))
@@ -72,7 +72,7 @@ def test_who_was_near_is_so_up_to_the_margin_beyond():
 
 def test_the_nearest_in_time_comes_first_and_the_place_is_the_persons():
     robots = [at("r1", 14.0, 0.0), at("r2", 0.0, 4.0)]
-    first, second = meetings([at("anna", 0.0, 0.0, 1.0)], robots, LIMITS, NOW)
+    first, second = find_meetings([at("anna", 0.0, 0.0, 1.0)], robots, LIMITS, NOW)
     assert (first.robot, second.robot) == ("r2", "r1")
     assert math.dist(second.place, (9.0, 0.0)) < 0.01
 

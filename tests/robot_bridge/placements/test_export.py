@@ -6,10 +6,9 @@ import pytest
 from command_line import run_command
 from osgeo import ogr
 
-from robot_bridge.store import placements
-from robot_bridge.store.address import read_address
-from robot_bridge.store.database import Database
-from robot_bridge.store.placements import Collected, NewPlacement
+from robot_bridge.gateway.storage.database import Database, read_address
+from robot_bridge.gateway.storage.repositories import records
+from robot_bridge.gateway.storage.repositories.records import CollectedCone, NewPlacement
 
 ogr.UseExceptions()
 AT = 1_790_000_000.125
@@ -44,9 +43,9 @@ async def where(sample_site, tmp_path):
     database = Database(read_address(f"sqlite:///{tmp_path}/fleet.db"))
     await database.open()
     for n in range(3):
-        await database.run(placements.add, cone(n))
-    await database.run(placements.add, cone(7, layout="circle", robot="r2", plan="p1"))
-    await database.run(placements.collect, Collected("r2", AT + 60, cone="c1", layout="slalom"))
+        await database.run(records.add_placed_cones, cone(n))
+    await database.run(records.add_placed_cones, cone(7, layout="circle", robot="r2", plan="p1"))
+    await database.run(records.collect, CollectedCone("r2", AT + 60, cone="c1", layout="slalom"))
     await database.close()
     return "--site", sample_site, "--database", f"sqlite:///{tmp_path}/fleet.db"
 

@@ -6,8 +6,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from robot_bridge.errors import RefusedError
-from robot_bridge.messages import (
+from robot_bridge.core.errors import RefusedError
+from robot_bridge.core.messages import (
     CommandReport,
     CommandState,
     CommandStep,
@@ -17,9 +17,10 @@ from robot_bridge.messages import (
     TakeOver,
     TaskState,
 )
-from robot_bridge.messages.queues import LONGEST_QUEUE
-from robot_bridge.queues import edits, life, sharing
-from robot_bridge.queues.queue import Queue, QueuedTask
+from robot_bridge.core.messages.queues import LONGEST_QUEUE
+from robot_bridge.gateway.model import task_queue
+from robot_bridge.gateway.model.task_queue import Queue, QueuedTask
+from robot_bridge.gateway.queues import task_life
 
 IDS = [f"task-{n:04}" for n in range(12)]
 
@@ -41,8 +42,8 @@ class Story:
         self.queue, self.ended = Queue("r1"), {}
 
     def known(self):
-        here = {one.id: edits.Whereabouts("r1", one.state) for one in self.queue.tasks}
-        return {**{id: edits.Whereabouts("r1", state) for id, state in self.ended.items()}, **here}
+        here = {one.id: task_queue.Whereabouts("r1", one.state) for one in self.queue.tasks}
+        return {**{id: task_queue.Whereabouts("r1", state) for id, state in self.ended.items()}, **here}
 
     def edited(self, after):
         kept = {one.id for one in after.tasks}
@@ -56,25 +57,25 @@ class Story:
         queue, known = self.queue, self.known()
         chosen = [task(id) for id in dict.fromkeys([first, second, IDS[0]])]
         after = {
-            "set": lambda: edits.replaced(queue, chosen, known, "Ada", 1.0),
-            "add": lambda: edits.added(queue, [task(first)], second, known, "Ada", 1.0),
-            "append": lambda: edits.added(queue, [task(first)], None, known, "Ada", 1.0),
-            "move": lambda: edits.moved(queue, first, second),
-            "remove": lambda: edits.removed(queue, first),
-            "first": lambda: edits.put_first(queue, first),
-            "resume": lambda: edits.resumed(queue, "Ada", 1.0),
+            "set": lambda: task_queue.replace_tasks(queue, chosen, known, "Ada", 1.0),
+            "add": lambda: task_queue.add_tasks(queue, [task(first)], second, known, "Ada", 1.0),
+            "append": lambda: task_queue.add_tasks(queue, [task(first)], None, known, "Ada", 1.0),
+            "move": lambda: task_queue.move_task(queue, first, second),
+            "remove": lambda: task_queue.remove_task(queue, first),
+            "first": lambda: task_queue.put_task_first(queue, first),
+            "resume": lambda: task_queue.resume_queue(queue, "Ada", 1.0),
         }
         self.edited(after[kind]())
 
     def go_on(self, state, skips):
         """Send the head, or let the current task's command end so."""
         if self.queue.current:
-            outcome = life.settled(self.queue, report(CommandState(state)), 1, skips=skips)
+            outcome = task_life.settle_task(self.queue, report(CommandState(state)), 1, skips=skips)
             self.queue = outcome.queue
             if outcome.ended:
                 self.ended[outcome.ended.id] = outcome.ended.state
         elif self.queue.running and self.queue.head:
-            self.queue = life.sent(self.queue, 2.0)
+            self.queue = task_life.mark_sent(self.queue, 2.0)
 
     def check(self):
         ids = [one.id for one in self.queue.tasks]
@@ -111,34 +112,36 @@ def test_whatever_happens_each_task_is_in_one_place(steps):
         if current is not None and (current.id, current.attempts) not in commands:
             commands.add((current.id, current.attempts))
     # No attempt shares its command with another one.
-    ids = {life.command_id(QueuedTask(task(id), "Ada", 1.0, attempts=n)) for id, n in commands}
+    ids = {task_life.command_id(QueuedTask(task(id), "Ada", 1.0, attempts=n)) for id, n in commands}
     assert len(ids) == len(commands)
 
 
 def test_a_failed_task_is_skipped_or_pauses_by_the_sites_settings():
-    queue = life.sent(edits.added(Queue("r1"), [task(IDS[0]), task(IDS[1])], None, {}, "Ada", 1.0), 2.0)
-    skipped = life.settled(queue, report(CommandState.FAILED), 1, skips=True)
+    queue = task_life.mark_sent(
+        task_queue.add_tasks(Queue("r1"), [task(IDS[0]), task(IDS[1])], None, {}, "Ada", 1.0), 2.0
+    )
+    skipped = task_life.settle_task(queue, report(CommandState.FAILED), 1, skips=True)
     assert skipped.ended is not None and skipped.ended.state is TaskState.SKIPPED
     assert "the robot gave no reason" in (skipped.ended.reason or "")
     assert skipped.queue.running and [one.id for one in skipped.queue.tasks] == [IDS[1]]
-    paused = life.settled(queue, report(CommandState.FAILED), 1, skips=False)
+    paused = task_life.settle_task(queue, report(CommandState.FAILED), 1, skips=False)
     assert paused.ended is None and not paused.queue.running
     assert paused.queue.tasks[0].state is TaskState.FAILED
 
 
 def test_a_queue_has_an_end():
     many = [QueueTask(f"task-{n:05}", 0.0, 0.0) for n in range(LONGEST_QUEUE)]
-    queue = edits.added(Queue("r1"), many, None, {}, "Ada", 1.0)
+    queue = task_queue.add_tasks(Queue("r1"), many, None, {}, "Ada", 1.0)
     with pytest.raises(RefusedError, match="would hold 1001 tasks, and takes 1000 at most"):
-        edits.added(queue, [task(IDS[0])], None, {}, "Ada", 1.0)
+        task_queue.add_tasks(queue, [task(IDS[0])], None, {}, "Ada", 1.0)
 
 
 @settings(max_examples=settings.default.max_examples, deadline=None)
 @given(st.permutations(IDS), st.integers(0, 12), st.booleans(), st.booleans())
 def test_a_complete_split_keeps_every_task_once(order, cut, runs, takes_current):
-    mine = edits.added(Queue("r1"), [task(id) for id in IDS[:8]], None, {}, "Ada", 1.0)
-    mine = life.sent(mine, 2.0) if runs else mine
-    other = edits.added(Queue("r2"), [task(id) for id in IDS[8:]], None, {}, "Ada", 1.0)
+    mine = task_queue.add_tasks(Queue("r1"), [task(id) for id in IDS[:8]], None, {}, "Ada", 1.0)
+    mine = task_life.mark_sent(mine, 2.0) if runs else mine
+    other = task_queue.add_tasks(Queue("r2"), [task(id) for id in IDS[8:]], None, {}, "Ada", 1.0)
     if runs and not takes_current:
         order = [id for id in order if id != IDS[0]]
     shares = [
@@ -146,7 +149,7 @@ def test_a_complete_split_keeps_every_task_once(order, cut, runs, takes_current)
         Share("r3", 0, [SharedTask(id) for id in order[cut:]]),
     ]
     before = {"r1": mine, "r2": other, "r3": Queue("r3")}
-    after = sharing.taken_over(before, TakeOver("r1", 1, shares), "Ada", 3.0)
+    after = task_life.transfer_tasks(before, TakeOver("r1", 1, shares), "Ada", 3.0)
     left = [one.id for name in before for one in after[name].tasks]
     assert sorted(left) == sorted(IDS)
     assert not after["r1"].running and all(after[name].revision > before[name].revision for name in before)

@@ -6,9 +6,14 @@ import math
 
 import pytest
 
-from robot_bridge.errors import RefusedError
-from robot_bridge.messages import MessageError, QueueTask, SetPath, SetPosEnd, TaskKind
-from robot_bridge.queues.legs import cone_place, legs, path_left, standing_place
+from robot_bridge.core.errors import RefusedError
+from robot_bridge.core.messages import MessageError, QueueTask, SetPath, SetPosEnd, TaskKind
+from robot_bridge.gateway.queues.task_life import (
+    commands_of_task,
+    cone_place,
+    remaining_task_path,
+    standing_place,
+)
 
 LINE = [(0.0, 0.0), (10.0, 0.0), (20.0, 0.0)]
 LOOP = [(0.0, 0.0), (10.0, 0.0), (10.0, 10.0), (0.0, 10.0), (0.0, 0.0)]
@@ -30,18 +35,23 @@ def task(kind="drive", end=(20.0, 0.0), **more):
     ],
 )
 def test_a_task_takes_these_commands(wanted, commands):
-    assert legs(wanted, NOWHERE) == commands
+    assert commands_of_task(wanted, NOWHERE) == commands
 
 
 def test_a_robot_whose_cones_stand_ahead_of_it_stops_short_of_them():
-    path, end = legs(task("collect", path=LINE, theta=0.0), (0.5, 0.0))
+    path, end = commands_of_task(task("collect", path=LINE, theta=0.0), (0.5, 0.0))
     assert path.points == [(0.0, 0.0), (10.0, 0.0), (19.5, 0.0)]
     assert (end.x, end.y) == (19.5, 0.0)
     assert (
-        len(legs(task("collect", end=(0.4, 0.0), path=[(0.0, 0.0), (0.4, 0.0)], theta=0.0), (0.5, 0.0))) == 1
+        len(
+            commands_of_task(
+                task("collect", end=(0.4, 0.0), path=[(0.0, 0.0), (0.4, 0.0)], theta=0.0), (0.5, 0.0)
+            )
+        )
+        == 1
     )
     # What is only driven ends where it was drawn.
-    assert legs(task(path=LINE), (0.5, 0.0)) == [SetPath(LINE)]
+    assert commands_of_task(task(path=LINE), (0.5, 0.0)) == [SetPath(LINE)]
 
 
 @pytest.mark.parametrize("theta", [0.0, 1.0, math.pi, -2.0])
@@ -52,25 +62,33 @@ def test_where_a_robot_stands_and_where_its_cone_does_belong_together(theta):
 
 def test_without_a_heading_nobody_knows_where_that_is():
     with pytest.raises(RefusedError, match=r"has no theta, and on this site a cone stands 0\.50 m off"):
-        legs(task("place"), (0.5, 0.0))
+        commands_of_task(task("place"), (0.5, 0.0))
 
 
 def test_a_path_is_sent_whole_to_a_robot_at_its_beginning():
-    assert path_left(SetPath(LINE), (0.5, 1.0), 0.0, join=False) == SetPath(LINE)
+    assert remaining_task_path(SetPath(LINE), (0.5, 1.0), 0.0, join=False) == SetPath(LINE)
 
 
 def test_what_is_left_goes_on_from_the_robot():
-    assert path_left(SetPath(LINE, 0.5), (6.0, 0.5), 5.0, join=True) == SetPath([(6.0, 0.5), *LINE[1:]], 0.5)
-    assert path_left(SetPath(LINE), (20.0, 0.1), 19.0, join=True).points == [(20.0, 0.1), LINE[-1]]
+    assert remaining_task_path(SetPath(LINE, 0.5), (6.0, 0.5), 5.0, join=True) == SetPath(
+        [(6.0, 0.5), *LINE[1:]], 0.5
+    )
+    assert remaining_task_path(SetPath(LINE), (20.0, 0.1), 19.0, join=True).points == [(20.0, 0.1), LINE[-1]]
 
 
 def test_of_a_loop_nothing_is_left_out_that_was_not_driven():
-    assert path_left(SetPath(LOOP), (0.0, 5.0), 34.0, join=True).points == [(0.0, 5.0), (0.0, 0.0)]
-    assert path_left(SetPath(LOOP), (0.0, 0.0), 0.0, join=True) == SetPath(LOOP)
+    assert remaining_task_path(SetPath(LOOP), (0.0, 5.0), 34.0, join=True).points == [(0.0, 5.0), (0.0, 0.0)]
+    assert remaining_task_path(SetPath(LOOP), (0.0, 0.0), 0.0, join=True) == SetPath(LOOP)
     # At the crossing of an eight the sooner passage counts.
     eight = [(0.0, 0.0), (20.0, 20.0), (20.0, 0.0), (0.0, 20.0)]
-    assert path_left(SetPath(eight), (10.0, 10.0), 0.0, join=True).points == [(10.0, 10.0), *eight[1:]]
-    assert path_left(SetPath(eight), (10.0, 10.0), 45.0, join=True).points == [(10.0, 10.0), eight[-1]]
+    assert remaining_task_path(SetPath(eight), (10.0, 10.0), 0.0, join=True).points == [
+        (10.0, 10.0),
+        *eight[1:],
+    ]
+    assert remaining_task_path(SetPath(eight), (10.0, 10.0), 45.0, join=True).points == [
+        (10.0, 10.0),
+        eight[-1],
+    ]
 
 
 @pytest.mark.parametrize(
@@ -83,7 +101,7 @@ def test_of_a_loop_nothing_is_left_out_that_was_not_driven():
 )
 def test_a_robot_that_is_not_on_its_path_is_sent_nowhere(here, driven, join, said):
     with pytest.raises(RefusedError, match=said):
-        path_left(SetPath(LINE), here, driven, join=join)
+        remaining_task_path(SetPath(LINE), here, driven, join=join)
 
 
 @pytest.mark.parametrize(

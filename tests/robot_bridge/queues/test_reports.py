@@ -4,7 +4,7 @@ import json
 
 import pytest
 
-from robot_bridge.messages import (
+from robot_bridge.core.messages import (
     CommandReport,
     CommandState,
     CommandStep,
@@ -19,7 +19,7 @@ from robot_bridge.messages import (
     queue_report,
     to_json,
 )
-from robot_bridge.queues import queue as queues
+from robot_bridge.gateway.model import task_queue as queues
 
 TASK = QueueTask("task-0001", 3.0, 4.0, 0.5, TaskKind.PLACE, [(0.0, 0.0), (3.0, 4.0)], "c1", "7", "row", "p1")
 CURRENT = queues.QueuedTask(TASK, "Ada", 1.0, TaskState.CURRENT, 0, 1, 2, "command", 2.0, reason="again")

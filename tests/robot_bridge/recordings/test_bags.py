@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 import zstandard
 
-from robot_bridge.recordings.errors import RecordingError
-from robot_bridge.recordings.opening import ReadingOptions, read_recording
+from robot_bridge.recordings.readers import ReadingOptions, read_recording
+from robot_bridge.recordings.samples import RecordingError
 
 pytest.importorskip("rosbags.highlevel")
 from rosbags.rosbag1 import Writer as Writer1

@@ -9,10 +9,9 @@ import time
 import pytest
 
 from robot_bridge.recordings import csv_table
-from robot_bridge.recordings.columns import TableForm
-from robot_bridge.recordings.errors import RecordingError
-from robot_bridge.recordings.opening import ReadingOptions, read_recording
-from robot_bridge.recordings.samples import Remarks
+from robot_bridge.recordings.csv_table import TableForm
+from robot_bridge.recordings.readers import ReadingOptions, read_recording
+from robot_bridge.recordings.samples import RecordingError, Remarks
 from robot_bridge.recordings.tracks import longest_rising
 
 HEAD = "time,robot,x,y,theta,v\n"

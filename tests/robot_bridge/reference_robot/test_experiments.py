@@ -14,11 +14,15 @@ import msgspec
 import numpy as np
 import pytest
 
-from robot_bridge.reference_robot import experiment
-from robot_bridge.reference_robot.errors import ReferenceRobotError
-from robot_bridge.reference_robot.experiment import Carried, ExperimentSettings, Record
-from robot_bridge.reference_robot.experiment_report import csv_text, figures, table_text
-from robot_bridge.reference_robot.settings import FilterSettings, LaserSettings, WorldSettings
+from robot_bridge.reference_robot.localisation import experiment
+from robot_bridge.reference_robot.localisation.experiment import Carried, ExperimentSettings, Record
+from robot_bridge.reference_robot.localisation.experiment_report import csv_text, figures, table_text
+from robot_bridge.reference_robot.localisation.settings import (
+    FilterSettings,
+    LaserSettings,
+    ReferenceRobotError,
+    WorldSettings,
+)
 
 ROUND = ExperimentSettings(
     title="Round the middle",

@@ -10,7 +10,7 @@ import msgspec
 import numpy as np
 import pytest
 
-from robot_bridge.messages import (
+from robot_bridge.core.messages import (
     Abort,
     GetMap,
     GetPath,
@@ -22,22 +22,26 @@ from robot_bridge.messages import (
     SetPosIni,
     Stopped,
 )
-from robot_bridge.reference_robot.errors import ReferenceRobotError
-from robot_bridge.reference_robot.inline_executor import InlineExecutor
-from robot_bridge.reference_robot.people import Surroundings
-from robot_bridge.reference_robot.sensors import Motion
-from robot_bridge.reference_robot.settings import FilterSettings, LaserSettings, RobotSettings, WorldSettings
-from robot_bridge.reference_robot.simulation import MAP_MARGIN, localised_robot
-from robot_bridge.robot.agent import Agent, AgentSettings
-from robot_bridge.robot.body import BodyLimits
-from robot_bridge.robotmap.binary import encode
-from robot_bridge.robotmap.builder import Window, build_map
-from robot_bridge.robotmap.model import PART_OF
-from robot_bridge.robotmap.outlines import Outlines
+from robot_bridge.core.robotmap.binary import encode
+from robot_bridge.core.robotmap.builder import build_map
+from robot_bridge.core.robotmap.model import PART_OF, Window
+from robot_bridge.core.robotmap.outlines import Outlines
+from robot_bridge.reference_robot.agent import Agent, AgentSettings
+from robot_bridge.reference_robot.body import BodyLimits
+from robot_bridge.reference_robot.localisation.avoidance import MovingObstacles
+from robot_bridge.reference_robot.localisation.sensors import Motion
+from robot_bridge.reference_robot.localisation.settings import (
+    FilterSettings,
+    LaserSettings,
+    LocalisedRobotSettings,
+    ReferenceRobotError,
+    WorldSettings,
+)
+from robot_bridge.reference_robot.localisation.simulation import MAP_MARGIN, InlineExecutor, localised_robot
 
 DT = 0.05
 LIMITS = BodyLimits(speed=1.0, acceleration=4.0)
-SETTINGS = RobotSettings(
+SETTINGS = LocalisedRobotSettings(
     world=WorldSettings(moved=0.1, missing=0.5),
     laser=LaserSettings(reach=15.0, beams=60, short=0.2),
     filter=FilterSettings(least=200, most=2000),
@@ -375,7 +379,7 @@ def test_it_asks_for_another_path_when_its_way_stays_blocked(robot):
 
 
 def test_nobody_sees_itself():
-    around = Surroundings()
+    around = MovingObstacles()
     one, other = object(), object()
     around.add(one, lambda: np.array([[1.0, 2.0, 0.3]]))
     around.add(other, lambda: np.array([[5.0, 6.0, 0.3]]))

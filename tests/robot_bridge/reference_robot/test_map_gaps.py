@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from robot_bridge.messages import (
+from robot_bridge.core.messages import (
     ObservationReport,
     ObservationState,
     OpAck,
@@ -19,22 +19,21 @@ from robot_bridge.messages import (
     SetPath,
     Stopped,
 )
-from robot_bridge.observed_objects import ObservedObjects
-from robot_bridge.reference_robot.inline_executor import InlineExecutor
-from robot_bridge.reference_robot.settings import (
+from robot_bridge.core.robotmap.binary import encode
+from robot_bridge.core.robotmap.builder import build_map
+from robot_bridge.core.robotmap.model import ShapeType, Window
+from robot_bridge.core.robotmap.outlines import OutlineRow, Outlines
+from robot_bridge.gateway.site.site_maps import ObservedObjects
+from robot_bridge.reference_robot.agent import Agent, AgentSettings
+from robot_bridge.reference_robot.body import BodyLimits
+from robot_bridge.reference_robot.localisation.settings import (
     FilterSettings,
     LaserSettings,
-    RobotSettings,
+    LocalisedRobotSettings,
 )
-from robot_bridge.reference_robot.simulation import localised_robot
-from robot_bridge.robot.agent import Agent, AgentSettings
-from robot_bridge.robot.body import BodyLimits
-from robot_bridge.robotmap.binary import encode
-from robot_bridge.robotmap.builder import Window, build_map
-from robot_bridge.robotmap.model import ShapeType
-from robot_bridge.robotmap.outlines import OutlineRow, Outlines
+from robot_bridge.reference_robot.localisation.simulation import InlineExecutor, localised_robot
 
-SETTINGS = RobotSettings(
+SETTINGS = LocalisedRobotSettings(
     laser=LaserSettings(reach=10.0, beams=90, short=0.1), filter=FilterSettings(least=300, most=2000)
 )
 PILLARS = [(17.0, 2.2, 0.3), (23.0, 5.8, 0.3), (29.0, 2.2, 0.3)]

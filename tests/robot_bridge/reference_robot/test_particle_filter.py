@@ -7,23 +7,24 @@ import math
 import numpy as np
 import pytest
 
-from robot_bridge.reference_robot.errors import ReferenceRobotError
-from robot_bridge.reference_robot.particle_filter import FIX_WRONG, ParticleFilter
-from robot_bridge.reference_robot.sensors import (
-    Laser,
+from robot_bridge.core.robotmap.builder import build_map
+from robot_bridge.core.robotmap.model import Window
+from robot_bridge.core.robotmap.outlines import Outlines
+from robot_bridge.reference_robot.localisation.particle_filter import FIX_WRONG, ParticleFilter
+from robot_bridge.reference_robot.localisation.sensors import (
     Motion,
-    Odometry,
+    SimulatedLaser,
+    SimulatedOdometry,
     motion_between,
 )
-from robot_bridge.reference_robot.settings import (
+from robot_bridge.reference_robot.localisation.settings import (
     FilterSettings,
     LaserSettings,
     OdometrySettings,
+    ReferenceRobotError,
     WorldSettings,
 )
-from robot_bridge.reference_robot.world import changed, walls_of
-from robot_bridge.robotmap.builder import Window, build_map
-from robot_bridge.robotmap.outlines import Outlines
+from robot_bridge.reference_robot.localisation.world import changed, walls_of
 
 LASER = LaserSettings(reach=15.0, beams=60, short=0.3)
 SETTINGS = FilterSettings(least=300, most=3000)
@@ -40,8 +41,8 @@ class Run:
     def __init__(self, yard, seed=1, settings=SETTINGS):
         rng = np.random.default_rng(seed)
         seen = walls_of(yard).higher_than(LASER.height)
-        self.laser = Laser(changed(seen, WorldSettings(moved=0.1, missing=0.5), rng), LASER, rng)
-        self.wheels = Odometry(OdometrySettings(), rng)
+        self.laser = SimulatedLaser(changed(seen, WorldSettings(moved=0.1, missing=0.5), rng), LASER, rng)
+        self.wheels = SimulatedOdometry(OdometrySettings(), rng)
         self.filter = ParticleFilter(yard, LASER, settings, np.random.default_rng(seed))
 
     def drive(self, path):

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 import shapely
 
-from robot_bridge.reference_robot.errors import ReferenceRobotError
-from robot_bridge.reference_robot.merging import merged
-from robot_bridge.reference_robot.ray_casting import FEW_CELLS, RayCaster
+from robot_bridge.reference_robot.localisation.ray_casting import FEW_CELLS, RayCaster
+from robot_bridge.reference_robot.localisation.segments import merge_collinear
+from robot_bridge.reference_robot.localisation.settings import ReferenceRobotError
 
 REACH = 25.0
 NUMBA = pytest.param(
@@ -130,7 +130,7 @@ def test_what_is_not_finite_is_refused():
 def test_merged_segments_cover_the_same(walls):
     a, b = walls(np.random.default_rng(6))
     # Each twice, the second time the other way round: one remains.
-    few_a, few_b = merged(np.concatenate([a, b]), np.concatenate([b, a]))
+    few_a, few_b = merge_collinear(np.concatenate([a, b]), np.concatenate([b, a]))
     assert len(few_a) <= len(a)
     before, after = (
         shapely.union_all(shapely.linestrings(np.stack(ends, axis=1))) for ends in ((a, b), (few_a, few_b))
@@ -142,7 +142,7 @@ def test_merged_segments_cover_the_same(walls):
 def test_segments_on_one_line_become_one_only_where_they_meet():
     a = np.array([[0.0, 0.0], [3.0, 0.0], [1.0, 0.0], [5.0, 0.0], [0.0, 0.1]])
     b = np.array([[1.0, 0.0], [1.5, 0.0], [2.0, 0.0], [6.0, 0.0], [1.0, 0.1]])
-    few_a, few_b = merged(a, b)
+    few_a, few_b = merge_collinear(a, b)
     assert sorted(zip(few_a[:, 0], few_b[:, 0], few_a[:, 1], strict=True)) == [
         (0.0, 1.0, 0.1),
         (0.0, 3.0, 0.0),

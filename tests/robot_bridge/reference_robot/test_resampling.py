@@ -7,8 +7,13 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robot_bridge.reference_robot.resampling import in_groups, low_variance, occupied_bins, particles_for
-from robot_bridge.reference_robot.settings import FilterSettings
+from robot_bridge.reference_robot.localisation.scan_matching import (
+    in_groups,
+    low_variance,
+    occupied_bins,
+    particles_for,
+)
+from robot_bridge.reference_robot.localisation.settings import FilterSettings
 
 weights = st.lists(st.floats(0, 1), min_size=1, max_size=40).filter(lambda given: sum(given) > 1e-3)
 

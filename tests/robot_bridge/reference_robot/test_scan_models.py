@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 import shapely
 
-from robot_bridge.reference_robot.particle_filter import ParticleFilter
-from robot_bridge.reference_robot.scan_models import BeamModel, FieldModel, usable_beams
-from robot_bridge.reference_robot.sensors import Laser, bearings_of
-from robot_bridge.reference_robot.settings import FilterSettings, LaserSettings
-from robot_bridge.reference_robot.world import walls_of
+from robot_bridge.reference_robot.localisation.particle_filter import ParticleFilter
+from robot_bridge.reference_robot.localisation.scan_matching import BeamModel, FieldModel, usable_beams
+from robot_bridge.reference_robot.localisation.sensors import SimulatedLaser, bearings_of
+from robot_bridge.reference_robot.localisation.settings import FilterSettings, LaserSettings
+from robot_bridge.reference_robot.localisation.world import walls_of
 
 LASER = LaserSettings(reach=12.0, beams=40, short=0.3, dropout=0.1)
 SETTINGS = FilterSettings()
@@ -26,7 +26,7 @@ def walls(yard):
 
 @pytest.fixture(scope="module")
 def scan(yard):
-    return Laser(walls_of(yard), LASER, np.random.default_rng(1)).scan(POSE)
+    return SimulatedLaser(walls_of(yard), LASER, np.random.default_rng(1)).scan(POSE)
 
 
 @pytest.fixture(scope="module")

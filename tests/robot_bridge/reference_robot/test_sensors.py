@@ -9,24 +9,24 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robot_bridge.reference_robot.ray_casting import RayCaster
-from robot_bridge.reference_robot.sensors import (
-    Gps,
-    Gyroscope,
-    Laser,
+from robot_bridge.reference_robot.localisation.ray_casting import RayCaster
+from robot_bridge.reference_robot.localisation.sensors import (
     Motion,
-    Odometry,
+    SimulatedGps,
+    SimulatedGyroscope,
+    SimulatedLaser,
+    SimulatedOdometry,
     bearings_of,
     motion_between,
     moved,
 )
-from robot_bridge.reference_robot.settings import (
+from robot_bridge.reference_robot.localisation.settings import (
     GpsSettings,
     GyroscopeSettings,
     LaserSettings,
     OdometrySettings,
 )
-from robot_bridge.reference_robot.world import walls_of
+from robot_bridge.reference_robot.localisation.world import walls_of
 
 POSE = (14.5, 8.0, 0.7)
 PERFECT = {"noise": 0.0, "short": 0.0, "dropout": 0.0}
@@ -35,7 +35,7 @@ angle = st.floats(-3.1, 3.1)
 
 
 def laser(yard, seed=1, **settings):
-    return Laser(walls_of(yard), LaserSettings(**settings), np.random.default_rng(seed))
+    return SimulatedLaser(walls_of(yard), LaserSettings(**settings), np.random.default_rng(seed))
 
 
 @given(coordinate, coordinate, angle, st.floats(-3, 3), st.floats(-1.5, 1.5))
@@ -79,12 +79,12 @@ def test_the_same_seed_makes_the_same_scans(yard):
 
 def test_odometry_has_a_scale_and_a_drift_for_each_run_and_noise():
     settings = OdometrySettings(scale=0.02, drift_deg=0.5, noise=0.0, turn_noise=0.0)
-    runs = [Odometry(settings, np.random.default_rng(seed)) for seed in range(400)]
+    runs = [SimulatedOdometry(settings, np.random.default_rng(seed)) for seed in range(400)]
     said = np.array([run.measure(Motion(1.0, 0.0)) for run in runs])
     np.testing.assert_allclose(said, [run.measure(Motion(1.0, 0.0)) for run in runs], atol=1e-9)
     assert said.mean(axis=0) == pytest.approx((1, 0), abs=0.003)
     assert said.std(axis=0) == pytest.approx((0.02, math.radians(0.5)), rel=0.15)
-    one = Odometry(OdometrySettings(scale=0, drift_deg=0, noise=0.03), np.random.default_rng(1))
+    one = SimulatedOdometry(OdometrySettings(scale=0, drift_deg=0, noise=0.03), np.random.default_rng(1))
     assert np.std([one.measure(Motion(4.0, 0.0)).distance for _ in range(2000)]) == pytest.approx(
         0.06, rel=0.1
     )
@@ -93,13 +93,13 @@ def test_odometry_has_a_scale_and_a_drift_for_each_run_and_noise():
 
 def test_a_gyroscope_has_a_bias_for_each_run():
     quiet = GyroscopeSettings(bias_deg=0.1, noise_deg=0.0)
-    said = [Gyroscope(quiet, np.random.default_rng(seed)).measure(0.5, 10.0) for seed in range(400)]
+    said = [SimulatedGyroscope(quiet, np.random.default_rng(seed)).measure(0.5, 10.0) for seed in range(400)]
     assert np.mean(said) == pytest.approx(0.5, abs=0.003)
     assert np.std(said) == pytest.approx(math.radians(1.0), rel=0.15)
 
 
 def test_gps_has_a_fix_in_the_open_and_none_between_walls(yard):
-    gps = Gps(walls_of(yard), GpsSettings(noise=1.0), np.random.default_rng(1))
+    gps = SimulatedGps(walls_of(yard), GpsSettings(noise=1.0), np.random.default_rng(1))
     assert gps.fix((21.0, 7.5, 0.0)) is not None  # one house beside it
     assert gps.fix((21.0, 13.5, 0.0)) is None  # in the court
     fixes = np.array([gps.fix((15.0, 8.0, 0.0)) for _ in range(400)])

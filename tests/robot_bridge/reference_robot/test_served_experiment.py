@@ -10,21 +10,21 @@ import numpy as np
 import pytest
 from sqlalchemy import make_url
 
-from robot_bridge.commands.served_experiment import ServedDrives, drive_at_gateway
-from robot_bridge.errors import BridgeError
-from robot_bridge.reference_robot.experiment import Carried, ExperimentSettings, route_from
-from robot_bridge.reference_robot.experiment_report import figures, table_text
-from robot_bridge.reference_robot.settings import (
+from robot_bridge.cli.served_experiment import ServedDrives, drive_at_gateway
+from robot_bridge.core.errors import BridgeError
+from robot_bridge.core.robotmap.builder import build_map
+from robot_bridge.core.robotmap.model import ShapeType, Window
+from robot_bridge.core.robotmap.outlines import OutlineRow, Outlines
+from robot_bridge.core.sites.settings import SiteBounds, SiteSettings
+from robot_bridge.core.sites.site import read_site, write_site
+from robot_bridge.reference_robot.localisation.experiment import Carried, ExperimentSettings, route_from
+from robot_bridge.reference_robot.localisation.experiment_report import figures, table_text
+from robot_bridge.reference_robot.localisation.settings import (
     FilterSettings,
     LaserSettings,
     OdometrySettings,
     WorldSettings,
 )
-from robot_bridge.robotmap.builder import Window, build_map
-from robot_bridge.robotmap.model import ShapeType
-from robot_bridge.robotmap.outlines import OutlineRow, Outlines
-from robot_bridge.sites.publication import read_site, write_site
-from robot_bridge.sites.settings import Bounds, SiteSettings
 
 SETTINGS = ExperimentSettings(
     route=[(156.0, 43.0), (162.0, 43.0), (162.0, 46.0), (156.0, 46.0), (156.0, 43.0)],
@@ -63,7 +63,7 @@ def pillar(x, y):
 def test_what_a_robot_reports_and_an_operator_accepts_brings_down_the_error_of_others(tmp_path):
     frame = SiteSettings(
         id="corridor", name="Corridor", version=1, crs="EPSG:32633", origin=(640420.0, 5193480.0),
-        bounds=Bounds(0.0, 0.0, 45.0, 8.0), rotation_deg=0.0,
+        bounds=SiteBounds(0.0, 0.0, 45.0, 8.0), rotation_deg=0.0,
     )  # fmt: skip
     # How far along its plain walls it is a robot cannot see.
     walls = np.array([[0, 0], [45, 0], [45, 8], [0, 8], [0, 0]], dtype=float)

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 import shapely
 
-from robot_bridge.reference_robot.settings import WorldSettings
-from robot_bridge.reference_robot.world import changed, inside_solids, walls_of
-from robot_bridge.robotmap.model import ShapeType
+from robot_bridge.core.robotmap.model import ShapeType
+from robot_bridge.reference_robot.localisation.settings import WorldSettings
+from robot_bridge.reference_robot.localisation.world import changed, inside_solids, walls_of
 
 
 def test_stairs_ramps_and_what_is_lower_than_the_laser_are_not_seen(yard):

@@ -9,9 +9,9 @@ from typing import Any
 
 from database_client import DatabaseClient
 
-from robot_bridge.store import revisions
-from robot_bridge.store.database import run_once
-from robot_bridge.store.schema import metadata
+from robot_bridge.gateway.storage import revisions
+from robot_bridge.gateway.storage.database import run_once
+from robot_bridge.gateway.storage.schema import metadata
 
 KINDS = ("sqlite", "postgresql", "mariadb")
 MADE = """

@@ -7,14 +7,14 @@ import time
 
 import numpy as np
 
-from robot_bridge.road_traffic.aside import way_aside
-from robot_bridge.roads.surfaces.surface import Surface
-from robot_bridge.robotmap.model import ShapeType
-from robot_bridge.robotmap.outlines import OutlineRow, Outlines
-from robot_bridge.sites.features import Area
-from robot_bridge.sites.settings import Bounds, SiteSettings
-from robot_bridge.sites.site import Site
-from robot_bridge.traffic.movement import driving, standing
+from robot_bridge.core.roads.centrelines import Surface
+from robot_bridge.core.robotmap.model import ShapeType
+from robot_bridge.core.robotmap.outlines import OutlineRow, Outlines
+from robot_bridge.core.sites.geopackage import Area
+from robot_bridge.core.sites.settings import SiteBounds, SiteSettings
+from robot_bridge.core.sites.site import Site
+from robot_bridge.gateway.traffic.conflicts import driving_movement, standing_movement
+from robot_bridge.gateway.traffic.yielding import yield_beside_path
 
 NOW, RADIUS, MARGIN = 1000.0, 0.5, 0.3
 HERE = 50.0, 50.0
@@ -30,7 +30,7 @@ def wall(*points):
 
 
 def site(walls=(), keepouts=(), roads=(), bounds=(0.0, 0.0, 100.0, 100.0)):
-    settings = SiteSettings("yard", "Yard", 1, "EPSG:32633", (0.0, 0.0), Bounds(*bounds))
+    settings = SiteSettings("yard", "Yard", 1, "EPSG:32633", (0.0, 0.0), SiteBounds(*bounds))
     surfaces = tuple(Surface((road,), "asphalt") for road in roads)
     areas = tuple(Area((keepout,), "keepout") for keepout in keepouts)
     return Site(settings, Outlines.from_rows(list(walls)), (), surfaces, areas)
@@ -38,12 +38,12 @@ def site(walls=(), keepouts=(), roads=(), bounds=(0.0, 0.0, 100.0, 100.0)):
 
 def passing(y=50.0, begins=0.0, robot="r1"):
     """Return a robot that comes along a line of this y from 40 m away, 1 m/s."""
-    return driving(robot, [(10.0, y), (90.0, y)], 1.0, NOW + begins, RADIUS)
+    return driving_movement(robot, [(10.0, y), (90.0, y)], 1.0, NOW + begins, RADIUS)
 
 
 def aside(here=HERE, others=None, **how):
-    robot = standing("r3", here, NOW, RADIUS)
-    return way_aside(robot, [passing()] if others is None else others, site(**how), 1.0, MARGIN, NOW)
+    robot = standing_movement("r3", here, NOW, RADIUS)
+    return yield_beside_path(robot, [passing()] if others is None else others, site(**how), 1.0, MARGIN, NOW)
 
 
 def test_the_nearest_place_off_the_way_is_found():
@@ -83,7 +83,7 @@ def test_a_robot_at_a_wall_may_leave_it_but_not_through_it():
 
 
 def test_a_robot_at_a_wall_stands_clear_of_it_afterwards():
-    coming = driving("r1", [(50.0, 10.0), (50.0, 48.9)], 1.0, NOW, RADIUS)
+    coming = driving_movement("r1", [(50.0, 10.0), (50.0, 48.9)], 1.0, NOW, RADIUS)
     _, (_, y) = aside(others=[coming], walls=[wall((0, 50.4), (100, 50.4))])
     assert y <= 50.4 - RADIUS
 
@@ -100,7 +100,7 @@ def test_it_is_off_the_ways_of_robots_that_come_later_however_broad_they_are():
 
 
 def test_who_is_there_before_it_can_set_out_leaves_no_way():
-    assert aside(others=[driving("r1", [(47.0, 50.0), (90.0, 50.0)], 1.0, NOW, RADIUS)]) is None
+    assert aside(others=[driving_movement("r1", [(47.0, 50.0), (90.0, 50.0)], 1.0, NOW, RADIUS)]) is None
 
 
 def test_where_everything_within_reach_is_taken_there_is_none():
@@ -110,7 +110,7 @@ def test_where_everything_within_reach_is_taken_there_is_none():
 def test_a_fleet_of_a_thousand_takes_a_moment():
     generator = np.random.default_rng(3)
     places = generator.uniform(0, 100, (1000, 2))
-    others = [standing(f"r{k}", (x, y), NOW, 0.1) for k, (x, y) in enumerate(places.tolist())]
+    others = [standing_movement(f"r{k}", (x, y), NOW, 0.1) for k, (x, y) in enumerate(places.tolist())]
     began = time.thread_time()
     aside(others=[passing(), *(other for other in others if math.dist(other.points[0], HERE) > 3)])
     assert time.thread_time() - began < 2.0

@@ -10,15 +10,14 @@ import numpy as np
 import pytest
 import shapely
 
-from robot_bridge.errors import RefusedError
-from robot_bridge.road_traffic.road_planning import RoadPlanner, Wanted
-from robot_bridge.roads.dense import Driving
-from robot_bridge.roads.surfaces.surface import Surface
-from robot_bridge.robotmap.model import ShapeType
-from robot_bridge.robotmap.outlines import OutlineRow, Outlines
-from robot_bridge.sites.features import Area, Centreline
-from robot_bridge.sites.publication import read_site
-from robot_bridge.sites.site import Site
+from robot_bridge.core.errors import RefusedError
+from robot_bridge.core.roads.centrelines import Surface
+from robot_bridge.core.roads.path_smoothing import Driving
+from robot_bridge.core.robotmap.model import ShapeType
+from robot_bridge.core.robotmap.outlines import OutlineRow, Outlines
+from robot_bridge.core.sites.geopackage import Area, Centreline
+from robot_bridge.core.sites.site import Site, read_site
+from robot_bridge.gateway.traffic.road_planning import RoadPlanner, RouteOptions
 
 
 @pytest.fixture(scope="module")
@@ -163,7 +162,7 @@ def test_seconds_are_the_robots_and_not_the_roads(sample, setting, shown, second
     road = Centreline(np.array([(0, 0), (100, 0)], float), 6.0, "asphalt", speed_ms=13.9)
     routes = replace(sample.settings.routes, speed_ms=setting)
     site = replace(sample, centrelines=(road,), keepouts=(), settings=replace(sample.settings, routes=routes))
-    report = RoadPlanner(lambda: site).route((0.0, 0.0), (100.0, 0.0), Wanted(speed=shown))
+    report = RoadPlanner(lambda: site).route((0.0, 0.0), (100.0, 0.0), RouteOptions(speed=shown))
     assert report.metres == pytest.approx(100.0)
     assert report.seconds == pytest.approx(seconds, abs=0.1)
     straight = RoadPlanner(lambda: replace(site, centrelines=())).route((0.0, 0.0), (100.0, 0.0))

@@ -5,12 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from robot_bridge.roads.along import edges_along
-from robot_bridge.roads.centrelines import centrelines
-from robot_bridge.roads.closures import edges_of_closure
-from robot_bridge.roads.nearest import NearestEdge
-from robot_bridge.roads.network import build_network
-from robot_bridge.roads.routes import Router
+from robot_bridge.core.roads.centrelines import centrelines
+from robot_bridge.core.roads.map_matching import NearestEdge, edges_along, edges_of_closure
+from robot_bridge.core.roads.network import build_network
+from robot_bridge.core.roads.routes import Router
 
 
 def network(*lines, **attributes):

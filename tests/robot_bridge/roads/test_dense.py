@@ -9,8 +9,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from robot_bridge.roads.dense import DensePath, Driving, dense_path
-from robot_bridge.roads.errors import RoadInputError
+from robot_bridge.core.errors import RoadInputError
+from robot_bridge.core.roads.path_smoothing import DensePath, Driving, dense_path
 
 CORNER = np.array([(0.0, 0.0), (20.0, 0.0), (20.0, 20.0)])
 

@@ -12,17 +12,16 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from robot_bridge.roads.engines.choice import ENGINES, engines_for
-from robot_bridge.roads.engines.engine import Engine, Graph
+from robot_bridge.core.roads.engines import ENGINES, Engine, RouteGraph, engines_for
 
 NAMES = [name for name in ENGINES if name != "automatic"]
 
 IN_TWO_THREADS = """
 import threading
 import numpy as np
-from robot_bridge.roads.centrelines import centrelines
-from robot_bridge.roads.network import build_network
-from robot_bridge.roads.routes import Router
+from robot_bridge.core.roads.centrelines import centrelines
+from robot_bridge.core.roads.network import build_network
+from robot_bridge.core.roads.routes import Router
 
 square = np.array([[0.0, 0.0], [100.0, 0.0], [100.0, 100.0], [0.0, 100.0], [0.0, 0.0]])
 roads = centrelines([square[k : k + 2] for k in range(4)], width=4.0)
@@ -39,10 +38,10 @@ print(router.engine_name, router.route((0, 0), (100, 0)).metres)
 """
 
 WITHOUT_ROADS = """
-from robot_bridge.roads.centrelines import centrelines
-from robot_bridge.roads.errors import OffNetworkError
-from robot_bridge.roads.network import build_network
-from robot_bridge.roads.routes import Router
+from robot_bridge.core.roads.centrelines import centrelines
+from robot_bridge.core.errors import OffNetworkError
+from robot_bridge.core.roads.network import build_network
+from robot_bridge.core.roads.routes import Router
 
 for engine in ("automatic", "contraction"):
     try:
@@ -59,7 +58,7 @@ def engine(request: pytest.FixtureRequest) -> str:
     return request.param
 
 
-def cost(graph: Graph, way: list[int] | None, costs: np.ndarray) -> float:
+def cost(graph: RouteGraph, way: list[int] | None, costs: np.ndarray) -> float:
     return np.inf if way is None else float(costs[way].sum())
 
 
@@ -70,7 +69,7 @@ def test_after_any_changes_ways_cost_what_they_cost_from_the_beginning(seed: int
     random = np.random.default_rng(seed)
     # Few nodes, so that many arcs are parallel and some lead to where they begin.
     tail, head = random.integers(0, 6, (2, 20))
-    graph = Graph(random.uniform(0, 100, (6, 2)), tail, head)
+    graph = RouteGraph(random.uniform(0, 100, (6, 2)), tail, head)
     costs = random.integers(1, 50, 20).astype(np.float64)
     engines = [engines_for(graph, name)(costs) for name in NAMES]
     for _ in range(4):
@@ -94,7 +93,7 @@ def test_a_layer_without_roads_has_no_way_and_ends_no_process(root) -> None:
 
 
 def test_of_parallel_arcs_the_cheapest_open_one_is_used(engine: str) -> None:
-    graph = Graph(np.array([(0.0, 0.0), (9.0, 0.0)]), np.zeros(3, np.int64), np.ones(3, np.int64))
+    graph = RouteGraph(np.array([(0.0, 0.0), (9.0, 0.0)]), np.zeros(3, np.int64), np.ones(3, np.int64))
     made = engines_for(graph, engine)(np.array([5.0, 3.0, 4.0]))
     used = [made.way([(0, 0.0)], [(1, 0.0)])]
     for arc, value in ((1, np.inf), (2, 9.0), (0, np.inf), (2, np.inf), (1, 3.0)):
@@ -116,7 +115,7 @@ def threads_taking_turns() -> Iterator[None]:
 def test_threads_that_ask_at_once_are_all_told_right(engine: str) -> None:
     # Over three arcs it is 30, and while arc 1 is closed 50 over another.
     nodes = np.array([(0.0, 0.0), (10.0, 0.0), (10.0, 10.0), (0.0, 10.0)])
-    graph = Graph(nodes, np.array([0, 1, 2, 0]), np.array([1, 2, 3, 3]))
+    graph = RouteGraph(nodes, np.array([0, 1, 2, 0]), np.array([1, 2, 3, 3]))
     made: Engine = engines_for(graph, engine)(np.array([10.0, 10.0, 10.0, 50.0]))
     told: list[object] = []
 

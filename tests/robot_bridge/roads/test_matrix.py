@@ -8,11 +8,11 @@ import sys
 import numpy as np
 import pytest
 
-from robot_bridge.roads.centrelines import BOTH, centrelines
-from robot_bridge.roads.errors import NoRouteError
-from robot_bridge.roads.matrix import road_matrix
-from robot_bridge.roads.network import Network, build_network
-from robot_bridge.roads.routes import Restrictions, Router
+from robot_bridge.core.errors import NoRouteError
+from robot_bridge.core.roads.centrelines import BOTH, centrelines
+from robot_bridge.core.roads.cost_matrix import road_matrix
+from robot_bridge.core.roads.network import Network, build_network
+from robot_bridge.core.roads.routes import Restrictions, Router
 
 
 def town(seed: int) -> Network:

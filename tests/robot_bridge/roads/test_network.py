@@ -7,13 +7,16 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from robot_bridge.roads.asking import Ask
-from robot_bridge.roads.centrelines import BOTH, FORWARD, Centrelines, centrelines
-from robot_bridge.roads.errors import RoadInputError
-from robot_bridge.roads.findings import Finding, Kind, count_by_kind, find
-from robot_bridge.roads.network import Network, build_network
-from robot_bridge.roads.noding import SAME
-from robot_bridge.roads.repairs import repaired_network
+from robot_bridge.core.errors import RoadInputError
+from robot_bridge.core.roads.centrelines import BOTH, FORWARD, Centrelines, centrelines
+from robot_bridge.core.roads.network import SAME, CancelCheck, Network, build_network
+from robot_bridge.core.roads.network_checks import (
+    RoadFinding,
+    RoadFindingKind,
+    count_by_kind,
+    find_road_defects,
+    repaired_network,
+)
 
 EAST = [(0.0, 0.0), (10.0, 0.0)]
 NORTH = [(5.0, -5.0), (5.0, 5.0)]
@@ -25,11 +28,11 @@ def edges(network: Network) -> set[frozenset[tuple[float, float]]]:
     return {frozenset((nodes[a], nodes[b])) for a, b in zip(network.tail, network.head, strict=True)}
 
 
-def kinds(findings: list[Finding]) -> list[str]:
+def kinds(findings: list[RoadFinding]) -> list[str]:
     return sorted({finding.kind.value for finding in findings})
 
 
-def only(findings: list[Finding], kind: Kind) -> Finding:
+def only(findings: list[RoadFinding], kind: RoadFindingKind) -> RoadFinding:
     (found,) = [finding for finding in findings if finding.kind is kind]
     return found
 
@@ -89,7 +92,7 @@ def test_a_roundabout_is_split_at_its_arms() -> None:
     assert sorted(network.degrees.tolist()) == [1, 1, 3, 3]
     halves = network.lengths[network.edges.source == 0]
     assert halves.tolist() == pytest.approx([halves.sum() / 2] * 2)
-    assert kinds(find(network, 0.5)) == ["dead end"]
+    assert kinds(find_road_defects(network, 0.5)) == ["dead end"]
 
 
 def test_a_road_that_crosses_itself_is_split() -> None:
@@ -104,7 +107,7 @@ def test_roads_that_run_along_one_another_share_their_nodes() -> None:
         frozenset(pair)
         for pair in [((0.0, 0.0), (4.0, 0.0)), ((4.0, 0.0), (10.0, 0.0)), ((10.0, 0.0), (20.0, 0.0))]
     }
-    assert only(find(network, 0.5), Kind.DUPLICATE).road == 1
+    assert only(find_road_defects(network, 0.5), RoadFindingKind.DUPLICATE).road == 1
 
 
 def test_ends_a_hair_apart_are_one_node() -> None:
@@ -121,26 +124,26 @@ def test_repeated_points_and_roads_without_length_vanish() -> None:
 
 def test_nothing_makes_an_empty_network() -> None:
     assert len(build_network(centrelines([]))) == 0
-    assert find(build_network(centrelines([])), 0.5) == []
+    assert find_road_defects(build_network(centrelines([])), 0.5) == []
 
 
 def test_an_end_short_of_a_road_is_a_gap_and_closed_on_request() -> None:
     roads = centrelines([EAST, [(5.0, 0.3), (5.0, 5.0)]])
     network = build_network(roads)
-    gap = only(find(network, 0.5), Kind.GAP)
+    gap = only(find_road_defects(network, 0.5), RoadFindingKind.GAP)
     assert (gap.x, gap.y, gap.road) == (5.0, 0.3, 1)
     assert "0.300 m short of road 0" in gap.text
     assert len(network) == 2
     mended, done = repaired_network(roads, 0.5)
     assert kinds(done) == ["gap"]
     assert len(mended) == 3
-    assert kinds(find(mended, 0.5)) == ["dead end"]
+    assert kinds(find_road_defects(mended, 0.5)) == ["dead end"]
 
 
 def test_an_end_farther_than_the_tolerance_is_left_alone() -> None:
     mended, done = repaired_network(centrelines([EAST, [(5.0, 0.6), (5.0, 5.0)]]), 0.5)
     assert done == []
-    assert kinds(find(mended, 0.5)) == ["dead end", "disconnected part"]
+    assert kinds(find_road_defects(mended, 0.5)) == ["dead end", "disconnected part"]
 
 
 def test_two_ends_that_were_meant_to_meet_meet_once() -> None:
@@ -151,12 +154,14 @@ def test_two_ends_that_were_meant_to_meet_meet_once() -> None:
 
 def test_an_end_under_a_bridge_is_no_gap() -> None:
     roads = centrelines([EAST, [(5.0, 0.3), (5.0, 5.0)]], level=[1, 0])
-    assert Kind.GAP not in {finding.kind for finding in find(build_network(roads), 0.5)}
+    assert RoadFindingKind.GAP not in {
+        finding.kind for finding in find_road_defects(build_network(roads), 0.5)
+    }
 
 
 def test_an_end_beyond_a_road_is_an_overshoot_and_cut_off_on_request() -> None:
     roads = centrelines([EAST, [(5.0, -0.2), (5.0, 5.0)]])
-    assert "0.200 m" in only(find(build_network(roads), 0.5), Kind.OVERSHOOT).text
+    assert "0.200 m" in only(find_road_defects(build_network(roads), 0.5), RoadFindingKind.OVERSHOOT).text
     mended, done = repaired_network(roads, 0.5)
     assert kinds(done) == ["overshoot"]
     assert len(mended) == 3
@@ -171,19 +176,19 @@ def test_of_roads_drawn_twice_the_first_is_kept() -> None:
 
 
 def test_a_part_of_its_own_is_found_with_its_length() -> None:
-    found = find(build_network(centrelines([EAST, [(0.0, 50.0), (4.0, 50.0)]])), 0.5)
-    part = only(found, Kind.PART)
+    found = find_road_defects(build_network(centrelines([EAST, [(0.0, 50.0), (4.0, 50.0)]])), 0.5)
+    part = only(found, RoadFindingKind.PART)
     assert (part.x, part.y) == (2.0, 50.0)
     assert "1 edge of 4.0 m" in part.text
 
 
 def test_a_one_way_loop_can_be_driven_round_and_a_one_way_spur_not() -> None:
     loop = ring((0.0, 0.0), 5.0)
-    assert kinds(find(build_network(centrelines([loop], direction=FORWARD)), 0.5)) == []
+    assert kinds(find_road_defects(build_network(centrelines([loop], direction=FORWARD)), 0.5)) == []
     spur = [(5.0, 0.0), (20.0, 0.0)]
     network = build_network(centrelines([loop, spur], direction=FORWARD))
-    found = find(network, 0.5)
-    assert only(found, Kind.ONE_WAY).road == 1
+    found = find_road_defects(network, 0.5)
+    assert only(found, RoadFindingKind.ONE_WAY).road == 1
     assert kinds(found) == ["dead end", "one-way"]
 
 
@@ -235,7 +240,7 @@ class GivenUpError(Exception):
 def test_making_and_mending_end_at_whichever_question_says_so() -> None:
     roads = centrelines([EAST, [(10.3, 0.0), (20.0, 0.0)], [(5.0, -0.2), (5.0, 5.0)]])
 
-    def asked_of(making: Callable[[Ask], object], last: float = np.inf) -> int:
+    def asked_of(making: Callable[[CancelCheck], object], last: float = np.inf) -> int:
         asked = 0
 
         def ask() -> None:

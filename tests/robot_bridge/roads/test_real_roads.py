@@ -8,12 +8,11 @@ import pytest
 import shapely
 from benchmarks.road_data import malta, track, track_surface
 
-from robot_bridge.roads.dense import Driving, dense_path
-from robot_bridge.roads.errors import NoRouteError
-from robot_bridge.roads.findings import count_by_kind, find
-from robot_bridge.roads.network import build_network
-from robot_bridge.roads.repairs import repaired_network
-from robot_bridge.roads.routes import Router
+from robot_bridge.core.errors import NoRouteError
+from robot_bridge.core.roads.network import build_network
+from robot_bridge.core.roads.network_checks import count_by_kind, find_road_defects, repaired_network
+from robot_bridge.core.roads.path_smoothing import Driving, dense_path
+from robot_bridge.core.roads.routes import Router
 
 
 def test_malta_has_the_lengths_that_networkx_finds(data):
@@ -40,7 +39,7 @@ def test_malta_has_the_lengths_that_networkx_finds(data):
 
 def test_what_is_broken_on_the_track_is_repaired(data):
     roads = track(data)
-    found = count_by_kind(find(build_network(roads), 0.5))
+    found = count_by_kind(find_road_defects(build_network(roads), 0.5))
     assert found == {
         "gap": 4,
         "overshoot": 2,
@@ -52,7 +51,7 @@ def test_what_is_broken_on_the_track_is_repaired(data):
     network, done = repaired_network(roads, 0.5)
     repaired = {kind: count for kind, count in count_by_kind(done).items() if count}
     assert repaired == {"gap": 4, "overshoot": 2, "duplicate": 3}
-    left = {kind: count for kind, count in count_by_kind(find(network, 0.5)).items() if count}
+    left = {kind: count for kind, count in count_by_kind(find_road_defects(network, 0.5)).items() if count}
     assert left == {"dead end": 2, "one-way": 10}
 
 

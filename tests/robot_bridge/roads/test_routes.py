@@ -10,13 +10,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from robot_bridge.roads.centrelines import BOTH, FORWARD, centrelines
-from robot_bridge.roads.engines.choice import ENGINES, engines_for
-from robot_bridge.roads.engines.engine import Graph
-from robot_bridge.roads.errors import MissingEngineError, NoRouteError, OffNetworkError
-from robot_bridge.roads.keepouts import KeepoutIndex
-from robot_bridge.roads.network import Network, build_network
-from robot_bridge.roads.routes import Restrictions, Router
+from robot_bridge.core.errors import MissingEngineError, NoRouteError, OffNetworkError
+from robot_bridge.core.roads.centrelines import BOTH, FORWARD, centrelines
+from robot_bridge.core.roads.engines import ENGINES, RouteGraph, engines_for
+from robot_bridge.core.roads.network import Network, build_network
+from robot_bridge.core.roads.routes import Restrictions, Router
+from robot_bridge.core.sites.fences import KeepoutIndex
 
 NAMES = [name for name in ENGINES if name != "automatic"]
 SQUARE = [
@@ -162,7 +161,7 @@ def test_where_no_engines_package_is_installed_python_searches(monkeypatch: pyte
 
 def test_an_engine_that_is_none_is_refused() -> None:
     with pytest.raises(MissingEngineError, match="choose of automatic, contraction, scipy, plain"):
-        engines_for(Graph(np.zeros((1, 2)), np.empty(0, int), np.empty(0, int)), "magic")
+        engines_for(RouteGraph(np.zeros((1, 2)), np.empty(0, int), np.empty(0, int)), "magic")
 
 
 @pytest.mark.parametrize(

@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from robot_bridge.messages import (
+from robot_bridge.core.messages import (
     Abort,
     Alive,
     GetMap,
@@ -26,12 +26,12 @@ from robot_bridge.messages import (
     Start,
     Stopped,
 )
-from robot_bridge.robot.agent import MOST_DONE, Agent, AgentSettings
-from robot_bridge.robot.body import BodyLimits
-from robot_bridge.robot.sightings import Thing
-from robot_bridge.robotmap.binary import encode
-from robot_bridge.robotmap.builder import Window, build_map
-from robot_bridge.robotmap.outlines import Outlines
+from robot_bridge.core.robotmap.binary import encode
+from robot_bridge.core.robotmap.builder import build_map
+from robot_bridge.core.robotmap.model import Window
+from robot_bridge.core.robotmap.outlines import Outlines
+from robot_bridge.reference_robot.agent import MOST_DONE, Agent, AgentSettings
+from robot_bridge.reference_robot.body import BodyLimits, ScriptedObject
 
 DT = 0.05
 PNG = b"\x89PNG\r\n\x1a\n" + b"pixels"
@@ -340,7 +340,7 @@ def test_it_asks_what_ground_it_is_on_and_is_to_go_to_and_says_so():
 
 
 def test_it_tells_of_a_thing_once_when_it_comes_near():
-    robot = Robot(things=(Thing(20.0, 0.0, "cone-7"), Thing(0.0, 90.0, "far")), image=PNG)
+    robot = Robot(things=(ScriptedObject(20.0, 0.0, "cone-7"), ScriptedObject(0.0, 90.0, "far")), image=PNG)
     robot.live(1)
     assert not robot.heard(SetObject)
     robot.agent.receive(SetPosEnd(20.0, 0.0), 1)

@@ -10,9 +10,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from robot_bridge.polyline import Polyline
-from robot_bridge.robot.body import Body, BodyLimits
-from robot_bridge.robot.driver import Driver
+from robot_bridge.core.geometry import Polyline
+from robot_bridge.reference_robot.body import Body, BodyLimits, Driver
 
 DT = 0.05
 angles = st.floats(-math.pi, math.pi)

@@ -8,14 +8,15 @@ import json
 import pytest
 from websockets.asyncio.server import serve
 
-from robot_bridge.errors import StoreError
-from robot_bridge.messages import Abort, OpAck, Ready, SetObject, SetPosEnd
-from robot_bridge.robot.agent import Agent, AgentSettings
-from robot_bridge.robot.body import BodyLimits
-from robot_bridge.robot.sql_link import SqlLink
-from robot_bridge.robot.websocket_link import WebSocketLink
-from robot_bridge.store import answers, requests
-from robot_bridge.store.database import Database
+from robot_bridge.core.errors import StoreError
+from robot_bridge.core.messages import Abort, OpAck, Ready, SetObject, SetPosEnd
+from robot_bridge.gateway.storage.database import Database
+from robot_bridge.gateway.storage.repositories import requests
+from robot_bridge.gateway.storage.repositories import requests as answers
+from robot_bridge.reference_robot.agent import Agent, AgentSettings
+from robot_bridge.reference_robot.body import BodyLimits
+from robot_bridge.reference_robot.sql_link import RobotSqlLink
+from robot_bridge.reference_robot.websocket_link import RobotWebSocketLink
 
 ADMITTED = {"id": 1, "ok": True, "magic": 42, "robot": "r1", "database": "first"}
 
@@ -35,7 +36,7 @@ async def database(tmp_path):
 async def said(database, count):
     """Return the operations in RR, and the parameters of OpAck, once there are ``count`` of them."""
     async with asyncio.timeout(30):
-        while len(rows := await database.read(requests.read)) < count:
+        while len(rows := await database.read(requests.read_requests)) < count:
             await asyncio.sleep(0.02)
     return [(row.op, json.loads(row.params).get("id") if row.op == "OpAck" else None) for row in rows]
 
@@ -43,12 +44,12 @@ async def said(database, count):
 async def test_on_sql_what_stands_before_the_answer_to_ready_is_done_before_what_stands_behind(
     database, tmp_path
 ):
-    link = SqlLink(f"sqlite:///{tmp_path}/fleet.db", "r1")
+    link = RobotSqlLink(f"sqlite:///{tmp_path}/fleet.db", "r1")
     running = asyncio.create_task(link.run(agent_on(link)))
     await said(database, 1)
     welcome = OpAck(ok=True, magic=42, robot="r1", database="first")
     messages = [Abort(), welcome, SetPosEnd(5.0, 0.0)]
-    await database.run(answers.add_all, [("r1", message) for message in messages])
+    await database.run(answers.add_answers, [("r1", message) for message in messages])
     async with asyncio.timeout(30):
         while [one for one in await said(database, 2) if one[0] == "OpAck"] != [("OpAck", 1), ("OpAck", 3)]:
             await asyncio.sleep(0.02)
@@ -59,14 +60,16 @@ async def test_on_sql_what_stands_before_the_answer_to_ready_is_done_before_what
 @pytest.fixture
 async def on_sql(database, tmp_path):
     """A robot on SQL that was let in, with RR empty."""
-    link = SqlLink(f"sqlite:///{tmp_path}/fleet.db", "r1")
+    link = RobotSqlLink(f"sqlite:///{tmp_path}/fleet.db", "r1")
     running = asyncio.create_task(link.run(agent_on(link)))
     await said(database, 1)
     await database.run(answers.add, "r1", OpAck(ok=True, magic=42, robot="r1", database="first"))
     async with asyncio.timeout(30):
-        while await database.read(answers.read, "r1"):
+        while await database.read(answers.read_answers, "r1"):
             await asyncio.sleep(0.02)
-    await database.run(requests.remove, [row.id for row in await database.read(requests.read)])
+    await database.run(
+        requests.remove_requests, [row.id for row in await database.read(requests.read_requests)]
+    )
     yield link
     running.cancel()
     await asyncio.gather(running, return_exceptions=True)
@@ -89,7 +92,7 @@ async def test_what_could_not_be_written_is_said_again_once_and_in_that_order(da
         return await jot(*arguments)
 
     monkeypatch.setattr(on_sql._database, "jot", lost)
-    monkeypatch.setattr("robot_bridge.robot.sql_link.RETRY_AFTER", 0.05)
+    monkeypatch.setattr("robot_bridge.reference_robot.sql_link.RETRY_AFTER", 0.05)
     for _ in range(2):
         on_sql.say(Ready(42))
     on_sql.say(SetObject(1.0, 2.0, "cone-7", source="1"))
@@ -115,7 +118,7 @@ async def test_on_a_websocket_it_says_where_it_is_before_it_acknowledges_an_abor
 
     async with serve(gateway, "127.0.0.1", 0) as server:
         port = server.sockets[0].getsockname()[1]
-        link = WebSocketLink(f"ws://127.0.0.1:{port}/robot", "r1")
+        link = RobotWebSocketLink(f"ws://127.0.0.1:{port}/robot", "r1")
         running = asyncio.create_task(link.run(agent_on(link)))
         async with asyncio.timeout(30):
             first, second = await heard.get(), await heard.get()

@@ -7,11 +7,11 @@ import math
 
 import pytest
 
-from robot_bridge.errors import BridgeError
-from robot_bridge.messages import Abort, GetPath, OpAck, Ready, SendPos, SetPath, SetPosEnd, Stopped
-from robot_bridge.robot.agent import Agent, AgentSettings
-from robot_bridge.robot.body import BodyLimits
-from robot_bridge.robot.memory import Memory, Remembered
+from robot_bridge.core.errors import BridgeError
+from robot_bridge.core.messages import Abort, GetPath, OpAck, Ready, SendPos, SetPath, SetPosEnd, Stopped
+from robot_bridge.reference_robot.agent import Agent, AgentSettings
+from robot_bridge.reference_robot.body import BodyLimits
+from robot_bridge.reference_robot.memory import RememberedRun, RobotMemory
 
 LAP = [(0.0, 0.0), (10.0, 0.0), (10.0, 10.0), (0.0, 10.0), (0.0, 0.0)]
 
@@ -45,7 +45,7 @@ class Runs:
 
 @pytest.fixture
 def runs(tmp_path) -> Runs:
-    return Runs(Memory(tmp_path / "r1.json"))
+    return Runs(RobotMemory(tmp_path / "r1.json"))
 
 
 def test_without_a_file_each_run_is_another():
@@ -132,17 +132,17 @@ def test_a_file_that_is_no_memory_is_refused_with_what_to_do(tmp_path, text):
     file = tmp_path / "r1.json"
     file.write_text(text)
     with pytest.raises(BridgeError, match=r"r1\.json is none of a robot .*; name another file, or delete it"):
-        Memory(file).recall()
+        RobotMemory(file).recall()
 
 
 def test_a_file_that_cannot_be_written_is_refused_and_what_was_in_it_stays(tmp_path, monkeypatch):
-    memory = Memory(tmp_path / "r1.json")
-    memory.keep(Remembered(magic=1))
+    memory = RobotMemory(tmp_path / "r1.json")
+    memory.keep(RememberedRun(magic=1))
     monkeypatch.setattr("os.fsync", full_disk)
     with pytest.raises(
         BridgeError, match=r"r1\.json cannot be written: No space left on device; check its folder"
     ):
-        memory.keep(Remembered(magic=2))
+        memory.keep(RememberedRun(magic=2))
     assert json.loads((tmp_path / "r1.json").read_text())["magic"] == 1
 
 

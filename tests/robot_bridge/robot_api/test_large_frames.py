@@ -9,9 +9,9 @@ import pytest
 from websockets.asyncio.client import connect
 from websockets.asyncio.server import serve
 
-from robot_bridge.robot_api.own_connection import PIECE, send_frame
+from robot_bridge.gateway.api.robot_session import FRAME_PIECE, send_frame
 
-LARGE = "".join(f"ä{k:07d}" for k in range(12 * PIECE // 8)) + "the end"
+LARGE = "".join(f"ä{k:07d}" for k in range(12 * FRAME_PIECE // 8)) + "the end"
 
 
 @pytest.fixture

@@ -9,16 +9,15 @@ from types import SimpleNamespace
 
 import pytest
 
-from robot_bridge import jsonrpc
-from robot_bridge.errors import DataRefusedError, StoreError
-from robot_bridge.links.base.positions import frame_of
-from robot_bridge.monitoring.repeated_lines import RepeatedLines
-from robot_bridge.monitoring.tally import Tally
-from robot_bridge.robot_api.link_connection import LinkConnection
-from robot_bridge.robot_api.link_place import LinkPlace
-from robot_bridge.robot_api.own_connection import OwnConnection
-from robot_bridge.robot_api.websocket import WebSocketLink
-from robot_bridge.sites.limit_settings import LimitSettings
+from robot_bridge.core.errors import DataRefusedError, StoreError
+from robot_bridge.core.logs import RepeatedLines
+from robot_bridge.core.sites.settings_tables import LimitSettings
+from robot_bridge.gateway.api.robot_session import RobotConnection
+from robot_bridge.gateway.api.robot_websockets import LinkConnection, WebSocketInterface
+from robot_bridge.gateway.api.shared_connection import LinkedRobotChannel
+from robot_bridge.gateway.monitoring.metrics import Counters
+from robot_bridge.links.base.linked_robots import frame_of
+from robot_bridge.protocol import jsonrpc
 
 POSITION = json.dumps(
     {"jsonrpc": "2.0", "method": "SendPos", "params": {"x": 1.0, "y": 2.0, "theta": 0.0, "v": 0.0}}
@@ -56,10 +55,10 @@ def own(connection):
         take_pose=fail,
         receive=fail_later,
         emergency=SimpleNamespace(answered=fail),
-        tally=Tally(),
+        tally=Counters(),
         repeated=RepeatedLines(),
     )
-    own = OwnConnection(fleet, connection, "r1", lambda _session: None)
+    own = RobotConnection(fleet, connection, "r1", lambda _session: None)
     own.session._admitted = True
     return own
 
@@ -114,7 +113,7 @@ async def test_what_a_robot_said_is_asked_for_again_unless_the_database_refuses_
 def test_a_connection_that_fails_keeps_no_stop_from_the_others(caplog):
     told = []
     reached = SimpleNamespace(reach=lambda _link: None)
-    link = WebSocketLink(SimpleNamespace(emergency=reached, orders=reached))
+    link = WebSocketInterface(SimpleNamespace(emergency=reached, orders=reached))
     good = [SimpleNamespace(robot=f"r{n}", stop_now=told.append) for n in range(3)]
     bad = [SimpleNamespace(robot=f"b{n}", stop_now=fail) for n in range(3)]
     # In the order in which they are kept, which nobody knows: some of the good ones come behind a bad one.
@@ -170,7 +169,7 @@ async def test_what_stops_a_linked_robot_waits_for_no_turn_and_all_else_does(lin
 
 
 async def test_one_message_of_a_linked_robot_that_goes_wrong_keeps_the_next_from_nothing(connection, caplog):
-    place = LinkPlace(
+    place = LinkedRobotChannel(
         SimpleNamespace(), SimpleNamespace(name="agvs"), "r1", LimitSettings(), lambda _session: None
     )
     done = asyncio.Event()

@@ -19,12 +19,12 @@ import cbor2
 import numpy as np
 import zstandard
 
-from robot_bridge.robotmap.binary import decode
-from robot_bridge.robotmap.columnar import pack_map
-from robot_bridge.robotmap.columns import pack
-from robot_bridge.robotmap.errors import RobotMapError
-from robot_bridge.robotmap.model import RobotMap
-from robot_bridge.robotmap.text import read_text
+from robot_bridge.core.errors import RobotMapError
+from robot_bridge.core.robotmap.binary import decode
+from robot_bridge.core.robotmap.columnar import pack_map
+from robot_bridge.core.robotmap.columns import pack_numbers
+from robot_bridge.core.robotmap.model import RobotMap
+from robot_bridge.core.robotmap.text_format import read_text
 
 SIZE = 1_000_000
 HEAD = "border;\n0;10;\n10;0;\n#\n"
@@ -118,7 +118,7 @@ def columns(length: int, text: bytes = b"", **changes: object) -> bytes:
 
 def same(value: int, count: int) -> bytes:
     """Return a column of ``count`` times ``value``."""
-    return pack(np.full(count, value, dtype=np.int64))
+    return pack_numbers(np.full(count, value, dtype=np.int64))
 
 
 def many_obstacles(count: int, **changes: object) -> bytes:
@@ -126,7 +126,7 @@ def many_obstacles(count: int, **changes: object) -> bytes:
     text = (HEAD + ONE * count).encode()
     body = np.ones(count, dtype=np.int64)
     body[:1] = 0
-    many = {"obstacles": count, "segments": count, "body": pack(body), "ids": same(0, count)}
+    many = {"obstacles": count, "segments": count, "body": pack_numbers(body), "ids": same(0, count)}
     return columns(len(text), text, **(many | changes))
 
 
@@ -150,7 +150,9 @@ def binaries() -> Iterator[tuple[str, bytes]]:
     yield "codec 2: as many as the text has room for", many_obstacles(full // 38)
     yield (
         "codec 2: segments",
-        columns(full, segments=220_000, counts=pack(np.array([220_000])), steps=b"", kinds=same(17, 1)),
+        columns(
+            full, segments=220_000, counts=pack_numbers(np.array([220_000])), steps=b"", kinds=same(17, 1)
+        ),
     )
     yield "codec 2: bodies", many_obstacles(44_000, bodies=44_000, body=b"", kinds=same(9, 44_000))
     yield "codec 2: lines of labels", columns(full, heads="\n" * full)

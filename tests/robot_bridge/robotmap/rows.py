@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from robot_bridge.robotmap.model import ShapeType
-from robot_bridge.robotmap.outlines import OutlineRow, Outlines
+from robot_bridge.core.robotmap.model import ShapeType
+from robot_bridge.core.robotmap.outlines import OutlineRow, Outlines
 
 
 def row(points, shape_type=ShapeType.OPEN_POLYGON, semantics="wall", source="walls:1", height=2.0, **more):

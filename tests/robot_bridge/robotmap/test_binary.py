@@ -11,9 +11,9 @@ import zstandard
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robot_bridge.robotmap.binary import decode, decode_text, encode
-from robot_bridge.robotmap.errors import BinaryError, MissingCodecError, RobotMapError, TextError
-from robot_bridge.robotmap.text import read_text
+from robot_bridge.core.errors import MapBinaryError, MapTextError, MissingCodecError, RobotMapError
+from robot_bridge.core.robotmap.binary import decode, decode_text, encode
+from robot_bridge.core.robotmap.text_format import read_text
 
 
 def test_the_text_comes_back_byte_for_byte(fig_2):
@@ -51,7 +51,7 @@ def test_the_envelope_is_laid_out_as_documented(fig_2):
     ],
 )
 def test_damage_is_named_by_the_check_that_found_it(fig_2, damage, check):
-    with pytest.raises(BinaryError, match=check):
+    with pytest.raises(MapBinaryError, match=check):
         decode(damage(encode(fig_2)))
 
 
@@ -70,7 +70,7 @@ def test_no_altered_byte_goes_unnoticed(data):
 def test_a_small_body_that_unpacks_to_too_much_is_refused_unread():
     bomb = zstandard.ZstdCompressor().compress(bytes(50_000_000))
     envelope = struct.pack("<4sBBHQ32s", b"RMAP", 1, 1, 0, 1000, bytes(32))
-    with pytest.raises(BinaryError, match=r"length check.*more"):
+    with pytest.raises(MapBinaryError, match=r"length check.*more"):
         decode_text(envelope + bomb)
 
 
@@ -81,17 +81,17 @@ def test_without_zstandard_it_says_what_to_install(monkeypatch, fig_2):
 
 
 def test_a_reader_can_set_a_lower_limit(fig_2):
-    with pytest.raises(BinaryError, match=r"^size check"):
+    with pytest.raises(MapBinaryError, match=r"^size check"):
         decode(encode(fig_2), limit=20)
 
 
 def test_a_text_that_is_no_map_is_an_error_of_the_text():
-    with pytest.raises(TextError, match="border;"):
+    with pytest.raises(MapTextError, match="border;"):
         decode(encode("hello\n"))
 
 
 def test_a_text_that_is_no_utf_8_is_refused():
     raw = b"border;\xff"
     head = struct.pack("<4sBBHQ32s", b"RMAP", 1, 1, 0, len(raw), hashlib.sha256(raw).digest())
-    with pytest.raises(BinaryError, match="UTF-8"):
+    with pytest.raises(MapBinaryError, match="UTF-8"):
         decode(head + zstandard.compress(raw))

@@ -10,11 +10,11 @@ import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from robot_bridge.robotmap.builder import Window, build_map
-from robot_bridge.robotmap.errors import WindowError
-from robot_bridge.robotmap.model import Border, ShapeType
-from robot_bridge.robotmap.outlines import OutlineRow, Outlines
-from robot_bridge.robotmap.text import write_text
+from robot_bridge.core.errors import WindowError
+from robot_bridge.core.robotmap.builder import build_map
+from robot_bridge.core.robotmap.model import Border, ShapeType, Window
+from robot_bridge.core.robotmap.outlines import OutlineRow, Outlines
+from robot_bridge.core.robotmap.text_format import write_text
 
 SQUARE = [(0, 0), (10, 0), (10, 10), (0, 10), (0, 0)]
 POLYGON, CURVE, WALL = ShapeType.CLOSED_POLYGON, ShapeType.CLOSED_CURVE, ShapeType.OPEN_POLYGON

@@ -10,10 +10,10 @@ import shapely
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robot_bridge.robotmap.builder import build_map
-from robot_bridge.robotmap.chords import SAGITTA, arc, ramp_normal
-from robot_bridge.robotmap.errors import ShapingError
-from robot_bridge.robotmap.model import ShapeType
+from robot_bridge.core.errors import ShapingError
+from robot_bridge.core.robotmap.builder import build_map
+from robot_bridge.core.robotmap.model import ShapeType
+from robot_bridge.core.robotmap.parametric_shapes import SAGITTA, arc_points, ramp_normal
 
 from .rows import outlines, row
 
@@ -28,7 +28,7 @@ def test_no_chord_is_farther_than_the_sagitta_from_its_arc(radius, first, turn, 
     def at(angle):
         return np.array([100 + radius * math.cos(angle), 50 + radius * math.sin(angle)])
 
-    points = arc(at(first), at(first + share * turn), at(first + turn))
+    points = arc_points(at(first), at(first + share * turn), at(first + turn))
     assert (points[0] == at(first)).all() and (points[-1] == at(first + turn)).all()
     off = np.hypot(*(points - (100, 50)).T)
     middles = np.hypot(*((points[:-1] + points[1:]) / 2 - (100, 50)).T)
@@ -39,15 +39,15 @@ def test_no_chord_is_farther_than_the_sagitta_from_its_arc(radius, first, turn, 
 
 
 def test_an_arc_goes_by_way_of_its_middle_point():
-    over = arc((-1, 0), (0, 1), (1, 0))
-    under = arc((-1, 0), (0, -1), (1, 0))
+    over = arc_points((-1, 0), (0, 1), (1, 0))
+    under = arc_points((-1, 0), (0, -1), (1, 0))
     assert over[:, 1].max() > 0.97 and over[:, 1].min() > -1e-9
     assert under[:, 1].min() < -0.97 and under[:, 1].max() < 1e-9
 
 
 def test_three_points_on_a_line_are_that_line_and_a_circle_closes():
-    assert arc((0, 0), (1, 1), (2, 2)).tolist() == [[0, 0], [2, 2]]
-    circle = arc((1, 0), (-1, 0), (1, 0))
+    assert arc_points((0, 0), (1, 1), (2, 2)).tolist() == [[0, 0], [2, 2]]
+    circle = arc_points((1, 0), (-1, 0), (1, 0))
     assert (circle[0] == circle[-1]).all()
     assert shapely.Polygon(circle).area == pytest.approx(math.pi, rel=0.05)
 

@@ -10,8 +10,8 @@ import shapely
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from robot_bridge.robotmap.builder import Window, build_map
-from robot_bridge.robotmap.model import ShapeType
+from robot_bridge.core.robotmap.builder import build_map
+from robot_bridge.core.robotmap.model import ShapeType, Window
 
 from .rows import is_chain, outlines, ring, row
 

@@ -14,14 +14,13 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from robot_bridge.robotmap.binary import CODEC_COLUMNS, decode, decode_text, encode
-from robot_bridge.robotmap.builder import Window, build_map
-from robot_bridge.robotmap.columnar import pack_map
-from robot_bridge.robotmap.columns import pack, unpack
-from robot_bridge.robotmap.compression import by_lzma, from_lzma
-from robot_bridge.robotmap.errors import BinaryError, MissingCodecError, RobotMapError
-from robot_bridge.robotmap.model import Border, Obstacle, RobotMap, ShapeType
-from robot_bridge.robotmap.text import read_text, write_text
+from robot_bridge.core.errors import MapBinaryError, MissingCodecError, RobotMapError
+from robot_bridge.core.robotmap.binary import CODEC_COLUMNS, by_lzma, decode, decode_text, encode, from_lzma
+from robot_bridge.core.robotmap.builder import build_map
+from robot_bridge.core.robotmap.columnar import pack_map
+from robot_bridge.core.robotmap.columns import pack_numbers, unpack_numbers
+from robot_bridge.core.robotmap.model import Border, Obstacle, RobotMap, ShapeType, Window
+from robot_bridge.core.robotmap.text_format import read_text, write_text
 
 from .rows import box, outlines, row
 
@@ -136,32 +135,32 @@ def test_a_map_of_nothing_comes_back():
 def test_a_text_that_would_come_back_otherwise_is_refused_and_codec_1_named(old, new):
     text = write_text(a_map(segments([(4.53, 0)], [(1, 0)])))
     assert decode_text(encode(text, codec=2)) == text
-    with pytest.raises(BinaryError, match=r"codec 2 keeps .* line \d+ .* use codec 1"):
+    with pytest.raises(MapBinaryError, match=r"codec 2 keeps .* line \d+ .* use codec 1"):
         encode(text.replace(old, new, 1), codec=2)
 
 
 def test_the_papers_sample_is_refused_and_codec_1_carries_it(fig_2):
-    with pytest.raises(BinaryError, match=r"line 6 .* use codec 1"):
+    with pytest.raises(MapBinaryError, match=r"line 6 .* use codec 1"):
         encode(fig_2, codec=2)
     assert decode_text(encode(fig_2)) == fig_2
 
 
 def test_a_text_without_its_last_line_break_is_refused():
     text = write_text(a_map(segments([(0, 0)], [(1, 0)])))
-    with pytest.raises(BinaryError, match=r"would come back as .*use codec 1"):
+    with pytest.raises(MapBinaryError, match=r"would come back as .*use codec 1"):
         encode(text.rstrip("\n"), codec=2)
 
 
 @pytest.mark.parametrize("far", [1e14, 1e300])
 def test_numbers_without_room_are_refused_and_codec_1_named(far):
-    with pytest.raises(BinaryError, match="use codec 1"):
+    with pytest.raises(MapBinaryError, match="use codec 1"):
         encode(a_map(segments([(0, 0)], [(far, 0)])), codec=2)
-    with pytest.raises(BinaryError, match="use codec 1"):
+    with pytest.raises(MapBinaryError, match="use codec 1"):
         encode(a_map(segments([(0, 0)], [(1, 0)], id=10**19)), codec=2)
 
 
 def test_an_unknown_codec_is_refused(fig_2):
-    with pytest.raises(BinaryError, match="codec 3 is not known"):
+    with pytest.raises(MapBinaryError, match="codec 3 is not known"):
         encode(fig_2, codec=3)
 
 
@@ -204,24 +203,26 @@ def test_chains_with_the_number_of_what_they_join_come_back(sources):
 
 @given(st.lists(st.integers(-(2**61), 2**61 - 1)))
 def test_any_whole_numbers_of_62_bits_come_back(numbers):
-    assert unpack(column(*numbers), len(numbers), "numbers").tolist() == numbers
+    assert unpack_numbers(column(*numbers), len(numbers), "numbers").tolist() == numbers
 
 
 def test_numbers_are_packed_in_the_way_that_is_smaller():
     chance = np.random.default_rng(1)
     small, large = chance.integers(-30, 30, 500), chance.integers(-30_000, 30_000, 500)
-    assert pack(small)[0] in (0, 1) and len(pack(small)) == 501
-    assert pack(large)[0] == 2 and len(pack(large)) == 1001
+    assert pack_numbers(small)[0] in (0, 1) and len(pack_numbers(small)) == 501
+    assert pack_numbers(large)[0] == 2 and len(pack_numbers(large)) == 1001
     small[::50] = 40_000
-    assert pack(small)[0] == 0 and len(pack(small)) < 530
-    assert pack(np.zeros(500, dtype=np.int64)) == b""
+    assert pack_numbers(small)[0] == 0 and len(pack_numbers(small)) < 530
+    assert pack_numbers(np.zeros(500, dtype=np.int64)) == b""
 
 
 def test_columns_of_another_version_are_refused_by_their_version():
     content = bytearray(encode(a_map(), codec=2))
     assert content[4:8] == b"\x01\x02\x02\x00"
     content[6] = 0
-    with pytest.raises(BinaryError, match=r"version check: version 0 of codec 2 .* export the map once more"):
+    with pytest.raises(
+        MapBinaryError, match=r"version check: version 0 of codec 2 .* export the map once more"
+    ):
         decode(bytes(content))
 
 
@@ -236,7 +237,7 @@ def test_columns_of_another_version_are_refused_by_their_version():
 )
 def test_lzma_that_is_not_whole_is_refused(change, problem):
     content = encode(a_map(segments([(0, 0)], [(1, 0)])), codec=2)
-    with pytest.raises(BinaryError, match=problem):
+    with pytest.raises(MapBinaryError, match=problem):
         decode(content[:48] + change(content[48:]))
 
 
@@ -285,7 +286,7 @@ def test_any_map_in_centimetres_comes_back(some):
 
 def column(*numbers):
     """These numbers as they are packed."""
-    return pack(np.array(numbers, dtype=np.int64))
+    return pack_numbers(np.array(numbers, dtype=np.int64))
 
 
 def hostile(**changes):
@@ -353,7 +354,7 @@ def test_the_hostile_maps_of_these_tests_are_sound_until_they_are_changed():
     ],
 )
 def test_columns_that_do_not_fit_together_are_refused_and_the_check_named(changes, check):
-    with pytest.raises(BinaryError, match=check):
+    with pytest.raises(MapBinaryError, match=check):
         decode(hostile(**changes))
 
 
@@ -373,7 +374,7 @@ def test_columns_that_do_not_fit_together_are_refused_and_the_check_named(change
     ],
 )
 def test_cbor_that_is_more_than_a_flat_array_is_refused_unread(body):
-    with pytest.raises(BinaryError, match="CBOR check"):
+    with pytest.raises(MapBinaryError, match="CBOR check"):
         decode(sealed(body, b"border;\n" * 20))
 
 
@@ -384,7 +385,7 @@ def test_a_label_repeated_beyond_the_text_is_refused_before_it_is_written():
     items[5] = "w" * 400_000 + ";"
     content = sealed(cbor2.dumps(items), b"x", length=600_000)
     tracemalloc.start()
-    with pytest.raises(BinaryError, match="labels alone"):
+    with pytest.raises(MapBinaryError, match="labels alone"):
         decode(content)
     peak = tracemalloc.get_traced_memory()[1]
     tracemalloc.stop()
@@ -392,7 +393,7 @@ def test_a_label_repeated_beyond_the_text_is_refused_before_it_is_written():
 
 
 def test_a_body_that_unpacks_to_more_than_its_text_is_refused():
-    with pytest.raises(BinaryError, match="size check: the body"):
+    with pytest.raises(MapBinaryError, match="size check: the body"):
         decode(sealed(bytes(50_000_000), b"border;\n"))
 
 

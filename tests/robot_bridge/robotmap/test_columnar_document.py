@@ -7,10 +7,10 @@ import lzma
 import cbor2
 import pytest
 
-from robot_bridge.robotmap.binary import encode
-from robot_bridge.robotmap.builder import Window, build_map
-from robot_bridge.robotmap.model import ShapeType
-from robot_bridge.robotmap.text import read_text, write_text
+from robot_bridge.core.robotmap.binary import encode
+from robot_bridge.core.robotmap.builder import build_map
+from robot_bridge.core.robotmap.model import ShapeType, Window
+from robot_bridge.core.robotmap.text_format import read_text, write_text
 
 from .rows import box, outlines, row
 

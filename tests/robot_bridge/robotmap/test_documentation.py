@@ -7,12 +7,12 @@ import re
 import numpy as np
 import pytest
 
-from robot_bridge.robotmap.binary import encode
-from robot_bridge.robotmap.builder import Window, build_map
-from robot_bridge.robotmap.model import ShapeType
-from robot_bridge.robotmap.outlines import OutlineRow, Outlines
-from robot_bridge.robotmap.templates import NAMED
-from robot_bridge.robotmap.text import read_text, write_text
+from robot_bridge.core.robotmap.binary import encode
+from robot_bridge.core.robotmap.builder import build_map
+from robot_bridge.core.robotmap.model import ShapeType, Window
+from robot_bridge.core.robotmap.outlines import OutlineRow, Outlines
+from robot_bridge.core.robotmap.parametric_shapes import NAMED
+from robot_bridge.core.robotmap.text_format import read_text, write_text
 
 BORDER = "border;\n-100;100;\n100;-100;\n#\n"
 RINGS = (ShapeType.CLOSED_POLYGON, ShapeType.CLOSED_CURVE, ShapeType.RAMP)

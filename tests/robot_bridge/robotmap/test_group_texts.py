@@ -5,13 +5,17 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from robot_bridge.robotmap import group_texts as module
-from robot_bridge.robotmap.binary import encode
-from robot_bridge.robotmap.group_texts import GroupText, group_texts, merged, size_in_binary
-from robot_bridge.robotmap.index import OutlineIndex
-from robot_bridge.robotmap.model import RobotMap, ShapeType
-from robot_bridge.robotmap.text import write_text
-from robot_bridge.robotmap.window import Window
+from robot_bridge.core.robotmap import window_index as module
+from robot_bridge.core.robotmap.binary import encode
+from robot_bridge.core.robotmap.model import RobotMap, ShapeType, Window
+from robot_bridge.core.robotmap.text_format import write_text
+from robot_bridge.core.robotmap.window_index import (
+    GroupText,
+    OutlineIndex,
+    group_texts,
+    merged,
+    size_in_binary,
+)
 
 from .rows import box, outlines, row
 

@@ -12,10 +12,9 @@ import zstandard
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from robot_bridge.robotmap.binary import decode, decode_text, encode
-from robot_bridge.robotmap.errors import BinaryError
-from robot_bridge.robotmap.labels import read_ext
-from robot_bridge.robotmap.text import read_text
+from robot_bridge.core.errors import MapBinaryError
+from robot_bridge.core.robotmap.binary import decode, decode_text, encode
+from robot_bridge.core.robotmap.text_format import read_ext, read_text
 
 from . import hostile_maps
 from .hostile_maps import EMPTY, HEAD, ONE, cost, many_obstacles, obstacle, sealed
@@ -64,10 +63,12 @@ def test_what_is_repeated_costs_in_proportion(begin, repeated, end):
 def test_a_file_of_a_few_bytes_does_not_unpack_to_more_obstacles_than_one_of_a_megabyte(count):
     text = (HEAD + (ONE if count else EMPTY) * 100_000).encode()
     content = sealed(1, zstandard.compress(text), text)
-    with pytest.raises(BinaryError, match=r"size check: the map has more .* export it as text, or in tiles"):
+    with pytest.raises(
+        MapBinaryError, match=r"size check: the map has more .* export it as text, or in tiles"
+    ):
         decode(content)
     assert len(decode(content, len(text)).obstacles) == 100_000
-    with pytest.raises(BinaryError, match="size check"):
+    with pytest.raises(MapBinaryError, match="size check"):
         decode(many_obstacles(60_000))
 
 
@@ -75,7 +76,9 @@ def test_a_text_of_more_than_eight_megabytes_is_refused_unpacked_unless_it_is_as
     text = HEAD + obstacle("x" * 8_000_000)
     content = encode(text)
     assert len(content) < 2_000
-    with pytest.raises(BinaryError, match=r"size check: 8000\d+ bytes of text .* limit for these \d+ bytes"):
+    with pytest.raises(
+        MapBinaryError, match=r"size check: 8000\d+ bytes of text .* limit for these \d+ bytes"
+    ):
         decode_text(content)
     assert decode_text(content, 9_000_000) == text
 

@@ -10,11 +10,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from robot_bridge.robotmap.builder import Window, build_map
-from robot_bridge.robotmap.index import OutlineIndex
-from robot_bridge.robotmap.model import Border, ShapeType
-from robot_bridge.robotmap.outlines import Outlines
-from robot_bridge.robotmap.text import write_text
+from robot_bridge.core.robotmap.builder import build_map
+from robot_bridge.core.robotmap.model import Border, ShapeType, Window
+from robot_bridge.core.robotmap.outlines import Outlines
+from robot_bridge.core.robotmap.text_format import write_text
+from robot_bridge.core.robotmap.window_index import OutlineIndex
 
 from .rows import outlines, ring, row
 

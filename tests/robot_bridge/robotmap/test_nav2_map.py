@@ -7,10 +7,9 @@ import math
 import numpy as np
 import pytest
 
-from robot_bridge.robotmap.errors import NavigationMapError
-from robot_bridge.robotmap.exporters.grid import Grid
-from robot_bridge.robotmap.exporters.nav2 import scale_files, trinary_files
-from robot_bridge.robotmap.nav2_map import LARGEST_MAP, cells_of, check_size, read_yaml
+from robot_bridge.core.errors import NavigationMapError
+from robot_bridge.core.robotmap.exporters.nav2 import RasterGrid, scale_files, trinary_files
+from robot_bridge.core.robotmap.nav2_reader import LARGEST_MAP, cells_of, check_size, read_yaml
 
 YAML = "image: a.pgm\nresolution: 0.05\norigin: [1.0, 2.0, 0.0]\nnegate: 0\nfree_thresh: 0.196\n"
 
@@ -55,7 +54,7 @@ def test_the_corners_are_turned_about_the_lower_left_one(yaw):
 
 
 def test_what_is_written_here_is_read_as_it_was():
-    grid = Grid(-3.0, 4.0, 0.05, 3, 2)
+    grid = RasterGrid(-3.0, 4.0, 0.05, 3, 2)
     written = np.array([[100, 0, -1], [0, 100, 0]], dtype=np.int8)
     files = trinary_files("site", grid, written, {"crs": "EPSG:32633", "origin": "10,20"})
     described = read_yaml(files["site.yaml"].decode())
@@ -64,7 +63,7 @@ def test_what_is_written_here_is_read_as_it_was():
     pixels = np.frombuffer(files["site.pgm"][-6:], dtype=np.uint8).reshape(1, 2, 3)
     assert (cells_of(pixels, described)[::-1] == written).all()
     shades = np.arange(101, dtype=np.int8).reshape(1, 101)
-    files = scale_files("mask", Grid(0.0, 0.0, 1.0, 101, 1), shades)
+    files = scale_files("mask", RasterGrid(0.0, 0.0, 1.0, 101, 1), shades)
     pixels = np.frombuffer(files["mask.pgm"][-101:], dtype=np.uint8).reshape(1, 1, 101)
     assert (cells_of(pixels, read_yaml(files["mask.yaml"].decode())) == shades).all()
 

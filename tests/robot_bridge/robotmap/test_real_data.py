@@ -9,9 +9,10 @@ import pyogrio
 import pytest
 import shapely
 
-from robot_bridge.robotmap.binary import decode_text, encode
-from robot_bridge.robotmap.builder import Window, build_map
-from robot_bridge.robotmap.text import read_text, write_text
+from robot_bridge.core.robotmap.binary import decode_text, encode
+from robot_bridge.core.robotmap.builder import build_map
+from robot_bridge.core.robotmap.model import Window
+from robot_bridge.core.robotmap.text_format import read_text, write_text
 
 from .rows import outlines, ring, row
 

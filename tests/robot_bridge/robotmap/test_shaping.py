@@ -10,11 +10,11 @@ import shapely
 from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
 
-from robot_bridge.robotmap.builder import Window, build_map
-from robot_bridge.robotmap.errors import MissingGeometryError, ShapingError
-from robot_bridge.robotmap.model import ShapeType
-from robot_bridge.robotmap.shaping import Shaping, shaped
-from robot_bridge.robotmap.text import write_text
+from robot_bridge.core.errors import MissingGeometryError, ShapingError
+from robot_bridge.core.robotmap.builder import build_map
+from robot_bridge.core.robotmap.model import ShapeType, Window
+from robot_bridge.core.robotmap.shaping import Shaping, shaped
+from robot_bridge.core.robotmap.text_format import write_text
 
 from .rows import box, is_chain, outlines, ring, row
 

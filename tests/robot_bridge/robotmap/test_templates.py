@@ -10,10 +10,10 @@ import shapely
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robot_bridge.robotmap.builder import build_map
-from robot_bridge.robotmap.errors import ShapingError
-from robot_bridge.robotmap.model import ShapeType
-from robot_bridge.robotmap.templates import NAMED, template
+from robot_bridge.core.errors import ShapingError
+from robot_bridge.core.robotmap.builder import build_map
+from robot_bridge.core.robotmap.model import ShapeType
+from robot_bridge.core.robotmap.parametric_shapes import NAMED, template
 
 from .rows import outlines, row, signed_area
 

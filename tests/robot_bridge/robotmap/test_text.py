@@ -9,9 +9,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robot_bridge.robotmap.errors import RobotMapError, TextError
-from robot_bridge.robotmap.model import Border, Obstacle, RobotMap, ShapeType
-from robot_bridge.robotmap.text import format_number, read_text, write_text
+from robot_bridge.core.errors import MapTextError, RobotMapError
+from robot_bridge.core.robotmap.model import Border, Obstacle, RobotMap, ShapeType
+from robot_bridge.core.robotmap.text_format import format_number, read_text, write_text
 
 
 def test_fig_2_is_read_as_the_paper_means_it(fig_2):
@@ -83,7 +83,7 @@ def test_every_prefix_that_ends_inside_an_obstacle_says_that_the_text_was_cut_of
         if count in whole:
             read_text("".join(lines[:count]))
             continue
-        with pytest.raises(TextError, match=r"cut off"):
+        with pytest.raises(MapTextError, match=r"cut off"):
             read_text("".join(lines[:count]))
 
 
@@ -107,7 +107,7 @@ def test_every_prefix_that_ends_inside_an_obstacle_says_that_the_text_was_cut_of
 )
 def test_what_is_wrong_is_named_with_its_line(fig_2, old, new, said):
     assert old in fig_2
-    with pytest.raises(TextError, match=said):
+    with pytest.raises(MapTextError, match=said):
         read_text(fig_2.replace(old, new))
 
 

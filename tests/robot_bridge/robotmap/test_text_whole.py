@@ -9,9 +9,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robot_bridge.robotmap.errors import RobotMapError, TextError
-from robot_bridge.robotmap.model import Border, Obstacle, RobotMap, ShapeType
-from robot_bridge.robotmap.text import read_text, write_text
+from robot_bridge.core.errors import MapTextError, RobotMapError
+from robot_bridge.core.robotmap.model import Border, Obstacle, RobotMap, ShapeType
+from robot_bridge.core.robotmap.text_format import read_text, write_text
 
 numbers = st.floats(-1e7, 1e7)
 # What means something in the format, what ends lines somewhere, what UTF-8 cannot say, and plain letters.
@@ -73,7 +73,7 @@ def test_every_cut_inside_a_line_is_called_one(fig_2):
     for end in range(len(fig_2) - 1):
         if fig_2[end - 1] in "\n#" and end:
             continue
-        with pytest.raises(TextError, match="cut off"):
+        with pytest.raises(MapTextError, match="cut off"):
             read_text(fig_2[:end])
 
 

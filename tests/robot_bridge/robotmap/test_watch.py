@@ -7,8 +7,8 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from robot_bridge.robotmap.errors import CancelledError
-from robot_bridge.robotmap.shaping import Shaping, shaped
+from robot_bridge.core.errors import MapCancelledError
+from robot_bridge.core.robotmap.shaping import Shaping, shaped
 
 from .rows import box, outlines, row
 
@@ -49,6 +49,6 @@ def test_a_cancel_at_any_moment_ends_it_at_once(street):
             again.append(1)
             return len(again) >= moment
 
-        with pytest.raises(CancelledError):
+        with pytest.raises(MapCancelledError):
             shaped(street, EVERYTHING, cancelled=cancelled)
         assert len(again) == moment

@@ -6,8 +6,8 @@ import math
 
 import pytest
 
-from robot_bridge.robotmap.errors import WindowError
-from robot_bridge.robotmap.window import Window
+from robot_bridge.core.errors import WindowError
+from robot_bridge.core.robotmap.model import Window
 
 
 def test_width_runs_along_x_and_height_along_y():

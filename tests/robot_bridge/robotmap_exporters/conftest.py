@@ -11,11 +11,10 @@ import pytest
 import yaml
 from PIL import Image
 
-from robot_bridge.robotmap.builder import Window, build_map
-from robot_bridge.robotmap.model import RobotMap, ShapeType
-from robot_bridge.robotmap.outlines import OutlineRow, Outlines
-from robot_bridge.sites.publication import read_site
-from robot_bridge.sites.site import Site
+from robot_bridge.core.robotmap.builder import build_map
+from robot_bridge.core.robotmap.model import RobotMap, ShapeType, Window
+from robot_bridge.core.robotmap.outlines import OutlineRow, Outlines
+from robot_bridge.core.sites.site import Site, read_site
 
 
 @dataclass(frozen=True)

@@ -9,13 +9,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from robot_bridge.robotmap.exporters.errors import ExportError
-from robot_bridge.robotmap.exporters.geojson import geojson_of
-from robot_bridge.robotmap.exporters.nav2 import trinary_files
-from robot_bridge.robotmap.exporters.occupancy import FREE, OCCUPIED, UNKNOWN, occupancy_of
-from robot_bridge.robotmap.exporters.shapes import obstacle_shapes, segment_shapes
-from robot_bridge.robotmap.exporters.svg import svg_of
-from robot_bridge.robotmap.text import read_text
+from robot_bridge.core.errors import ExportError
+from robot_bridge.core.robotmap.exporters.geometries import obstacle_shapes, segment_shapes
+from robot_bridge.core.robotmap.exporters.nav2 import FREE, OCCUPIED, UNKNOWN, occupancy_of, trinary_files
+from robot_bridge.core.robotmap.exporters.svg import svg_of
+from robot_bridge.core.robotmap.exporters.vector_files import geojson_of
+from robot_bridge.core.robotmap.text_format import read_text
 
 # Few different values, so that segments meet, close, and end on the border.
 coordinate = st.one_of(st.integers(-2, 12).map(float), st.floats(-1e3, 1e3), st.sampled_from([1e9, -1e15]))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import re
 
-from robot_bridge.robotmap.text import write_text
+from robot_bridge.core.robotmap.text_format import write_text
 
 
 def test_the_python_of_the_guide_runs_as_it_stands(root, site_on_disk, tmp_path, monkeypatch):

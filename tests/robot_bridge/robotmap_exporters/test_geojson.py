@@ -11,13 +11,12 @@ import pytest
 import shapely
 from osgeo import ogr
 
-from robot_bridge.robotmap.exporters.errors import PlaceError
-from robot_bridge.robotmap.exporters.geojson import geojson_of
-from robot_bridge.robotmap.exporters.shapes import obstacle_shapes, segment_shapes
-from robot_bridge.robotmap.model import ShapeType
-from robot_bridge.sites.errors import CrsError
-from robot_bridge.sites.frame import SiteFrame
-from robot_bridge.sites.map_frame import frame_of_map, lonlat_of
+from robot_bridge.core.errors import CrsError, GeoreferenceError
+from robot_bridge.core.robotmap.exporters.geometries import obstacle_shapes, segment_shapes
+from robot_bridge.core.robotmap.exporters.vector_files import geojson_of
+from robot_bridge.core.robotmap.model import ShapeType
+from robot_bridge.core.sites.frame import SiteFrame
+from robot_bridge.core.sites.transforms import frame_of_map, lonlat_of
 
 FRAME = SiteFrame("EPSG:32633", (640420.0, 5193480.0), math.radians(30))
 OUTER = [(2, 2), (18, 2), (18, 18), (2, 18), (2, 2)]
@@ -163,9 +162,9 @@ def test_a_map_of_nothing_is_an_empty_collection(make_map):
 
 def test_positions_off_the_earth_or_across_the_antimeridian_are_refused(robot_map):
     shapes = obstacle_shapes(robot_map)
-    with pytest.raises(PlaceError, match="none on the earth; check the CRS"):
+    with pytest.raises(GeoreferenceError, match="none on the earth; check the CRS"):
         geojson_of(shapes, lambda xy: np.full((len(xy), 2), np.inf))
-    with pytest.raises(PlaceError, match="across the antimeridian"):
+    with pytest.raises(GeoreferenceError, match="across the antimeridian"):
         geojson_of(shapes, lambda xy: np.column_stack([np.where(xy[:, 0] > 10, -179.9, 179.9), xy[:, 1]]))
 
 

@@ -11,9 +11,9 @@ import pytest
 import shapely
 from osgeo import ogr
 
-from robot_bridge.robotmap.exporters.errors import ExportError, MissingPackageError
-from robot_bridge.robotmap.exporters.geopackage import write_geopackage
-from robot_bridge.sites.map_frame import frame_of_map
+from robot_bridge.core.errors import ExportError, MissingExportPackageError
+from robot_bridge.core.robotmap.exporters.vector_files import write_geopackage
+from robot_bridge.core.sites.transforms import frame_of_map
 
 
 @pytest.fixture
@@ -86,6 +86,6 @@ def test_a_folder_that_is_not_there_is_named_and_nothing_is_left(make_map, house
 
 def test_without_pyogrio_it_says_what_to_install(make_map, house, tmp_path, monkeypatch):
     monkeypatch.setitem(sys.modules, "pyogrio", None)
-    with pytest.raises(MissingPackageError, match="needs the Python package pyogrio"):
+    with pytest.raises(MissingExportPackageError, match="needs the Python package pyogrio"):
         write_geopackage(make_map([(house, {})], (10, 20, 30, 40)), tmp_path / "map.gpkg")
     assert list(tmp_path.iterdir()) == []

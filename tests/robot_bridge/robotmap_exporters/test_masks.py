@@ -8,12 +8,18 @@ import numpy as np
 import pytest
 import yaml
 
-from robot_bridge.robotmap.exporters.errors import AreaError
-from robot_bridge.robotmap.exporters.grid import Grid
-from robot_bridge.robotmap.exporters.masks import MaskArea, filter_parameters, keepout_mask, speed_mask
-from robot_bridge.robotmap.exporters.nav2 import scale_files, trinary_files
+from robot_bridge.core.errors import MaskAreaError
+from robot_bridge.core.robotmap.exporters.nav2 import (
+    MaskArea,
+    RasterGrid,
+    filter_parameters,
+    keepout_mask,
+    scale_files,
+    speed_mask,
+    trinary_files,
+)
 
-GRID = Grid(100.0, 50.0, 0.1, 200, 100)
+GRID = RasterGrid(100.0, 50.0, 0.1, 200, 100)
 
 
 def rectangle(x_min, y_min, x_max, y_max):
@@ -78,26 +84,28 @@ def test_a_limit_is_never_higher_than_asked_and_at_most_a_step_lower(read_writte
 
 def test_every_value_of_a_mask_survives_the_image(read_written):
     cells = np.arange(101, dtype=np.int8).reshape(1, -1)
-    assert (read_written(scale_files("m", Grid(0, 0, 1.0, 101, 1), cells)).cells == cells).all()
+    assert (read_written(scale_files("m", RasterGrid(0, 0, 1.0, 101, 1), cells)).cells == cells).all()
 
 
 @pytest.mark.parametrize("speed", [0.0, -1.0, math.nan, math.inf])
 def test_a_speed_that_is_none_is_refused_by_name(speed):
-    with pytest.raises(AreaError, match=f"ring road: its speed is {speed:g} m/s; give one above 0"):
+    with pytest.raises(MaskAreaError, match=f"ring road: its speed is {speed:g} m/s; give one above 0"):
         speed_mask(GRID, [area(101, 51, 104, 59, name="ring road", speed=speed)])
 
 
 def test_a_speed_that_the_mask_cannot_tell_from_none_is_refused_by_name():
     areas = [area(101, 51, 104, 59, name="dock", speed=0.04), area(105, 51, 106, 59, speed=10.0)]
-    with pytest.raises(AreaError, match=r"dock: 0\.04 m/s cannot be told from 0 .* give at least 0\.1 m/s"):
+    with pytest.raises(
+        MaskAreaError, match=r"dock: 0\.04 m/s cannot be told from 0 .* give at least 0\.1 m/s"
+    ):
         speed_mask(GRID, areas)
-    with pytest.raises(AreaError, match="5000 m/s is above 1000 m/s"):
+    with pytest.raises(MaskAreaError, match="5000 m/s is above 1000 m/s"):
         speed_mask(GRID, [area(101, 51, 104, 59, speed=5000.0)])
 
 
 @pytest.mark.parametrize("ring", [[(0, 0), (1, 1)], [(0, 0), (1, 0), (math.nan, 1)]])
 def test_an_area_that_is_no_polygon_is_refused_by_name(ring):
-    with pytest.raises(AreaError, match="lab: ring 1 is no polygon"):
+    with pytest.raises(MaskAreaError, match="lab: ring 1 is no polygon"):
         keepout_mask(GRID, [MaskArea([np.array(ring)], "lab")])
 
 

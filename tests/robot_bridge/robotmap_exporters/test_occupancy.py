@@ -7,11 +7,9 @@ import pytest
 import shapely
 from osgeo import gdal
 
-from robot_bridge.robotmap.exporters.grid import Grid
-from robot_bridge.robotmap.exporters.nav2 import scale_files, trinary_files
-from robot_bridge.robotmap.exporters.occupancy import occupancy_of
-from robot_bridge.robotmap.model import ShapeType
-from robot_bridge.robotmap.text import read_text, write_text
+from robot_bridge.core.robotmap.exporters.nav2 import RasterGrid, occupancy_of, scale_files, trinary_files
+from robot_bridge.core.robotmap.model import ShapeType
+from robot_bridge.core.robotmap.text_format import read_text, write_text
 
 FREE, OCCUPIED, UNKNOWN = 0, 100, -1
 NAV2_MAPS = ("depot", "depot_keepout", "depot_speed", "systest_map_circular")
@@ -160,7 +158,7 @@ def test_nav2s_own_maps_come_back_as_they_were(data, read_nav2_file, read_writte
     """Read by the rules, written by this writer, read again: the robot has the same map."""
     theirs = read_nav2_file(data / "nav2" / "maps" / f"{name}.yaml")
     rows, columns = theirs.cells.shape
-    grid = Grid(theirs.origin[0], theirs.origin[1], theirs.resolution, columns, rows)
+    grid = RasterGrid(theirs.origin[0], theirs.origin[1], theirs.resolution, columns, rows)
     write = scale_files if theirs.mode == "scale" else trinary_files
     ours = read_written(write(name, grid, theirs.cells))
     assert (ours.cells == theirs.cells).all()
@@ -198,8 +196,9 @@ def test_in_a_real_city_walls_are_closed_and_insides_are_not_free(data):
     """Helsinki, 200 m x 200 m: every cell in a building is not free, every cell far from all of them is."""
     import pyogrio
 
-    from robot_bridge.robotmap.builder import Window, build_map
-    from robot_bridge.robotmap.outlines import OutlineRow, Outlines
+    from robot_bridge.core.robotmap.builder import build_map
+    from robot_bridge.core.robotmap.model import Window
+    from robot_bridge.core.robotmap.outlines import OutlineRow, Outlines
 
     box = (385800.0, 6671600.0, 386000.0, 6671800.0)
     _, ids, shapes, _ = pyogrio.raw.read(

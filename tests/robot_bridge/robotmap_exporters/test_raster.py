@@ -8,18 +8,17 @@ import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from robot_bridge.robotmap.exporters.errors import GridError
-from robot_bridge.robotmap.exporters.grid import Grid
-from robot_bridge.robotmap.exporters.raster import enclosed_cells, touched_cells
-from robot_bridge.robotmap.model import Border
+from robot_bridge.core.errors import ExportGridError
+from robot_bridge.core.robotmap.exporters.nav2 import RasterGrid, enclosed_cells, touched_cells
+from robot_bridge.core.robotmap.model import Border
 
-GRID = Grid(-1.0, 2.0, 0.1, 30, 20)
+GRID = RasterGrid(-1.0, 2.0, 0.1, 30, 20)
 centimetre_x = st.integers(-150, 250).map(lambda k: k / 100)
 centimetre_y = st.integers(150, 450).map(lambda k: k / 100)
 points = st.tuples(centimetre_x, centimetre_y)
 
 
-def boxes(grid: Grid, grow: float = 0.0):
+def boxes(grid: RasterGrid, grow: float = 0.0):
     """Return each cell as a polygon, (rows, columns), larger by ``grow`` metres on every side."""
     x = grid.x_min + np.arange(grid.columns) * grid.resolution
     y = (grid.y_min + np.arange(grid.rows) * grid.resolution)[:, None]
@@ -38,7 +37,7 @@ def test_a_line_touches_the_cells_it_runs_through_and_no_others(a, b):
 @settings(max_examples=3 * settings.default.max_examples, deadline=None)
 @given(points, points)
 def test_the_cells_of_a_line_share_edges_so_that_nothing_slips_through(count_regions, a, b):
-    grid = Grid(-2.0, 1.0, 0.1, 50, 40)
+    grid = RasterGrid(-2.0, 1.0, 0.1, 50, 40)
     made = touched_cells(grid, np.array([a]), np.array([b]))
     assert count_regions(made) == 1
 
@@ -71,7 +70,7 @@ def test_courtyards_open_and_what_stands_in_them_closes():
         ring = np.array([[low, low], [high, low], [high, high], [low, high], [low, low]], dtype=float)
         return ring[::-1] if clockwise else ring
 
-    grid = Grid(0.0, 0.0, 1.0, 10, 10)
+    grid = RasterGrid(0.0, 0.0, 1.0, 10, 10)
     rings = [square(0, 10), square(2, 8, clockwise=True), square(4, 6)]
     made = enclosed_cells(
         grid, np.concatenate([r[:-1] for r in rings]), np.concatenate([r[1:] for r in rings])
@@ -87,25 +86,27 @@ def test_nothing_is_touched_or_enclosed_by_nothing():
 
 
 def test_a_grid_larger_than_one_band_is_one_grid(count_regions):
-    grid = Grid(0.0, 0.0, 1.0, 3000, 2000)
+    grid = RasterGrid(0.0, 0.0, 1.0, 3000, 2000)
     made = touched_cells(grid, np.array([[0.5, 0.5]]), np.array([[1999.5, 1999.5]]))
     assert made.any(axis=1).all() and count_regions(made) == 1
 
 
 def test_the_grid_covers_the_border_whole_and_begins_in_its_lower_left_corner():
-    grid = Grid.covering(Border(-3.0, 7.0, 7.02, 9.0), 0.05)
+    grid = RasterGrid.covering(Border(-3.0, 7.0, 7.02, 9.0), 0.05)
     assert (grid.x_min, grid.y_min, grid.columns, grid.rows) == (-3.0, 7.0, 201, 40)
 
 
 @pytest.mark.parametrize("resolution", [0.0, -0.1, float("nan"), float("inf")])
 def test_a_resolution_that_is_no_length_is_refused(resolution):
-    with pytest.raises(GridError, match="is no side of a cell; give one above 0"):
-        Grid.covering(Border(0, 0, 1, 1), resolution)
+    with pytest.raises(ExportGridError, match="is no side of a cell; give one above 0"):
+        RasterGrid.covering(Border(0, 0, 1, 1), resolution)
 
 
 def test_too_many_cells_are_refused_with_a_resolution_that_is_accepted():
     border = Border(0.0, 0.0, 1234.5, 999.0)
-    with pytest.raises(GridError, match=r"24690 x 19980 = 493\.3 million cells.*choose 0\.14 m or") as error:
-        Grid.covering(border, 0.05)
+    with pytest.raises(
+        ExportGridError, match=r"24690 x 19980 = 493\.3 million cells.*choose 0\.14 m or"
+    ) as error:
+        RasterGrid.covering(border, 0.05)
     assert "smaller window" in str(error.value)
-    Grid.covering(border, 0.14)
+    RasterGrid.covering(border, 0.14)

@@ -9,10 +9,8 @@ from xml.etree import ElementTree
 import numpy as np
 import pytest
 
-from robot_bridge.robotmap.exporters.palette import RAMP, STAIRS, colours_of_labels
-from robot_bridge.robotmap.exporters.roomy import roomy_place
-from robot_bridge.robotmap.exporters.svg import svg_of
-from robot_bridge.robotmap.model import ShapeType
+from robot_bridge.core.robotmap.exporters.svg import RAMP, STAIRS, colours_of_labels, label_position, svg_of
+from robot_bridge.core.robotmap.model import ShapeType
 
 NAMESPACE = {"s": "http://www.w3.org/2000/svg"}
 
@@ -158,8 +156,8 @@ def test_a_long_narrow_map_keeps_its_legend_on_the_sheet(make_map):
 
 def test_there_is_room_in_the_arm_of_an_l_and_not_in_its_corner():
     ring = np.array([(0, 0), (100, 0), (100, 30), (30, 30), (30, 100), (0, 100), (0, 0)], dtype=float)
-    place = roomy_place([ring])
+    place = label_position([ring])
     assert place.away > 12 and not (place.x > 30 and place.y > 30)
     square = np.array([(0, 0), (30, 0), (30, 30), (0, 30), (0, 0)], dtype=float)
     courtyard = np.array([(2, 2), (2, 28), (28, 28), (28, 2), (2, 2)], dtype=float)
-    assert roomy_place([square, courtyard]).away < 2
+    assert label_position([square, courtyard]).away < 2

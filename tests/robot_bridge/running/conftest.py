@@ -2,9 +2,8 @@
 
 import pytest
 
-from robot_bridge.store import revisions
-from robot_bridge.store.address import read_address
-from robot_bridge.store.database import run_once
+from robot_bridge.gateway.storage import revisions
+from robot_bridge.gateway.storage.database import read_address, run_once
 
 KINDS = ("sqlite", "postgresql", "mariadb")
 

@@ -13,14 +13,13 @@ from pathlib import Path
 import pytest
 from sqlalchemy import insert, select
 
-from robot_bridge.errors import BridgeError, StoreError
-from robot_bridge.store import revisions
-from robot_bridge.store.accounts.choice import keeper_on
-from robot_bridge.store.address import read_address
-from robot_bridge.store.backups.backing_up import back_up, restore, revision_in
-from robot_bridge.store.database import run_once
-from robot_bridge.store.schema import bridge, metadata
-from robot_bridge.store.sole_gateway import SoleGateway
+from robot_bridge.core.errors import BridgeError, StoreError
+from robot_bridge.gateway.storage import revisions
+from robot_bridge.gateway.storage.backup import back_up, restore, revision_in
+from robot_bridge.gateway.storage.database import read_address, run_once
+from robot_bridge.gateway.storage.roles.choice import role_manager_on
+from robot_bridge.gateway.storage.schema import bridge, metadata
+from robot_bridge.gateway.storage.singleton_lock import SingletonLock
 
 ODD = "it's \"odd\" \\ back\\'slash; -- č 火 🚜 %s :x\n\ttab"
 BYTES = bytes(range(256)) * 300
@@ -106,7 +105,7 @@ def other(request, kind, tmp_path):
     url = request.getfixturevalue(f"{kind}_server").new_database()
     run_once(read_address(url), revisions.create)
     admin = read_address(request.getfixturevalue(f"{kind}_server").admin_url(url))
-    run_once(admin, lambda c: keeper_on(c).add_robot(f"bot{secrets.token_hex(4)}", "password"))
+    run_once(admin, lambda c: role_manager_on(c).add_robot(f"bot{secrets.token_hex(4)}", "password"))
     return read_address(url)
 
 
@@ -231,7 +230,7 @@ def test_a_backup_of_a_newer_version_is_refused(address, empty, tmp_path):
 def test_nothing_is_restored_under_a_running_gateway(address, tmp_path):
     file = tmp_path / "backup"
     back_up(address, file)
-    gateway = SoleGateway(address)
+    gateway = SingletonLock(address)
     asyncio.run(gateway.take())
     try:
         with pytest.raises(BridgeError, match="a gateway runs on it: process"):

@@ -10,8 +10,8 @@ from bridge_programs import wait_until
 from bridge_wires import RefusedError, map_bytes
 from stage.errors import StageError
 
-from robot_bridge.robotmap.binary import decode
-from robot_bridge.sites.publication import read_site, write_site
+from robot_bridge.core.robotmap.binary import decode
+from robot_bridge.core.sites.site import read_site, write_site
 
 
 def publish(folder, sample, **changes):

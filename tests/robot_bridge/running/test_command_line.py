@@ -10,10 +10,10 @@ import pytest
 import tomllib
 import typer
 
-from robot_bridge import commands
+from robot_bridge import cli
 from robot_bridge.__main__ import COMMANDS, command_line
 
-HEAVY = {"sqlalchemy", "websockets", "numpy", "robot_bridge.gateway", "robot_bridge.messages"}
+HEAVY = {"sqlalchemy", "websockets", "numpy", "robot_bridge.gateway.app", "robot_bridge.core.messages"}
 
 RUN = """
 import sys
@@ -64,8 +64,8 @@ def test_a_shell_that_completes_is_given_every_command_whole(monkeypatch):
 
 
 def test_every_module_that_has_a_command_is_named():
-    for module in pkgutil.iter_modules(commands.__path__):
-        found = __import__(f"robot_bridge.commands.{module.name}", fromlist=["app"])
+    for module in pkgutil.iter_modules(cli.__path__):
+        found = __import__(f"robot_bridge.cli.{module.name}", fromlist=["app"])
         if isinstance(getattr(found, "app", None), typer.Typer):
             assert module.name in COMMANDS
 
@@ -78,9 +78,7 @@ def test_what_there_is_not_is_said_with_a_status_of_2():
 
 
 def test_the_version_is_that_of_the_project():
-    project = tomllib.loads(
-        (Path(commands.__file__).parents[2] / "pyproject.toml").read_text(encoding="utf-8")
-    )
+    project = tomllib.loads((Path(cli.__file__).parents[2] / "pyproject.toml").read_text(encoding="utf-8"))
     modules, text = imported_by("--version")
     assert text.strip() == project["project"]["version"]
     assert modules & HEAVY == set()

@@ -18,8 +18,8 @@ import pytest
 from bridge_programs import wait_until
 from prometheus_client.parser import text_string_to_metric_families
 
-from robot_bridge.robotmap.binary import decode
-from robot_bridge.sites.publication import read_site, write_site
+from robot_bridge.core.robotmap.binary import decode
+from robot_bridge.core.sites.site import read_site, write_site
 
 
 @pytest.fixture

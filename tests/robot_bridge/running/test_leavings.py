@@ -8,17 +8,16 @@ import gc
 import pytest
 from websockets.asyncio.client import connect
 
-from robot_bridge import gateway
-from robot_bridge.access.gate import Gate
-from robot_bridge.access.visitor import Visitor
-from robot_bridge.fleet import Fleet
-from robot_bridge.link_processes import LinkProcesses
-from robot_bridge.monitoring import garbage
-from robot_bridge.site_maps import SiteMaps
-from robot_bridge.sites.limit_settings import LimitSettings
-from robot_bridge.sites.publication import read_site
-from robot_bridge.sites.settings_tables import LinkOptions
-from robot_bridge.store.database import Database
+from robot_bridge.core.sites.settings_tables import LimitSettings, LinkOptions
+from robot_bridge.core.sites.site import read_site
+from robot_bridge.gateway import app
+from robot_bridge.gateway.auth.connection import ClientConnection
+from robot_bridge.gateway.auth.gate import AuthGate
+from robot_bridge.gateway.fleet.link_supervision import LinkProcesses
+from robot_bridge.gateway.fleet.service import Fleet
+from robot_bridge.gateway.monitoring import tasks
+from robot_bridge.gateway.site.site_maps import SiteMaps
+from robot_bridge.gateway.storage.database import Database
 
 COMINGS = 12
 
@@ -28,9 +27,9 @@ async def running(sample_site, tmp_path):
     """A gateway that serves the sample site, and its port."""
     database = Database(f"sqlite:///{tmp_path}/fleet.db")
     await database.open()
-    gate = Gate(database, LimitSettings(), may_be_open=True)
+    gate = AuthGate(database, LimitSettings(), may_be_open=True)
     fleet = Fleet(SiteMaps(read_site(sample_site)), database)
-    made = gateway.Gateway(fleet, gate, LinkProcesses(LinkOptions(), sample_site))
+    made = app.Gateway(fleet, gate, LinkProcesses(LinkOptions(), sample_site))
     server = await made.serve("127.0.0.1", 0)
     yield made, server.sockets[0].getsockname()[1]
     server.close()
@@ -48,8 +47,8 @@ def no_looks():
 
 
 async def test_of_robots_that_come_and_go_nothing_is_left(running, no_looks, monkeypatch):
-    monkeypatch.setattr(gateway, "GARBAGE_INTERVAL", 0.05)
-    monkeypatch.setattr(garbage, "MOST_GONE", COMINGS)
+    monkeypatch.setattr(app, "GARBAGE_INTERVAL", 0.05)
+    monkeypatch.setattr(tasks, "MOST_GONE", COMINGS)
     made, port = running
     before = connections()
     for number in range(COMINGS):
@@ -64,4 +63,4 @@ async def test_of_robots_that_come_and_go_nothing_is_left(running, no_looks, mon
 
 
 def connections() -> int:
-    return sum(isinstance(one, Visitor) for one in gc.get_objects())
+    return sum(isinstance(one, ClientConnection) for one in gc.get_objects())

@@ -11,12 +11,13 @@ from dataclasses import fields
 
 import pytest
 
-from robot_bridge.messages import SendPos
-from robot_bridge.sites.settings import TABLES
-from robot_bridge.store import placements, revisions, trajectories
-from robot_bridge.store.database import run_once
-from robot_bridge.store.placements import NewPlacement
-from robot_bridge.store.trajectories import Fix, pack
+from robot_bridge.core.messages import SendPos
+from robot_bridge.core.sites.settings import TABLES
+from robot_bridge.gateway.storage import revisions
+from robot_bridge.gateway.storage.database import run_once
+from robot_bridge.gateway.storage.repositories import records, trajectories
+from robot_bridge.gateway.storage.repositories.records import NewPlacement
+from robot_bridge.gateway.storage.repositories.trajectories import Fix, pack
 
 SHELL = ["sh", "-eu"]
 
@@ -41,7 +42,7 @@ def test_the_commands_for_sqlite_do_what_they_say(page, root, sample_site, tmp_p
     run_once(database, trajectories.add, [pack(fix)])
     place = {"planned_x": 1.0, "planned_y": 2.0, "x": 1.0, "y": 2.0, "theta": 0.0, "deviation": 0.0}
     cone = NewPlacement("task-1", "r1", "command-1", placed_at=1_790_000_000.0, layout="slalom-1", **place)
-    run_once(database, placements.add, cone)
+    run_once(database, records.add_placed_cones, cone)
     done = subprocess.run(
         SHELL,
         input="".join(blocks),
@@ -79,7 +80,7 @@ def test_every_metric_is_one_that_there_is(page, root):
 
 
 def test_every_option_of_serve_is_explained(page):
-    from robot_bridge.commands.serve import serve
+    from robot_bridge.cli.serve import serve
 
     for name in serve.__annotations__:
         if name != "return":

@@ -6,24 +6,25 @@ from dataclasses import replace
 import pytest
 from sqlalchemy import func, insert, select
 
-from robot_bridge import gateway, retention
-from robot_bridge.access.gate import Gate
-from robot_bridge.fleet import Fleet
-from robot_bridge.link_processes import LinkProcesses
-from robot_bridge.messages import SendPos
-from robot_bridge.retention import Retention
-from robot_bridge.site_maps import SiteMaps
-from robot_bridge.sites.publication import read_site
-from robot_bridge.sites.settings import (
+from robot_bridge.core.messages import SendPos
+from robot_bridge.core.sites.settings_tables import (
     AuditSettings,
     CommandSettings,
     LimitSettings,
     ObservationSettings,
     TrajectorySettings,
 )
-from robot_bridge.store import trajectories
-from robot_bridge.store.database import Database
-from robot_bridge.store.schema import (
+from robot_bridge.core.sites.site import read_site
+from robot_bridge.gateway import app, retention
+from robot_bridge.gateway.auth.gate import AuthGate
+from robot_bridge.gateway.fleet.link_supervision import LinkProcesses
+from robot_bridge.gateway.fleet.service import Fleet
+from robot_bridge.gateway.retention import Retention
+from robot_bridge.gateway.site.site_maps import SiteMaps
+from robot_bridge.gateway.storage.database import Database
+from robot_bridge.gateway.storage.repositories import trajectories
+from robot_bridge.gateway.storage.repositories.trajectories import Fix, TrajectoryQuery, pack
+from robot_bridge.gateway.storage.schema import (
     audit,
     closures,
     command_steps,
@@ -33,7 +34,6 @@ from robot_bridge.store.schema import (
     observations,
     sessions,
 )
-from robot_bridge.store.trajectories import Fix, Wanted, pack
 
 NOW = 1_790_000_000.25
 DAY = 86400.0
@@ -256,17 +256,17 @@ def rows(connection):
 
 async def test_it_goes_in_pieces_between_which_others_have_the_database(database, settings, monkeypatch):
     monkeypatch.setattr(
-        retention, "kept", lambda s: [retention.Kept("positions", 7.0, trajectories.forget, 100)]
+        retention, "kept", lambda s: [retention.RetainedRows("positions", 7.0, trajectories.forget, 100)]
     )
     fixes = [Fix("r1", at, SendPos(x, 0.0, 0.5, 1.0)) for at, x in times()]
     await database.run(trajectories.add, list(map(pack, fixes)))
     pruning = asyncio.create_task(Retention(database, lambda: settings, lambda: NOW).prune())
     counts = set()
     while not pruning.done():
-        counts.add(len(await database.run(trajectories.read, Wanted(), 5000, None)))
+        counts.add(len(await database.run(trajectories.read, TrajectoryQuery(), 5000, None)))
         await asyncio.sleep(0.01)
     assert len(counts & {452, 352, 252, 152, 52}) >= 2
-    found = await database.run(trajectories.read, Wanted(), 5000, None)
+    found = await database.run(trajectories.read, TrajectoryQuery(), 5000, None)
     assert [place.x for place in found] == [2.0, 3.0]
 
 
@@ -280,13 +280,16 @@ def times():
 async def test_the_gateway_does_it_by_the_settings_of_its_site(
     database, site, settings, tmp_path, monkeypatch
 ):
-    monkeypatch.setattr(gateway, "PRUNE_INTERVAL", 0.01)
-    monkeypatch.setattr(gateway.time, "time", lambda: NOW)
+    monkeypatch.setattr(app, "PRUNE_INTERVAL", 0.01)
+    monkeypatch.setattr(app.time, "time", lambda: NOW)
     await database.run(fill)
     maps = SiteMaps(replace(site, settings=settings))
     fleet = Fleet(maps, database)
-    gate, links = Gate(database, LimitSettings(), may_be_open=True), LinkProcesses(settings.links, tmp_path)
-    work = gateway.Gateway(fleet, gate, links).works("ws://127.0.0.1:1")["prune"]
+    gate, links = (
+        AuthGate(database, LimitSettings(), may_be_open=True),
+        LinkProcesses(settings.links, tmp_path),
+    )
+    work = app.Gateway(fleet, gate, links).works("ws://127.0.0.1:1")["prune"]
     pruning = asyncio.create_task(work())
     async with asyncio.timeout(10):
         while "prune" not in fleet.tally.beats:

@@ -9,19 +9,18 @@ import sys
 import pytest
 from sqlalchemy import insert, select
 
-from robot_bridge.errors import BridgeError, HopelessError, StoreError
-from robot_bridge.store import sole_gateway
-from robot_bridge.store.address import read_address
-from robot_bridge.store.database import Database, run_once
-from robot_bridge.store.schema import bridge
-from robot_bridge.store.sole_gateway import SoleGateway, no_gateway
+from robot_bridge.core.errors import BridgeError, FatalError, StoreError
+from robot_bridge.gateway.storage import singleton_lock
+from robot_bridge.gateway.storage.database import Database, read_address, run_once
+from robot_bridge.gateway.storage.schema import bridge
+from robot_bridge.gateway.storage.singleton_lock import SingletonLock, no_gateway
 
 HOLDER = """
 import asyncio, sys
-from robot_bridge.store.address import read_address
-from robot_bridge.store.sole_gateway import SoleGateway
+from robot_bridge.gateway.storage.database import read_address
+from robot_bridge.gateway.storage.singleton_lock import SingletonLock
 async def main():
-    await SoleGateway(read_address(sys.argv[1])).take()
+    await SingletonLock(read_address(sys.argv[1])).take()
     print("taken", flush=True)
     await asyncio.sleep(60)
 asyncio.run(main())
@@ -45,20 +44,20 @@ def held_elsewhere(url):
 
 async def test_a_second_gateway_is_refused_and_told_which_one_runs(address, held_elsewhere):
     with pytest.raises(BridgeError) as caught:
-        await SoleGateway(address).take()
+        await SingletonLock(address).take()
     assert f"another gateway runs on it: process {held_elsewhere.pid} on " in str(caught.value)
     assert "end that one first, or give this one a database of its own" in str(caught.value)
 
 
 async def test_the_next_one_takes_over_when_the_first_is_killed(address, held_elsewhere):
     held_elsewhere.send_signal(signal.SIGKILL)
-    gateway = SoleGateway(address)
+    gateway = SingletonLock(address)
     await gateway.take()
     await gateway.release()
 
 
 async def test_the_next_one_takes_over_when_the_first_ends(address):
-    first, second = SoleGateway(address), SoleGateway(address)
+    first, second = SingletonLock(address), SingletonLock(address)
     await first.take()
     await first.release()
     await second.take()
@@ -67,7 +66,7 @@ async def test_the_next_one_takes_over_when_the_first_ends(address):
 
 async def test_the_lock_is_in_nobodys_way(address, kind):
     """Others write the table that is locked, and the rows beside the one that is."""
-    gateway = SoleGateway(address)
+    gateway = SingletonLock(address)
     await gateway.take()
     database = Database(address)
     try:
@@ -88,7 +87,7 @@ def server(kind, request):
 
 @pytest.fixture
 def often(monkeypatch):
-    monkeypatch.setattr(sole_gateway, "PING_INTERVAL", 0.1)
+    monkeypatch.setattr(singleton_lock, "PING_INTERVAL", 0.1)
 
 
 async def holding(gateway):
@@ -97,7 +96,7 @@ async def holding(gateway):
 
 
 async def test_the_lock_is_taken_again_when_the_server_comes_back(address, server, often, caplog):
-    gateway = SoleGateway(address)
+    gateway = SingletonLock(address)
     hold = await holding(gateway)
     server.kill()
     await asyncio.sleep(0.5)
@@ -110,7 +109,7 @@ async def test_the_lock_is_taken_again_when_the_server_comes_back(address, serve
         except (BridgeError, AssertionError):
             continue
     with pytest.raises(BridgeError, match="another gateway runs on it"):
-        await SoleGateway(address).take()
+        await SingletonLock(address).take()
     assert not hold.done()
     assert "its lock is taken anew as soon as it is back" in caplog.text
     hold.cancel()
@@ -118,7 +117,7 @@ async def test_the_lock_is_taken_again_when_the_server_comes_back(address, serve
 
 
 async def test_a_gateway_that_another_replaced_while_it_was_cut_off_ends(address, server, often):
-    gateway = SoleGateway(address)
+    gateway = SingletonLock(address)
     hold = await holding(gateway)
     gateway._lock._connection.connection.driver_connection.close()
     other = {"run": "other", "host": "elsewhere", "process": 7, "since": 0}
@@ -130,7 +129,7 @@ async def test_a_gateway_that_another_replaced_while_it_was_cut_off_ends(address
         ),
     )
     await run_once_async
-    with pytest.raises(HopelessError, match="another gateway: process 7 on elsewhere, since 1970-01-01"):
+    with pytest.raises(FatalError, match="another gateway: process 7 on elsewhere, since 1970-01-01"):
         await asyncio.wait_for(hold, 10)
     await gateway.release()
 

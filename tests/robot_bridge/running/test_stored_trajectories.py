@@ -2,12 +2,11 @@
 
 import pytest
 
-from robot_bridge.messages import GetTrajectory, MessageError, SendPos
-from robot_bridge.store import trajectories
-from robot_bridge.store.address import read_address
-from robot_bridge.store.database import Database
-from robot_bridge.store.trajectories import Fix, pack
-from robot_bridge.trajectories.reading import get_trajectory
+from robot_bridge.core.messages import GetTrajectory, MessageError, SendPos
+from robot_bridge.gateway.storage.database import Database, read_address
+from robot_bridge.gateway.storage.repositories import trajectories
+from robot_bridge.gateway.storage.repositories.trajectories import Fix, pack
+from robot_bridge.gateway.trajectories.recording import get_trajectory
 
 NOW = 1_790_000_000.25
 

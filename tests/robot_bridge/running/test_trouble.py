@@ -17,11 +17,10 @@ from command_line import run_command
 from prometheus_client.parser import text_string_to_metric_families
 from stage.patience import BUSY
 
-from robot_bridge.store import revisions
-from robot_bridge.store.accounts.choice import keeper_on
-from robot_bridge.store.address import read_address
-from robot_bridge.store.backups.backing_up import back_up
-from robot_bridge.store.database import run_once
+from robot_bridge.gateway.storage import revisions
+from robot_bridge.gateway.storage.backup import back_up
+from robot_bridge.gateway.storage.database import read_address, run_once
+from robot_bridge.gateway.storage.roles.choice import role_manager_on
 
 DAY = 86400.0
 
@@ -118,7 +117,7 @@ def test_the_gateways_own_account_runs_it_and_backs_it_up_and_no_secret_is_logge
     server, url = request.getfixturevalue(f"{kind}_server"), request.getfixturevalue(f"{kind}_url")
     run_once(read_address(url), revisions.create)
     name, password = f"gw{secrets.token_hex(4)}", f"pass-{secrets.token_hex(12)}"
-    run_once(read_address(server.admin_url(url)), lambda c: keeper_on(c).add_gateway(name, password))
+    run_once(read_address(server.admin_url(url)), lambda c: role_manager_on(c).add_gateway(name, password))
     own = server.url(url.rsplit("/", 1)[1], name, password)
     bridge = start_bridge(sample_site, own, ["--log-level", "debug", "--log-format", "json"])
     robot = bridge.robot("r1")

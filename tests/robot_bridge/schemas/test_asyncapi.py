@@ -7,10 +7,9 @@ import subprocess
 
 import pytest
 
-from robot_bridge.messages import ANSWERS, DESK_REQUESTS, REQUESTS
-from robot_bridge.schemas.asyncapi import asyncapi
-from robot_bridge.schemas.documents import documents
-from robot_bridge.schemas.tables import NOTIFICATIONS
+from robot_bridge.core.messages import ANSWERS, DESK_REQUESTS, REQUESTS
+from robot_bridge.protocol.asyncapi import asyncapi, documents
+from robot_bridge.protocol.json_schemas import NOTIFICATIONS
 
 NO_PARSER = 3
 

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from robot_bridge.messages import (
+from robot_bridge.core.messages import (
     ANSWERS,
     DESK_REQUESTS,
     PAYLOADS,
@@ -20,11 +20,9 @@ from robot_bridge.messages import (
     SetPath,
     SetPosEnd,
 )
-from robot_bridge.schemas.definitions import plain_text, schema_of
-from robot_bridge.schemas.documents import documents, served
-from robot_bridge.schemas.links import link_documents
-from robot_bridge.schemas.tables import HEADS, NOTIFICATIONS, RESULTS
-from robot_bridge.wire import decode_request
+from robot_bridge.protocol.asyncapi import documents, link_documents, served
+from robot_bridge.protocol.codec import decode_request
+from robot_bridge.protocol.json_schemas import HEADS, NOTIFICATIONS, RESULTS, plain_text, schema_of
 
 
 def accepts(schema, value) -> bool:

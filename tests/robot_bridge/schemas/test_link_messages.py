@@ -11,12 +11,10 @@ from adapter_on_the_line import LinkOnTheLine
 from bridge_programs import wait_until
 from link_relay import TO_GATEWAY, TO_LINK, LinkRelay
 
+from robot_bridge.core.messages import GetMap, SendGPS, SendPos, SetObject
 from robot_bridge.core.position_frame import split_frame
 from robot_bridge.links.base.errors import CommandRefusedError
-from robot_bridge.messages import GetMap, SendGPS, SendPos, SetObject
-from robot_bridge.schemas.asyncapi import asyncapi
-from robot_bridge.schemas.documents import documents
-from robot_bridge.schemas.links import CALLS, ROBOT_CALLS
+from robot_bridge.protocol.asyncapi import CALLS, ROBOT_CALLS, asyncapi, documents
 
 POSE = SendPos(20.0, 8.0, 0.0, 0.0, battery=0.5, status="waits")
 

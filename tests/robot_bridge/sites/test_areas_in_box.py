@@ -4,10 +4,9 @@ import dataclasses
 
 import pytest
 
-from robot_bridge.sites import areas_in_box as module
-from robot_bridge.sites.areas_in_box import areas_in_box
-from robot_bridge.sites.errors import SiteError
-from robot_bridge.sites.publication import read_site
+from robot_bridge.core.errors import SiteError
+from robot_bridge.core.sites import site as module
+from robot_bridge.core.sites.site import areas_in_box, read_site
 
 ALL = (0.0, 0.0, 200.0, 160.0)
 

@@ -12,27 +12,22 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from robot_bridge.robotmap.binary import encode, encode_pieces
-from robot_bridge.robotmap.grid import BoxGrid, levels_of
-from robot_bridge.robotmap.index import OutlineIndex
-from robot_bridge.robotmap.model import ShapeType
-from robot_bridge.robotmap.outlines import OutlineRow, Outlines
-from robot_bridge.sites.extras import extras_text
-from robot_bridge.sites.fences import FencedRows
-from robot_bridge.sites.mapped import cell_sorting, columns, medians, row_file, text_columns, writing
-from robot_bridge.sites.mapped.cache import CACHE_FILE
-from robot_bridge.sites.mapped.cell_sorting import CellSorting
-from robot_bridge.sites.mapped.medians import median
-from robot_bridge.sites.mapped.row_file import ColumnFiles, RowFile
-from robot_bridge.sites.mapped.text_columns import CodedTextColumns
-from robot_bridge.sites.mapped.texts import CodedTexts, Texts
-from robot_bridge.sites.mapped.writing import CacheWriter
-from robot_bridge.sites.obstacle_layer import as_read_back
-from robot_bridge.sites.publication import read_site, write_site
+from robot_bridge.core.robotmap.binary import encode, encode_pieces
+from robot_bridge.core.robotmap.model import ShapeType
+from robot_bridge.core.robotmap.outlines import OutlineRow, Outlines
+from robot_bridge.core.robotmap.window_index import BoxGrid, OutlineIndex, levels_of
+from robot_bridge.core.sites import column_file, column_writers, site_cache
+from robot_bridge.core.sites.column_file import CodedTexts, ColumnFiles, RowFile, Texts
+from robot_bridge.core.sites.column_writers import CellSorting, CodedTextColumns, median
+from robot_bridge.core.sites.fences import FencedRows
+from robot_bridge.core.sites.geopackage import extras_text
+from robot_bridge.core.sites.site import read_site, write_site
+from robot_bridge.core.sites.site_cache import CACHE_FILE, CacheWriter
+from robot_bridge.core.sites.site_layers import as_read_back
 
 from .test_site_cache import SETTINGS, town
 
-PIECEWISE = (writing, cell_sorting, medians, row_file)
+PIECEWISE = (site_cache, column_writers, column_file)
 
 
 @pytest.fixture(params=[40, 700, 100_000])
@@ -53,7 +48,7 @@ def test_pieces_make_the_file_that_all_of_it_makes(tmp_path, at_once):
     rows = town(400).rows()
     obstacles = Outlines.from_rows([*rows[:300], *more, *rows[300:]])
     write_site(tmp_path, SETTINGS, obstacles)
-    about, arrays = columns.read_columns(tmp_path / CACHE_FILE)
+    about, arrays = column_file.read_columns(tmp_path / CACHE_FILE)
     whole = as_read_back(obstacles, SETTINGS.frame)
     index, fenced = OutlineIndex.of(whole), FencedRows.of(whole)
     wanted = {name: getattr(whole, name) for name in ("coordinates", "offsets", "shape_type", "base")}
@@ -87,9 +82,8 @@ coordinate = st.one_of(st.integers(-300, 300).map(lambda n: n / 4), st.sampled_f
 def test_boxes_are_put_cell_by_cell_as_in_memory(tmp_path_factory, boxes, data):
     folder = tmp_path_factory.mktemp("sorting")
     with pytest.MonkeyPatch.context() as patch:
-        for module in (cell_sorting, medians):
-            patch.setattr(module, "AT_ONCE", data.draw(st.integers(1, 9)))
-        patch.setattr(cell_sorting, "_SAMPLED", data.draw(st.integers(1, 3)))
+        patch.setattr(column_writers, "AT_ONCE", data.draw(st.integers(1, 9)))
+        patch.setattr(column_writers, "_SAMPLED", data.draw(st.integers(1, 3)))
         low = np.array([box[:2] for box in boxes]).reshape(-1, 2)
         high = low + 10.0 ** np.array([box[2] * 2.5 for box in boxes]).reshape(-1, 1)
         rows = np.arange(2 * len(boxes)).reshape(-1, 2)
@@ -118,7 +112,7 @@ def test_the_median_of_a_file_is_that_of_the_numbers(tmp_path_factory, numbers, 
     file = RowFile(tmp_path_factory.mktemp("median") / "numbers", np.float64)
     file.append(np.array(numbers))
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(medians, "AT_ONCE", at_once)
+        patch.setattr(column_writers, "AT_ONCE", at_once)
         assert median(file) == np.median(numbers)
 
 
@@ -148,8 +142,8 @@ def most_memory(folder, monkeypatch, count):
     """Return the most bytes that were in use while the cache of ``count`` buildings was written."""
     for module in PIECEWISE:
         monkeypatch.setattr(module, "AT_ONCE", 4000)
-    monkeypatch.setattr(cell_sorting, "_SAMPLED", 64)
-    monkeypatch.setattr(text_columns, "_MOST_KNOWN", 100_000)
+    monkeypatch.setattr(column_writers, "_SAMPLED", 64)
+    monkeypatch.setattr(column_writers, "_MOST_KNOWN", 100_000)
     folder.mkdir()
     (folder / "site.gpkg").write_bytes(b"")
     publication = {"bounds": [0.0, 0.0, 2000.0, 17.0 * count / 100]}
@@ -173,7 +167,7 @@ def test_a_city_of_many_times_the_buildings_takes_no_more_memory(tmp_path, monke
 
 
 def test_texts_that_are_all_different_are_not_all_remembered(tmp_path, monkeypatch):
-    monkeypatch.setattr(text_columns, "_MOST_KNOWN", 1000)
+    monkeypatch.setattr(column_writers, "_MOST_KNOWN", 1000)
     made = ColumnFiles(tmp_path)
     coded, texts = CodedTextColumns(made, "of"), [f"text {k % 40}" for k in range(200)] + ["one"] * 200
     for begin in range(0, len(texts), 50):
@@ -194,8 +188,8 @@ _KILLED = """
 import sys
 from pathlib import Path
 from dataclasses import replace
-from robot_bridge.sites.mapped import cell_sorting, writing
-from robot_bridge.sites.publication import write_site
+from robot_bridge.core.sites import column_writers, site_cache
+from robot_bridge.core.sites.site import write_site
 sys.path.insert(0, sys.argv[2])
 from test_site_cache import SETTINGS, town
 
@@ -203,9 +197,9 @@ place, count = sys.argv[3], 0
 def stop(*_, **__):
     print("here", flush=True)
     sys.stdin.read()
-writing.AT_ONCE = 1000
-owner, name = {"reading": (writing.OutlineColumns, "add"), "sorting": (cell_sorting._Runs, "merged"),
-               "writing": (writing, "geopackage_digest")}[place]
+site_cache.AT_ONCE = 1000
+owner, name = {"reading": (site_cache.OutlineColumns, "add"), "sorting": (column_writers._Runs, "merged"),
+               "writing": (site_cache, "geopackage_digest")}[place]
 setattr(owner, name, stop)
 write_site(Path(sys.argv[1]), replace(SETTINGS, version=2), town(300, height=9.0))
 """
@@ -236,7 +230,7 @@ def test_a_full_disk_leaves_the_site_as_it_was_and_nothing_else(tmp_path, monkey
     def refuse(*_):
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr(cell_sorting._CellColumns, "add", refuse)
+    monkeypatch.setattr(column_writers._CellColumns, "add", refuse)
     with pytest.raises(Exception, match="No space left on device"):
         write_site(tmp_path, replace(SETTINGS, version=2), town(200))
     assert {file.name: file.read_bytes() for file in tmp_path.iterdir()} == before

@@ -7,8 +7,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robot_bridge.sites.errors import CrsError, SiteError
-from robot_bridge.sites.frame import SiteFrame, check_site_crs
+from robot_bridge.core.errors import CrsError, SiteError
+from robot_bridge.core.sites.frame import SiteFrame, check_site_crs
 
 METRES = st.floats(-1e4, 1e4)
 FRAMES = st.builds(

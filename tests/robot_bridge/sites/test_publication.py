@@ -12,14 +12,14 @@ import pyogrio.raw
 import pytest
 import shapely
 
-from robot_bridge.roads.surfaces.surface import GENERATED, Surface
-from robot_bridge.robotmap.model import ShapeType
-from robot_bridge.robotmap.outlines import OutlineRow, Outlines
-from robot_bridge.robotmap.text import write_text
-from robot_bridge.sites.errors import LayerError, SettingsError, SiteError
-from robot_bridge.sites.features import Area, Centreline
-from robot_bridge.sites.publication import read_site, write_site
-from robot_bridge.sites.settings import Bounds, SiteSettings
+from robot_bridge.core.errors import LayerError, SettingsError, SiteError
+from robot_bridge.core.roads.centrelines import GENERATED, Surface
+from robot_bridge.core.robotmap.model import ShapeType
+from robot_bridge.core.robotmap.outlines import OutlineRow, Outlines
+from robot_bridge.core.robotmap.text_format import write_text
+from robot_bridge.core.sites.geopackage import Area, Centreline
+from robot_bridge.core.sites.settings import SiteBounds, SiteSettings
+from robot_bridge.core.sites.site import read_site, write_site
 
 SETTINGS = SiteSettings(
     id="yard",
@@ -27,7 +27,7 @@ SETTINGS = SiteSettings(
     version=1,
     crs="EPSG:32633",
     origin=(640420.0, 5193480.0),
-    bounds=Bounds(0.0, 0.0, 60.0, 40.0),
+    bounds=SiteBounds(0.0, 0.0, 60.0, 40.0),
     rotation_deg=30.0,
 )
 
@@ -296,6 +296,6 @@ def test_the_site_modules_load_with_numpy_alone(root):
     code = (
         "import sys\n"
         f"for name in {blocked}: sys.modules[name] = None\n"
-        "import robot_bridge.sites.publication, robot_bridge.sites.frame\n"
+        "import robot_bridge.core.sites.site, robot_bridge.core.sites.frame\n"
     )
     subprocess.run([sys.executable, "-c", code], cwd=root, check=True, timeout=240)

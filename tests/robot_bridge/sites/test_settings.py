@@ -4,18 +4,15 @@ from dataclasses import replace
 
 import pytest
 
-from robot_bridge.sites.errors import SettingsError
-from robot_bridge.sites.settings import (
-    Bounds,
+from robot_bridge.core.errors import SettingsError
+from robot_bridge.core.sites.settings import SiteBounds, SiteSettings, read_settings, settings_text
+from robot_bridge.core.sites.settings_tables import (
     CommandSettings,
     GatewayOptions,
     LivenessLimits,
-    SiteSettings,
     TrajectorySettings,
-    read_settings,
-    settings_text,
+    value_text,
 )
-from robot_bridge.sites.settings_toml import value_text
 
 SETTINGS = SiteSettings(
     id="yard-1",
@@ -23,7 +20,7 @@ SETTINGS = SiteSettings(
     version=3,
     crs="EPSG:32633",
     origin=(640420.0, 5193480.5),
-    bounds=Bounds(-10.0, 0.0, 200.0, 160.0),
+    bounds=SiteBounds(-10.0, 0.0, 200.0, 160.0),
     rotation_deg=12.5,
     reached_tolerance_m=0.1,
     liveness=LivenessLimits(2.0, 8.0),

@@ -13,24 +13,29 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from robot_bridge.messages import ObservationReport, ObservationState
-from robot_bridge.robotmap.binary import decode
-from robot_bridge.robotmap.model import ShapeType
-from robot_bridge.robotmap.outlines import OutlineRow, Outlines
-from robot_bridge.robotmap.text import write_text
-from robot_bridge.site_maps import SiteMaps
-from robot_bridge.sites.features import Area
-from robot_bridge.sites.mapped import columns
-from robot_bridge.sites.mapped.cache import CACHE_FILE
-from robot_bridge.sites.mapped.row_file import ColumnFile, ColumnFiles
-from robot_bridge.sites.mapped.text_columns import TextColumns
-from robot_bridge.sites.mapped.texts import Texts
-from robot_bridge.sites.publication import read_site, write_site
-from robot_bridge.sites.settings import Bounds, SiteSettings
+from robot_bridge.core.messages import ObservationReport, ObservationState
+from robot_bridge.core.robotmap.binary import decode
+from robot_bridge.core.robotmap.model import ShapeType
+from robot_bridge.core.robotmap.outlines import OutlineRow, Outlines
+from robot_bridge.core.robotmap.text_format import write_text
+from robot_bridge.core.sites import column_file
+from robot_bridge.core.sites.column_file import ColumnFile, ColumnFiles, Texts
+from robot_bridge.core.sites.column_writers import TextColumns
+from robot_bridge.core.sites.geopackage import Area
+from robot_bridge.core.sites.settings import SiteBounds, SiteSettings
+from robot_bridge.core.sites.site import read_site, write_site
+from robot_bridge.core.sites.site_cache import CACHE_FILE
+from robot_bridge.gateway.site.site_maps import SiteMaps
 
 SIDE = 300.0
 SETTINGS = SiteSettings(
-    "town", "Town", 1, "EPSG:32633", (640420.0, 5193480.0), Bounds(0.0, 0.0, SIDE, SIDE), rotation_deg=30.0
+    "town",
+    "Town",
+    1,
+    "EPSG:32633",
+    (640420.0, 5193480.0),
+    SiteBounds(0.0, 0.0, SIDE, SIDE),
+    rotation_deg=30.0,
 )
 PIT = Area((np.array([[1.0, 1.0], [9.0, 1.0], [9.0, 9.0], [1.0, 1.0]]),), "Pit")
 BOX = np.array([[0, 0], [9, 0], [9, 7], [0, 7], [0, 0]])
@@ -113,7 +118,7 @@ def seen(x, y, label):
 @pytest.mark.parametrize("packages", ["all", "numpy alone"])
 def test_the_whole_map_is_made_once_and_says_what_robots_saw_since(folder, monkeypatch, packages):
     if packages != "all":  # as in QGIS
-        monkeypatch.setattr("robot_bridge.robotmap.compression._zstandard", _no_zstandard)
+        monkeypatch.setattr("robot_bridge.core.robotmap.binary._zstandard", _no_zstandard)
         write_site(folder, SETTINGS, town(), keepouts=[PIT])
         monkeypatch.undo()
     cached, plain = SiteMaps(read_site(folder)), SiteMaps(without_cache(folder))
@@ -127,7 +132,7 @@ def test_the_whole_map_is_made_once_and_says_what_robots_saw_since(folder, monke
 
 
 def _no_zstandard():
-    from robot_bridge.robotmap.errors import MissingCodecError
+    from robot_bridge.core.errors import MissingCodecError
 
     raise MissingCodecError("not here")
 
@@ -176,7 +181,7 @@ def test_one_that_is_cut_off_is_refused(folder, caplog, share):
 def test_one_with_a_changed_byte_is_refused_wherever_it_is(folder, caplog):
     file = folder / CACHE_FILE
     content = file.read_bytes()
-    _about, places = columns._head(file, file.open("rb"), len(content))
+    _about, places = column_file._head(file, file.open("rb"), len(content))
     begins = [0, 9, 20, 60, *(one.offset + one.size // 2 for one in places if one.size)]
     for begin in begins:
         file.write_bytes(content[:begin] + bytes([content[begin] ^ 1]) + content[begin + 1 :])
@@ -198,7 +203,7 @@ def test_one_with_a_changed_byte_is_refused_wherever_it_is(folder, caplog):
     ],
 )
 def test_one_that_says_impossible_things_is_refused_before_anything_is_made(folder, caplog, column):
-    about = columns.read_about(folder / CACHE_FILE)
+    about = column_file.read_about(folder / CACHE_FILE)
     write_head(folder / CACHE_FILE, {"about": about, "columns": {"rows": column}})
     refusal(folder, caplog)
 
@@ -210,16 +215,16 @@ def write_head(file, head):
 
 def test_one_without_a_column_that_is_needed_is_refused(folder, tmp_path, caplog):
     file = folder / CACHE_FILE
-    about, arrays = columns.read_columns(file)
+    about, arrays = column_file.read_columns(file)
     made = {}
     for name, array in {**arrays, "short": arrays["height"][1:]}.items():
         made[name] = ColumnFile(tmp_path / name, array.dtype, *array.shape[1:])
         made[name].append(array)
     short = made.pop("short")
     for name in ("rows", "fence_low", "source_text", "grid_keys"):
-        columns.write_columns(file, about, {key: one for key, one in made.items() if key != name})
+        column_file.write_columns(file, about, {key: one for key, one in made.items() if key != name})
         assert name in refusal(folder, caplog)
-    columns.write_columns(file, about, {**made, "height": short})
+    column_file.write_columns(file, about, {**made, "height": short})
     refusal(folder, caplog)
 
 
@@ -271,7 +276,7 @@ def test_it_is_used_after_a_program_has_looked_at_the_layers_as_qgis_does(folder
 def test_a_file_that_is_cut_off_or_written_over_while_it_is_in_use_changes_nothing(
     folder, monkeypatch, largest
 ):
-    monkeypatch.setattr(columns, "_LARGE", largest)
+    monkeypatch.setattr(column_file, "_LARGE", largest)
     site = read_site(folder)
     wanted = texts_of(without_cache(folder))
     with (folder / CACHE_FILE).open("r+b") as file:
@@ -294,7 +299,7 @@ def test_a_large_site_without_one_is_read_with_a_word_about_it(folder, caplog, m
     (folder / CACHE_FILE).unlink()
     read_site(folder)
     assert not caplog.records
-    monkeypatch.setattr("robot_bridge.sites.publication.MANY", 10)
+    monkeypatch.setattr("robot_bridge.core.sites.site.MANY", 10)
     assert len(read_site(folder).outlines) > 10
     assert "publish the site again" in caplog.text
 

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from robot_bridge.robotmap.errors import WindowError
-from robot_bridge.robotmap.model import ShapeType
-from robot_bridge.robotmap.text import write_text
-from robot_bridge.sites.publication import read_site
+from robot_bridge.core.errors import WindowError
+from robot_bridge.core.robotmap.model import ShapeType
+from robot_bridge.core.robotmap.text_format import write_text
+from robot_bridge.core.sites.site import read_site
 
 
 @pytest.fixture(scope="module")

@@ -6,7 +6,7 @@ import pytest
 from sqlalchemy import create_engine
 from sqlalchemy.pool import StaticPool
 
-from robot_bridge.store.schema import metadata
+from robot_bridge.gateway.storage.schema import metadata
 
 
 @pytest.fixture

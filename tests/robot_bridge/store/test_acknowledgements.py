@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from robot_bridge.core.decoding import SHORT
-from robot_bridge.store import requests
+from robot_bridge.core.json_decoder import SHORT
+from robot_bridge.gateway.storage.repositories import requests
 
 
 @pytest.fixture
@@ -22,7 +22,7 @@ def decoded(monkeypatch):
 
 
 def write(connection, *acks, robot="r1"):
-    requests.add_all(connection, [(robot, "OpAck", ack, None) for ack in acks])
+    requests.add_requests(connection, [(robot, "OpAck", ack, None) for ack in acks])
 
 
 def test_what_is_longer_than_any_acknowledgement_is_not_even_decoded(connection, decoded):

@@ -6,9 +6,9 @@ import contextlib
 import os
 import sqlite3
 
-from robot_bridge.messages import SetMap
-from robot_bridge.store import answers
-from robot_bridge.store.database import Database
+from robot_bridge.core.messages import SetMap
+from robot_bridge.gateway.storage.database import Database
+from robot_bridge.gateway.storage.repositories import requests
 
 MAP = os.urandom(3_000_000)
 
@@ -23,10 +23,10 @@ async def test_a_map_that_a_robot_has_acknowledged_costs_little_to_delete(tmp_pa
     database = Database(f"sqlite:///{tmp_path}/fleet.db")
     await database.open()
     try:
-        id = await database.run(answers.add, "r1", SetMap(MAP))
+        id = await database.run(requests.add, "r1", SetMap(MAP))
         empty_log(tmp_path / "fleet.db")
-        await database.run(answers.remove_own, "r1", id)
-        assert await database.read(answers.read, "r1") == []
+        await database.run(requests.remove_own, "r1", id)
+        assert await database.read(requests.read_answers, "r1") == []
         assert (tmp_path / "fleet.db-wal").stat().st_size < len(MAP) / 4
     finally:
         await database.close()

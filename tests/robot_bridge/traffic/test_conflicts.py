@@ -7,9 +7,15 @@ import math
 import numpy as np
 import pytest
 
-from robot_bridge.traffic.conflicts import conflicts_of, conflicts_with, find_conflicts
-from robot_bridge.traffic.giving_way import give_way
-from robot_bridge.traffic.movement import Movement, driving, standing
+from robot_bridge.gateway.traffic.conflicts import (
+    Movement,
+    conflicts_of,
+    conflicts_with,
+    driving_movement,
+    find_conflicts,
+    standing_movement,
+)
+from robot_bridge.gateway.traffic.yielding import yield_on_path
 
 STEP = 0.01
 
@@ -24,7 +30,9 @@ def simulated(one: Movement, two: Movement, limit: float, now: float, until: flo
 
 def random_movement(random, name: str, now: float) -> Movement:
     points = random.uniform(0, 30, (random.integers(2, 6), 2)).round(2)
-    way = driving(name, points, random.uniform(0.5, 3.0), now + random.uniform(0, 5), random.uniform(0.2, 1))
+    way = driving_movement(
+        name, points, random.uniform(0.5, 3.0), now + random.uniform(0, 5), random.uniform(0.2, 1)
+    )
     return way.waiting(random.uniform(0, 40), random.uniform(0, 6)) if random.random() < 0.4 else way
 
 
@@ -61,13 +69,13 @@ def random_fleet(seed: int) -> tuple[list[Movement], float]:
     for number in range(random.integers(1, 12)):
         if random.random() < 0.15:
             place = tuple(random.uniform(0, 60, 2))
-            fleet.append(standing(f"r{number}", place, begins, random.uniform(0.2, 1)))
+            fleet.append(standing_movement(f"r{number}", place, begins, random.uniform(0.2, 1)))
             continue
         points = random.uniform(0, 60, (random.integers(2, 40), 2)).round(2)
         if random.random() < 0.3:
             points = np.repeat(points, 2, axis=0)
         start = begins + random.uniform(-20, 20)
-        way = driving(f"r{number}", points, random.uniform(0.5, 3), start, random.uniform(0.2, 1))
+        way = driving_movement(f"r{number}", points, random.uniform(0.5, 3), start, random.uniform(0.2, 1))
         waits = random.random() < 0.4
         fleet.append(way.waiting(random.uniform(0, 80), random.uniform(0, 30)) if waits else way)
     return fleet, begins + float(random.choice([0.0, 15.0, 500.0]))
@@ -95,49 +103,49 @@ def test_robots_that_pass_one_place_at_other_times_are_not_looked_at_closely(mon
     monkeypatch.setattr(
         Movement, "times_around", lambda self, *span: asked.add(self.robot) or times(self, *span)
     )
-    east = driving("east", [(0, 0), (400, 0)], 1.0, 0.0, 0.5)
-    fleet = [driving(f"north{k}", [(40 * k, -300), (40 * k, 100)], 1.0, 0.0, 0.5) for k in range(5)]
-    met = driving("met", [(300, -300), (300, 100)], 1.0, 0.0, 0.5)
+    east = driving_movement("east", [(0, 0), (400, 0)], 1.0, 0.0, 0.5)
+    fleet = [driving_movement(f"north{k}", [(40 * k, -300), (40 * k, 100)], 1.0, 0.0, 0.5) for k in range(5)]
+    met = driving_movement("met", [(300, -300), (300, 100)], 1.0, 0.0, 0.5)
     (found,) = find_conflicts([east, *fleet, met], 0.5, 0.0)
     assert {found.robot, found.other} == asked == {"east", "met"}
 
 
 def test_two_on_one_lane_meet_head_on_halfway():
-    east = driving("a", [(0, 0), (40, 0)], 1.0, 0.0, 0.5)
-    west = driving("b", [(40, 0), (0, 0)], 1.0, 0.0, 0.5)
+    east = driving_movement("a", [(0, 0), (40, 0)], 1.0, 0.0, 0.5)
+    west = driving_movement("b", [(40, 0), (0, 0)], 1.0, 0.0, 0.5)
     (met,) = find_conflicts([east, west], 0.5, 0.0)
     assert (met.kind, met.place, met.metres) == ("head-on", (20.0, 0.0), pytest.approx(0.0))
     assert (met.begins, met.ends) == (pytest.approx(19.25), pytest.approx(20.75))
 
 
 def test_those_who_pass_a_crossing_one_after_the_other_have_no_conflict():
-    east = driving("a", [(0, 0), (20, 0)], 1.0, 0.0, 0.5)
-    north = driving("b", [(10, -20), (10, 10)], 1.0, 0.0, 0.5)
+    east = driving_movement("a", [(0, 0), (20, 0)], 1.0, 0.0, 0.5)
+    north = driving_movement("b", [(10, -20), (10, 10)], 1.0, 0.0, 0.5)
     assert find_conflicts([east, north], 0.5, 0.0) == []
-    (met,) = find_conflicts([east, driving("b", [(10, -10), (10, 10)], 1.0, 0.0, 0.5)], 0.5, 0.0)
+    (met,) = find_conflicts([east, driving_movement("b", [(10, -10), (10, 10)], 1.0, 0.0, 0.5)], 0.5, 0.0)
     assert (met.kind, met.place) == ("crossing", pytest.approx((10.0, 0.0)))
 
 
 def test_who_stands_in_the_way_is_the_other_and_stays_for_good():
-    there = standing("a", (10, 0), 0.0, 0.5)
-    (met,) = find_conflicts([there, driving("b", [(0, 0), (10, 0)], 1.0, 0.0, 0.5)], 0.0, 0.0)
+    there = standing_movement("a", (10, 0), 0.0, 0.5)
+    (met,) = find_conflicts([there, driving_movement("b", [(0, 0), (10, 0)], 1.0, 0.0, 0.5)], 0.0, 0.0)
     assert (met.robot, met.other, met.kind) == ("b", "a", "standing")
     assert (met.begins, met.ends) == (pytest.approx(9.0), math.inf)
 
 
 def test_a_faster_robot_that_comes_from_behind_follows():
-    slow = driving("a", [(10, 0), (50, 0)], 0.5, 0.0, 0.5)
-    fast = driving("b", [(0, 0), (50, 0)], 2.0, 0.0, 0.5)
+    slow = driving_movement("a", [(10, 0), (50, 0)], 0.5, 0.0, 0.5)
+    fast = driving_movement("b", [(0, 0), (50, 0)], 2.0, 0.0, 0.5)
     found = find_conflicts([slow, fast], 0.0, 0.0)
     assert found[0].kind == "following"
     assert found[0].begins == pytest.approx(6.0)
 
 
 def test_two_that_stand_are_no_conflict_and_what_is_over_is_none():
-    near = [standing("a", (0, 0), 0.0, 1.0), standing("b", (0.5, 0), 0.0, 1.0)]
+    near = [standing_movement("a", (0, 0), 0.0, 1.0), standing_movement("b", (0.5, 0), 0.0, 1.0)]
     assert find_conflicts(near, 1.0, 0.0) == []
-    north = driving("b", [(10, -10), (10, 10)], 1.0, 0.0, 0.5)
-    ways = [driving("a", [(0, 0), (20, 0)], 1.0, 0.0, 0.5), north]
+    north = driving_movement("b", [(10, -10), (10, 10)], 1.0, 0.0, 0.5)
+    ways = [driving_movement("a", [(0, 0), (20, 0)], 1.0, 0.0, 0.5), north]
     assert find_conflicts(ways, 0.5, 12.0) == []
 
 
@@ -146,8 +154,8 @@ def test_who_gives_way_meets_nobody_in_a_simulation(seed):
     random = np.random.default_rng(1000 + seed)
     now, margin = 0.0, 0.5
     others = [random_movement(random, f"o{k}", now) for k in range(3)]
-    mine = driving("me", random.uniform(0, 30, (4, 2)), 1.5, now, 0.5)
-    wait = give_way(mine, others, margin, now)
+    mine = driving_movement("me", random.uniform(0, 30, (4, 2)), 1.5, now, 0.5)
+    wait = yield_on_path(mine, others, margin, now)
     if wait is None:
         return
     assert wait.movement.ends == pytest.approx(mine.ends + wait.seconds)
@@ -162,18 +170,18 @@ def test_most_random_conflicts_can_be_waited_out():
     for seed in range(40):
         random = np.random.default_rng(1000 + seed)
         others = [random_movement(random, f"o{k}", 0.0) for k in range(3)]
-        mine = driving("me", random.uniform(0, 30, (4, 2)), 1.5, 0.0, 0.5)
+        mine = driving_movement("me", random.uniform(0, 30, (4, 2)), 1.5, 0.0, 0.5)
         if find_conflicts([mine, others[0]], 0.5, 0.0):
             tried += 1
-            resolved += give_way(mine, others[:1], 0.5, 0.0) is not None
+            resolved += yield_on_path(mine, others[:1], 0.5, 0.0) is not None
     assert tried >= 5
     assert resolved >= tried // 2
 
 
 def test_the_wait_at_a_crossing_is_as_short_as_can_be_and_before_it():
-    east = driving("a", [(0, 0), (20, 0)], 1.0, 0.0, 0.5)
-    north = driving("b", [(10, -10), (10, 10)], 1.0, 0.0, 0.5)
-    wait = give_way(east, [north], 0.5, 0.0)
+    east = driving_movement("a", [(0, 0), (20, 0)], 1.0, 0.0, 0.5)
+    north = driving_movement("b", [(10, -10), (10, 10)], 1.0, 0.0, 0.5)
+    wait = yield_on_path(east, [north], 0.5, 0.0)
     assert wait is not None
     assert 5.0 < wait.station < 8.8
     # Who has right of way is 1.5 m beyond the crossing when the other is 1.5·√2 m short of its line.
@@ -181,12 +189,12 @@ def test_the_wait_at_a_crossing_is_as_short_as_can_be_and_before_it():
 
 
 def test_head_on_in_a_lane_without_room_is_not_waited_out():
-    east = driving("a", [(0, 0), (40, 0)], 1.0, 0.0, 0.5)
-    west = driving("b", [(40, 0), (0, 0)], 1.0, 0.0, 0.5)
-    assert give_way(east, [west], 0.5, 0.0) is None
+    east = driving_movement("a", [(0, 0), (40, 0)], 1.0, 0.0, 0.5)
+    west = driving_movement("b", [(40, 0), (0, 0)], 1.0, 0.0, 0.5)
+    assert yield_on_path(east, [west], 0.5, 0.0) is None
 
 
 def test_nothing_in_the_way_is_no_wait():
-    east = driving("a", [(0, 0), (40, 0)], 1.0, 0.0, 0.5)
-    wait = give_way(east, [standing("b", (20, 5), 0.0, 0.5)], 0.5, 0.0)
+    east = driving_movement("a", [(0, 0), (40, 0)], 1.0, 0.0, 0.5)
+    wait = yield_on_path(east, [standing_movement("b", (20, 5), 0.0, 0.5)], 0.5, 0.0)
     assert (wait.movement, wait.seconds) == (east, 0.0)

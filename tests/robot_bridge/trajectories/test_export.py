@@ -8,14 +8,14 @@ import pytest
 from command_line import run_command
 from osgeo import ogr
 
-from robot_bridge.commands.database_option import database_address
-from robot_bridge.messages import SendPos
-from robot_bridge.robots import Robot
-from robot_bridge.store import robots as stored_robots
-from robot_bridge.store import trajectories
-from robot_bridge.store.database import Database
-from robot_bridge.store.trajectories import Fix, Mark, Wanted, pack
-from robot_bridge.trajectories import exporting
+from robot_bridge.cli.options import database_address
+from robot_bridge.core.messages import SendPos
+from robot_bridge.gateway.model.robots import Robot
+from robot_bridge.gateway.storage.database import Database
+from robot_bridge.gateway.storage.repositories import robots as stored_robots
+from robot_bridge.gateway.storage.repositories import trajectories
+from robot_bridge.gateway.storage.repositories.trajectories import Fix, PageMark, TrajectoryQuery, pack
+from robot_bridge.gateway.trajectories import exchange
 
 ogr.UseExceptions()
 BEGIN = 1_790_000_000.125
@@ -186,20 +186,22 @@ def test_a_file_that_is_there_is_replaced_only_when_told(export, tmp_path, turne
 
 
 async def test_pages_hold_every_position_once(driven, monkeypatch, tmp_path):
-    whole = await driven.run(trajectories.read, Wanted(), 100, None)
+    whole = await driven.run(trajectories.read, TrajectoryQuery(), 100, None)
     found, after = [], None
-    while page := await driven.run(trajectories.read, Wanted(), 4, after):
+    while page := await driven.run(trajectories.read, TrajectoryQuery(), 4, after):
         found += page
-        after = Mark(page[-1].received_at, page[-1].id)
+        after = PageMark(page[-1].received_at, page[-1].id)
     assert found == whole and len(whole) == 15
 
 
 async def test_an_export_in_many_pages_is_the_same(driven, turned_site, tmp_path, monkeypatch):
-    from robot_bridge.sites.settings import read_settings
+    from robot_bridge.core.sites.settings import read_settings
 
     frame = read_settings(turned_site / "site.toml").frame
-    monkeypatch.setattr(exporting, "PAGE", 4)
-    written = await exporting.export(driven, Wanted(), frame, tmp_path / "pages.gpkg", 60.0)
+    monkeypatch.setattr(exchange, "PAGE", 4)
+    written = await exchange.export_trajectories(
+        driven, TrajectoryQuery(), frame, tmp_path / "pages.gpkg", 60.0
+    )
     assert (written.positions, written.tracks) == (15, 3)
     dataset = ogr.Open(str(tmp_path / "pages.gpkg"))
     assert [len(rows(dataset, layer)) for layer in ("positions", "tracks")] == [15, 3]

@@ -7,14 +7,14 @@ from datetime import UTC, datetime
 import pytest
 from command_line import run_command
 
-from robot_bridge.commands.database_option import database_address
-from robot_bridge.errors import StoreError
-from robot_bridge.messages import SendPos
-from robot_bridge.sites.settings import TrajectorySettings
-from robot_bridge.store import trajectories
-from robot_bridge.store.database import Database
-from robot_bridge.store.trajectories import Fix, Wanted
-from robot_bridge.trajectories.importing import Drive, import_drives
+from robot_bridge.cli.options import database_address
+from robot_bridge.core.errors import StoreError
+from robot_bridge.core.messages import SendPos
+from robot_bridge.core.sites.settings_tables import TrajectorySettings
+from robot_bridge.gateway.storage.database import Database
+from robot_bridge.gateway.storage.repositories import trajectories
+from robot_bridge.gateway.storage.repositories.trajectories import Fix, TrajectoryQuery
+from robot_bridge.gateway.trajectories.exchange import RecordedDrive, import_drives
 
 AN_HOUR_AGO = time.time() // 1 - 3600.0
 BEGIN = datetime.fromtimestamp(AN_HOUR_AGO, UTC).strftime("%Y-%m-%dT%H:%M:%SZ")
@@ -51,7 +51,7 @@ def stored(database, *robots):
         opened = Database(database_address(database, None))
         await opened.open()
         try:
-            return await opened.run(trajectories.read, Wanted(robots), 1000)
+            return await opened.run(trajectories.read, TrajectoryQuery(robots), 1000)
         finally:
             await opened.close()
 
@@ -139,10 +139,10 @@ async def test_a_drive_that_cannot_be_stored_to_its_end_is_taken_back(database):
         await opened.run(
             trajectories.add, [trajectories.pack(Fix("r1", AN_HOUR_AGO - 1, SendPos(1, 1, 0, 0)))]
         )
-        drive = Drive("r1", AN_HOUR_AGO, AN_HOUR_AGO + 3000, fixes())
+        drive = RecordedDrive("r1", AN_HOUR_AGO, AN_HOUR_AGO + 3000, fixes())
         with pytest.raises(StoreError, match="disk is full"):
             await import_drives(opened, [drive], TrajectorySettings(), time.time())
-        left = await opened.run(trajectories.read, Wanted(), 1000)
+        left = await opened.run(trajectories.read, TrajectoryQuery(), 1000)
     finally:
         await opened.close()
     assert [place.x for place in left] == [1.0]

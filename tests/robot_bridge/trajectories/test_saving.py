@@ -9,17 +9,16 @@ import threading
 import pytest
 from sqlalchemy import select
 
-from robot_bridge.errors import DataRefusedError, StoreError
-from robot_bridge.messages import SendPos
-from robot_bridge.robots import Robots
-from robot_bridge.sites.settings import TrajectorySettings
-from robot_bridge.store import robots as stored_robots
-from robot_bridge.store import trajectories
-from robot_bridge.store.database import Database
-from robot_bridge.store.schema import trajectories as table
-from robot_bridge.store.trajectories import Fix
-from robot_bridge.trajectories.recorder import Recorder
-from robot_bridge.trajectories.saving import Saving
+from robot_bridge.core.errors import DataRefusedError, StoreError
+from robot_bridge.core.messages import SendPos
+from robot_bridge.core.sites.settings_tables import TrajectorySettings
+from robot_bridge.gateway.model.robots import Robots
+from robot_bridge.gateway.storage.database import Database
+from robot_bridge.gateway.storage.repositories import robots as stored_robots
+from robot_bridge.gateway.storage.repositories import trajectories
+from robot_bridge.gateway.storage.repositories.trajectories import Fix
+from robot_bridge.gateway.storage.schema import trajectories as table
+from robot_bridge.gateway.trajectories.recording import TrajectoryRecorder, TrajectoryWriter
 
 EVERY = TrajectorySettings(min_distance_m=0.0, min_turn_deg=0.0, min_interval_s=0.0)
 
@@ -48,7 +47,9 @@ class Yard:
         self.database = database
         self.robots = Robots()
         self.robots.ready("r1", 1, "sql", 0.0)
-        self.saving = Saving(database, self.robots, recorder or Recorder(lambda: EVERY), lambda: 100.0)
+        self.saving = TrajectoryWriter(
+            database, self.robots, recorder or TrajectoryRecorder(lambda: EVERY), lambda: 100.0
+        )
 
     def tell(self, *times):
         for t in times:
@@ -178,7 +179,7 @@ async def test_a_server_that_is_killed_while_it_stores_is_told_again_what_it_for
 
 
 async def test_a_store_that_hangs_keeps_no_more_than_may_wait_and_gets_the_newest(database, busy):
-    recorder = Recorder(lambda: dataclasses.replace(EVERY, largest_backlog=1000))
+    recorder = TrajectoryRecorder(lambda: dataclasses.replace(EVERY, largest_backlog=1000))
     yard = Yard(database, recorder)
     yard.tell(0.0)
     saving = asyncio.ensure_future(yard.saving.save())

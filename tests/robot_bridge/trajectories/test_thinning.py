@@ -8,12 +8,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robot_bridge.messages import SendPos
-from robot_bridge.sites.settings import TrajectorySettings
-from robot_bridge.store.trajectories import Fix, pack
-from robot_bridge.trajectories import recorder as recording
-from robot_bridge.trajectories.recorder import Recorder
-from robot_bridge.trajectories.thinning import Thinning
+from robot_bridge.core.messages import SendPos
+from robot_bridge.core.sites.settings_tables import TrajectorySettings
+from robot_bridge.gateway.storage.repositories.trajectories import Fix, pack
+from robot_bridge.gateway.trajectories import recording
+from robot_bridge.gateway.trajectories.recording import PositionThinning, TrajectoryRecorder
 
 SETTINGS = TrajectorySettings(
     min_distance_m=0.5, min_turn_deg=10.0, min_interval_s=0.2, max_interval_s=5.0, largest_backlog=1000
@@ -25,7 +24,7 @@ def fix(at, x=0.0, theta=0.0, v=1.0, robot="r1"):
 
 
 def kept(*fixes):
-    thinning = Thinning()
+    thinning = PositionThinning()
     return [one.received_at for one in fixes if thinning.keeps(one, SETTINGS)]
 
 
@@ -63,7 +62,7 @@ def test_a_clock_that_was_set_back_does_not_end_the_recording():
 
 
 def test_the_last_place_of_a_robot_that_falls_silent_is_stored_once():
-    thinning = Thinning()
+    thinning = PositionThinning()
     assert thinning.keeps(fix(0), SETTINGS) and not thinning.keeps(fix(1, x=0.3), SETTINGS)
     assert thinning.silent(0.5) == []
     assert [one.received_at for one in thinning.silent(2)] == [1]
@@ -72,7 +71,7 @@ def test_the_last_place_of_a_robot_that_falls_silent_is_stored_once():
 
 @given(st.lists(st.tuples(st.floats(0.01, 3), st.floats(-2, 2), st.floats(-1, 1), st.booleans()), min_size=1))
 def test_no_position_is_farther_from_a_stored_one_than_set_unless_it_is_too_soon(steps):
-    thinning, at, x, theta, last = Thinning(), 0.0, 0.0, 0.0, None
+    thinning, at, x, theta, last = PositionThinning(), 0.0, 0.0, 0.0, None
     for seconds, metres, turn, moving in steps:
         at, x, theta = at + seconds, x + metres, theta + turn
         one = fix(at, x=x, theta=theta, v=1.0 if moving else 0.0)
@@ -91,7 +90,7 @@ def test_no_position_is_farther_from_a_stored_one_than_set_unless_it_is_too_soon
 
 @pytest.fixture
 def recorder():
-    return Recorder(lambda: SETTINGS)
+    return TrajectoryRecorder(lambda: SETTINGS)
 
 
 def test_what_could_not_be_stored_waits_in_its_order(recorder):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from fleet_supervisor.robot_bridge.messages import (
+from fleet_supervisor.robot_bridge.core.messages import (
     NewToken,
     OperatorReport,
     Operators,

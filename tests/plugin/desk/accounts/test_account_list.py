@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import pytest
-from fleet_supervisor.plugin.desk.accounts.account_model import day_and_time
-from fleet_supervisor.robot_bridge.messages import Role, TokenState
+from fleet_supervisor.plugin.admin.accounts_dialog import day_and_time
+from fleet_supervisor.robot_bridge.core.messages import Role, TokenState
 from qgis.PyQt.QtWidgets import (
     QAction,
     QToolButton,
@@ -47,8 +47,7 @@ def test_it_is_in_the_menu_of_the_connections_too(at_accounts, plugin):
 
 
 def test_while_connected_no_other_connection_can_be_picked(at_accounts, plugin):
-    from fleet_supervisor.plugin.settings.connections import Connections
-    from fleet_supervisor.plugin.settings.gateway_connection import GatewayConnection
+    from fleet_supervisor.plugin.settings.connections import Connections, GatewayConnection
 
     Connections().put(GatewayConnection("Track", "ws://127.0.0.1:1/desk"))
     menu = plugin.window.dock.connection_panel.menu.menu

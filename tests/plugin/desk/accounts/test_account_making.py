@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import threading
 
-from fleet_supervisor.plugin.desk.accounts.account_model import day_and_time
+from fleet_supervisor.plugin.admin.accounts_dialog import day_and_time
 from qgis.core import QgsApplication, QgsSettings
 from qgis.PyQt import sip
 from qgis.PyQt.QtCore import Qt

@@ -6,9 +6,13 @@ import time
 from itertools import groupby
 
 import pytest
-from fleet_supervisor.plugin.desk.alarms.stored_limits import read_limits, write_limits
-from fleet_supervisor.plugin.desk.alarms.thresholds import AlarmKind, Thresholds
-from fleet_supervisor.robot_bridge.messages import CommandState, RobotState
+from fleet_supervisor.plugin.panel.alarms.rules import (
+    AlarmKind,
+    Thresholds,
+    read_thresholds,
+    write_thresholds,
+)
+from fleet_supervisor.robot_bridge.core.messages import CommandState, RobotState
 from qgis.core import QgsFeature, QgsGeometry, QgsProject, QgsRectangle, QgsSettings, QgsVectorLayer
 from qgis.PyQt.QtCore import Qt, QTimer
 from qgis.PyQt.QtTest import QTest
@@ -155,7 +159,7 @@ def test_what_the_gateway_cannot_judge_is_said(at_alarms, gateway, wait):
 def test_a_gateway_that_tells_nothing_of_keepouts_is_named_as_older(at_alarms, wait, monkeypatch):
     note = at_alarms.dock.findChild(QLabel, "fleet_alarm_note")
     assert "older" not in note.text()
-    monkeypatch.setattr("fleet_supervisor.plugin.desk.geofence_state.SILENT_AFTER", 0.5)
+    monkeypatch.setattr("fleet_supervisor.plugin.gateway_client.report_caches.GEOFENCE_SILENT_AFTER", 0.5)
     wait(lambda: "The gateway tells nothing of them".lower() in note.text())
     assert "It may be older than this plugin." in note.text()
 
@@ -236,7 +240,7 @@ def test_kinds_that_the_gateway_judges_can_be_switched_off(at_alarms, gateway, w
 def test_a_robot_that_stands_with_a_task(at_alarms, gateway, make_robot, iface, wait):
     QgsSettings().setValue("fleet_supervisor/alarms/stopped_after", 1)
     panel = at_alarms.dock.findChild(QTableView, "fleet_alarms").parent()
-    panel._watch.set_limits(read_limits())
+    panel._watch.set_limits(read_thresholds())
     gateway.show(make_robot("r1", 50, 40, v=0.0), make_robot("r2", 80, 60, v=0.0))
     command = gateway._queue("command-1", "r1", "SetPosEnd", {"x": 70.0, "y": 40.0, "cone": True})
     gateway.step(command.command, CommandState.DELIVERED, "gateway")
@@ -446,15 +450,15 @@ def test_settings_hold_at_once(at_alarms, gateway, make_robot, wait):
 
 def test_settings_are_kept():
     limits = Thresholds(low_battery=0.85, stopped_after=30.0, kinds=frozenset({AlarmKind.LOST}))
-    write_limits(limits)
-    assert read_limits() == limits
+    write_thresholds(limits)
+    assert read_thresholds() == limits
 
 
 def test_broken_settings_count_as_never_set():
     QgsSettings().setValue("fleet_supervisor/alarms/low_battery", "much")
     QgsSettings().setValue("fleet_supervisor/alarms/too_close", -4)
-    assert read_limits().low_battery == 0.20
-    assert read_limits().too_close == 1.0
+    assert read_thresholds().low_battery == 0.20
+    assert read_thresholds().too_close == 1.0
 
 
 # --- when nobody can tell ---

@@ -4,19 +4,24 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from fleet_supervisor.plugin.desk.alarms.alarm import AlarmChange
-from fleet_supervisor.plugin.desk.alarms.board import AlarmBoard
-from fleet_supervisor.plugin.desk.alarms.rules import FRESH, LOST, OFFLINE, Situation
-from fleet_supervisor.plugin.desk.alarms.thresholds import AlarmKind, Thresholds
-from fleet_supervisor.plugin.desk.alarms.words import who
-from fleet_supervisor.plugin.wire.sightings import STATES
-from fleet_supervisor.robot_bridge.messages import RobotState
+from fleet_supervisor.plugin.gateway_client.robot_table import STATES
+from fleet_supervisor.plugin.panel.alarms.board import AlarmBoard, robots_of
+from fleet_supervisor.plugin.panel.alarms.rules import (
+    FRESH,
+    LOST,
+    OFFLINE,
+    AlarmChange,
+    AlarmKind,
+    AlarmSnapshot,
+    Thresholds,
+)
+from fleet_supervisor.robot_bridge.core.messages import RobotState
 
 BEGAN, ENDED, SEEN = AlarmChange.BEGAN, AlarmChange.ENDED, AlarmChange.ACKNOWLEDGED
 STALE = STATES.index(RobotState.STALE)
 
 
-def situation(count=2, **more) -> Situation:
+def situation(count=2, **more) -> AlarmSnapshot:
     """Robots 10 m from each other, well, with nothing to do."""
     values = {
         "names": [f"r{k + 1}" for k in range(count)],
@@ -30,7 +35,7 @@ def situation(count=2, **more) -> Situation:
         "only_seen": np.zeros(count, dtype=bool),
         "bounds": (0.0, 0.0, 200.0, 100.0),
     }
-    return Situation(**{**values, **{name: np.array(v) for name, v in more.items() if name != "bounds"}})
+    return AlarmSnapshot(**{**values, **{name: np.array(v) for name, v in more.items() if name != "bounds"}})
 
 
 class Looking:
@@ -40,12 +45,12 @@ class Looking:
         self.board = AlarmBoard(Thresholds(**limits))
         self.now = 100.0
 
-    def look(self, now: Situation, seconds: float = 3.0) -> list:
+    def look(self, now: AlarmSnapshot, seconds: float = 3.0) -> list:
         events = []
         for _ in range(round(seconds / 0.5)):
             self.now += 0.5
             events += self.board.look(now, self.now, 1_700_000_000 + self.now)
-        return [(event.change, event.alarm.kind, who(event.alarm)) for event in events]
+        return [(event.change, event.alarm.kind, robots_of(event.alarm)) for event in events]
 
 
 @pytest.fixture
@@ -334,7 +339,7 @@ def test_texts_say_who_what_and_where(desk):
 
 
 def test_alarms_that_nobody_acknowledges_do_not_grow_for_ever(desk):
-    from fleet_supervisor.plugin.desk.alarms.board import MOST_ALARMS
+    from fleet_supervisor.plugin.panel.alarms.board import MOST_ALARMS
 
     count = MOST_ALARMS + 300
     low = np.full(count, 0.9)
@@ -353,7 +358,7 @@ def test_alarms_that_nobody_acknowledges_do_not_grow_for_ever(desk):
 
 
 def test_a_whole_fleet_lost_at_once_is_told_in_portions_and_wholly():
-    from fleet_supervisor.plugin.desk.alarms.latches import MOST_AT_ONCE
+    from fleet_supervisor.plugin.panel.alarms.rules import MOST_AT_ONCE
 
     desk = Looking()
     k = np.arange(900)

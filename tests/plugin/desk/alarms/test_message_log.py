@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import pytest
-from fleet_supervisor.plugin.desk.alarms.alarm import Alarm
-from fleet_supervisor.plugin.desk.alarms.message_log import MOST_LINES, WITHIN, AlarmMessages
-from fleet_supervisor.plugin.desk.alarms.thresholds import AlarmKind
+from fleet_supervisor.plugin.panel.alarms.rules import Alarm, AlarmKind
+from fleet_supervisor.plugin.panel.alarms.watch import MOST_LINES, WITHIN, AlarmMessages
 from qgis.core import QgsApplication
 
 

@@ -1,8 +1,8 @@
 """A notice with buttons in QGIS's message bar, in a window whose panels leave it more room or less."""
 
 import pytest
-from fleet_supervisor.plugin.desk.alarms.notice_body import NoticeBody
-from fleet_supervisor.plugin.desk.notices import NoticeLabel, Notices
+from fleet_supervisor.plugin.control.messages import MessageBar, MessageLabel
+from fleet_supervisor.plugin.panel.alarms.alarm_bar import NoticeBody
 from qgis.core import Qgis
 from qgis.gui import QgsMessageBar, QgsMessageBarItem
 from qgis.PyQt.QtCore import Qt
@@ -36,7 +36,7 @@ class Hung:
         rows.addWidget(QWidget(), 1)
         self.window.setCentralWidget(middle)
         self._panels = [self._panel(side) for side in ("Left", "Right")]
-        self.text = NoticeLabel(LONG, bar)
+        self.text = MessageLabel(LONG, bar)
         self.buttons = (button("Anzeigen"), button("Alle quittieren"))
         self.body = NoticeBody(self.text, self.buttons, bar)
         self.window.resize(WIDTH, 400)
@@ -98,9 +98,9 @@ def test_between_broad_panels_the_buttons_are_beneath_and_the_window_stays(hung,
 
 
 def test_a_text_without_buttons_leaves_the_window_as_it_is_too(hung, wait):
-    Notices(hung.bar, hung.window).error(LONG * 3)
+    MessageBar(hung.bar, hung.window).error(LONG * 3)
     hung.leave(NARROW)
-    text = hung.bar.currentItem().findChild(NoticeLabel)
+    text = hung.bar.currentItem().findChild(MessageLabel)
     assert text is not hung.text
     wait(lambda: 0 < text.width() < NARROW, what="the text between the panels")
     assert text.height() >= text.heightForWidth(text.width())

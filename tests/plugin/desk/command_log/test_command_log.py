@@ -5,10 +5,10 @@ import re
 import time
 
 import pytest
-from fleet_supervisor.plugin.desk.command_book import CommandBook
-from fleet_supervisor.plugin.desk.command_log.entries import Which, summary
-from fleet_supervisor.plugin.desk.command_log.log_panel import WHICH
-from fleet_supervisor.robot_bridge.messages import CommandReport, CommandState, CommandStep
+from fleet_supervisor.plugin.gateway_client.command_cache import CommandCache
+from fleet_supervisor.plugin.panel.command_log import COMMAND_CHOICES
+from fleet_supervisor.plugin.panel.command_log_model import CommandChoice, summary
+from fleet_supervisor.robot_bridge.core.messages import CommandReport, CommandState, CommandStep
 from qgis.PyQt.QtCore import Qt
 from qgis.PyQt.QtTest import QTest
 from qgis.PyQt.QtWidgets import QComboBox, QLabel, QToolButton, QTreeView
@@ -93,16 +93,16 @@ def test_open_commands_at_a_glance(log, gateway, wait):
 @pytest.mark.parametrize(
     ("whose", "which", "commands"),
     [
-        ("r1", Which.ALL, ["r1 · abort", "r1 · cone at 70.00, 55.00"]),
-        ("r2", Which.OPEN, ["r2 · target at 20.00, 30.00"]),
-        ("r2", Which.FAILED, ["r2 · route of 2 points"]),
-        ("All robots", Which.FAILED, ["r2 · route of 2 points"]),
-        ("r1", Which.FAILED, []),
+        ("r1", CommandChoice.ALL, ["r1 · abort", "r1 · cone at 70.00, 55.00"]),
+        ("r2", CommandChoice.OPEN, ["r2 · target at 20.00, 30.00"]),
+        ("r2", CommandChoice.FAILED, ["r2 · route of 2 points"]),
+        ("All robots", CommandChoice.FAILED, ["r2 · route of 2 points"]),
+        ("r1", CommandChoice.FAILED, []),
     ],
 )
 def test_filters_by_robot_and_by_how_it_went(log, whose, which, commands):
     choose(log, "fleet_log_robot", whose)
-    choose(log, "fleet_log_filter", WHICH[which])
+    choose(log, "fleet_log_filter", COMMAND_CHOICES[which])
     assert [what for what, _ in rows(log)] == commands
 
 
@@ -116,14 +116,14 @@ def test_the_selected_robots_commands_follow_the_selection(log, at_desk):
 
 
 def test_what_ends_leaves_the_list_of_open_ones_and_what_comes_is_listed(log, gateway, wait):
-    choose(log, "fleet_log_filter", WHICH[Which.OPEN])
+    choose(log, "fleet_log_filter", COMMAND_CHOICES[CommandChoice.OPEN])
     assert [what for what, _ in rows(log)] == ["r2 · target at 20.00, 30.00", "r1 · abort"]
     gateway.step("command-4", CommandState.ABORTED, "bert", reason="wrong place")
     wait(lambda: [what for what, _ in rows(log)] == ["r1 · abort"])
     gateway._queue("command-5", "r1", "SetPosEnd", {"x": 1.0, "y": 1.0})
     gateway.step("command-5", CommandState.DELIVERED, "gateway")
     wait(lambda: [what for what, _ in rows(log)] == ["r1 · target at 1.00, 1.00", "r1 · abort"])
-    choose(log, "fleet_log_filter", WHICH[Which.ALL])
+    choose(log, "fleet_log_filter", COMMAND_CHOICES[CommandChoice.ALL])
     assert len(rows(log)) == 5
 
 
@@ -260,7 +260,7 @@ def test_a_command_of_another_day_tells_its_date_and_has_room_for_it(at_desk, ga
     assert re.fullmatch(r"2020-09-1\d \d\d:\d\d:\d\d", old.data(Qt.ItemDataRole.ToolTipRole))
     assert log.view.columnWidth(0) > narrow
     assert log.view.visualRect(old).width() > log.view.fontMetrics().horizontalAdvance(old.data())
-    choose(log, "fleet_log_filter", WHICH[Which.OPEN])
+    choose(log, "fleet_log_filter", COMMAND_CHOICES[CommandChoice.OPEN])
     assert log.view.columnWidth(0) == narrow
 
 
@@ -306,7 +306,7 @@ def test_of_several_robots_it_is_told_once(log, at_desk, gateway, wait):
 
 def test_it_is_told_where_the_log_reaches_no_further_back(log, at_desk, gateway, wait, monkeypatch):
     told = notes(at_desk)
-    monkeypatch.setattr("fleet_supervisor.plugin.desk.command_log.older_commands.OLDER", 5)
+    monkeypatch.setattr("fleet_supervisor.plugin.panel.command_log.OLDER", 5)
     gateway.commands = {"old-0": long_ago(0), **gateway.commands}
     press_older(log)
     wait(lambda: len(told) == 1, what="what came of it")
@@ -316,7 +316,7 @@ def test_it_is_told_where_the_log_reaches_no_further_back(log, at_desk, gateway,
 
 def test_it_is_told_that_a_full_log_keeps_no_older_commands(log, at_desk, gateway, wait, monkeypatch):
     told = notes(at_desk)
-    monkeypatch.setattr("fleet_supervisor.plugin.desk.command_book.MOST_COMMANDS", 4)
+    monkeypatch.setattr("fleet_supervisor.plugin.gateway_client.command_cache.MOST_COMMANDS", 4)
     gateway.commands = {"old-0": long_ago(0), **gateway.commands}
     press_older(log)
     wait(lambda: len(told) == 1, what="what came of it")
@@ -406,7 +406,7 @@ def report(number, at, state=CommandState.ACKNOWLEDGED, robot="r1"):
 
 
 def test_history_that_comes_late_does_not_become_what_a_robot_does():
-    book = CommandBook()
+    book = CommandCache()
     book.merge([report(5, 500.0)])
     done = CommandState.REACHED
     book.merge([report(2, 200.0), report(3, 300.0, done), report(1, 100.0, done)])
@@ -416,9 +416,9 @@ def test_history_that_comes_late_does_not_become_what_a_robot_does():
 
 
 def test_a_full_book_lets_go_of_what_is_over_first():
-    from fleet_supervisor.plugin.desk.command_book import MOST_COMMANDS
+    from fleet_supervisor.plugin.gateway_client.command_cache import MOST_COMMANDS
 
-    book = CommandBook()
+    book = CommandCache()
     book.merge([report(0, 1.0)])
     book.merge(report(n, float(n + 1), CommandState.REACHED, "r2") for n in range(1, MOST_COMMANDS + 50))
     assert len(book) == MOST_COMMANDS
@@ -427,7 +427,7 @@ def test_a_full_book_lets_go_of_what_is_over_first():
 
 
 def test_a_full_log_lets_go_of_the_oldest_and_leaves_what_is_chosen(log, gateway, wait, monkeypatch):
-    monkeypatch.setattr("fleet_supervisor.plugin.desk.command_book.MOST_COMMANDS", 4)
+    monkeypatch.setattr("fleet_supervisor.plugin.gateway_client.command_cache.MOST_COMMANDS", 4)
     log.view.setCurrentIndex(log.view.model().index(2, 0))
     gateway._queue("command-5", "r1", "SetPosEnd", {"x": 1.0, "y": 2.0})
     gateway.step("command-5", CommandState.DELIVERED, "gateway")
@@ -450,7 +450,7 @@ def test_the_tree_is_what_qt_expects_of_a_model(log, gateway, wait):
     gateway.step("command-5", CommandState.DELIVERED, "gateway")
     gateway.step("command-5", CommandState.ABORTED, "anna")
     wait(lambda: rows(log)[0][1] == "aborted")
-    choose(log, "fleet_log_filter", WHICH[Which.OPEN])
+    choose(log, "fleet_log_filter", COMMAND_CHOICES[CommandChoice.OPEN])
     gateway.step("command-4", CommandState.ABORTED, "anna")
     wait(lambda: len(rows(log)) == 1)
     assert isinstance(log.findChild(QTreeView, "fleet_command_log"), QTreeView)

@@ -6,10 +6,17 @@ import random
 from dataclasses import replace
 
 import pytest
-from fleet_supervisor.plugin.desk.command_log.entries import Filter, Which, cells, step_cells
-from fleet_supervisor.plugin.desk.command_log.log_model import COMMAND_ROLE, PAGE, LogModel
-from fleet_supervisor.plugin.desk.robots.detail_rows import command_rows
-from fleet_supervisor.robot_bridge.messages import CommandReport, CommandState, CommandStep
+from fleet_supervisor.plugin.panel.command_log_model import (
+    COMMAND_ROLE,
+    PAGE,
+    CommandChoice,
+    CommandFilter,
+    LogModel,
+    cells,
+    step_cells,
+)
+from fleet_supervisor.plugin.panel.robot_details import command_rows
+from fleet_supervisor.robot_bridge.core.messages import CommandReport, CommandState, CommandStep
 from qgis.PyQt.QtCore import QModelIndex, QPersistentModelIndex
 from qgis.PyQt.QtTest import QAbstractItemModelTester
 
@@ -63,7 +70,7 @@ def test_an_abort_leads_nowhere_and_is_done(op, word):
 
 def test_a_view_is_told_of_the_newest_and_of_the_others_when_it_asks(model):
     count = 2 * PAGE + 50
-    model.show_all([report(n) for n in range(count)], Filter())
+    model.show_all([report(n) for n in range(count)], CommandFilter())
     newest_first = names(reversed(range(count)))
     assert told(model) == newest_first[:PAGE] and len(model.shown) == count
     model.fetchMore(ROOT)
@@ -74,7 +81,7 @@ def test_a_view_is_told_of_the_newest_and_of_the_others_when_it_asks(model):
 
 
 def test_many_new_ones_come_in_one_piece(held_to_qt):
-    held_to_qt.show_all([report(n) for n in range(3)], Filter())
+    held_to_qt.show_all([report(n) for n in range(3)], CommandFilter())
     inserted = []
     held_to_qt.rowsInserted.connect(lambda _parent, first, last: inserted.append((first, last)))
     assert sorted(held_to_qt.merge([report(n) for n in range(3, 103)])) == sorted(names(range(3, 103)))
@@ -85,7 +92,7 @@ def test_many_new_ones_come_in_one_piece(held_to_qt):
 def test_whatever_order_they_come_in_they_are_listed_by_their_time(model):
     numbers = list(range(PAGE + 100))
     random.Random(6).shuffle(numbers)
-    model.show_all([report(n) for n in numbers[:PAGE]], Filter())
+    model.show_all([report(n) for n in numbers[:PAGE]], CommandFilter())
     for begin in range(PAGE, len(numbers), 20):
         model.merge([report(n) for n in numbers[begin : begin + 20]])
     fetch_all(model)
@@ -94,14 +101,14 @@ def test_whatever_order_they_come_in_they_are_listed_by_their_time(model):
 
 
 def test_of_one_time_those_that_were_told_last_are_on_top(held_to_qt):
-    held_to_qt.show_all([report(1, at=5.0)], Filter())
+    held_to_qt.show_all([report(1, at=5.0)], CommandFilter())
     held_to_qt.merge([report(2, at=5.0), report(3, at=5.0)])
     held_to_qt.merge([report(4, at=5.0)])
     assert told(held_to_qt) == names([4, 3, 2, 1])
 
 
 def test_what_happens_to_commands_that_no_view_was_told_of_is_there_when_it_asks(model):
-    model.show_all([report(n) for n in range(PAGE + 20)], Filter(which=Which.OPEN))
+    model.show_all([report(n) for n in range(PAGE + 20)], CommandFilter(which=CommandChoice.OPEN))
     tops, inserted = [], []
     model.rowsInserted.connect(lambda *rows: inserted.append(rows))
     model.dataChanged.connect(lambda first, _last, _roles=(): tops.append(first.row()))
@@ -114,13 +121,13 @@ def test_what_happens_to_commands_that_no_view_was_told_of_is_there_when_it_asks
 
 
 def test_many_that_are_not_listed_any_more_go(held_to_qt):
-    held_to_qt.show_all([report(n) for n in range(60)], Filter(which=Which.OPEN))
+    held_to_qt.show_all([report(n) for n in range(60)], CommandFilter(which=CommandChoice.OPEN))
     held_to_qt.merge([report(n, REACHED) for n in (*range(30, 60, 2), *range(28, -2, -2))])
     assert told(held_to_qt) == names(reversed(range(1, 60, 2)))
 
 
 def test_a_step_that_comes_is_a_row_beneath_its_command(held_to_qt):
-    held_to_qt.show_all([report(1), report(2)], Filter())
+    held_to_qt.show_all([report(1), report(2)], CommandFilter())
     top = held_to_qt.index(1, 0)
     assert held_to_qt.rowCount(top) == 1
     held_to_qt.merge([report(1, REACHED)])
@@ -133,7 +140,7 @@ def test_a_step_that_comes_is_a_row_beneath_its_command(held_to_qt):
 
 def test_what_is_kept_no_more_goes_and_the_others_stay_as_they_are(held_to_qt):
     model = held_to_qt
-    model.show_all([report(n, REACHED) for n in range(6)], Filter())
+    model.show_all([report(n, REACHED) for n in range(6)], CommandFilter())
     opened = QPersistentModelIndex(model.index(1, 0, model.index(2, 0)))
     resets = []
     model.modelReset.connect(lambda: resets.append(True))
@@ -146,7 +153,7 @@ def test_what_is_kept_no_more_goes_and_the_others_stay_as_they_are(held_to_qt):
 
 
 def test_a_view_is_made_short_again_only_when_it_was_told_of_much(model):
-    model.show_all([report(n) for n in range(3 * PAGE)], Filter())
+    model.show_all([report(n) for n in range(3 * PAGE)], CommandFilter())
     model.fetchMore(ROOT)
     model.shorten()
     assert model.rowCount() == 2 * PAGE

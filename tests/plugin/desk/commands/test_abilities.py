@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import pytest
-from fleet_supervisor.plugin.desk.drafting.ability_check import check_abilities
-from fleet_supervisor.plugin.desk.drafts import CONE, ROUTE, START, TARGETS, Draft
-from fleet_supervisor.plugin.desk.picture import RobotView
-from fleet_supervisor.robot_bridge.messages import RobotState
+from fleet_supervisor.plugin.control.pending_command import CONE, ROUTE, START, TARGETS, PendingCommand
+from fleet_supervisor.plugin.control.robot_checks import check_abilities
+from fleet_supervisor.plugin.gateway_client.robot_states import RobotView
+from fleet_supervisor.robot_bridge.core.messages import RobotState
 
 POINTS = ((1.0, 2.0), (3.0, 4.0))
 
@@ -14,7 +14,7 @@ POINTS = ((1.0, 2.0), (3.0, 4.0))
 def found(kind, abilities):
     told = {} if abilities is None else {"abilities": abilities}
     robot = RobotView("r1", told, RobotState.FRESH, 0.0)
-    return check_abilities(Draft("r1", kind, POINTS), robot)
+    return check_abilities(PendingCommand("r1", kind, POINTS), robot)
 
 
 @pytest.mark.parametrize("kind", [CONE, ROUTE, START, TARGETS])
@@ -39,5 +39,5 @@ def test_what_a_robot_cannot_do_is_refused_with_the_reason(kind, abilities, reas
 def test_a_robot_that_places_no_cones_is_sent_to_a_cone_target_without_one():
     assert found(CONE, "targets").warnings == ("r1 places no cones: it only drives there.",)
     assert found(CONE, "targets").refused == ()
-    op, params = Draft("r1", CONE, POINTS[:1], places_cone=False).message()
+    op, params = PendingCommand("r1", CONE, POINTS[:1], places_cone=False).message()
     assert (op, params["cone"]) == ("SetPosEnd", False)

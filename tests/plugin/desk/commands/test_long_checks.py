@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 import pytest
-from fleet_supervisor.plugin.desk import time_slices
-from fleet_supervisor.plugin.desk.drafting.keepout_check import KeepoutCheck
-from fleet_supervisor.plugin.desk.drafting.obstacle_check import ObstacleCheck
-from fleet_supervisor.plugin.desk.drafting.surface_check import SurfaceCheck
-from fleet_supervisor.plugin.errors import NotSentError
+from fleet_supervisor.plugin.control.layer_checks import KeepoutCheck, ObstacleCheck, SurfaceCheck
+from fleet_supervisor.plugin.ui import scheduling
+from fleet_supervisor.plugin.ui.errors import NotSentError
 from qgis.core import QgsFeature, QgsGeometry
 from qgis.PyQt.QtCore import Qt
 from qgis.PyQt.QtTest import QTest
@@ -21,7 +19,7 @@ CTRL = Qt.KeyboardModifier.ControlModifier
 @pytest.fixture
 def slow(hand, monkeypatch):
     """A desk where every check takes as many slices as it has steps; clicks and keys do not wait for it."""
-    monkeypatch.setattr(time_slices, "SLICE_SECONDS", 0.0)
+    monkeypatch.setattr(scheduling, "SLICE_SECONDS", 0.0)
     hand.settled, hand.iface.is_settled = hand.iface.is_settled, lambda: True
     return hand
 

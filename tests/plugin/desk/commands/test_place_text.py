@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from fleet_supervisor.plugin.desk.drafting.place_text import PlaceTextError, read_place
+from fleet_supervisor.plugin.control.coordinates import PlaceTextError, read_place
 
 LON_LAT = (16.3725, 48.2083)
 

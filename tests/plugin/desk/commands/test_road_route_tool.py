@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from fleet_supervisor.plugin.wire.outbox import Answer
+from fleet_supervisor.plugin.gateway_client.buffers import RequestResult
 from pyproj import Transformer
 from qgis.PyQt.QtCore import Qt
 from qgis.PyQt.QtWidgets import QApplication
@@ -40,7 +40,7 @@ class SlowRoads:
         start, goal = order.params.get("start") or AT, (order.params["x"], order.params["y"])
         middle = [(a + b) / 2 for a, b in zip(start, goal, strict=True)]
         way = {"points": [list(start), middle, list(goal)], "metres": 1.0, "seconds": 1.0}
-        assert self.preview.accept_answer(Answer(order, **(error or {"result": way})))
+        assert self.preview.accept_answer(RequestResult(order, **(error or {"result": way})))
         self.hand.wait(self.hand.iface.is_settled, what="the check of the draft")
 
     def find_all(self) -> None:

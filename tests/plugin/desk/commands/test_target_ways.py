@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import replace
 
 import pytest
-from fleet_supervisor.plugin.desk.drafts import CONE, Draft, WayKind
-from fleet_supervisor.plugin.desk.orders import SLOW_AFTER
-from fleet_supervisor.robot_bridge.messages import CommandState
+from fleet_supervisor.plugin.control.pending_command import CONE, ApproachKind, PendingCommand
+from fleet_supervisor.plugin.control.request_tracker import SLOW_AFTER
+from fleet_supervisor.robot_bridge.core.messages import CommandState
 from qgis.PyQt.QtCore import QEvent, Qt
 from qgis.PyQt.QtTest import QTest
 from qgis.PyQt.QtWidgets import QApplication
@@ -72,7 +72,7 @@ class Roads:
 
     def _is_settled(self):
         draft = self.draft
-        return draft is None or (draft.way.kind is not WayKind.SOUGHT and draft.is_checked)
+        return draft is None or (draft.way.kind is not ApproachKind.SOUGHT and draft.is_checked)
 
 
 @pytest.fixture
@@ -105,7 +105,7 @@ def test_a_robot_that_asks_for_its_path_is_sent_the_target_and_shown_the_way(roa
 
 def test_one_that_declared_nothing_is_shown_straight_and_told_so(roads, gateway):
     draft = roads.click()
-    assert (draft.way.kind, rounded(draft.way.line)) == (WayKind.STRAIGHT, [AT, GOAL])
+    assert (draft.way.kind, rounded(draft.way.line)) == (ApproachKind.STRAIGHT, [AT, GOAL])
     assert gateway.asked("get_route") == []
     assert "r1 has not declared that it asks for its path" in roads.hand.told
     roads.hand.key(Qt.Key.Key_Return)
@@ -145,18 +145,18 @@ def test_what_is_at_the_target_is_named_once(roads, layer_of):
 def test_with_shift_it_is_straight_for_any_robot(roads, layer_of):
     layer_of("Polygon", BETWEEN, role="keepout", names=["Basin"])
     draft = roads.declare("cones").click(GOAL, Qt.KeyboardModifier.ShiftModifier)
-    assert (draft.way.kind, draft.is_direct) == (WayKind.STRAIGHT, True)
+    assert (draft.way.kind, draft.is_direct) == (ApproachKind.STRAIGHT, True)
     assert "keepout Basin" in roads.hand.told
     roads.hand.key(Qt.Key.Key_Left, Qt.KeyboardModifier.ControlModifier)
     assert roads.draft.is_direct
-    assert roads.click().way.kind is WayKind.PATH
+    assert roads.click().way.kind is ApproachKind.PATH
 
 
 @pytest.mark.parametrize("how", ["note", "refusal"])
 def test_where_no_way_leads_the_straight_one_is_shown_with_the_reason(roads, how):
     setattr(roads, how, "no road is near")
     draft = roads.declare("cones").click()
-    assert draft.way.kind is WayKind.STRAIGHT
+    assert draft.way.kind is ApproachKind.STRAIGHT
     assert "No way along the roads leads there: no road is near." in roads.hand.told
     roads.hand.key(Qt.Key.Key_Return)
     assert roads.hand.sent()["op"] == "SetPosEnd"
@@ -277,7 +277,7 @@ def test_the_way_to_the_mouse_goes_with_whatever_makes_it_untrue(roads, gateway)
         QApplication.sendEvent(view, QEvent(QEvent.Type.Leave))
 
     def send():
-        desk.put_draft(Draft("r1", CONE, (GOAL,)))
+        desk.put_draft(PendingCommand("r1", CONE, (GOAL,)))
         roads.settle()
         desk.sending.send()
         roads.hand.wait(lambda: roads.draft is None, what="the draft to be gone")
@@ -314,11 +314,11 @@ def test_what_the_log_says_of_a_cone_with_a_path(roads, gateway):
     command = roads.hand.sent()["command"]
     gateway.step(command, CommandState.DELIVERED, "gateway")
     gateway.step(command, CommandState.ACKNOWLEDGED, "r1")
-    from fleet_supervisor.plugin.desk.command_book import in_words
+    from fleet_supervisor.plugin.gateway_client.command_cache import command_in_words
 
     desk = roads.hand.window.desk
     roads.hand.wait(lambda: command in desk.book, what="the report")
-    assert in_words(desk.book.get(command)).startswith("cone at 69.9")
+    assert command_in_words(desk.book.get(command)).startswith("cone at 69.9")
 
 
 def test_the_target_of_an_unplaced_robot_says_that_nobody_looked_at_its_way(roads):

@@ -5,11 +5,11 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from fleet_supervisor.plugin.desk.live.overlay import FleetOverlay
-from fleet_supervisor.plugin.desk.live.plans import Plan
-from fleet_supervisor.plugin.desk.live.scene import Placer, Scene
-from fleet_supervisor.plugin.desk.picture import STATES, RobotArrays
-from fleet_supervisor.plugin.desk.placement import Placement
+from fleet_supervisor.plugin.gateway_client.robot_states import RobotArrays
+from fleet_supervisor.plugin.gateway_client.robot_table import STATES
+from fleet_supervisor.plugin.layers.site_transform import SiteToMapTransform
+from fleet_supervisor.plugin.map.overlay.fleet_overlay import FleetOverlay
+from fleet_supervisor.plugin.map.overlay.scene import SceneTransformer, SiteScene, TaskPath
 from qgis.core import QgsCoordinateReferenceSystem, QgsPointXY, QgsProject, QgsRectangle
 from qgis.PyQt.QtGui import QColor, QImage
 from qgis.PyQt.QtWidgets import QApplication
@@ -28,18 +28,20 @@ def arrays(*robots, v=np.nan, accuracy=np.nan, age=0.0) -> RobotArrays:
     )
 
 
-def scene_of(*robots, chosen=(), plans=(), draft=None, now=100.0, **more) -> Scene:
+def scene_of(*robots, chosen=(), plans=(), draft=None, now=100.0, **more) -> SiteScene:
     known = arrays(*robots, **more)
     rows = {name: row for row, name in enumerate(known.names)}
-    return Scene(known, now=now, chosen=chosen, plans=list(plans), draft=draft, rows=rows)
+    return SiteScene(known, now=now, chosen=chosen, plans=list(plans), draft=draft, rows=rows)
 
 
-def plan(robot, *points, cone=False) -> Plan:
-    return Plan(f"command-{robot}", robot, np.array(points, dtype=float), cone)
+def plan(robot, *points, cone=False) -> TaskPath:
+    return TaskPath(f"command-{robot}", robot, np.array(points, dtype=float), cone)
 
 
-def placement_of(canvas, site) -> Placement:
-    return Placement(site, canvas.mapSettings().destinationCrs(), QgsProject.instance().transformContext())
+def placement_of(canvas, site) -> SiteToMapTransform:
+    return SiteToMapTransform(
+        site, canvas.mapSettings().destinationCrs(), QgsProject.instance().transformContext()
+    )
 
 
 def show(canvas, site, scene, crs="EPSG:32633", rotation=0.0, trails=None) -> FleetOverlay:
@@ -50,7 +52,7 @@ def show(canvas, site, scene, crs="EPSG:32633", rotation=0.0, trails=None) -> Fl
     canvas.setExtent(QgsRectangle(*corners.min(axis=0), *corners.max(axis=0)))
     QApplication.processEvents()
     overlay = FleetOverlay(canvas, trails)
-    overlay.show_scene(Placer().placed(scene, placement))
+    overlay.show_scene(SceneTransformer().placed(scene, placement))
     QApplication.processEvents()
     return overlay
 

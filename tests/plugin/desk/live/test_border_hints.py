@@ -6,8 +6,8 @@ import math
 
 import numpy as np
 import pytest
-from fleet_supervisor.plugin.desk.colours import STATE_COLOURS
-from fleet_supervisor.robot_bridge.messages import RobotState
+from fleet_supervisor.plugin.ui.glyphs import STATE_COLOURS
+from fleet_supervisor.robot_bridge.core.messages import RobotState
 
 from tests.plugin.desk.live.on_canvas import (
     expected,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from fleet_supervisor.plugin.desk.live.following import keep_in_view, show_places
+from fleet_supervisor.plugin.map.overlay.screen import keep_in_view, show_places
 from qgis.core import QgsPointXY
 from qgis.gui import QgsMapCanvas
 from qgis.PyQt.QtTest import QTest

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from fleet_supervisor.plugin.desk.colours import TRAIL
+from fleet_supervisor.plugin.ui.glyphs import TRAIL
 from qgis.core import QgsCoordinateReferenceSystem, QgsCoordinateTransform, QgsPointXY
 from qgis.PyQt.QtGui import QColor
 from qgis.PyQt.QtTest import QTest

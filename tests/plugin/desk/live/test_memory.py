@@ -5,10 +5,10 @@ from __future__ import annotations
 import dataclasses
 
 import pytest
-from fleet_supervisor.plugin.desk.live.labels import MOST
-from fleet_supervisor.plugin.desk.live.scene import Placer
-from fleet_supervisor.plugin.desk.picture import STATES
-from fleet_supervisor.robot_bridge.messages import RobotState
+from fleet_supervisor.plugin.gateway_client.robot_table import STATES
+from fleet_supervisor.plugin.map.overlay.labels import MOST
+from fleet_supervisor.plugin.map.overlay.scene import SceneTransformer
+from fleet_supervisor.robot_bridge.core.messages import RobotState
 from qgis.core import QgsCoordinateReferenceSystem, QgsProject, QgsRectangle
 from qgis.PyQt.QtGui import QImage, QPainter
 from qgis.PyQt.QtWidgets import QApplication
@@ -21,7 +21,7 @@ def painted(canvas, site):
     """Return a function that paints a scene and returns the painter with all that it keeps."""
     overlay = show(canvas, site, scene_of((60, 50, 0.0, RobotState.FRESH)))
     image = QImage(canvas.size(), QImage.Format.Format_ARGB32_Premultiplied)
-    placer, placement = Placer(), placement_of(canvas, site)
+    placer, placement = SceneTransformer(), placement_of(canvas, site)
 
     def paint(scene):
         overlay.show_scene(placer.placed(scene, placement))
@@ -80,14 +80,14 @@ def test_plans_and_ways_are_kept_of_what_is_under_way_only(painted):
 def test_an_hour_of_updates_takes_no_more_memory(canvas, site):
     from pathlib import Path
 
-    from fleet_supervisor.plugin.desk.desk import Desk
-    from fleet_supervisor.plugin.desk.live.live_view import LiveView
-    from fleet_supervisor.plugin.wire.position_rows import sightings
+    from fleet_supervisor.plugin.control.fleet_controller import FleetController
+    from fleet_supervisor.plugin.gateway_client.robot_table import table_from_rows
+    from fleet_supervisor.plugin.map.live_view import LiveView
 
     now = [1000.0]
     canvas.setDestinationCrs(QgsCoordinateReferenceSystem("EPSG:32633"))
     canvas.setExtent(QgsRectangle(*site.origin, site.origin[0] + 120, site.origin[1] + 100))
-    desk = Desk(canvas, QgsProject.instance(), clock=lambda: now[0])
+    desk = FleetController(canvas, QgsProject.instance(), clock=lambda: now[0])
     view = LiveView(desk)
     desk._take_site(site, "")
     used = []
@@ -107,7 +107,7 @@ def test_an_hour_of_updates_takes_no_more_memory(canvas, site):
             }
             for k in range(100)
         ]
-        desk.picture.merge(sightings(told, now[0]))
+        desk.picture.merge(table_from_rows(told, now[0]))
         view.show_now()
         canvas.viewport().repaint()
         view.layer.begin(100)

@@ -5,8 +5,8 @@ from __future__ import annotations
 import dataclasses
 
 import numpy as np
-from fleet_supervisor.plugin.desk.live.in_view import in_view
-from fleet_supervisor.robot_bridge.messages import RobotState
+from fleet_supervisor.plugin.map.overlay.scene import in_view
+from fleet_supervisor.robot_bridge.core.messages import RobotState
 from qgis.PyQt.QtCore import QRectF
 from qgis.PyQt.QtGui import QImage, QPainter
 
@@ -18,8 +18,7 @@ from tests.plugin.desk.live.on_canvas import (
 
 
 def test_the_names_of_a_crowd_do_not_cover_each_other_and_the_lost_are_named_first(canvas, site):
-    from fleet_supervisor.plugin.desk.live.labels import HEIGHT, Labels
-    from fleet_supervisor.plugin.desk.live.names_painting import BESIDE, NamesPainter
+    from fleet_supervisor.plugin.map.overlay.labels import BESIDE, HEIGHT, Labels, NamesPainter
 
     spread = np.random.default_rng(3).uniform(5, 95, (200, 2)).tolist()
     crowd = [(x, y, 0.0, RobotState.FRESH) for x, y in spread]
@@ -36,7 +35,7 @@ def test_the_names_of_a_crowd_do_not_cover_each_other_and_the_lost_are_named_fir
 
 
 def test_the_age_of_the_last_message_is_written_beside_a_lost_robot(qgis_app):
-    from fleet_supervisor.plugin.desk.live.names_painting import texts
+    from fleet_supervisor.plugin.map.overlay.labels import texts
 
     known = arrays((0, 0, 0, RobotState.LOST), (1, 1, 0, RobotState.FRESH), age=75.0)
     assert texts(known, 0) == ["r1", "· lost 1 min"]
@@ -45,8 +44,7 @@ def test_the_age_of_the_last_message_is_written_beside_a_lost_robot(qgis_app):
 
 def written_after(canvas, site, first, second):
     """Return what is written beside robots, painted as ``first`` and then as ``second``."""
-    from fleet_supervisor.plugin.desk.live.labels import Labels
-    from fleet_supervisor.plugin.desk.live.names_painting import NamesPainter
+    from fleet_supervisor.plugin.map.overlay.labels import Labels, NamesPainter
 
     names = NamesPainter(Labels())
     image = QImage(canvas.size(), QImage.Format.Format_ARGB32_Premultiplied)

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from fleet_supervisor.plugin.desk.colours import STATE_COLOURS, TRAIL
-from fleet_supervisor.plugin.desk.live.scene import Placer
-from fleet_supervisor.plugin.desk.live.trails import Trails
-from fleet_supervisor.robot_bridge.messages import RobotState
+from fleet_supervisor.plugin.map.overlay.scene import SceneTransformer
+from fleet_supervisor.plugin.map.overlay.trails import Trails
+from fleet_supervisor.plugin.ui.glyphs import STATE_COLOURS, TRAIL
+from fleet_supervisor.robot_bridge.core.messages import RobotState
 from qgis.core import QgsPointXY
 from qgis.PyQt.QtGui import QColor
 from qgis.PyQt.QtWidgets import QApplication
@@ -26,7 +26,9 @@ BLUE = STATE_COLOURS[RobotState.FRESH]
 def test_what_is_gone_is_painted_no_more(canvas, site):
     overlay = show(canvas, site, scene_of(*[(20 + 20 * i, 50, 0, RobotState.FRESH) for i in range(4)]))
     many = len(spots(canvas, BLUE))
-    overlay.show_scene(Placer().placed(scene_of((20, 50, 0, RobotState.FRESH)), placement_of(canvas, site)))
+    overlay.show_scene(
+        SceneTransformer().placed(scene_of((20, 50, 0, RobotState.FRESH)), placement_of(canvas, site))
+    )
     QApplication.processEvents()
     assert len(spots(canvas, BLUE)) == pytest.approx(many / 4, rel=0.2)
     overlay.show_scene(None)
@@ -49,7 +51,7 @@ def test_a_trail_fades_with_age(canvas, site):
         trails.extend(np.array([[10.0 + second, 20.0]]), float(second))
     scene = scene_of((99, 20, 0.0, RobotState.FRESH), now=89.0)
     overlay = show(canvas, site, scene, trails=trails)
-    shown = Placer().placed(scene, placement_of(canvas, site))
+    shown = SceneTransformer().placed(scene, placement_of(canvas, site))
     for _ in range(20):
         overlay.show_scene(shown)
     image = canvas.grab().toImage()

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from fleet_supervisor.plugin.desk.live.plans import Plans
-from fleet_supervisor.robot_bridge.messages import CommandReport, CommandState
+from fleet_supervisor.plugin.map.overlay.scene import TaskPaths
+from fleet_supervisor.robot_bridge.core.messages import CommandReport, CommandState
 
 
 def task(op, params, command="c1", robot="r1"):
@@ -17,14 +17,14 @@ def at(x, y):
 
 
 def test_to_a_target_it_is_the_straight_line():
-    plans = Plans()
+    plans = TaskPaths()
     (plan,) = plans.of([task("SetPosEnd", {"x": 3.0, "y": 4.0, "cone": True})])
     assert plan.cone and not plan.is_way
     assert plans.remaining(plan, at(0, 0)) == pytest.approx(5.0)
 
 
 def test_along_a_way_it_is_the_way_and_not_the_straight_line():
-    plans = Plans()
+    plans = TaskPaths()
     (plan,) = plans.of([task("SetPath", {"points": [[0, 0], [10, 0], [10, 10], [0, 10]]})])
     assert plans.remaining(plan, at(0, 0)) == pytest.approx(30.0)
     assert plans.remaining(plan, at(10, 4)) == pytest.approx(16.0)
@@ -33,7 +33,7 @@ def test_along_a_way_it_is_the_way_and_not_the_straight_line():
 
 def test_on_a_second_lap_the_first_is_done():
     lap = [[0, 0], [50, 0], [50, 50], [0, 50], [0, 0]]
-    plans = Plans()
+    plans = TaskPaths()
     (plan,) = plans.of([task("SetPath", {"points": lap + lap[1:]})])
     left = [plans.remaining(plan, at(*point)) for point in (lap + lap[1:])]
     assert left == pytest.approx([400 - 50 * k for k in range(9)])
@@ -42,7 +42,7 @@ def test_on_a_second_lap_the_first_is_done():
 @pytest.mark.parametrize("shift", [(0.1, 0.0), (-0.1, 0.0), (0.0, 0.1), (0.0, -0.1), (0.4, 0.7)])
 def test_on_a_lap_that_ends_where_it_begins_all_of_it_is_still_to_go_at_first(shift):
     dx, dy = shift
-    plans = Plans()
+    plans = TaskPaths()
     (plan,) = plans.of([task("SetPath", {"points": [[0, 0], [50, 0], [50, 50], [0, 50], [0, 0]]})])
     assert plans.remaining(plan, at(dx, dy)) == pytest.approx(200.0, abs=1.0)
     assert plans.remaining(plan, at(50 + dx, dy)) == pytest.approx(150.0, abs=1.0)
@@ -52,14 +52,14 @@ def test_on_a_lap_that_ends_where_it_begins_all_of_it_is_still_to_go_at_first(sh
 
 
 def test_who_has_left_the_way_has_to_come_back_to_it():
-    plans = Plans()
+    plans = TaskPaths()
     (plan,) = plans.of([task("SetPath", {"points": [[0, 0], [100, 0]]})])
     assert plans.remaining(plan, at(30, 0)) == pytest.approx(70.0)
     assert plans.remaining(plan, at(40, 30)) == pytest.approx(90.0)
 
 
 def test_who_has_not_come_to_the_way_yet_goes_to_its_first_point_though_its_end_is_nearer():
-    plans = Plans()
+    plans = TaskPaths()
     (plan,) = plans.of([task("SetPath", {"points": [[0, 0], [60, 0]]})])
     assert plans.remaining(plan, at(60, 20)) == pytest.approx(np.hypot(60, 20) + 60)
     assert plans.remaining(plan, at(30, 10)) == pytest.approx(np.hypot(30, 10) + 60)
@@ -68,7 +68,7 @@ def test_who_has_not_come_to_the_way_yet_goes_to_its_first_point_though_its_end_
 
 
 def test_who_passes_the_first_point_far_beside_is_on_the_way_from_there():
-    plans = Plans()
+    plans = TaskPaths()
     (plan,) = plans.of([task("SetPath", {"points": [[0, 0], [60, 0]]})])
     assert plans.remaining(plan, at(-10, 3)) == pytest.approx(np.hypot(10, 3) + 60)
     assert plans.remaining(plan, at(0, 3)) == pytest.approx(63.0)
@@ -76,18 +76,18 @@ def test_who_passes_the_first_point_far_beside_is_on_the_way_from_there():
 
 
 def test_a_desk_that_comes_in_the_middle_of_a_way_sees_the_rest_of_it():
-    plans = Plans()
+    plans = TaskPaths()
     (plan,) = plans.of([task("SetPath", {"points": [[k * 0.5, 0] for k in range(201)]})])
     assert plans.remaining(plan, at(40, 0.2)) == pytest.approx(60.0, abs=0.3)
 
 
 @pytest.mark.parametrize("params", [{}, {"x": None, "y": 1.0}, {"x": "here", "y": 2.0}])
 def test_a_command_that_says_no_place_has_no_plan(params):
-    assert Plans().of([task("SendMap", params)]) == []
+    assert TaskPaths().of([task("SendMap", params)]) == []
 
 
 def test_a_plan_is_made_once_and_forgotten_with_its_command():
-    plans = Plans()
+    plans = TaskPaths()
     wanted = [task("SetPosEnd", {"x": 1.0, "y": 1.0})]
     assert plans.of(wanted)[0] is plans.of(wanted)[0]
     assert plans.of([]) == []
@@ -95,7 +95,7 @@ def test_a_plan_is_made_once_and_forgotten_with_its_command():
 
 
 def test_many_new_plans_are_made_bit_by_bit_and_each_once():
-    plans, wanted = Plans(), [task("SetPosEnd", {"x": 1.0, "y": 1.0}, f"c{k}") for k in range(5)]
+    plans, wanted = TaskPaths(), [task("SetPosEnd", {"x": 1.0, "y": 1.0}, f"c{k}") for k in range(5)]
     counts, first = [], plans.of(wanted, at_once=2)[0]
     while not plans.is_whole:
         counts.append(len(plans.of(wanted, at_once=2)))
@@ -105,7 +105,7 @@ def test_many_new_plans_are_made_bit_by_bit_and_each_once():
 
 def test_the_list_of_plans_is_another_when_and_only_when_a_task_is():
     plans, wanted = (
-        Plans(),
+        TaskPaths(),
         [task("SetPosEnd", {"x": 1.0, "y": 1.0}), task("SetPosEnd", {"x": 2.0, "y": 1.0}, "c2")],
     )
     before = plans.of(wanted)

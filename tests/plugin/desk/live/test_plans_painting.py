@@ -5,9 +5,9 @@ from __future__ import annotations
 import dataclasses
 
 import numpy as np
-from fleet_supervisor.plugin.desk.live import robots_painting, ways_image
-from fleet_supervisor.plugin.desk.live.scene import Placer
-from fleet_supervisor.robot_bridge.messages import RobotState
+from fleet_supervisor.plugin.map.overlay import paths_painter, robots_painter
+from fleet_supervisor.plugin.map.overlay.scene import SceneTransformer
+from fleet_supervisor.robot_bridge.core.messages import RobotState
 from qgis.core import QgsPointXY
 from qgis.PyQt.QtWidgets import QApplication
 
@@ -22,7 +22,7 @@ from tests.plugin.desk.live.on_canvas import (
 
 
 def test_a_cone_target_stands_on_its_spot(canvas, site):
-    from fleet_supervisor.plugin.desk.colours import CONE as ORANGE
+    from fleet_supervisor.plugin.ui.glyphs import CONE as ORANGE
 
     show(canvas, site, scene_of(plans=[plan("r1", (40.0, 70.0), cone=True)]))
     foot = expected(canvas, site, 40, 70)
@@ -53,7 +53,7 @@ def test_the_distance_still_to_go_stands_at_the_target(canvas, site):
 
 
 def test_ways_are_painted_where_they_lead_and_move_with_the_map(canvas, site):
-    from fleet_supervisor.plugin.desk.colours import ROUTE
+    from fleet_supervisor.plugin.ui.glyphs import ROUTE
 
     way = plan("r1", (20.0, 20.0), (100.0, 20.0), (100.0, 80.0))
     show(canvas, site, scene_of((20, 20, 0.0, RobotState.FRESH), plans=[way]))
@@ -66,13 +66,13 @@ def test_ways_are_painted_where_they_lead_and_move_with_the_map(canvas, site):
 
 
 def test_ways_and_marks_are_drawn_before_they_are_painted(canvas, site, monkeypatch):
-    made, mark_atlas, route = [], robots_painting.mark_atlas, ways_image.route
-    monkeypatch.setattr(robots_painting, "mark_atlas", lambda *of: (made.append("marks"), mark_atlas(*of))[1])
-    monkeypatch.setattr(ways_image, "route", lambda *of: (made.append("way"), route(*of))[1])
+    made, mark_atlas, route = [], robots_painter.mark_atlas, paths_painter.route
+    monkeypatch.setattr(robots_painter, "mark_atlas", lambda *of: (made.append("marks"), mark_atlas(*of))[1])
+    monkeypatch.setattr(paths_painter, "route", lambda *of: (made.append("way"), route(*of))[1])
     scene = scene_of(plans=[plan("r1", (20.0, 20.0), (100.0, 20.0)), plan("r2", (40.0, 70.0))])
     overlay = show(canvas, site, scene_of())
     made.clear()
-    overlay.show_scene(Placer().placed(scene, placement_of(canvas, site)))
+    overlay.show_scene(SceneTransformer().placed(scene, placement_of(canvas, site)))
     assert {"marks", "way"} <= set(made)
     made.clear()
     canvas.grab()

@@ -6,13 +6,17 @@ import json
 
 import numpy as np
 import pytest
-from fleet_supervisor.plugin.wire.mailbox import Mailbox
-from fleet_supervisor.plugin.wire.position_rows import sightings
-from fleet_supervisor.plugin.wire.position_table import sightings_in
-from fleet_supervisor.plugin.wire.sightings import COLUMNS, SPARE_WORDS, Sightings
-from fleet_supervisor.robot_bridge.messages import PositionForm, SendPos
-from fleet_supervisor.robot_bridge.robots import Robots
-from fleet_supervisor.robot_bridge.snapshots import EVERYTHING, Snapshots
+from fleet_supervisor.plugin.gateway_client.buffers import UpdateBuffer
+from fleet_supervisor.plugin.gateway_client.robot_table import (
+    COLUMNS,
+    SPARE_WORDS,
+    RobotTable,
+    table_from_frame,
+    table_from_rows,
+)
+from fleet_supervisor.robot_bridge.core.messages import PositionForm, SendPos
+from fleet_supervisor.robot_bridge.gateway.fleet.operator_updates import EVERYTHING, Snapshots
+from fleet_supervisor.robot_bridge.gateway.model.robots import Robots
 
 
 def gateway(number=3):
@@ -31,8 +35,8 @@ def frames(robots):
 
 def test_it_is_what_the_rows_are():
     rows, table = frames(gateway())
-    by_row = sightings(json.loads(rows)["params"]["robots"], 7.0)
-    by_column = sightings_in(table, 7.0)
+    by_row = table_from_rows(json.loads(rows)["params"]["robots"], 7.0)
+    by_column = table_from_frame(table, 7.0)
     assert by_column.names == by_row.names == ["r0", "r1", "r2"]
     assert [by_column.told(row) for row in range(3)] == [by_row.told(row) for row in range(3)]
     assert by_column.report(1) == by_row.report(1)
@@ -43,10 +47,10 @@ def test_it_is_what_the_rows_are():
 
 def test_the_newer_form_replaces_the_older_of_the_same_robots():
     rows, _ = frames(gateway())
-    known = sightings(json.loads(rows)["params"]["robots"], 7.0)
+    known = table_from_rows(json.loads(rows)["params"]["robots"], 7.0)
     later = gateway()
     later.observe("r1", SendPos(9.0, 2.5, 0.5, 1.0, status="docked"), "sql", 102.0)
-    known.merge(sightings_in(frames(later)[1], 8.0))
+    known.merge(table_from_frame(frames(later)[1], 8.0))
     assert (known.told(1)["x"], known.told(1)["status"]) == (9.0, "docked")
     assert known.told(2)["command"] == "target-7"
     assert "battery" not in known.told(1)
@@ -54,24 +58,24 @@ def test_the_newer_form_replaces_the_older_of_the_same_robots():
 
 def test_a_part_of_the_robots_changes_those_alone():
     robots = gateway()
-    known = sightings_in(frames(robots)[1], 7.0)
+    known = table_from_frame(frames(robots)[1], 7.0)
     seen = robots.revision
     robots.observe("r0", SendPos(3.0, 4.0, 0.0, 0.0, status="new"), "sql", 102.0)
     part = Snapshots(robots, lambda: 102.5).after(seen, form=PositionForm.COLUMNS).frame
-    known.merge(sightings_in(part, 8.0))
+    known.merge(table_from_frame(part, 8.0))
     assert known.names == ["r0", "r1", "r2"]
     assert [known.told(row).get("status") for row in range(3)] == ["new", "docking", None]
     assert known.told(1)["x"] == 1.25
 
 
 def test_the_words_of_a_day_do_not_pile_up():
-    mailbox = Mailbox()
-    known, robots = Sightings(), gateway()
+    mailbox = UpdateBuffer()
+    known, robots = RobotTable(), gateway()
     made = Snapshots(robots, lambda: 102.5)
     for minute in range(SPARE_WORDS + 99):
         robots.assign("r2", f"target-{minute}")
         frame = made.after(EVERYTHING, form=PositionForm.COLUMNS).frame
-        mailbox.put_robots(sightings_in(frame, float(minute)))
+        mailbox.put_robots(table_from_frame(frame, float(minute)))
         known.merge(mailbox.take().robots)
         assert len(known._words) <= SPARE_WORDS + 6
     assert known.told(2)["command"] == f"target-{SPARE_WORDS + 98}"
@@ -106,7 +110,7 @@ def test_a_head_that_cannot_be_is_refused(change):
     head, rest = head_of(frames(gateway())[1])
     head["params"].update(change)
     with pytest.raises((ValueError, KeyError)):
-        sightings_in(with_head(head, rest), 0.0)
+        table_from_frame(with_head(head, rest), 0.0)
 
 
 @pytest.mark.parametrize(
@@ -118,10 +122,10 @@ def test_a_number_that_cannot_be_is_named_with_its_robot(column, value):
     table = np.frombuffer(rest).reshape(-1, 3).copy()
     table[head["params"]["columns"].index(column), 1] = value
     with pytest.raises(ValueError, match=f"{column} of robot r1"):
-        sightings_in(with_head(head, table.tobytes()), 0.0)
+        table_from_frame(with_head(head, table.tobytes()), 0.0)
 
 
 @pytest.mark.parametrize("frame", [b"", b"\0\0", b"\xff" * 40, b"\4\0\0\0null", b"\2\0\0\0{}"])
 def test_other_binary_frames_are_refused(frame):
     with pytest.raises((ValueError, KeyError)):
-        sightings_in(frame, 0.0)
+        table_from_frame(frame, 0.0)

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import pytest
-from fleet_supervisor.plugin.desk.live.robot_layer import AT_ONCE, RobotLayer
-from fleet_supervisor.plugin.desk.picture import RobotPicture
-from fleet_supervisor.plugin.wire.position_rows import sightings
+from fleet_supervisor.plugin.gateway_client.robot_states import RobotStates
+from fleet_supervisor.plugin.gateway_client.robot_table import table_from_rows
+from fleet_supervisor.plugin.map.layers import AT_ONCE, RobotLayer
 from qgis.core import NULL, QgsPalLayerSettings, QgsProject, QgsSingleSymbolRenderer
 from qgis.gui import QgsAttributeTableFilterModel, QgsDualView
 
@@ -36,9 +36,9 @@ def xs(layer):
 
 
 def test_many_robots_are_written_a_part_at_a_time(layer):
-    picture = RobotPicture()
+    picture = RobotStates()
     number = 2 * AT_ONCE + 10
-    picture.merge(sightings([told(k, float(k)) for k in range(number)], 0.0))
+    picture.merge(table_from_rows([told(k, float(k)) for k in range(number)], 0.0))
     assert write_all(layer, picture) == 3
     assert xs(layer) == pytest.approx({f"r{k}": float(k) for k in range(number)})
     assert len(layer) == layer.layer.featureCount() == number
@@ -62,10 +62,10 @@ def writes(layer, monkeypatch):
 
 
 def test_only_what_has_changed_is_written(layer, writes):
-    picture = RobotPicture()
-    picture.merge(sightings([told(k) for k in range(5)], 0.0))
+    picture = RobotStates()
+    picture.merge(table_from_rows([told(k) for k in range(5)], 0.0))
     write_all(layer, picture)
-    picture.merge(sightings([told(2, 9.0, battery=0.5), told(3, age=0.7)], 1.0))
+    picture.merge(table_from_rows([told(2, 9.0, battery=0.5), told(3, age=0.7)], 1.0))
     write_all(layer, picture, 1.0)
     # That the others' last messages are a second old now is no reason to write them.
     assert writes == [({"r2": {"battery"}}, {"r2"})]
@@ -80,12 +80,12 @@ def test_only_what_has_changed_is_written(layer, writes):
 
 
 def test_what_a_robot_does_not_say_any_more_is_in_the_layer_no_more(layer):
-    picture = RobotPicture()
-    picture.merge(sightings([told(1, battery=0.5, status="driving", theta=0.0)], 0.0))
+    picture = RobotStates()
+    picture.merge(table_from_rows([told(1, battery=0.5, status="driving", theta=0.0)], 0.0))
     write_all(layer, picture)
     (feature,) = layer.layer.getFeatures()
     assert (feature["battery"], feature["status"], feature["heading_deg"]) == (0.5, "driving", 90.0)
-    picture.merge(sightings([told(1, None)], 1.0))
+    picture.merge(table_from_rows([told(1, None)], 1.0))
     write_all(layer, picture, 1.0)
     (feature,) = layer.layer.getFeatures()
     assert [feature[name] for name in ("battery", "status", "theta", "heading_deg")] == [NULL] * 4
@@ -93,8 +93,8 @@ def test_what_a_robot_does_not_say_any_more_is_in_the_layer_no_more(layer):
 
 
 def test_a_robot_without_a_pose_has_a_row_and_no_geometry(layer):
-    picture = RobotPicture()
-    picture.merge(sightings([told(1, None, battery=0.5)], 0.0))
+    picture = RobotStates()
+    picture.merge(table_from_rows([told(1, None, battery=0.5)], 0.0))
     write_all(layer, picture)
     (feature,) = layer.layer.getFeatures()
     assert not feature.hasGeometry()
@@ -142,8 +142,8 @@ def test_while_a_project_is_read_its_layers_are_left_alone(at_desk, tmp_path, wa
 
 
 def test_a_canvas_that_draws_is_not_made_to_begin_anew(layer, monkeypatch):
-    picture = RobotPicture()
-    picture.merge(sightings([told(1)], 0.0))
+    picture = RobotStates()
+    picture.merge(table_from_rows([told(1)], 0.0))
     asked = []
     layer.layer.repaintRequested.connect(asked.append)
     monkeypatch.setattr(type(layer._canvas), "isDrawing", lambda canvas: True)
@@ -154,14 +154,14 @@ def test_a_canvas_that_draws_is_not_made_to_begin_anew(layer, monkeypatch):
 
 
 def test_an_open_attribute_table_shows_what_comes_in(layer, iface, wait):
-    picture = RobotPicture()
-    picture.merge(sightings([told(1, battery=0.5)], 0.0))
+    picture = RobotStates()
+    picture.merge(table_from_rows([told(1, battery=0.5)], 0.0))
     write_all(layer, picture)
     # The window around it only QGIS itself can make.
     table = QgsDualView()
     table.init(layer.layer, iface.canvas)
     table.setFilterMode(QgsAttributeTableFilterModel.FilterMode.ShowAll)
-    picture.merge(sightings([told(1, battery=0.25)], 1.0))
+    picture.merge(table_from_rows([told(1, battery=0.25)], 1.0))
     write_all(layer, picture, 1.0)
     model = table.masterModel()
     column = layer.layer.fields().indexOf("battery")

@@ -7,11 +7,11 @@ import math
 
 import numpy as np
 import pytest
-from fleet_supervisor.plugin.desk.colours import SELECTED, STATE_COLOURS
-from fleet_supervisor.plugin.desk.live import robots_painting
-from fleet_supervisor.plugin.desk.live.scene import Placer
-from fleet_supervisor.plugin.desk.picture import STATES
-from fleet_supervisor.robot_bridge.messages import RobotState
+from fleet_supervisor.plugin.gateway_client.robot_table import STATES
+from fleet_supervisor.plugin.map.overlay import robots_painter
+from fleet_supervisor.plugin.map.overlay.scene import SceneTransformer
+from fleet_supervisor.plugin.ui.glyphs import SELECTED, STATE_COLOURS
+from fleet_supervisor.robot_bridge.core.messages import RobotState
 from qgis.PyQt.QtCore import QSize
 from qgis.PyQt.QtGui import QColor, QImage, QPainter
 
@@ -57,18 +57,18 @@ def test_each_state_has_its_colour_and_its_own_shape(canvas, site, state):
 
 def test_drawings_are_made_before_robots_are_painted(canvas, site, monkeypatch):
     overlay = show(canvas, site, scene_of((60, 50, 0.0, RobotState.FRESH)))
-    made, make = [], robots_painting.robot_atlas
-    monkeypatch.setattr(robots_painting, "robot_atlas", lambda *of: (made.append(of[-1]), make(*of))[1])
+    made, make = [], robots_painter.robot_atlas
+    monkeypatch.setattr(robots_painter, "robot_atlas", lambda *of: (made.append(of[-1]), make(*of))[1])
     scene = scene_of((60, 50, 0.0, RobotState.FRESH), (70, 50, 0.0, RobotState.LOST))
-    overlay.show_scene(Placer().placed(scene, placement_of(canvas, site)))
+    overlay.show_scene(SceneTransformer().placed(scene, placement_of(canvas, site)))
     assert made == [RobotState.LOST]
     canvas.grab()
     assert made == [RobotState.LOST]
 
 
 def test_states_differ_without_their_colours(qgis_app):
-    from fleet_supervisor.plugin.desk.glyphs import CELL
-    from fleet_supervisor.plugin.desk.live.atlases import robot_atlas
+    from fleet_supervisor.plugin.map.overlay.primitives import robot_atlas
+    from fleet_supervisor.plugin.ui.glyphs import CELL
 
     grey = QImage.Format.Format_Grayscale8
     atlases = [robot_atlas(1.0, 1.0, state).toImage().convertToFormat(grey) for state in STATES]
@@ -183,7 +183,7 @@ def test_a_robot_that_is_off_lies_under_a_live_one_at_its_place(canvas, site):
 
 
 def test_robots_are_painted_layer_after_layer_from_the_top_and_those_side_by_side_in_their_order(qgis_app):
-    from fleet_supervisor.plugin.desk.live.robots_painting import STRIP, _from_the_top
+    from fleet_supervisor.plugin.map.overlay.robots_painter import STRIP, _from_the_top
 
     y = np.array([790.0, 3.0, 2.0, -9.0, 5000.0, 790.0 - STRIP])
     assert _from_the_top(np.array([0, 0, 0, 0, 0, 0]), y).tolist() == [1, 2, 3, 5, 0, 4]

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from fleet_supervisor.plugin.desk.live.labels import HEIGHT
-from fleet_supervisor.plugin.desk.live.room import GRID, LINES, Room
-from fleet_supervisor.plugin.desk.live.screen import Screen
+from fleet_supervisor.plugin.map.overlay.labels import GRID, HEIGHT, LINES, LabelPlacer
+from fleet_supervisor.plugin.map.overlay.screen import Screen
 
 SCREEN = Screen((0.0, 0.0), (0.0, 0.0), (1.0, 0.0), (0.0, 1.0), 303, 200)
 NOBODY = np.empty((0, 2))
@@ -38,14 +37,14 @@ def test_a_text_is_without_robots_where_none_stands_in_its_cells(number):
     taken = {(int(np.floor(y / GRID)), int(np.floor(x / GRID))) for x, y in robots}
     corner, width = texts(500, 1)
     expected = [taken.isdisjoint(cells_of(*text)) for text in zip(corner, width, strict=True)]
-    room = Room(SCREEN, robots)
+    room = LabelPlacer(SCREEN, robots)
     assert room.without_robots(room.cells(corner, width)).tolist() == expected
 
 
 def test_a_robot_beyond_the_border_is_in_no_texts_way():
     corner, width = np.array([[0.0, 0.0], [203.0, 0.0], [0.0, 182.0], [203.0, 182.0]]), np.full(4, 100.0)
     beyond = np.array([[-1.0, 5.0], [-1.0, 190.0], [315.0, 5.0], [315.0, 190.0], [50.0, -1.0], [50.0, 220.0]])
-    room = Room(SCREEN, beyond)
+    room = LabelPlacer(SCREEN, beyond)
     assert room.without_robots(room.cells(corner, width)).all()
 
 
@@ -57,13 +56,13 @@ def test_texts_are_taken_in_their_order_unless_one_before_has_a_cell_of_theirs()
         if taken.isdisjoint(cells):
             taken |= cells
             expected.append(index)
-    room = Room(SCREEN, NOBODY)
+    room = LabelPlacer(SCREEN, NOBODY)
     assert room.take(room.cells(corner, width)) == expected
     assert 5 < len(expected) < 300
 
 
 def test_what_is_there_already_leaves_room_only_beside_it():
-    room = Room(
+    room = LabelPlacer(
         SCREEN, NOBODY, [(60.0, 60.0, 119.0, 77.0), (-50.0, -50.0, 5.0, 5.0), (290.0, 190.0, 999.0, 999.0)]
     )
     above, below, left, right, over = (60.0, 36.0), (60.0, 78.0), (24.0, 60.0), (120.0, 60.0), (100.0, 50.0)

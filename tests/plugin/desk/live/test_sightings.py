@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from fleet_supervisor.plugin.desk.picture import STATES, RobotPicture
-from fleet_supervisor.plugin.wire.mailbox import Mailbox
-from fleet_supervisor.plugin.wire.position_rows import sightings
-from fleet_supervisor.plugin.wire.sightings import Sightings
-from fleet_supervisor.robot_bridge.liveness import liveness
-from fleet_supervisor.robot_bridge.messages import RobotState
+from fleet_supervisor.plugin.gateway_client.buffers import UpdateBuffer
+from fleet_supervisor.plugin.gateway_client.robot_states import RobotStates
+from fleet_supervisor.plugin.gateway_client.robot_table import STATES, RobotTable, table_from_rows
+from fleet_supervisor.robot_bridge.core.messages import RobotState
+from fleet_supervisor.robot_bridge.gateway.model.robots import liveness
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -19,7 +18,7 @@ def told(robot="r1", **more):
 
 
 def test_a_message_becomes_columns_and_what_was_not_said_is_nan():
-    made = sightings([told(v=1.5), told("r2", x=None, y=None, accuracy=0.3)], 7.0)
+    made = table_from_rows([told(v=1.5), told("r2", x=None, y=None, accuracy=0.3)], 7.0)
     assert made.names == ["r1", "r2"]
     np.testing.assert_array_equal(made.column("x"), [1.0, np.nan])
     np.testing.assert_array_equal(made.column("v"), [1.5, np.nan])
@@ -32,7 +31,7 @@ def test_a_message_becomes_columns_and_what_was_not_said_is_nan():
 @pytest.mark.parametrize("bad", [float("nan"), float("inf"), "3", True, [1], 10**400])
 def test_a_number_that_is_none_is_named_with_its_robot(bad):
     with pytest.raises(ValueError, match="theta of robot r2 is"):
-        sightings([told(), told("r2", theta=bad)], 0.0)
+        table_from_rows([told(), told("r2", theta=bad)], 0.0)
 
 
 @pytest.mark.parametrize("missing", ["robot", "state", "age", "link"])
@@ -40,11 +39,11 @@ def test_what_every_report_has_may_not_be_missing(missing):
     values = told()
     del values[missing]
     with pytest.raises((KeyError, ValueError)):
-        sightings([values], 0.0)
+        table_from_rows([values], 0.0)
 
 
 def test_a_robot_that_is_told_twice_counts_as_told_last():
-    made = sightings([told(x=1.0), told("r2"), told(x=9.0)], 0.0)
+    made = table_from_rows([told(x=1.0), told("r2"), told(x=9.0)], 0.0)
     assert made.names == ["r1", "r2"]
     assert made.column("x")[0] == 9.0
     assert made.report(0).x == 9.0
@@ -58,10 +57,10 @@ reports = st.lists(
 @given(st.lists(reports, max_size=6))
 def test_merging_messages_keeps_of_each_robot_what_arrived_last(messages):
     known: dict[str, tuple[int, float]] = {}
-    table = Sightings()
+    table = RobotTable()
     for message in messages:
         arrived = message[0][2] if message else 0
-        table.merge(sightings([told(name, x=x) for name, x, _ in message], float(arrived)))
+        table.merge(table_from_rows([told(name, x=x) for name, x, _ in message], float(arrived)))
         for name, x in {name: x for name, x, _ in message}.items():
             if name not in known or arrived >= known[name][0]:
                 known[name] = (arrived, x)
@@ -71,10 +70,10 @@ def test_merging_messages_keeps_of_each_robot_what_arrived_last(messages):
 
 
 def test_a_robot_keeps_its_row():
-    picture = RobotPicture()
-    picture.merge(sightings([told("b"), told("a")], 0.0))
-    picture.merge(sightings([told("a", x=5.0)], 1.0))
-    picture.merge(sightings([told("c"), told("b", x=7.0)], 2.0))
+    picture = RobotStates()
+    picture.merge(table_from_rows([told("b"), told("a")], 0.0))
+    picture.merge(table_from_rows([told("a", x=5.0)], 1.0))
+    picture.merge(table_from_rows([told("c"), told("b", x=7.0)], 2.0))
     arrays = picture.arrays(2.0)
     assert arrays.names == ["b", "a", "c"]
     assert arrays.xy[:, 0].tolist() == [7.0, 5.0, 1.0]
@@ -82,35 +81,37 @@ def test_a_robot_keeps_its_row():
 
 
 def test_words_that_are_told_in_another_order_stay_what_they_are():
-    table = Sightings()
-    table.merge(sightings([told("a", status="driving", link="sql"), told("b", status="docked")], 0.0))
+    table = RobotTable()
+    table.merge(table_from_rows([told("a", status="driving", link="sql"), told("b", status="docked")], 0.0))
     table.merge(
-        sightings([told("a", link="websocket"), told("b", status="driving"), told("c", status="new")], 1.0)
+        table_from_rows(
+            [told("a", link="websocket"), told("b", status="driving"), told("c", status="new")], 1.0
+        )
     )
     assert [table.told(row).get("status") for row in range(3)] == [None, "driving", "new"]
     assert [table.told(row)["link"] for row in range(3)] == ["websocket", "sql", "sql"]
 
 
 def test_the_names_are_the_same_list_until_there_are_more_of_them():
-    picture = RobotPicture()
-    picture.merge(sightings([told("a"), told("b")], 0.0))
+    picture = RobotStates()
+    picture.merge(table_from_rows([told("a"), told("b")], 0.0))
     names = picture.arrays(0.0).names
-    picture.merge(sightings([told("b", x=2.0)], 1.0))
+    picture.merge(table_from_rows([told("b", x=2.0)], 1.0))
     assert picture.arrays(1.0).names is names
-    picture.merge(sightings([told("c")], 2.0))
+    picture.merge(table_from_rows([told("c")], 2.0))
     assert (names, picture.arrays(2.0).names) == (["a", "b"], ["a", "b", "c"])
     picture.clear()
-    picture.merge(sightings([told("x"), told("y"), told("z")], 3.0))
+    picture.merge(table_from_rows([told("x"), told("y"), told("z")], 3.0))
     assert picture.arrays(3.0).names == ["x", "y", "z"]
     assert picture.arrays(3.0, slice(1, 2)).names == ["y"]
 
 
 def test_after_another_site_nothing_is_known_of_robots_before():
-    picture = RobotPicture()
-    picture.merge(sightings([told("a")], 0.0))
+    picture = RobotStates()
+    picture.merge(table_from_rows([told("a")], 0.0))
     picture.clear()
     assert len(picture) == 0
-    picture.merge(sightings([told("b")], 0.0))
+    picture.merge(table_from_rows([told("b")], 0.0))
     assert [view.name for view in picture.views(0.0)] == ["b"]
 
 
@@ -129,8 +130,8 @@ def eighths(least, most):
 )
 def test_columns_age_as_liveness_says_for_one_robot(age, stopped, state, stale_after, more, later):
     lost_after = stale_after + more
-    picture = RobotPicture(stale_after, lost_after)
-    picture.merge(sightings([told(age=age, stopped=stopped, state=state.value)], 100.0))
+    picture = RobotStates(stale_after, lost_after)
+    picture.merge(table_from_rows([told(age=age, stopped=stopped, state=state.value)], 100.0))
     here = liveness(age + later, ended_in_order=stopped, stale_after=stale_after, lost_after=lost_after)
     expected = state if here is RobotState.FRESH or state in (RobotState.LOST, RobotState.OFFLINE) else here
     view = picture.view("r1", 100.0 + later)
@@ -139,9 +140,9 @@ def test_columns_age_as_liveness_says_for_one_robot(age, stopped, state, stale_a
 
 
 def test_a_window_that_looks_seldom_finds_the_newest_of_every_robot():
-    mailbox = Mailbox()
+    mailbox = UpdateBuffer()
     for second in range(5):
-        mailbox.put_robots(sightings([told(f"r{second % 2}", x=float(second))], float(second)))
+        mailbox.put_robots(table_from_rows([told(f"r{second % 2}", x=float(second))], float(second)))
     taken = mailbox.take().robots
     assert {name: taken.report(row).x for row, name in enumerate(taken.names)} == {"r0": 4.0, "r1": 3.0}
     assert len(mailbox.take().robots) == 0

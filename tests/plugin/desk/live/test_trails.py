@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from fleet_supervisor.plugin.desk.live.screen import Screen
-from fleet_supervisor.plugin.desk.live.trail_image import TrailImage
-from fleet_supervisor.plugin.desk.live.trails import LENGTHS, SHORTEST_WAIT, Trails
+from fleet_supervisor.plugin.map.overlay.screen import Screen
+from fleet_supervisor.plugin.map.overlay.trails import LENGTHS, SHORTEST_WAIT, TrailImage, Trails
 from qgis.PyQt.QtGui import QImage, QPainter
 
 SCREEN = Screen((0.0, 0.0), (0.0, 0.0), (1.0, 0.0), (0.0, 1.0), 200, 100)

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from fleet_supervisor.plugin.desk.colours import SELECTED
-from fleet_supervisor.plugin.desk.glyphs import draw_arrow, draw_robot
-from fleet_supervisor.plugin.desk.live.turned import drawn, in_a_column, turned
-from fleet_supervisor.plugin.desk.picture import STATES
-from fleet_supervisor.robot_bridge.messages import RobotState
+from fleet_supervisor.plugin.gateway_client.robot_table import STATES
+from fleet_supervisor.plugin.map.overlay.primitives import drawn, in_a_column, turned
+from fleet_supervisor.plugin.ui.glyphs import SELECTED, draw_arrow, draw_robot
+from fleet_supervisor.robot_bridge.core.messages import RobotState
 from qgis.PyQt.QtGui import QImage
 
 TURNS = 16

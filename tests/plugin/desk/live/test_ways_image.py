@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from fleet_supervisor.plugin.desk.live import ways_image
-from fleet_supervisor.plugin.desk.live.plans import Plan
-from fleet_supervisor.plugin.desk.live.scene import PlacedScene, Scene
-from fleet_supervisor.plugin.desk.live.screen import Screen
-from fleet_supervisor.plugin.desk.live.ways_image import MANY, WaysImage
-from fleet_supervisor.plugin.desk.picture import RobotPicture
+from fleet_supervisor.plugin.gateway_client.robot_states import RobotStates
+from fleet_supervisor.plugin.map.overlay import paths_painter
+from fleet_supervisor.plugin.map.overlay.paths_painter import MANY, PathsImage
+from fleet_supervisor.plugin.map.overlay.scene import MapScene, SiteScene, TaskPath
+from fleet_supervisor.plugin.map.overlay.screen import Screen
 from qgis.PyQt.QtGui import QImage, QPainter
 
 WIDTH, HEIGHT = 200, 100
@@ -27,9 +26,9 @@ def same(xy):
 def placed(*heights, to_map=same):
     """A scene with a way from left to right at each of these pixels from the top."""
     ways = [np.array([(0.0, -y), (WIDTH, -y)]) for y in heights]
-    plans = [Plan(f"c{k}", f"r{k}", way, False) for k, way in enumerate(ways)]
-    scene = Scene(RobotPicture().arrays(0.0), plans=plans)
-    return PlacedScene(scene, NOWHERE, NOWHERE, ways, NOWHERE, NOWHERE, to_map)
+    plans = [TaskPath(f"c{k}", f"r{k}", way, False) for k, way in enumerate(ways)]
+    scene = SiteScene(RobotStates().arrays(0.0), plans=plans)
+    return MapScene(scene, NOWHERE, NOWHERE, ways, NOWHERE, NOWHERE, to_map)
 
 
 def rows(image, scene, screen=SCREEN, column=100):
@@ -46,40 +45,40 @@ def rows(image, scene, screen=SCREEN, column=100):
 @pytest.fixture
 def slow(qgis_app, monkeypatch):
     """A frame in which there is time for one way only."""
-    monkeypatch.setattr(ways_image, "FILL_SECONDS", 0.0)
+    monkeypatch.setattr(paths_painter, "FILL_SECONDS", 0.0)
 
 
 def test_few_ways_are_there_at_once(qgis_app, monkeypatch):
     # As on an idle machine, where painting two ways takes a fraction of it.
-    monkeypatch.setattr(ways_image, "FILL_SECONDS", 60.0)
-    image = WaysImage()
+    monkeypatch.setattr(paths_painter, "FILL_SECONDS", 60.0)
+    image = PathsImage()
     assert {20, 60} <= set(rows(image, placed(20, 60)))
     assert image.is_whole
 
 
 def test_many_ways_are_painted_bit_by_bit(slow):
-    image, scene = WaysImage(), placed(*range(10, 10 + MANY + 1))
+    image, scene = PathsImage(), placed(*range(10, 10 + MANY + 1))
     seen = [len(rows(image, scene)) for _ in range(MANY + 1)]
     assert seen[0] < seen[MANY // 2] < seen[-1]
     assert image.is_whole
 
 
 def test_what_was_painted_is_shown_until_the_next_is_whole(slow):
-    image, before, after = WaysImage(), placed(20), placed(40, 60)
+    image, before, after = PathsImage(), placed(20), placed(40, 60)
     first = rows(image, before)
     assert rows(image, after) == first and not image.is_whole
     assert not set(rows(image, after)) & set(first) and image.is_whole
 
 
 def test_a_sheet_is_filled_to_its_end_however_often_the_ways_change(slow):
-    image = WaysImage()
+    image = PathsImage()
     frames = [rows(image, placed(*range(20, 24), 60 + number)) for number in range(5)]
     # The first sheet is as the first frame had it.
     assert {20, 60} <= set(frames[4]) and 64 not in frames[4]
 
 
 def test_ways_move_along_with_the_view_and_are_painted_anew_for_it(slow):
-    image, scene = WaysImage(), placed(20, 60)
+    image, scene = PathsImage(), placed(20, 60)
     rows(image, scene), rows(image, scene)
     assert rows(image, scene, ASIDE, column=5) == [] and not image.is_whole
     rows(image, scene, ASIDE)
@@ -88,7 +87,7 @@ def test_ways_move_along_with_the_view_and_are_painted_anew_for_it(slow):
 
 
 def test_a_sheet_that_the_view_has_moved_on_from_is_not_the_last(slow):
-    image, scene = WaysImage(), placed(20, 60)
+    image, scene = PathsImage(), placed(20, 60)
     rows(image, scene)
     rows(image, scene, ASIDE)
     assert not image.is_whole, "the sheet is full, and of another view"
@@ -97,14 +96,14 @@ def test_a_sheet_that_the_view_has_moved_on_from_is_not_the_last(slow):
 
 
 def test_ways_of_another_map_are_not_shown_on_this_one(slow):
-    image = WaysImage()
+    image = PathsImage()
     rows(image, placed(20))
     shown = rows(image, placed(40, 60, to_map=lambda xy: xy))
     assert 20 not in shown and len(shown) > 0
 
 
 def test_without_ways_nothing_is_kept(qgis_app):
-    image, scene = WaysImage(), placed(20)
+    image, scene = PathsImage(), placed(20)
     rows(image, scene)
     assert rows(image, placed()) == []
     assert image._shown.image is None

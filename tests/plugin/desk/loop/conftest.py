@@ -12,8 +12,8 @@ from inside_qgis.operator_at_desk import OperatorAtDesk
 from stage.patience import BUSY
 from stage.processes import Processes
 
-from robot_bridge.store import revisions
-from robot_bridge.store.database import run_once
+from robot_bridge.gateway.storage import revisions
+from robot_bridge.gateway.storage.database import run_once
 
 CRS = "EPSG:32633"
 

@@ -6,9 +6,8 @@ import shutil
 from dataclasses import replace
 
 import pytest
-from fleet_supervisor.plugin.wire.addresses import Credentials
-from fleet_supervisor.plugin.wire.status import Phase
-from fleet_supervisor.robot_bridge.sites.publication import read_site, write_site
+from fleet_supervisor.plugin.gateway_client.link import ConnectionPhase, OperatorCredentials
+from fleet_supervisor.robot_bridge.core.sites.site import read_site, write_site
 from qgis.PyQt.QtTest import QTest
 from qgis.PyQt.QtWidgets import QAction, QDialog, QLineEdit, QPushButton
 
@@ -76,8 +75,8 @@ def test_accounts_and_site_are_kept_from_the_desk(start_loop, sites, operator, i
     told(operator, window, "has no accounts")
     # The first account closes the desk to everybody without a token.
     adas = make_account(operator, iface, window, "Ada")
-    operator.wait("being cut off", lambda: desk.link.phase is Phase.FAILED, SECONDS)
-    desk.open_link(url, "somebody", Credentials(adas))
+    operator.wait("being cut off", lambda: desk.link.phase is ConnectionPhase.FAILED, SECONDS)
+    desk.open_link(url, "somebody", OperatorCredentials(adas))
     told(operator, window, "1 account")
     bens = make_account(operator, iface, window, "Ben")
     assert adas != bens
@@ -99,8 +98,8 @@ def test_accounts_and_site_are_kept_from_the_desk(start_loop, sites, operator, i
     click(shown(operator, iface, "fleet_revocation"), "fleet_revocation_confirm")
     told(operator, window, "The token of Ben is revoked.")
     choose_south(operator, iface, desk)
-    desk.open_link(url, "Ben", Credentials(bens))
-    operator.wait("being refused", lambda: desk.link.phase is Phase.FAILED, SECONDS)
+    desk.open_link(url, "Ben", OperatorCredentials(bens))
+    operator.wait("being refused", lambda: desk.link.phase is ConnectionPhase.FAILED, SECONDS)
     assert "revoked" in desk.link.reason
 
 

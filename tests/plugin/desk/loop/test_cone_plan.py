@@ -9,8 +9,8 @@ from itertools import combinations
 
 import numpy as np
 import pytest
-from fleet_supervisor.plugin.desk.cone_store import MARK
-from fleet_supervisor.robot_bridge.layouts.catalogue import LAYOUTS
+from fleet_supervisor.plugin.planning.layouts.layout_layer import MARK
+from fleet_supervisor.robot_bridge.core.layouts.catalogue import LAYOUTS
 from qgis.core import QgsFeature, QgsGeometry, QgsPointXY, QgsProject, QgsVectorLayer
 from qgis.PyQt.QtCore import Qt
 from qgis.PyQt.QtTest import QTest

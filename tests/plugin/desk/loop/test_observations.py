@@ -6,7 +6,7 @@ import base64
 import json
 
 import pytest
-from fleet_supervisor.robot_bridge.messages import ObservationState
+from fleet_supervisor.robot_bridge.core.messages import ObservationState
 from qgis.core import QgsProject, QgsRenderContext
 from qgis.PyQt.QtCore import Qt
 from qgis.PyQt.QtGui import QColor, QImage
@@ -14,7 +14,7 @@ from qgis.PyQt.QtTest import QTest
 from qgis.PyQt.QtWidgets import QListView
 from websockets.sync.client import connect
 
-from robot_bridge.robotmap.binary import decode
+from robot_bridge.core.robotmap.binary import decode
 
 
 @pytest.fixture

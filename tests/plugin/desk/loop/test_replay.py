@@ -6,8 +6,8 @@ import time
 
 import numpy as np
 import pytest
-from fleet_supervisor.plugin.desk.replay.clockwork import Clockwork
-from fleet_supervisor.robot_bridge.messages import CommandState
+from fleet_supervisor.plugin.replay.time_controls import ReplayClock
+from fleet_supervisor.robot_bridge.core.messages import CommandState
 from qgis.core import QgsProject, QgsTemporalNavigationObject
 from qgis.gui import QgsMapCanvas, QgsTemporalControllerWidget
 from qgis.PyQt.QtCore import QPoint, Qt
@@ -195,7 +195,7 @@ def test_the_layer_has_lines_with_times_for_the_controller(driven, dock, operato
 def test_the_controller_of_qgis_own_panel_is_used(qgis_app):
     panel, canvas = QgsTemporalControllerWidget(), QgsMapCanvas()
     canvas.setTemporalController(panel.temporalController())
-    clockwork = Clockwork(canvas)
+    clockwork = ReplayClock(canvas)
     clockwork.show(1_790_000_000.0, 1_790_000_060.0)
     controller = panel.temporalController()
     assert controller.navigationMode() == QgsTemporalNavigationObject.NavigationMode.Animated

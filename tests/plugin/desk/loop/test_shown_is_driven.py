@@ -8,9 +8,9 @@ from __future__ import annotations
 import math
 
 import pytest
-from fleet_supervisor.plugin.desk.drafts import WayKind
-from fleet_supervisor.robot_bridge.messages import CommandState
-from fleet_supervisor.robot_bridge.polyline import Polyline
+from fleet_supervisor.plugin.control.pending_command import ApproachKind
+from fleet_supervisor.robot_bridge.core.geometry import Polyline
+from fleet_supervisor.robot_bridge.core.messages import CommandState
 from qgis.core import QgsProject
 from qgis.PyQt.QtCore import QEvent
 from qgis.PyQt.QtWidgets import QApplication, QLabel
@@ -47,7 +47,7 @@ def draft(operator):
 
 
 def knows_way(operator):
-    return draft(operator).way.kind is not WayKind.SOUGHT
+    return draft(operator).way.kind is not ApproachKind.SOUGHT
 
 
 def told(operator):
@@ -107,7 +107,7 @@ def test_one_that_neither_asks_nor_takes_cones_with_a_path_is_shown_and_refused_
     # As any robot of the paper, which declares nothing.
     on_site("--no-ask-path", "--no-path-cones")
     way = draft(operator).way
-    assert way.kind is WayKind.STRAIGHT
+    assert way.kind is ApproachKind.STRAIGHT
     assert math.dist(way.line[0], POSE[:2]) < 0.1 and math.dist(way.line[-1], GOAL) < 0.5
     assert "keepout Water basin" in told(operator)
     assert "drives straight" in " ".join(draft(operator).findings.warnings)

@@ -6,7 +6,7 @@ import math
 import signal
 import threading
 
-from fleet_supervisor.robot_bridge.messages import CommandState
+from fleet_supervisor.robot_bridge.core.messages import CommandState
 from qgis.core import QgsProject
 from qgis.PyQt.QtCore import QRegularExpression, Qt
 from qgis.PyQt.QtTest import QTest

@@ -3,10 +3,13 @@
 import dataclasses
 
 import pytest
-from fleet_supervisor.plugin.desk.observations.observation_layer import FIELDS, style
-from fleet_supervisor.plugin.desk.observations.observation_model import in_words
-from fleet_supervisor.plugin.desk.observations.review_form import PICTURE, ReviewForm
-from fleet_supervisor.robot_bridge.messages import ObservationReport, ObservationState
+from fleet_supervisor.plugin.observations.observation_dock import PICTURE, ReviewForm
+from fleet_supervisor.plugin.observations.observation_views import (
+    FIELDS,
+    observation_text,
+    style_observations,
+)
+from fleet_supervisor.robot_bridge.core.messages import ObservationReport, ObservationState
 from qgis.core import QgsExpression, QgsExpressionContext, QgsFeature, QgsVectorLayer
 from qgis.PyQt.QtGui import QColor, QImage
 
@@ -15,7 +18,7 @@ from qgis.PyQt.QtGui import QColor, QImage
 def layer(qgis_app):
     fields = "&".join(f"field={field}" for field in FIELDS.split(","))
     made = QgsVectorLayer(f"Point?crs=EPSG:32633&{fields}", "Observations", "memory")
-    style(made)
+    style_observations(made)
     return made
 
 
@@ -69,7 +72,7 @@ def test_what_is_missing_is_told_and_accepted_as_such(qgis_app):
         radius=0.8,
         doubts="furniture:14",
     )
-    assert "not there any more: bench" in in_words(doubt)
+    assert "not there any more: bench" in observation_text(doubt)
     form = ReviewForm()
     form.show_report(doubt, (), asked=False)
     assert "looks through bench (furniture:14) of its map" in form.about.text()

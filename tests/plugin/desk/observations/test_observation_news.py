@@ -5,12 +5,12 @@ from __future__ import annotations
 import json
 
 import pytest
-from fleet_supervisor.plugin.desk import observation_book
-from fleet_supervisor.plugin.desk.observation_book import ObservationBook
-from fleet_supervisor.plugin.errors import LinkError
-from fleet_supervisor.plugin.wire.mailbox import Mailbox
-from fleet_supervisor.plugin.wire.protocol import DeskProtocol
-from fleet_supervisor.robot_bridge.messages import ObservationState
+from fleet_supervisor.plugin.gateway_client import report_caches
+from fleet_supervisor.plugin.gateway_client.buffers import UpdateBuffer
+from fleet_supervisor.plugin.gateway_client.protocol import GatewayProtocol
+from fleet_supervisor.plugin.gateway_client.report_caches import ObservationCache
+from fleet_supervisor.plugin.ui.errors import GatewayLinkError
+from fleet_supervisor.robot_bridge.core.messages import ObservationState
 
 
 def told(number, state="pending", **more):
@@ -27,12 +27,12 @@ def told(number, state="pending", **more):
 
 @pytest.fixture
 def mailbox():
-    return Mailbox()
+    return UpdateBuffer()
 
 
 @pytest.fixture
 def protocol(mailbox):
-    return DeskProtocol("anna", 10.0, "ws://here/desk", mailbox, lambda: 0.0)
+    return GatewayProtocol("anna", 10.0, "ws://here/desk", mailbox, lambda: 0.0)
 
 
 def hear(protocol, params):
@@ -49,12 +49,12 @@ def test_the_newest_of_each_is_kept_until_the_window_looks(protocol, mailbox):
 
 
 def test_what_is_no_observation_ends_the_link_with_its_text(protocol):
-    with pytest.raises(LinkError, match="observation"):
+    with pytest.raises(GatewayLinkError, match="observation"):
         hear(protocol, {"observation": 1, "state": "lovely", "robot": "r1"})
 
 
 def book_of(mailbox, protocol, *all_told):
-    book = ObservationBook()
+    book = ObservationCache()
     for one in all_told:
         hear(protocol, one)
     return book, book.merge(mailbox.take().observations)
@@ -73,7 +73,7 @@ def test_those_that_wait_come_first_and_the_newest_of_them(mailbox, protocol):
 def test_of_very_many_reviewed_ones_the_oldest_are_forgotten_and_none_that_waits(
     mailbox, protocol, monkeypatch
 ):
-    monkeypatch.setattr(observation_book, "MOST_REVIEWED", 2)
+    monkeypatch.setattr(report_caches, "MOST_REVIEWED", 2)
     book, _ = book_of(mailbox, protocol, told(1), *(told(n, "accepted") for n in range(2, 7)), told(7))
     assert sorted(one.observation for one in book) == [1, 5, 6, 7]
     assert book.get(1).state is ObservationState.PENDING

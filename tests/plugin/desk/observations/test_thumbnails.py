@@ -6,13 +6,12 @@ import base64
 from pathlib import Path
 
 import pytest
-from fleet_supervisor.plugin.desk import observation_book
-from fleet_supervisor.plugin.desk.observation_book import ObservationBook
-from fleet_supervisor.plugin.desk.observations.observation_feed import ObservationFeed
-from fleet_supervisor.plugin.desk.observations.thumbnails import Thumbnails
-from fleet_supervisor.plugin.wire.observation_news import ObservationNews
-from fleet_supervisor.plugin.wire.status import LinkStatus, Phase
-from fleet_supervisor.robot_bridge.messages import observation_report
+from fleet_supervisor.plugin.gateway_client import report_caches
+from fleet_supervisor.plugin.gateway_client.buffers import ObservationUpdates
+from fleet_supervisor.plugin.gateway_client.link import ConnectionPhase, ConnectionStatus
+from fleet_supervisor.plugin.gateway_client.report_caches import ObservationCache
+from fleet_supervisor.plugin.observations.observation_views import ObservationFeed, Thumbnails
+from fleet_supervisor.robot_bridge.core.messages import observation_report
 from qgis.PyQt.QtCore import QBuffer, QObject, pyqtSignal
 from qgis.PyQt.QtGui import QColor, QImage
 
@@ -55,10 +54,10 @@ class Desk(QObject):
 
     def __init__(self):
         super().__init__()
-        self.link, self.observations = LinkStatus(Phase.CLOSED), ObservationBook()
+        self.link, self.observations = ConnectionStatus(ConnectionPhase.CLOSED), ObservationCache()
 
     def tell(self, *numbers):
-        news = ObservationNews()
+        news = ObservationUpdates()
         news.take([reviewed(number) for number in numbers])
         self.observations_changed.emit(self.observations.merge(news))
 
@@ -69,7 +68,7 @@ def reviewed(number):
 
 
 def test_a_picture_goes_with_the_observation_that_the_desk_forgets(thumbnails, made, monkeypatch):
-    monkeypatch.setattr(observation_book, "MOST_REVIEWED", 2)
+    monkeypatch.setattr(report_caches, "MOST_REVIEWED", 2)
     desk = Desk()
     _feed = ObservationFeed(desk, thumbnails)
     desk.tell(1, 2)

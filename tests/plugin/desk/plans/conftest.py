@@ -7,7 +7,7 @@ import time
 from dataclasses import replace
 
 import pytest
-from fleet_supervisor.robot_bridge.assignment import solving
+from fleet_supervisor.robot_bridge.core.assignment import solver
 from qgis.PyQt.QtWidgets import QAction, QDockWidget
 
 from tests.plugin.desk.plans.panel_parts import (
@@ -48,7 +48,7 @@ def endless(monkeypatch):
             effort.progress(min(step / 1000, 1.0))
             time.sleep(0.01)
 
-    return lambda: monkeypatch.setattr(solving, "solved_stage", stage)
+    return lambda: monkeypatch.setattr(solver, "solved_stage", stage)
 
 
 @pytest.fixture

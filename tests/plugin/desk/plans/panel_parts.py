@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from fleet_supervisor.plugin.desk.cone_store import ConeStore
-from fleet_supervisor.plugin.sites.roles import ROAD_CENTRELINE, set_role
-from fleet_supervisor.robot_bridge.layouts.cone import Cone
+from fleet_supervisor.plugin.layers.roles import ROAD_CENTRELINE, set_role
+from fleet_supervisor.plugin.planning.layouts.layout_layer import LayoutLayer
+from fleet_supervisor.robot_bridge.core.layouts.layout import Cone
 from qgis.core import (
     QgsCoordinateReferenceSystem,
     QgsFeature,
@@ -25,7 +25,7 @@ SHORT = [[60.0, 40.0], [200.0, 40.0]]
 
 def put_cones(*places, layout="row"):
     cones = [Cone(f"{layout}-{n}", n, E + x, N + y, 0.0, "", "") for n, (x, y) in enumerate(places, 1)]
-    return ConeStore(QgsProject.instance()).add(cones, layout, QgsCoordinateReferenceSystem("EPSG:32633"))
+    return LayoutLayer(QgsProject.instance()).add(cones, layout, QgsCoordinateReferenceSystem("EPSG:32633"))
 
 
 def press(dock, name):

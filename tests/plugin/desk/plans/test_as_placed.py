@@ -6,8 +6,8 @@ import csv
 from dataclasses import replace
 
 import pytest
-from fleet_supervisor.plugin.desk.plans.as_placed import COLUMNS, chosen, tally
-from fleet_supervisor.robot_bridge.messages import PlacementReport, to_json
+from fleet_supervisor.plugin.planning.as_placed import COLUMNS, deviation_summary, select_placed_cones
+from fleet_supervisor.robot_bridge.core.messages import PlacementReport, to_json
 from qgis.core import QgsProject
 from qgis.PyQt.QtCore import Qt
 from qgis.PyQt.QtTest import QTest
@@ -28,21 +28,21 @@ def test_the_report_has_every_cone_in_the_order_of_placing():
         placed(3, "x", 1.0, plan="q"),
         placed(4, "y", 1.0, layout="z"),
     ]
-    assert [one.cone for one in chosen(ones, plan="p")] == ["y", "b", "a"]
-    assert [one.cone for one in chosen(ones, layout="row")] == ["x", "b", "a"]
-    assert len(chosen(ones)) == 4
+    assert [one.cone for one in select_placed_cones(ones, plan="p")] == ["y", "b", "a"]
+    assert [one.cone for one in select_placed_cones(ones, layout="row")] == ["x", "b", "a"]
+    assert len(select_placed_cones(ones)) == 4
 
 
 def test_the_figures_are_those_of_the_deviations():
     ones = [placed(1, deviation=0.1), placed(2, deviation=0.3, collected_at=9.0)]
-    found = tally(ones)
+    found = deviation_summary(ones)
     assert (found.cones, found.collected, found.largest) == (2, 1, 0.3)
     assert found.mean == pytest.approx(0.2)
     assert (
         found.in_words(5)
         == "2 of 5 cones placed, 1 collected again; off by 0.200 m on average, at most 0.300 m"
     )
-    assert tally([]).in_words() == "No cone was put down yet."
+    assert deviation_summary([]).in_words() == "No cone was put down yet."
 
 
 @pytest.fixture

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from fleet_supervisor.plugin.desk.plans.near_meetings import meetings, positions
-from fleet_supervisor.robot_bridge.assignment.job import Robot
-from fleet_supervisor.robot_bridge.assignment.plan import Plan, PlannedTrip, RobotPlan, Stop
+from fleet_supervisor.plugin.planning.proposal import meetings, robot_positions
+from fleet_supervisor.robot_bridge.core.assignment.job import PlanRobot
+from fleet_supervisor.robot_bridge.core.assignment.plan import ConePlan, PlannedTrip, PlanStop, RobotPlan
 
 
 def driving(name, start, *stops, ready=0.0, wait=0.0):
@@ -18,7 +18,7 @@ def driving(name, start, *stops, ready=0.0, wait=0.0):
         arrival = clock + metres
         path = (tuple(at.tolist()), tuple(there.tolist()))
         made.append(
-            Stop(
+            PlanStop(
                 "place",
                 f"{name}{number}",
                 *stop,
@@ -35,12 +35,12 @@ def driving(name, start, *stops, ready=0.0, wait=0.0):
             )
         )
         at, clock = there, arrival + wait
-    robot = Robot(name, *start, 8, 1.0, aboard=8, ready_s=ready)
+    robot = PlanRobot(name, *start, 8, 1.0, aboard=8, ready_s=ready)
     return RobotPlan(robot, (PlannedTrip(1, tuple(made)),))
 
 
 def plan(*robots):
-    return Plan(robots, (), (), "stay", "balanced", "by hand", "straight lines")
+    return ConePlan(robots, (), (), "stay", "balanced", "by hand", "straight lines")
 
 
 def test_two_that_meet_head_on_are_named_with_the_time_and_place():
@@ -80,7 +80,7 @@ def test_positions_follow_the_stops_and_what_is_done_there():
     one = driving("a", (0, 0), (10, 0), (10, 10), wait=5.0)
     times = np.array([0.0, 5.0, 10.0, 14.0, 20.0, 25.0, 99.0])
     expected = [(0, 0), (5, 0), (10, 0), (10, 0), (10, 5), (10, 10), (10, 10)]
-    assert positions(one, times) == pytest.approx(np.array(expected, dtype=float))
+    assert robot_positions(one, times) == pytest.approx(np.array(expected, dtype=float))
 
 
 def test_of_many_that_stand_those_are_met_that_a_long_way_comes_near():

@@ -6,9 +6,9 @@ import threading
 
 import numpy as np
 import pytest
-from fleet_supervisor.plugin.desk import time_slices
-from fleet_supervisor.plugin.desk.plans.closed_ways import _Road, closed_ways
-from fleet_supervisor.robot_bridge.messages import ClosureReport
+from fleet_supervisor.plugin.planning.proposal import _Road, closed_ways
+from fleet_supervisor.plugin.ui import scheduling
+from fleet_supervisor.robot_bridge.core.messages import ClosureReport
 from qgis.PyQt import sip
 
 from tests.plugin.desk.plans.panel_parts import (
@@ -92,7 +92,7 @@ class Held:
     """Looks at closed roads that come to a halt after one step each, until they are let go."""
 
     def __init__(self, dock, monkeypatch):
-        monkeypatch.setattr(time_slices, "SLICE_SECONDS", 0.0)
+        monkeypatch.setattr(scheduling, "SLICE_SECONDS", 0.0)
         looks = (
             dock.drafts._look,
             dock.drafts._look_at_made,

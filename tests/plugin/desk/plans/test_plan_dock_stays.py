@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from fleet_supervisor.plugin.desk.messages import PLAN_ASKED
+from fleet_supervisor.plugin.control.messages import PLAN_ASKED
 from qgis.PyQt.QtCore import Qt
 from qgis.PyQt.QtTest import QTest
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import threading
 
 import pytest
-from fleet_supervisor.plugin.desk.plans import draft
+from fleet_supervisor.plugin.planning import proposal
 from qgis.core import (
     QgsProject,
 )
@@ -56,9 +56,9 @@ def test_a_good_plan_is_made_with_progress_and_can_be_given_up(panel, wait, endl
 def test_what_speaks_against_a_plan_is_found_beside_the_windows_thread(panel, wait, monkeypatch):
     threads = []
     for name in ("meetings", "closed_ways"):
-        find = getattr(draft, name)
+        find = getattr(proposal, name)
         monkeypatch.setattr(
-            draft, name, lambda *args, find=find: threads.append(threading.get_ident()) or find(*args)
+            proposal, name, lambda *args, find=find: threads.append(threading.get_ident()) or find(*args)
         )
     planned(panel, wait)
     assert len(threads) == 2 and threading.get_ident() not in threads

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from fleet_supervisor.plugin.wire.outbox import Answer, Order
+from fleet_supervisor.plugin.gateway_client.buffers import OperatorRequest, RequestResult
 from qgis.PyQt.QtTest import QTest
 from qgis.PyQt.QtWidgets import QCheckBox
 
@@ -97,7 +97,9 @@ def test_going_on_as_before_lets_go_what_was_held_and_sends_nothing_else(under_w
     wait(lambda: gateway.asked("pause_queue"), 5)
     gateway.tell("queue", queue(under_way, "r2", ["current", "waiting", "waiting"], **ours))
     wait(lambda: under_way._desk.queues.get("r2").at == 88.0, 5)
-    under_way.driven.sending._answered(Answer(Order(under_way.driven.sending._key, "pause_queue"), {}))
+    under_way.driven.sending._answered(
+        RequestResult(OperatorRequest(under_way.driven.sending._key, "pause_queue"), {})
+    )
     wait(lambda: under_way.driven.offer is not None and not under_way.driven.busy, 15)
     press(under_way, "fleet_plan_discard")
     wait(lambda: gateway.asked("resume_queue"), 5)

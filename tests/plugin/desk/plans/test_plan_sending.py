@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import replace
 
 import pytest
-from fleet_supervisor.plugin.desk.plans import plan_rows
-from fleet_supervisor.plugin.wire.outbox import Answer, Order
-from fleet_supervisor.robot_bridge.messages import TaskState, to_json
+from fleet_supervisor.plugin.gateway_client.buffers import OperatorRequest, RequestResult
+from fleet_supervisor.plugin.planning import plan_views
+from fleet_supervisor.robot_bridge.core.messages import TaskState, to_json
 from qgis.PyQt.QtCore import Qt
 from qgis.PyQt.QtTest import QTest
 from qgis.PyQt.QtWidgets import QDialog, QLabel, QLineEdit, QPushButton
@@ -234,7 +234,7 @@ def test_a_site_that_is_published_anew_or_chosen_keeps_the_plan_and_another_does
 
 
 def test_what_is_done_is_counted_and_off_the_map_in_every_language(under_way, gateway, wait, monkeypatch):
-    monkeypatch.setattr(plan_rows, "_WORDS", {state: f"«{state.value}»" for state in TaskState})
+    monkeypatch.setattr(plan_views, "_WORDS", {state: f"«{state.value}»" for state in TaskState})
     first, *others = cones_of(under_way.driven.driven.plan)["r1"]
     gateway.tell("queue", queue(under_way, "r1", ["done", "failed", "waiting"]))
     wait(lambda: first in under_way.driven.progress.done, 5)
@@ -256,9 +256,9 @@ def test_a_plan_that_is_cleared_while_it_is_sent_is_sent_no_further(panel, gatew
     gateway.mute.add("set_queue")
     answer(question(panel), send=True)
     wait(lambda: gateway.asked("set_queue"), 5, "the first queue")
-    first = Order(panel.driven.sending._key, "set_queue")
+    first = OperatorRequest(panel.driven.sending._key, "set_queue")
     panel.driven.clear()
     assert not panel.driven.busy and panel.driven.driven is None
-    panel._desk.answered.emit(Answer(first, {}))
+    panel._desk.answered.emit(RequestResult(first, {}))
     QTest.qWait(200)
     assert len(gateway.asked("set_queue")) == 1 and panel.driven.sending is None

@@ -6,13 +6,13 @@ import math
 from dataclasses import replace
 
 import pytest
-from fleet_supervisor.plugin.desk.plans.plan_settings import (
+from fleet_supervisor.plugin.planning.plan_settings import (
     KEY,
     SCOPE,
+    PlanRobotSettings,
     PlanSettings,
-    RobotSettings,
     keep_settings,
-    settings_in,
+    read_settings,
 )
 from qgis.core import QgsProject
 
@@ -25,16 +25,16 @@ def project(qgis_app):
 def test_settings_come_back_from_a_saved_project(project, tmp_path):
     wanted = PlanSettings(
         cones="layer-1", objective="distance", finish="store", seconds=3.5, on_roads=False, selected_only=True
-    ).with_robot("r 1", RobotSettings(False, 4, 2, 0.8, 500.0))
+    ).with_robot("r 1", PlanRobotSettings(False, 4, 2, 0.8, 500.0))
     keep_settings(project, wanted)
     project.write(str(tmp_path / "p.qgz"))
     read = QgsProject()
     assert read.read(str(tmp_path / "p.qgz"))
-    assert settings_in(read) == wanted
+    assert read_settings(read) == wanted
 
 
 def test_a_project_without_settings_has_the_usual_ones(project):
-    assert settings_in(project) == PlanSettings()
+    assert read_settings(project) == PlanSettings()
 
 
 @pytest.mark.parametrize(
@@ -52,14 +52,14 @@ def test_a_project_without_settings_has_the_usual_ones(project):
 )
 def test_settings_that_are_none_are_the_usual_ones(project, text):
     project.writeEntry(SCOPE, KEY, text)
-    assert settings_in(project) == PlanSettings()
+    assert read_settings(project) == PlanSettings()
 
 
 def test_nobody_opens_a_project_that_sends_plans_by_itself(project):
     keep_settings(project, replace(PlanSettings(), by_itself=True))
-    assert settings_in(project).by_itself is False
+    assert read_settings(project).by_itself is False
 
 
 def test_a_robot_never_carries_more_than_it_has_room_for_and_a_range_of_0_does_not_matter():
-    robot = RobotSettings(capacity=4, aboard=9).robot("r1", 1.0, 2.0)
+    robot = PlanRobotSettings(capacity=4, aboard=9).robot("r1", 1.0, 2.0)
     assert robot.aboard == 4 and robot.range_m == math.inf

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import pytest
-from fleet_supervisor.plugin.desk.plans import plan_ways
-from fleet_supervisor.plugin.desk.plans.plan_settings import PlanSettings
-from fleet_supervisor.plugin.desk.plans.plan_ways import PlanWays
-from fleet_supervisor.plugin.sites.roles import ROAD_CENTRELINE, set_role
-from fleet_supervisor.robot_bridge.assignment.errors import CancelledError
-from fleet_supervisor.robot_bridge.assignment.job import STAY, Job, Robot, Target
-from fleet_supervisor.robot_bridge.sites.frame import SiteFrame
+from fleet_supervisor.plugin.layers.roles import ROAD_CENTRELINE, set_role
+from fleet_supervisor.plugin.planning import travel as plan_ways
+from fleet_supervisor.plugin.planning.plan_settings import PlanSettings
+from fleet_supervisor.plugin.planning.travel import PlanTravel
+from fleet_supervisor.robot_bridge.core.assignment.job import STAY, AssignmentJob, ConeTarget, PlanRobot
+from fleet_supervisor.robot_bridge.core.errors import AssignmentCancelledError
+from fleet_supervisor.robot_bridge.core.sites.frame import SiteFrame
 from qgis.core import QgsProject
 
 E, N = 640000.0, 5193000.0
@@ -30,10 +30,10 @@ def ways(qgis_app, make_layer):
     project = QgsProject()
     project.addMapLayer(roads)
     set_role(roads, ROAD_CENTRELINE)
-    return PlanWays(project, SiteFrame("EPSG:32633", (E, N)), PlanSettings(on_roads=True, direct_m=5.0))
+    return PlanTravel(project, SiteFrame("EPSG:32633", (E, N)), PlanSettings(on_roads=True, direct_m=5.0))
 
 
-JOB = Job((Target("far", 100.0, 0.0),), (Robot("r", 0.0, 0.0, 1, aboard=1),), (), STAY)
+JOB = AssignmentJob((ConeTarget("far", 100.0, 0.0),), (PlanRobot("r", 0.0, 0.0, 1, aboard=1),), (), STAY)
 
 
 @pytest.mark.parametrize("phase", PHASES)
@@ -50,7 +50,7 @@ def test_a_cancel_in_one_phase_lets_none_come_after_it(ways, monkeypatch, phase)
     with monkeypatch.context() as patch:
         for name, function in PHASES.items():
             patch.setattr(plan_ways, function, noted(name, getattr(plan_ways, function)))
-        with pytest.raises(CancelledError):
+        with pytest.raises(AssignmentCancelledError):
             ways.travel_of(JOB, lambda: phase not in entered)
     names = list(PHASES)
     assert entered == names[: names.index(phase) + 1]
@@ -63,5 +63,5 @@ def test_a_cancel_lets_no_more_paths_be_found(ways):
     travel = ways.travel_of(JOB, lambda: wanted[0])
     assert travel.path(0, 1)[-1] == pytest.approx((100.0, 0.0))
     wanted[0] = False
-    with pytest.raises(CancelledError):
+    with pytest.raises(AssignmentCancelledError):
         travel.path(0, 1)

@@ -6,24 +6,27 @@ import itertools
 from dataclasses import replace
 
 import pytest
-from fleet_supervisor.plugin.desk.plans.closed_ways import ClosedWay
-from fleet_supervisor.plugin.desk.plans.cone_source import ConeFacts
-from fleet_supervisor.plugin.desk.plans.draft import Draft
-from fleet_supervisor.plugin.desk.plans.plan_rows import rows_of
-from fleet_supervisor.plugin.desk.plans.progress import (
-    Progress,
-    Trouble,
+from fleet_supervisor.plugin.planning.plan_settings import ConeFacts
+from fleet_supervisor.plugin.planning.plan_views import stop_rows
+from fleet_supervisor.plugin.planning.progress import (
+    PlanProblem,
+    PlanProgress,
+    current_stops,
+    problem_of,
     situation_of,
-    trouble_of,
-    under_way,
 )
-from fleet_supervisor.plugin.desk.plans.task_rows import sent_stops, tasks_of
-from fleet_supervisor.robot_bridge.assignment.editing import replanned_by_hand
-from fleet_supervisor.robot_bridge.assignment.job import Job, Robot, Store, Target
-from fleet_supervisor.robot_bridge.assignment.replanning import replan
-from fleet_supervisor.robot_bridge.assignment.solving import Wanted, assign
-from fleet_supervisor.robot_bridge.assignment.travel import StraightTravel
-from fleet_supervisor.robot_bridge.messages import (
+from fleet_supervisor.plugin.planning.proposal import ClosedWay, PlanProposal
+from fleet_supervisor.plugin.planning.queue_steps import sent_stops, tasks_of
+from fleet_supervisor.robot_bridge.core.assignment.job import (
+    AssignmentJob,
+    ConeTarget,
+    PlanRobot,
+    Store,
+    StraightTravel,
+)
+from fleet_supervisor.robot_bridge.core.assignment.plan_changes import plan_with_trips, replan
+from fleet_supervisor.robot_bridge.core.assignment.solver import Objective, assign
+from fleet_supervisor.robot_bridge.core.messages import (
     PlacementReport,
     QueueReport,
     QueueState,
@@ -40,18 +43,18 @@ class Driven:
     """Two robots with three cones each, sent; the test says what becomes of their tasks."""
 
     def __init__(self, stores=(), aboard=4):
-        cones = [Target(f"c{n}", 10.0 * n, 0.0, service_s=2.0) for n in range(1, 4)]
-        cones += [Target(f"d{n}", 100.0 + 10.0 * n, 50.0, service_s=2.0) for n in range(1, 4)]
-        robots = (Robot("r1", 0, 0, 4, aboard=aboard), Robot("r2", 100, 50, 4, aboard=aboard))
-        job = Job(tuple(cones), robots, stores, "stay")
-        first = assign(job, StraightTravel(job), Wanted("distance", "preview"))
+        cones = [ConeTarget(f"c{n}", 10.0 * n, 0.0, service_s=2.0) for n in range(1, 4)]
+        cones += [ConeTarget(f"d{n}", 100.0 + 10.0 * n, 50.0, service_s=2.0) for n in range(1, 4)]
+        robots = (PlanRobot("r1", 0, 0, 4, aboard=aboard), PlanRobot("r2", 100, 50, 4, aboard=aboard))
+        job = AssignmentJob(tuple(cones), robots, stores, "stay")
+        first = assign(job, StraightTravel(job), Objective("distance", "preview"))
         names = [["c1", "c2", "c3"], ["d1", "d2", "d3"]]
         trips = [[row] if aboard else [[], row] for row in names]
-        self.plan = replanned_by_hand(first, StraightTravel, trips)
+        self.plan = plan_with_trips(first, StraightTravel, trips)
         self.facts = {cone.id: ConeFacts(cone.id, "row") for cone in cones}
         numbers = itertools.count(1)
         self.tasks = tasks_of(self.plan, "plan-1", self.facts, lambda: f"task-{next(numbers):04d}")
-        self.progress = Progress("plan-1", self.facts, BEGAN)
+        self.progress = PlanProgress("plan-1", self.facts, BEGAN)
         for one in self.plan.robots:
             self.progress.sent(sent_stops(one, self.tasks[one.robot.id]))
 
@@ -120,7 +123,7 @@ def test_a_cone_of_another_plan_is_none_of_this_one(driven):
 
 def test_what_is_collected_is_done_when_it_was_collected_not_when_it_was_placed():
     facts = {"c1 #5": ConeFacts("c1", "row", placement=5)}
-    progress = Progress("plan-2", facts, BEGAN)
+    progress = PlanProgress("plan-2", facts, BEGAN)
     values = (5, "t", "r1", 1.0, 0.0, 1.0, 0.0, 0.0, 0.0, BEGAN, "c")
     progress.take_placement(PlacementReport(*values, cone="c1", plan="plan-1"))
     assert progress.done == set()
@@ -133,15 +136,17 @@ def test_a_lost_robot_with_cones_to_come_is_trouble_and_one_that_has_finished_is
         "r1": driven.tell("r1", [DONE, CURRENT], RobotState.LOST),
         "r2": driven.tell("r2", [DONE, DONE, DONE], RobotState.OFFLINE),
     }
-    trouble = trouble_of(driven.plan, driven.progress, queues)
-    assert trouble == Trouble(("r1",)) and "r1 is lost" in trouble.in_words()
+    trouble = problem_of(driven.plan, driven.progress, queues)
+    assert trouble == PlanProblem(("r1",)) and "r1 is lost" in trouble.in_words()
 
 
 def test_what_a_lost_robot_was_doing_and_what_waited_is_shared_out_and_the_rest_stays(driven):
     driven.tell("r1", [DONE, CURRENT], RobotState.LOST)
     driven.tell("r2", [DONE, CURRENT])
     places = {"r1": (15.0, 0.0), "r2": (115.0, 50.0)}
-    now = situation_of(driven.plan, driven.progress, places, Trouble(("r1",)), BEGAN + 30, try_again=False)
+    now = situation_of(
+        driven.plan, driven.progress, places, PlanProblem(("r1",)), BEGAN + 30, try_again=False
+    )
     assert now.done == {"c1", "d1", "d2"} and now.lost == {"r1"}
     r2 = now.robots["r2"]
     # It finishes the cone that it is on: it is there then, with one of its four cones less for each.
@@ -150,9 +155,9 @@ def test_what_a_lost_robot_was_doing_and_what_waited_is_shared_out_and_the_rest_
     with_store.tell("r1", [DONE, CURRENT], RobotState.LOST)
     with_store.tell("r2", [DONE, CURRENT])
     now = situation_of(
-        with_store.plan, with_store.progress, places, Trouble(("r1",)), BEGAN + 30, try_again=False
+        with_store.plan, with_store.progress, places, PlanProblem(("r1",)), BEGAN + 30, try_again=False
     )
-    new = replan(with_store.plan, StraightTravel, now, Wanted("distance", "preview"))
+    new = replan(with_store.plan, StraightTravel, now, Objective("distance", "preview"))
     cones = {one.robot.id: [s.id for s in one.stops if s.is_target] for one in new.robots}
     assert cones["r1"] == [] and sorted(cones["r2"]) == ["c2", "c3", "d3"] and new.robot("r1").lost
 
@@ -162,7 +167,7 @@ def test_a_failed_cone_is_given_up_or_tried_again_as_the_operator_wants(driven):
     task = driven.task("r1", 1, FAILED, reason="a wall")
     queues["r1"] = QueueReport("r1", 2, QueueState.PAUSED, RobotState.FRESH, [task])
     driven.progress.take_queue(queues["r1"])
-    trouble = trouble_of(driven.plan, driven.progress, queues)
+    trouble = problem_of(driven.plan, driven.progress, queues)
     assert trouble.failed == (("c2", "a wall"),)
     for again, expected in ((False, {"c2": "a wall"}), (True, {})):
         now = situation_of(driven.plan, driven.progress, {}, trouble, BEGAN + 9, try_again=again)
@@ -204,7 +209,7 @@ def test_a_new_plan_waits_for_what_a_robot_is_at_already():
     for one in staged.plan.robots:
         staged.progress.sent(sent_stops(one, staged.tasks[one.robot.id]))
     report = staged.tell("r2", [CURRENT])
-    now = under_way(staged.progress)
+    now = current_stops(staged.progress)
     assert now["r2"].task == report.tasks[0].task
     robots = [
         replace(one, trips=tuple(replace(trip, stops=trip.stops[1:]) for trip in one.trips))
@@ -227,8 +232,8 @@ def test_the_table_says_what_a_cone_waits_for():
     report = staged.task("r1", 2, WAITING, reason="waits for cone d1 of r2")
     assert report.task == waiting.task
     staged.progress.take_queue(QueueReport("r1", 1, QueueState.RUNNING, RobotState.FRESH, [report], []))
-    draft = Draft(staged.plan, None, staged.facts, "plan-1")
-    words = {row.stop.id: row.in_words() for row in rows_of(draft, staged.progress)["r1"]}
+    draft = PlanProposal(staged.plan, None, staged.facts, "plan-1")
+    words = {row.stop.id: row.in_words() for row in stop_rows(draft, staged.progress)["r1"]}
     assert words["c3"] == "in the queue: waits for cone d1 of r2"
     assert words["c1"] == ""
 
@@ -250,7 +255,7 @@ def test_of_a_cone_that_was_sent_again_the_newest_task_counts(driven):
 
 
 def test_trouble_with_many_ways_cones_and_robots_names_the_first_and_counts_the_others():
-    trouble = Trouble(
+    trouble = PlanProblem(
         tuple(f"r{k}" for k in range(10)),
         tuple((f"c{k}", "stuck") for k in range(4)),
         tuple(ClosedWay("r1", f"c{k}", "anna") for k in range(58)),

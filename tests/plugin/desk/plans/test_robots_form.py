@@ -6,11 +6,11 @@ from dataclasses import replace
 from types import SimpleNamespace
 
 import pytest
-from fleet_supervisor.plugin.desk.picture import RobotPicture
-from fleet_supervisor.plugin.desk.plans.plan_settings import PlanSettings
-from fleet_supervisor.plugin.desk.plans.robots_form import SHOWN, RobotsForm
-from fleet_supervisor.plugin.wire.position_rows import sightings
-from fleet_supervisor.robot_bridge.messages import RobotState, to_json
+from fleet_supervisor.plugin.gateway_client.robot_states import RobotStates
+from fleet_supervisor.plugin.gateway_client.robot_table import table_from_rows
+from fleet_supervisor.plugin.planning.forms import SHOWN, RobotsForm
+from fleet_supervisor.plugin.planning.plan_settings import PlanSettings
+from fleet_supervisor.robot_bridge.core.messages import RobotState, to_json
 from qgis.PyQt.QtCore import Qt
 from qgis.PyQt.QtTest import QTest
 from qgis.PyQt.QtWidgets import QLineEdit
@@ -31,10 +31,10 @@ def form(qgis_app):
 @pytest.fixture
 def show(form):
     """Show these robots, heard of this moment."""
-    desk = SimpleNamespace(picture=RobotPicture(), clock=lambda: NOW)
+    desk = SimpleNamespace(picture=RobotStates(), clock=lambda: NOW)
 
     def shown(*robots):
-        desk.picture.merge(sightings([to_json(robot) for robot in robots], NOW))
+        desk.picture.merge(table_from_rows([to_json(robot) for robot in robots], NOW))
         form.show_robots(desk, PlanSettings())
 
     return shown

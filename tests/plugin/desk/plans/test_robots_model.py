@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import pytest
-from fleet_supervisor.plugin.desk.plans.plan_settings import PlanSettings, RobotSettings
-from fleet_supervisor.plugin.desk.plans.robots_model import RobotsModel
+from fleet_supervisor.plugin.planning.forms import RobotsModel
+from fleet_supervisor.plugin.planning.plan_settings import PlanRobotSettings, PlanSettings
 from qgis.PyQt.QtCore import Qt
 
 USED, CARRIES, SPEED = 0, 1, 3
@@ -93,7 +93,7 @@ def test_other_robots_take_the_place_of_those_that_there_were(model, told):
 
 
 def test_other_settings_are_shown(model, told):
-    settings = USUAL.with_robot("r4", RobotSettings(used=False, capacity=3))
+    settings = USUAL.with_robot("r4", PlanRobotSettings(used=False, capacity=3))
     model.show_robots(["r2", "r4", "r6"], [True, True, True], settings)
     assert told.cells == [(0, 0, 2, 4)]
     assert model.index(1, CARRIES).data() == "3"
@@ -103,16 +103,16 @@ def test_other_settings_are_shown(model, told):
 
 def test_a_number_that_is_written_is_the_robots_from_then_on(model, edits):
     assert write(model, 1, SPEED, " 1,5 ")
-    assert edits == ([("r4", RobotSettings(speed=1.5))], [])
+    assert edits == ([("r4", PlanRobotSettings(speed=1.5))], [])
     assert model.index(1, SPEED).data() == "1.5" == model.index(1, SPEED).data(Qt.ItemDataRole.EditRole)
 
 
 @pytest.mark.parametrize("unticked", [0, Qt.CheckState.Unchecked])
 def test_a_robot_is_unticked_by_whoever_gives_a_number_or_a_state(model, edits, unticked):
     assert tick(model, 2, unticked)
-    assert edits[0] == [("r6", RobotSettings(used=False))]
+    assert edits[0] == [("r6", PlanRobotSettings(used=False))]
     assert tick(model, 2, Qt.CheckState.Checked)
-    assert edits[0][1:] == [("r6", RobotSettings())]
+    assert edits[0][1:] == [("r6", PlanRobotSettings())]
 
 
 @pytest.mark.parametrize("text", ["many", "", "0", "1.5", "10000000"])

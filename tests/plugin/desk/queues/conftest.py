@@ -5,11 +5,12 @@ from __future__ import annotations
 import time
 
 import pytest
-from fleet_supervisor.robot_bridge.errors import RefusedError
-from fleet_supervisor.robot_bridge.jsonrpc import OUTDATED, REFUSED
-from fleet_supervisor.robot_bridge.messages import QueueTask, RobotState, TaskKind, to_json
-from fleet_supervisor.robot_bridge.queues import edits, keeping, life
-from fleet_supervisor.robot_bridge.queues.queue import Queue, queue_report
+from fleet_supervisor.robot_bridge.core.errors import RefusedError
+from fleet_supervisor.robot_bridge.core.messages import QueueTask, RobotState, TaskKind, to_json
+from fleet_supervisor.robot_bridge.gateway.model import task_queue
+from fleet_supervisor.robot_bridge.gateway.model.task_queue import Queue, queue_report
+from fleet_supervisor.robot_bridge.gateway.queues import task_life
+from fleet_supervisor.robot_bridge.protocol.jsonrpc import OUTDATED, REFUSED
 
 
 class SmallQueues:
@@ -26,10 +27,10 @@ class SmallQueues:
                 "pause_queue": self._pause,
                 "pause_robot": self._halt,
                 "add_tasks": self._edit(self._added),
-                "move_task": self._edit(lambda q, p: edits.moved(q, p["task"], p.get("before"))),
-                "remove_task": self._edit(lambda q, p: edits.removed(q, p["task"])),
-                "make_current": self._edit(lambda q, p: edits.put_first(q, p["task"])),
-                "resume_queue": self._edit(lambda q, p: edits.resumed(q, "anna", time.time())),
+                "move_task": self._edit(lambda q, p: task_queue.move_task(q, p["task"], p.get("before"))),
+                "remove_task": self._edit(lambda q, p: task_queue.remove_task(q, p["task"])),
+                "make_current": self._edit(lambda q, p: task_queue.put_task_first(q, p["task"])),
+                "resume_queue": self._edit(lambda q, p: task_queue.resume_queue(q, "anna", time.time())),
             }
         )
 
@@ -38,11 +39,11 @@ class SmallQueues:
 
     def give(self, robot: str, tasks: list[QueueTask], by: str = "anna") -> None:
         """Add tasks as another desk would."""
-        self._put(edits.added(self.get(robot), tasks, None, {}, by, time.time()))
+        self._put(task_queue.add_tasks(self.get(robot), tasks, None, {}, by, time.time()))
 
     def fail(self, robot: str, why: str) -> None:
         """Let the robot refuse what it does."""
-        self._put(life.failed(self.get(robot), why, time.time(), skips=False).queue)
+        self._put(task_life.mark_failed(self.get(robot), why, time.time(), skips=False).queue)
 
     def lose(self, robot: str) -> None:
         """Tell that a robot is not heard any more."""
@@ -56,7 +57,7 @@ class SmallQueues:
     def _begun(self, queue: Queue) -> Queue:
         """Keep a queue; one that runs begins with its first task."""
         if queue.running and queue.tasks and queue.current is None:
-            queue = life.sent(queue, time.time())
+            queue = task_life.mark_sent(queue, time.time())
         self._queues[queue.robot] = queue
         return queue
 
@@ -70,12 +71,12 @@ class SmallQueues:
     def _halt(self, params: dict) -> dict:
         """As the real one where nothing was sent beside the queue."""
         queue = self.get(params["robot"])
-        halted = keeping.halted(queue, [], "paused by anna", "anna", time.time())
+        halted = task_life.pause_with_task(queue, [], "paused by anna", "anna", time.time())
         return {"result": _report(self._begun(halted))}
 
     def _added(self, queue: Queue, params: dict) -> Queue:
         tasks = [QueueTask(**{**task, "kind": TaskKind(task["kind"])}) for task in params["tasks"]]
-        return edits.added(queue, tasks, params.get("before"), {}, "anna", time.time())
+        return task_queue.add_tasks(queue, tasks, params.get("before"), {}, "anna", time.time())
 
     def _edit(self, edit):
         def answer(params: dict) -> dict:

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from fleet_supervisor.plugin.desk.queues import queue_marks
-from fleet_supervisor.robot_bridge.messages import QueueTask
+from fleet_supervisor.plugin.map.overlay import task_painter
+from fleet_supervisor.robot_bridge.core.messages import QueueTask
 from qgis.core import QgsCoordinateReferenceSystem, QgsCoordinateTransform, QgsPointXY, QgsProject
 from qgis.PyQt.QtCore import QRect
 from qgis.PyQt.QtGui import QColor, QImage
@@ -61,8 +61,8 @@ def test_marks_go_with_the_queue_that_they_are_of(marks, at_desk, iface):
 
 
 def test_marks_are_painted_once_for_a_queue_and_a_view(marks, at_desk, gateway, iface, wait, monkeypatch):
-    painted, paint = [], queue_marks._paint
-    monkeypatch.setattr(queue_marks, "_paint", lambda *given: painted.append(1) or paint(*given))
+    painted, paint = [], task_painter._paint
+    monkeypatch.setattr(task_painter, "_paint", lambda *given: painted.append(1) or paint(*given))
     iface.look_at(40, 30, 130, 110)
     for _ in range(3):
         iface.canvas.grab()
@@ -74,13 +74,13 @@ def test_marks_are_painted_once_for_a_queue_and_a_view(marks, at_desk, gateway, 
     assert len(painted) == 2
 
 
-@pytest.mark.parametrize("tasks", [queue_marks.MOST_DOTTED, queue_marks.MOST_DOTTED + 1])
+@pytest.mark.parametrize("tasks", [task_painter.MOST_DOTTED, task_painter.MOST_DOTTED + 1])
 def test_the_line_leads_through_few_and_through_many(marks, iface, tasks):
     there = [(60.0, 50.0), (100.0, 50.0)] * (tasks // 2) + [(60.0, 80.0)] * (tasks % 2)
     marks.places = np.add(there, (488000.0, 5190000.0))
     marks._made_for = None
     before = iface.canvas.grab().toImage().copy(line := line_between(iface))
-    marks.places = queue_marks.NOWHERE
+    marks.places = task_painter.NOWHERE
     assert before != iface.canvas.grab().toImage().copy(line)
 
 

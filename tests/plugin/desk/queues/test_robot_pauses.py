@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import pytest
-from fleet_supervisor.plugin.desk.robots.columns import TITLES
-from fleet_supervisor.robot_bridge.jsonrpc import FORBIDDEN
-from fleet_supervisor.robot_bridge.messages import QueueState, QueueTask, TaskKind
+from fleet_supervisor.plugin.panel.robot_model import TITLES
+from fleet_supervisor.robot_bridge.core.messages import QueueState, QueueTask, TaskKind
+from fleet_supervisor.robot_bridge.protocol.jsonrpc import FORBIDDEN
 from qgis.PyQt.QtCore import Qt
 from qgis.PyQt.QtTest import QTest
 from qgis.PyQt.QtWidgets import QLabel

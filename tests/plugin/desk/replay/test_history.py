@@ -6,10 +6,10 @@ import math
 
 import numpy as np
 import pytest
-from fleet_supervisor.plugin.desk.picture import STATES
-from fleet_supervisor.plugin.desk.replay.history import SILENT_AFTER, History
-from fleet_supervisor.plugin.desk.replay.replay_layer import PIECE, pieces
-from fleet_supervisor.robot_bridge.messages import RobotState
+from fleet_supervisor.plugin.gateway_client.robot_table import STATES
+from fleet_supervisor.plugin.replay.history import SILENT_AFTER, History
+from fleet_supervisor.plugin.replay.replay_map import PIECE, line_pieces
+from fleet_supervisor.robot_bridge.core.messages import RobotState
 
 T0 = 1_790_000_000.0
 FRESH, LOST = STATES.index(RobotState.FRESH), STATES.index(RobotState.LOST)
@@ -111,7 +111,7 @@ def test_what_is_no_position_is_refused(row):
 def test_lines_are_short_and_joined_and_end_at_silences():
     times = np.array([*np.arange(0, 20, 1.0), 100.0, 101.0, 0.0, 3.0])
     robots = np.array([0] * 22 + [1] * 2)
-    found = pieces(robots, times, PIECE)
+    found = line_pieces(robots, times, PIECE)
     spans = [(times[piece[0]], times[piece[-1]]) for piece in found]
     assert spans == [(0, 5), (5, 10), (10, 15), (15, 19), (100, 101), (0, 3)]
     assert max(end - begin for begin, end in spans) <= PIECE

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from fleet_supervisor.plugin.desk.command_book import UNDER_WAY, CommandBook
-from fleet_supervisor.plugin.desk.replay.arranging import Arranging
-from fleet_supervisor.plugin.desk.replay.past_commands import AT_ONCE, arranged
-from fleet_supervisor.plugin.desk.time_slices import whole
-from fleet_supervisor.robot_bridge.messages import CommandReport, CommandState, CommandStep
+from fleet_supervisor.plugin.gateway_client.command_cache import UNDER_WAY, CommandCache
+from fleet_supervisor.plugin.replay.history import AT_ONCE, CommandSorter, sort_commands
+from fleet_supervisor.plugin.ui.scheduling import run_to_end
+from fleet_supervisor.robot_bridge.core.messages import CommandReport, CommandState, CommandStep
 
 T0 = 1_790_000_000.0
 
@@ -26,7 +25,7 @@ def test_commands_are_under_way_from_sending_to_their_end():
     told = [newer, other, abort, one]
 
     def at(seconds):
-        return {report.command for report in whole(arranged(told)).under_way_at(T0 + seconds)}
+        return {report.command for report in run_to_end(sort_commands(told)).under_way_at(T0 + seconds)}
 
     assert (at(-1), at(3), at(6), at(12), at(30)) == (set(), {"a"}, {"b"}, {"b", "c"}, {"c"})
 
@@ -34,7 +33,7 @@ def test_commands_are_under_way_from_sending_to_their_end():
 def test_marks_are_what_was_sent_and_how_it_ended():
     one = command("a", "r1", ("queued", 0), ("delivered", 1), ("acknowledged", 2), ("reached", 10))
     two = command("b", "r2", ("queued", 4), ("failed", 5))
-    commands = whole(arranged([two, one]))
+    commands = run_to_end(sort_commands([two, one]))
     found = commands.marks(T0, T0 + 6)
     told = [(mark.at - T0, mark.state.value) for mark in found]
     assert told == [(0, "queued"), (4, "queued"), (5, "failed")]
@@ -43,11 +42,11 @@ def test_marks_are_what_was_sent_and_how_it_ended():
 
 
 def test_of_marks_as_of_a_list_some_are_taken_and_there_are_none_of_nobody():
-    commands = whole(arranged([command("a", "r1", ("queued", 0), ("reached", 10))]))
+    commands = run_to_end(sort_commands([command("a", "r1", ("queued", 0), ("reached", 10))]))
     found = commands.marks(T0, T0 + 60)
     assert [mark.state.value for mark in found] == ["queued", "reached"] and found[-1].at == T0 + 10
     assert found.of(CommandState.REACHED).tolist() == [T0 + 10] and not len(found.of(CommandState.FAILED))
-    assert not commands.marks(T0, T0 + 60, ["r2"]) and not whole(arranged([])).marks(T0, T0 + 60)
+    assert not commands.marks(T0, T0 + 60, ["r2"]) and not run_to_end(sort_commands([])).marks(T0, T0 + 60)
 
 
 def test_of_hundreds_of_commands_the_same_are_under_way_as_one_by_one():
@@ -59,7 +58,7 @@ def test_of_hundreds_of_commands_the_same_are_under_way_as_one_by_one():
         end = random.choice(ends)
         steps = [("queued", asked), ("delivered", asked + took / 3), *([(end, asked + took)] if end else [])]
         reports.append(command(f"c{number}", f"r{random.integers(20)}", *steps))
-    commands = whole(arranged(reports))
+    commands = run_to_end(sort_commands(reports))
     for seconds in random.uniform(-5.0, 130.0, 50).tolist():
         newest = {}
         for report in sorted(reports, key=lambda report: report.steps[0].at):
@@ -72,13 +71,13 @@ def test_of_hundreds_of_commands_the_same_are_under_way_as_one_by_one():
 
 @pytest.fixture
 def book():
-    made = CommandBook()
+    made = CommandCache()
     made.merge([command("a", "r1", ("queued", 0))])
     return made
 
 
 def test_a_book_is_looked_through_beside_the_window_and_again_for_news_meanwhile(qgis_app, book, wait):
-    arranging, done = Arranging(book), []
+    arranging, done = CommandSorter(book), []
     arranging.done.connect(lambda before: done.append((before, arranging.commands)))
     arranging.renew()
     none = arranging.commands
@@ -93,7 +92,7 @@ def test_a_book_is_looked_through_beside_the_window_and_again_for_news_meanwhile
 
 
 def test_what_is_forgotten_does_not_come(qgis_app, book, wait):
-    arranging = Arranging(book)
+    arranging = CommandSorter(book)
     arranging.renew()
     arranging.forget()
     assert not arranging.is_busy

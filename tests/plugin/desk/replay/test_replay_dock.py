@@ -7,9 +7,9 @@ import time
 from itertools import groupby, pairwise
 
 import pytest
-from fleet_supervisor.plugin.desk import time_slices
-from fleet_supervisor.plugin.desk.live import ways_image
-from fleet_supervisor.plugin.desk.replay import replay_layer
+from fleet_supervisor.plugin.map.overlay import paths_painter
+from fleet_supervisor.plugin.replay import replay_map
+from fleet_supervisor.plugin.ui import scheduling
 from qgis.core import QgsProject
 from qgis.gui import QgsLayerTreeMapCanvasBridge
 from qgis.PyQt import sip
@@ -129,7 +129,7 @@ def test_while_time_is_held_the_map_goes_on_until_it_is_whole_and_follows_its_vi
     loaded, at_desk, gateway, wait, monkeypatch
 ):
     """Of many ways some are drawn in each frame; a moment that is held has no other frame."""
-    monkeypatch.setattr(ways_image, "FILL_SECONDS", 0.0)
+    monkeypatch.setattr(paths_painter, "FILL_SECONDS", 0.0)
     begun = loaded.clockwork.since
     for k in range(4):
         path = {"points": [[10.0, 20.0 * k], [90.0, 20.0 * k]]}
@@ -158,8 +158,8 @@ def test_a_command_that_comes_late_is_shown_while_time_is_held(loaded, gateway, 
 
 
 def test_lines_that_are_shown_no_more_are_given_back_bit_by_bit(loaded, monkeypatch, wait):
-    monkeypatch.setattr(replay_layer, "AT_ONCE", 1)
-    monkeypatch.setattr(time_slices, "SLICE_SECONDS", time_slices.ONE_STEP)
+    monkeypatch.setattr(replay_map, "AT_ONCE", 1)
+    monkeypatch.setattr(scheduling, "SLICE_SECONDS", scheduling.ONE_STEP)
     # Each step is seen by itself, however busy the machine is.
     loaded.layer._freeing._timer.setInterval(1000)
     (layer,) = lines()

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import pytest
-from fleet_supervisor.plugin.desk.replay.past_commands import arranged
-from fleet_supervisor.plugin.desk.replay.time_line import COLOURS, TimeLine
-from fleet_supervisor.plugin.desk.time_slices import whole
-from fleet_supervisor.robot_bridge.messages import CommandReport, CommandState, CommandStep
+from fleet_supervisor.plugin.replay.history import sort_commands
+from fleet_supervisor.plugin.replay.time_controls import COLOURS, TimeLine
+from fleet_supervisor.plugin.ui.scheduling import run_to_end
+from fleet_supervisor.robot_bridge.core.messages import CommandReport, CommandState, CommandStep
 
 WIDTH, HEIGHT = 400, 40
 
@@ -26,7 +26,7 @@ def line(qgis_app):
 
 
 def show(line, *commands):
-    line.show_marks(whole(arranged(commands)).marks(line.since, line.until))
+    line.show_marks(run_to_end(sort_commands(commands)).marks(line.since, line.until))
 
 
 def colour_at(line, x, down):

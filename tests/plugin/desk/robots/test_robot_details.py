@@ -3,9 +3,9 @@
 import base64
 
 import pytest
-from fleet_supervisor.plugin.desk.robots import detail_rows
-from fleet_supervisor.plugin.desk.robots.detail_rows import received_rows
-from fleet_supervisor.robot_bridge.messages import CommandState
+from fleet_supervisor.plugin.panel import robot_details
+from fleet_supervisor.plugin.panel.robot_details import received_rows
+from fleet_supervisor.robot_bridge.core.messages import CommandState
 from qgis.PyQt.QtCore import QBuffer, QIODevice, Qt
 from qgis.PyQt.QtGui import QColor, QImage
 from qgis.PyQt.QtTest import QTest
@@ -52,7 +52,7 @@ def test_without_a_selection_it_says_what_to_do(details):
 def test_a_long_name_of_a_row_is_not_cut_off(details, at_desk, monkeypatch):
     name = "Eltérés a pályától vagy céltól"
     monkeypatch.setattr(
-        detail_rows, "tr", lambda text, **values: name if text == "Task" else text.format(**values)
+        robot_details, "tr", lambda text, **values: name if text == "Task" else text.format(**values)
     )
     at_desk.desk.select("r1")
     assert name in dict(sections(details)["Now"])

@@ -2,14 +2,15 @@
 
 import numpy as np
 import pytest
-from fleet_supervisor.plugin.desk.command_book import CommandBook
-from fleet_supervisor.plugin.desk.robots.columns import COLUMNS, TITLES, number_in_words
-from fleet_supervisor.plugin.desk.robots.deviations import Deviations, beside
-from fleet_supervisor.plugin.desk.robots.fleet_rows import Which
-from fleet_supervisor.plugin.desk.robots.robot_panel import AROUND_SEARCH, WHICH
-from fleet_supervisor.plugin.desk.robots.robot_table import WIDEST_NAME
-from fleet_supervisor.plugin.desk.state_words import ROBOT_STATES
-from fleet_supervisor.robot_bridge.messages import CommandReport, CommandState, CommandStep, RobotState
+from fleet_supervisor.plugin.gateway_client.command_cache import (
+    CommandCache,
+    PathDeviations,
+    distance_to_line,
+)
+from fleet_supervisor.plugin.gateway_client.state_texts import ROBOT_STATES
+from fleet_supervisor.plugin.panel.robot_model import COLUMNS, TITLES, RobotChoice, number_in_words
+from fleet_supervisor.plugin.panel.robot_table import AROUND_SEARCH, ROBOT_CHOICES, WIDEST_NAME
+from fleet_supervisor.robot_bridge.core.messages import CommandReport, CommandState, CommandStep, RobotState
 from qgis.core import (
     QgsCoordinateReferenceSystem,
     QgsCoordinateTransform,
@@ -114,10 +115,10 @@ def test_how_far_a_robot_is_off_its_path_then_off_its_target(table, at_desk, gat
 
 def test_how_far_beside_a_line():
     line = np.array([(0.0, 0.0), (10.0, 0.0), (10.0, 10.0)])
-    assert beside(line, np.array((5.0, 3.0))) == pytest.approx(3.0)
-    assert beside(line, np.array((12.0, 5.0))) == pytest.approx(2.0)
-    assert beside(line, np.array((-3.0, 4.0))) == pytest.approx(5.0)
-    assert beside(line[:1], np.array((3.0, 4.0))) == pytest.approx(5.0)
+    assert distance_to_line(line, np.array((5.0, 3.0))) == pytest.approx(3.0)
+    assert distance_to_line(line, np.array((12.0, 5.0))) == pytest.approx(2.0)
+    assert distance_to_line(line, np.array((-3.0, 4.0))) == pytest.approx(5.0)
+    assert distance_to_line(line[:1], np.array((3.0, 4.0))) == pytest.approx(5.0)
 
 
 PATH = [[100.0, 0.0], [0.0, 0.0], [0.0, 50.0]]
@@ -130,7 +131,7 @@ def on_path(command, points, at):
 
 @pytest.fixture
 def book():
-    made = CommandBook()
+    made = CommandCache()
     made.merge([on_path("command-1", PATH, 1.0)])
     return made
 
@@ -138,7 +139,7 @@ def book():
 @pytest.fixture
 def off(book):
     """How far r1 is off a path that it was told to drive, by where it is."""
-    deviations = Deviations(book)
+    deviations = PathDeviations(book)
     return lambda x, y: deviations.of("r1", (x, y))
 
 
@@ -297,7 +298,11 @@ def test_what_is_typed_narrows_the_list_at_once(table, at_desk):
 
 @pytest.mark.parametrize(
     ("which", "names"),
-    [(Which.TROUBLED, ["a9", "r3"]), (Which.BUSY, ["r1"]), (Which.IDLE, ["a9", "r2", "r3"])],
+    [
+        (RobotChoice.TROUBLED, ["a9", "r3"]),
+        (RobotChoice.BUSY, ["r1"]),
+        (RobotChoice.IDLE, ["a9", "r2", "r3"]),
+    ],
 )
 def test_only_some_are_listed(table, at_desk, gateway, wait, which, names):
     gateway._queue("command-1", "r1", "SetPosEnd", {"x": 70.0, "y": 40.0})
@@ -305,9 +310,9 @@ def test_only_some_are_listed(table, at_desk, gateway, wait, which, names):
     wait(lambda: at_desk.desk.book.task_of("r1") is not None)
     at_desk.dock.robots.mark_troubled({"r3"})
     box = at_desk.dock.findChild(QComboBox, "fleet_robot_filter")
-    for _ in range(list(Which).index(which)):
+    for _ in range(list(RobotChoice).index(which)):
         QTest.keyClick(box, Qt.Key.Key_Down)
-    assert box.currentText() == WHICH[which]
+    assert box.currentText() == ROBOT_CHOICES[which]
     assert column(table, "Robot") == names
 
 

@@ -5,12 +5,11 @@ from __future__ import annotations
 import os
 
 import pytest
-from fleet_supervisor.plugin.desk.tour.practice_fleet import PracticeFleet, find_program
-from fleet_supervisor.plugin.desk.tour.steps import FLEET, PROJECT, STEPS
-from fleet_supervisor.plugin.desk.tour.tour_action import OFFERED, TourAction
-from fleet_supervisor.plugin.desk.window import MENU, DeskWindow
-from fleet_supervisor.plugin.settings.gateway_connection import GatewayConnection
-from fleet_supervisor.plugin.wire.status import Phase
+from fleet_supervisor.plugin.gateway_client.link import ConnectionPhase
+from fleet_supervisor.plugin.panel.window import MENU, FleetWindow
+from fleet_supervisor.plugin.settings.connections import GatewayConnection
+from fleet_supervisor.plugin.tour.practice_fleet import PracticeFleet, find_program
+from fleet_supervisor.plugin.tour.tour_panel import FLEET, OFFERED, PROJECT, STEPS, TourAction
 from qgis.core import QgsSettings
 from qgis.PyQt.QtCore import QEvent, QPoint, QPointF, Qt
 from qgis.PyQt.QtGui import QMouseEvent
@@ -25,7 +24,7 @@ class Tour:
 
     def __init__(self, iface, fleet=None):
         self.iface = iface
-        self.window = DeskWindow(iface)
+        self.window = FleetWindow(iface)
         self.action = TourAction(iface, MENU, self.window, fleet)
 
     @property
@@ -169,7 +168,7 @@ def test_a_program_that_ends_is_told_with_what_it_said(iface, wait, tmp_path):
 
 def test_connected_elsewhere_it_starts_nothing_and_asks_for_no_deeds(tour, gateway, wait):
     tour.desk.open_link(gateway.url, "anna")
-    wait(lambda: tour.desk.link.phase is Phase.CONNECTED)
+    wait(lambda: tour.desk.link.phase is ConnectionPhase.CONNECTED)
     tour.action.start()
     tour.go_to(at_of(FLEET))
     tour.click("fleet_tour_offer")
@@ -180,7 +179,7 @@ def test_connected_elsewhere_it_starts_nothing_and_asks_for_no_deeds(tour, gatew
             tour.action.panel.show_step(at)
             assert step.practice not in tour.text("fleet_tour_text")
     tour.action.end()
-    assert tour.desk.link.phase is Phase.CONNECTED
+    assert tour.desk.link.phase is ConnectionPhase.CONNECTED
 
 
 def test_the_sample_site_opens(tour):
@@ -212,7 +211,7 @@ def test_a_practice_fleet_is_driven_and_ends_with_the_tour(tour, wait):
     tour.click("fleet_tour_close")
     assert tour.action.panel is None
     assert tour.window.dock.connection_panel.url() == before
-    assert tour.desk.link.phase is Phase.CLOSED
+    assert tour.desk.link.phase is ConnectionPhase.CLOSED
     for pid in pids:
         with pytest.raises(ProcessLookupError):
             os.kill(pid, 0)

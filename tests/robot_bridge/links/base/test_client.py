@@ -9,11 +9,11 @@ from types import SimpleNamespace
 from adapter_on_the_line import LinkOnTheLine
 from websockets.asyncio.server import serve
 
-from robot_bridge import jsonrpc
+from robot_bridge.core.messages.links import LINK_PROTOCOL
 from robot_bridge.links.base.client import LinkClient
-from robot_bridge.links.base.commanding import OVERTAKEN, Commanding
+from robot_bridge.links.base.linked_robots import OVERTAKEN, Commanding
 from robot_bridge.links.base.memory import LinkMemory
-from robot_bridge.messages.links import LINK_PROTOCOL
+from robot_bridge.protocol import jsonrpc
 
 SITE = {
     "id": "s",

@@ -7,9 +7,9 @@ import re
 
 import pytest
 
+from robot_bridge.core.sites.frame import SiteFrame
 from robot_bridge.links.base.errors import LinkError
 from robot_bridge.links.base.frames import FrameSettings, LinkFrame
-from robot_bridge.sites.frame import SiteFrame
 
 SITE = SiteFrame("EPSG:32633", (640_000.0, 5_193_000.0), 0.3)
 SHIFTED = FrameSettings(origin=(5.0, 6.0), rotation_deg=30.0)

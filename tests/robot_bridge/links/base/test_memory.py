@@ -7,7 +7,7 @@ import json
 import pytest
 
 from robot_bridge.links.base.errors import LinkError
-from robot_bridge.links.base.memory import MOST_DONE, Done, LinkMemory
+from robot_bridge.links.base.memory import MOST_DONE, CompletedCall, LinkMemory
 
 
 @pytest.fixture
@@ -20,19 +20,19 @@ async def test_runs_and_what_came_of_messages_are_remembered(file):
     memory.use_database("db-1")
     magic = memory.magic("agv-1")
     assert await memory.begin("agv-1", 7) is False
-    await memory.finish("agv-1", 7, Done())
+    await memory.finish("agv-1", 7, CompletedCall())
     await memory.begin("agv-1", 8)
-    await memory.finish("agv-1", 8, Done("no"))
+    await memory.finish("agv-1", 8, CompletedCall("no"))
     await memory.begin("agv-1", 9)
 
     again = LinkMemory(file)
     again.use_database("db-1")
     assert again.magic("agv-1") == magic
-    assert (again.find("agv-1", 7), again.find("agv-1", 8)) == (Done(), Done("no"))
+    assert (again.find("agv-1", 7), again.find("agv-1", 8)) == (CompletedCall(), CompletedCall("no"))
     assert again.find("agv-1", 9) is None
     assert await again.begin("agv-1", 9) is True
     assert again.renew("agv-1") != magic
-    assert again.find("agv-1", 7) == Done(), "a robot that forgot is told anew under other ids"
+    assert again.find("agv-1", 7) == CompletedCall(), "a robot that forgot is told anew under other ids"
     again.use_database("db-2")
     assert LinkMemory(file).find("agv-1", 7) is None
 
@@ -51,7 +51,7 @@ async def test_it_does_not_grow_for_ever(file):
     lines = [json.dumps({"robot": "agv-1", "done": id}) for id in range(MOST_DONE + 5)]
     file.write_text(file.read_text(encoding="utf-8") + "\n".join(lines) + "\n", encoding="utf-8")
     again = LinkMemory(file)
-    assert (again.find("agv-1", 4), again.find("agv-1", 5)) == (None, Done())
+    assert (again.find("agv-1", 4), again.find("agv-1", 5)) == (None, CompletedCall())
     assert len(file.read_text(encoding="utf-8").splitlines()) == MOST_DONE + 1
 
 
@@ -71,7 +71,7 @@ async def test_on_a_full_disk_nothing_is_begun_and_all_is_written_once_there_is_
     for _ in range(2):
         with pytest.raises(LinkError, match="can be stopped"):
             await memory.begin("agv-1", 7)
-    await memory.finish("agv-1", 6, Done())
+    await memory.finish("agv-1", 6, CompletedCall())
     await memory.recover()
     assert memory.fault is not None
 
@@ -80,7 +80,7 @@ async def test_on_a_full_disk_nothing_is_begun_and_all_is_written_once_there_is_
     assert memory.fault is None
     assert await memory.begin("agv-1", 7) is False
     again = LinkMemory(file)
-    assert (again.magic("agv-2"), again.find("agv-1", 6)) == (other, Done())
+    assert (again.magic("agv-2"), again.find("agv-1", 6)) == (other, CompletedCall())
     assert await again.begin("agv-1", 7) is True
     assert [r.levelname for r in caplog.records if "agvs.state" in r.message] == ["ERROR", "WARNING"]
 

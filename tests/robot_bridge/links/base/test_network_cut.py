@@ -12,7 +12,7 @@ from adapter_on_the_line import LinkOnTheLine
 from bridge_programs import wait_until
 from cut_line import CutLine
 
-from robot_bridge.messages import SendPos, SetObject
+from robot_bridge.core.messages import SendPos, SetObject
 
 CUT = 10.0
 """seconds; a robot of this site is lost after 1.6 s."""

@@ -8,8 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from robot_bridge.links.replay.clock import PlayClock
-from robot_bridge.links.replay.player import Player, Presence
+from robot_bridge.links.replay.adapter import PlayClock, Player, ReplayPresence
 from robot_bridge.recordings.samples import Remarks, Sample, Source
 from robot_bridge.recordings.tracks import gather
 
@@ -43,8 +42,8 @@ def test_a_clock_that_stands_reaches_nothing_and_goes_on_from_there():
 def test_the_newest_position_up_to_a_place_is_told_once():
     player = Player(recording(("a", 0, 0), ("a", 1, 1), ("a", 2, 2), ("b", 1.5, 9)), 5.0)
     assert [(t.at, t.is_new, t.presence) for t in player.advance(0.5)] == [
-        (0, True, Presence.HERE),
-        (-1, False, Presence.BEFORE),
+        (0, True, ReplayPresence.HERE),
+        (-1, False, ReplayPresence.BEFORE),
     ]
     assert player.next_place() == 1.0
     assert [(t.at, t.is_new) for t in player.advance(1.9)] == [(1, True), (0, True)]
@@ -55,5 +54,5 @@ def test_the_newest_position_up_to_a_place_is_told_once():
 def test_a_robot_is_silent_in_a_gap_and_over_behind_its_end():
     player = Player(recording(("a", 0, 0), ("a", 60, 1)), 5.0)
     presences = [next(player.advance(place)).presence for place in (4.9, 5.1, 60.0, 65.1)]
-    assert presences == [Presence.HERE, Presence.SILENT, Presence.HERE, Presence.OVER]
+    assert presences == [ReplayPresence.HERE, ReplayPresence.SILENT, ReplayPresence.HERE, ReplayPresence.OVER]
     assert player.next_place() == math.inf

@@ -7,12 +7,12 @@ from types import SimpleNamespace
 
 import pytest
 
+from robot_bridge.core.messages import SendGPS, SendPos
 from robot_bridge.links.base.errors import CommandRefusedError
-from robot_bridge.links.ros.camera import Camera
+from robot_bridge.links.ros.messages import COMPRESSED_IMAGE
+from robot_bridge.links.ros.robot import Camera
 from robot_bridge.links.ros.sensing import Sensing
 from robot_bridge.links.ros.settings import RobotSettings
-from robot_bridge.links.ros.types import COMPRESSED_IMAGE
-from robot_bridge.messages import SendGPS, SendPos
 
 STAMP = SimpleNamespace(sec=1_700_000_000, nanosec=0)
 JPEG = b"\xff\xd8\xff\xe0" + bytes(1000)

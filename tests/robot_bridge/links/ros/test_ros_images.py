@@ -10,8 +10,7 @@ import pytest
 from PIL import Image
 
 from robot_bridge.links.ros.errors import FaultError
-from robot_bridge.links.ros.images import MOST_PIXELS, image_of
-from robot_bridge.links.ros.types import COMPRESSED_IMAGE, IMAGE
+from robot_bridge.links.ros.messages import COMPRESSED_IMAGE, IMAGE, MOST_PIXELS, image_of
 
 RED, BLUE = (255, 0, 0), (0, 0, 255)
 

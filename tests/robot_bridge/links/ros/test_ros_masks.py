@@ -7,16 +7,15 @@ import asyncio
 import numpy as np
 import pytest
 
+from robot_bridge.core.messages.links import SiteArea, SiteAreas, SiteRoad
+from robot_bridge.core.robotmap.binary import encode
+from robot_bridge.core.robotmap.exporters.nav2 import RasterGrid, speed_mask
+from robot_bridge.core.robotmap.model import Border, RobotMap
+from robot_bridge.core.sites.frame import SiteFrame
 from robot_bridge.links.base.errors import CommandRefusedError
 from robot_bridge.links.base.frames import FrameSettings, LinkFrame
-from robot_bridge.links.ros.geometry import Outgoing
-from robot_bridge.links.ros.masks import KEEPOUT, SPEED, Masks, road_areas
-from robot_bridge.messages.links import SiteArea, SiteAreas, SiteRoad
-from robot_bridge.robotmap.binary import encode
-from robot_bridge.robotmap.exporters.grid import Grid
-from robot_bridge.robotmap.exporters.masks import speed_mask
-from robot_bridge.robotmap.model import Border, RobotMap
-from robot_bridge.sites.frame import SiteFrame
+from robot_bridge.links.ros.messages import Outgoing
+from robot_bridge.links.ros.site_maps import KEEPOUT, SPEED, Masks, road_areas
 
 pytest.importorskip("rosbags", reason="rosbags is not installed; run make setup")
 
@@ -106,7 +105,7 @@ def test_a_mask_is_announced_with_its_topic():
 
 
 def test_a_road_is_as_wide_as_it_is_also_at_its_corners():
-    grid = Grid(0.0, 0.0, 0.1, 200, 100)
+    grid = RasterGrid(0.0, 0.0, 0.1, 200, 100)
     cells = speed_mask(grid, road_areas([ROAD])).cells > 0
     across = np.flatnonzero(cells[:, 50]) * 0.1
     assert across[-1] - across[0] == pytest.approx(1.0, abs=0.15)

@@ -9,9 +9,9 @@ import pytest
 
 pytest.importorskip("rosbags", reason="rosbags is not installed; run make setup")
 
-from robot_bridge.links.ros import positions
+from robot_bridge.links.ros import sensing
 from robot_bridge.links.ros.errors import FaultError
-from robot_bridge.links.ros.transforms import Transforms
+from robot_bridge.links.ros.sensing import Transforms
 from robot_bridge.links.ros2.interfaces import Interfaces
 
 TYPES = Interfaces("jazzy")
@@ -32,7 +32,7 @@ def odometry(x=3.0, y=4.0, theta=0.5, v=1.0, frame="map"):
 
 
 def test_odometry_is_a_pose_with_speed_and_accuracy():
-    pose = positions.odometry(odometry(v=-1.5), "/r1/odom")
+    pose = sensing.odometry(odometry(v=-1.5), "/r1/odom")
     assert (pose.frame, pose.x, pose.y, pose.t, pose.v) == ("map", 3.0, 4.0, 100.0, -1.5)
     assert pose.theta == pytest.approx(0.5) and pose.accuracy == pytest.approx(0.2)
 
@@ -48,14 +48,14 @@ def test_odometry_is_a_pose_with_speed_and_accuracy():
 )
 def test_a_pose_that_is_none_names_topic_field_and_value(change, words):
     with pytest.raises(FaultError, match=words):
-        positions.odometry(odometry(**change), "/r1/odom")
+        sensing.odometry(odometry(**change), "/r1/odom")
 
 
 def test_an_orientation_that_is_no_rotation_is_named():
     told = odometry()
     told.pose.pose.orientation = TYPES.make("geometry_msgs/msg/Quaternion")
     with pytest.raises(FaultError, match="is no rotation"):
-        positions.odometry(told, "/r1/odom")
+        sensing.odometry(told, "/r1/odom")
 
 
 def gps(status=0):
@@ -67,8 +67,8 @@ def gps(status=0):
 
 def test_a_fix_comes_with_the_heading_of_the_imu():
     imu = TYPES.make("sensor_msgs/msg/Imu", orientation=turned(math.pi))
-    heading = positions.imu_heading(imu, "/r1/imu")
-    said = positions.fix(gps(), "/r1/fix", heading)
+    heading = sensing.imu_heading(imu, "/r1/imu")
+    said = sensing.gps_fix(gps(), "/r1/fix", heading)
     assert said.heading == pytest.approx(270.0)
     assert (said.lat, said.lon, said.accuracy, said.altitude) == (46.88, 16.84, 0.5, None)
 
@@ -76,17 +76,17 @@ def test_a_fix_comes_with_the_heading_of_the_imu():
 def test_an_imu_without_orientation_tells_no_heading():
     imu = TYPES.make("sensor_msgs/msg/Imu")
     imu.orientation_covariance[0] = -1.0
-    assert positions.imu_heading(imu, "/r1/imu") is None
+    assert sensing.imu_heading(imu, "/r1/imu") is None
 
 
 def test_a_receiver_without_a_fix_is_named():
     with pytest.raises(FaultError, match="the receiver has no fix"):
-        positions.fix(gps(status=-1), "/r1/fix", None)
+        sensing.gps_fix(gps(status=-1), "/r1/fix", None)
 
 
 @pytest.mark.parametrize(("said", "share"), [(0.75, 0.75), (75.0, 0.75), (math.nan, None), (-1.0, None)])
 def test_a_battery_is_from_0_to_1(said, share):
-    assert positions.battery_share(TYPES.make("sensor_msgs/msg/BatteryState", percentage=said)) == share
+    assert sensing.battery_share(TYPES.make("sensor_msgs/msg/BatteryState", percentage=said)) == share
 
 
 def test_the_worst_diagnosis_is_the_status():
@@ -95,16 +95,16 @@ def test_the_worst_diagnosis_is_the_status():
 
     told = TYPES.make("diagnostic_msgs/msg/DiagnosticArray")
     told.status = [state(0, "lidar", "fine"), state(2, "motor", "hot"), state(1, "wifi", "weak")]
-    assert positions.diagnosis(told) == "error: motor: hot"
+    assert sensing.diagnosis(told) == "error: motor: hot"
     told.status = told.status[:1]
-    assert positions.diagnosis(told) is None
+    assert sensing.diagnosis(told) is None
 
 
 def test_another_clock_is_said():
-    assert positions.clock_remark(1000.0, 1003.0) is None
-    assert positions.clock_remark(None, 1003.0) is None
-    assert "86400 s behind" in positions.clock_remark(1.79e9, 1.79e9 + 86400)
-    assert "simulated time" in positions.clock_remark(12.5, 1.79e9)
+    assert sensing.clock_remark(1000.0, 1003.0) is None
+    assert sensing.clock_remark(None, 1003.0) is None
+    assert "86400 s behind" in sensing.clock_remark(1.79e9, 1.79e9 + 86400)
+    assert "simulated time" in sensing.clock_remark(12.5, 1.79e9)
 
 
 def transform(parent, child, x=0.0, y=0.0, theta=0.0):
@@ -118,7 +118,7 @@ def transform(parent, child, x=0.0, y=0.0, theta=0.0):
 def test_a_pose_in_odom_is_taken_to_the_map():
     tree = Transforms()
     tree.update(transform("map", "odom", 10.0, 0.0, math.pi / 2), "/tf")
-    pose = tree.pose_in("map", positions.odometry(odometry(frame="odom"), "/r1/odom"))
+    pose = tree.pose_in("map", sensing.odometry(odometry(frame="odom"), "/r1/odom"))
     assert (pose.x, pose.y, pose.theta) == pytest.approx((6.0, 3.0, 0.5 + math.pi / 2))
 
 
@@ -134,7 +134,7 @@ def test_a_frame_that_nobody_explains_is_named():
     with pytest.raises(
         FaultError, match="frame 'odom' is not connected with 'map': nothing is known of 'odom'"
     ):
-        Transforms().pose_in("map", positions.odometry(odometry(frame="odom"), "/r1/odom"))
+        Transforms().pose_in("map", sensing.odometry(odometry(frame="odom"), "/r1/odom"))
 
 
 def test_transforms_in_a_circle_are_named():
@@ -142,7 +142,7 @@ def test_transforms_in_a_circle_are_named():
     tree.update(transform("a", "b"), "/tf")
     tree.update(transform("b", "a"), "/tf")
     with pytest.raises(FaultError, match="run in a circle"):
-        tree.pose_in("map", positions.odometry(odometry(frame="a"), "/r1/odom"))
+        tree.pose_in("map", sensing.odometry(odometry(frame="a"), "/r1/odom"))
 
 
 def test_a_transform_that_is_no_place_changes_nothing():

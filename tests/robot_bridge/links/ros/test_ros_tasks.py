@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import pytest
 
+from robot_bridge.core.messages import SetPath, SetPosEnd
 from robot_bridge.links.ros.effects import (
     Abilities,
-    Action,
     Answered,
     CallCone,
     CallStop,
@@ -14,15 +14,15 @@ from robot_bridge.links.ros.effects import (
     Idle,
     PublishHere,
     PublishTask,
+    RosAction,
     SendGoal,
     StopEnded,
     ZeroTwist,
 )
 from robot_bridge.links.ros.goals import GoalStatus, goal_id, message_of
 from robot_bridge.links.ros.tasks import Tasks
-from robot_bridge.messages import SetPath, SetPosEnd
 
-NAV2 = Abilities(actions=frozenset({Action.TO_POSE, Action.FOLLOW_PATH}), velocity=True)
+NAV2 = Abilities(actions=frozenset({RosAction.TO_POSE, RosAction.FOLLOW_PATH}), velocity=True)
 TOPICS = Abilities(goal_topic=True, path_topic=True, velocity=True)
 TARGET = SetPosEnd(5.0, 6.0)
 PATH = SetPath([(0.0, 0.0), (5.0, 0.0)])
@@ -33,7 +33,7 @@ def tasks():
     return Tasks(cones=True)
 
 
-def statuses(tasks, status, message=7, action=Action.TO_POSE, now=0.0):
+def statuses(tasks, status, message=7, action=RosAction.TO_POSE, now=0.0):
     return tasks.statuses_came(action, {goal_id(message): status}, now)
 
 
@@ -43,8 +43,8 @@ def test_the_id_of_a_goal_names_its_message():
 
 
 def test_a_target_is_a_goal_taken_on_when_its_status_says_so(tasks):
-    assert tasks.order(7, TARGET, NAV2, 0.0) == [SendGoal(Action.TO_POSE, goal_id(7), TARGET, 7)]
-    tasks.goal_answered(Action.TO_POSE, True, 0.1)  # maybe to another client
+    assert tasks.order(7, TARGET, NAV2, 0.0) == [SendGoal(RosAction.TO_POSE, goal_id(7), TARGET, 7)]
+    tasks.goal_answered(RosAction.TO_POSE, True, 0.1)  # maybe to another client
     assert tasks.step(NAV2, 0.2) == []
     assert statuses(tasks, GoalStatus.EXECUTING) == [Answered(7)]
     assert statuses(tasks, GoalStatus.EXECUTING) == []
@@ -54,58 +54,60 @@ def test_a_target_is_a_goal_taken_on_when_its_status_says_so(tasks):
 
 def test_a_path_goes_to_who_follows_paths(tasks):
     (sent,) = tasks.order(7, PATH, NAV2, 0.0)
-    assert sent.action is Action.FOLLOW_PATH
+    assert sent.action is RosAction.FOLLOW_PATH
     through = Tasks(cones=False)
-    (sent,) = through.order(7, PATH, Abilities(frozenset({Action.THROUGH_POSES})), 0.0)
-    assert sent.action is Action.THROUGH_POSES
+    (sent,) = through.order(7, PATH, Abilities(frozenset({RosAction.THROUGH_POSES})), 0.0)
+    assert sent.action is RosAction.THROUGH_POSES
 
 
-EVERY = Abilities(frozenset(Action))
+EVERY = Abilities(frozenset(RosAction))
 
 
-@pytest.mark.parametrize("wanted", [Action.FOLLOW_PATH, Action.THROUGH_POSES, Action.WAYPOINTS])
+@pytest.mark.parametrize("wanted", [RosAction.FOLLOW_PATH, RosAction.THROUGH_POSES, RosAction.WAYPOINTS])
 def test_a_path_goes_to_the_action_that_the_settings_name_first(wanted):
-    tasks = Tasks(cones=False, path_actions=[wanted, Action.FOLLOW_PATH])
+    tasks = Tasks(cones=False, path_actions=[wanted, RosAction.FOLLOW_PATH])
     (sent,) = tasks.order(7, PATH, EVERY, 0.0)
     assert sent.action is wanted
 
 
 def test_an_action_that_the_settings_leave_out_drives_no_path():
-    tasks = Tasks(cones=False, path_actions=[Action.WAYPOINTS])
+    tasks = Tasks(cones=False, path_actions=[RosAction.WAYPOINTS])
     (answer,) = tasks.order(7, PATH, NAV2, 0.0)
     assert "FollowWaypoints that the settings allow" in answer.refusal
 
 
 def test_an_action_of_another_distribution_is_sent_nothing_and_is_canceled_all_the_same():
-    able = Abilities(frozenset({Action.TO_POSE, Action.FOLLOW_PATH}), frozenset({Action.FOLLOW_PATH}))
+    able = Abilities(
+        frozenset({RosAction.TO_POSE, RosAction.FOLLOW_PATH}), frozenset({RosAction.FOLLOW_PATH})
+    )
     tasks = Tasks(cones=False)
     (answer,) = tasks.order(7, PATH, able, 0.0)
     assert "nobody on the robot's side follows paths" in answer.refusal
-    assert CancelGoals(Action.FOLLOW_PATH) in tasks.abort(able, 0.0)
+    assert CancelGoals(RosAction.FOLLOW_PATH) in tasks.abort(able, 0.0)
 
 
 @pytest.fixture
 def waypoints():
     tasks = Tasks(cones=False)
-    (sent,) = tasks.order(7, PATH, Abilities(frozenset({Action.WAYPOINTS})), 0.0)
-    assert sent.action is Action.WAYPOINTS
+    (sent,) = tasks.order(7, PATH, Abilities(frozenset({RosAction.WAYPOINTS})), 0.0)
+    assert sent.action is RosAction.WAYPOINTS
     return tasks
 
 
 def test_waypoints_are_driven_when_the_result_names_none_that_was_missed(waypoints):
-    assert statuses(waypoints, GoalStatus.SUCCEEDED, action=Action.WAYPOINTS) == [Answered(7)]
-    waypoints.result_came(Action.WAYPOINTS, 4, 0, "", [])
+    assert statuses(waypoints, GoalStatus.SUCCEEDED, action=RosAction.WAYPOINTS) == [Answered(7)]
+    waypoints.result_came(RosAction.WAYPOINTS, 4, 0, "", [])
     assert waypoints.step(EVERY, 0.1) == [Idle()]
 
 
 @pytest.mark.parametrize("result_first", [True, False])
 def test_waypoints_that_were_missed_are_a_failure_that_names_them(waypoints, result_first):
     def result():
-        waypoints.result_came(Action.WAYPOINTS, 4, 0, "", [0, 3])
+        waypoints.result_came(RosAction.WAYPOINTS, 4, 0, "", [0, 3])
 
     if result_first:
         result()
-    effects = statuses(waypoints, GoalStatus.SUCCEEDED, action=Action.WAYPOINTS)
+    effects = statuses(waypoints, GoalStatus.SUCCEEDED, action=RosAction.WAYPOINTS)
     if not result_first:
         result()
     effects += waypoints.step(EVERY, 0.1)
@@ -114,23 +116,23 @@ def test_waypoints_that_were_missed_are_a_failure_that_names_them(waypoints, res
 
 
 def test_waypoints_without_a_result_are_driven_after_a_while(waypoints):
-    assert statuses(waypoints, GoalStatus.SUCCEEDED, action=Action.WAYPOINTS) == [Answered(7)]
+    assert statuses(waypoints, GoalStatus.SUCCEEDED, action=RosAction.WAYPOINTS) == [Answered(7)]
     assert waypoints.step(EVERY, 1.9) == []
     assert waypoints.step(EVERY, 2.1) == [Idle()]
 
 
 def test_a_rejected_goal_is_refused_and_canceled_for_safety(tasks):
     tasks.order(7, TARGET, NAV2, 0.0)
-    tasks.goal_answered(Action.TO_POSE, False, 0.1)
+    tasks.goal_answered(RosAction.TO_POSE, False, 0.1)
     assert tasks.step(NAV2, 0.2) == []
     cancel, refused = tasks.step(NAV2, 0.5)
-    assert cancel == CancelGoals(Action.TO_POSE, goal_id(7))
+    assert cancel == CancelGoals(RosAction.TO_POSE, goal_id(7))
     assert refused == Answered(7, "the robot's server of NavigateToPose rejected the goal")
 
 
 def test_a_rejection_of_another_clients_goal_refuses_nothing(tasks):
     tasks.order(7, TARGET, NAV2, 0.0)
-    tasks.goal_answered(Action.TO_POSE, False, 0.1)
+    tasks.goal_answered(RosAction.TO_POSE, False, 0.1)
     assert statuses(tasks, GoalStatus.ACCEPTED, now=0.2) == [Answered(7)]
     assert tasks.step(NAV2, 0.5) == []
 
@@ -146,7 +148,7 @@ def test_a_goal_that_fails_says_why(tasks):
     statuses(tasks, GoalStatus.EXECUTING)
     statuses(tasks, GoalStatus.ABORTED, now=3.0)
     assert tasks.step(NAV2, 3.1) == []
-    tasks.result_came(Action.TO_POSE, GoalStatus.ABORTED, 9003, "blocked by a gate")
+    tasks.result_came(RosAction.TO_POSE, GoalStatus.ABORTED, 9003, "blocked by a gate")
     assert tasks.step(NAV2, 3.2) == [
         Answered(7, "the robot gave up: blocked by a gate (error 9003)"),
         Idle(),
@@ -163,11 +165,11 @@ def test_a_goal_that_somebody_else_cancels_fails(tasks):
 def test_a_new_target_takes_the_place_of_the_one_before(tasks):
     tasks.order(7, TARGET, NAV2, 0.0)
     statuses(tasks, GoalStatus.EXECUTING)
-    assert tasks.order(8, TARGET, NAV2, 1.0) == [SendGoal(Action.TO_POSE, goal_id(8), TARGET, 8)]
+    assert tasks.order(8, TARGET, NAV2, 1.0) == [SendGoal(RosAction.TO_POSE, goal_id(8), TARGET, 8)]
     both = {goal_id(7): GoalStatus.EXECUTING, goal_id(8): GoalStatus.ACCEPTED}
-    assert tasks.statuses_came(Action.TO_POSE, both, 1.1) == [
+    assert tasks.statuses_came(RosAction.TO_POSE, both, 1.1) == [
         Answered(8),
-        CancelGoals(Action.TO_POSE, goal_id(7)),
+        CancelGoals(RosAction.TO_POSE, goal_id(7)),
     ]
     assert statuses(tasks, GoalStatus.ABORTED, message=7) == []
 
@@ -175,10 +177,10 @@ def test_a_new_target_takes_the_place_of_the_one_before(tasks):
 def test_another_action_begins_when_the_one_before_has_ended(tasks):
     tasks.order(7, TARGET, NAV2, 0.0)
     statuses(tasks, GoalStatus.EXECUTING)
-    assert tasks.order(8, PATH, NAV2, 1.0) == [CancelGoals(Action.TO_POSE, goal_id(7))]
+    assert tasks.order(8, PATH, NAV2, 1.0) == [CancelGoals(RosAction.TO_POSE, goal_id(7))]
     assert tasks.step(NAV2, 1.1) == []
     statuses(tasks, GoalStatus.CANCELED)
-    assert tasks.step(NAV2, 1.2) == [SendGoal(Action.FOLLOW_PATH, goal_id(8), PATH, 8)]
+    assert tasks.step(NAV2, 1.2) == [SendGoal(RosAction.FOLLOW_PATH, goal_id(8), PATH, 8)]
 
 
 def test_a_goal_that_an_earlier_process_sent_is_not_sent_again(tasks):
@@ -238,12 +240,12 @@ def test_a_stop_cancels_everything_and_says_speed_0_until_it_is_answered(tasks):
     tasks.order(7, TARGET, NAV2, 0.0)
     statuses(tasks, GoalStatus.EXECUTING)
     first = tasks.abort(NAV2, 1.0)
-    assert first == [ZeroTwist(), CancelGoals(Action.FOLLOW_PATH), CancelGoals(Action.TO_POSE)]
+    assert first == [ZeroTwist(), CancelGoals(RosAction.FOLLOW_PATH), CancelGoals(RosAction.TO_POSE)]
     assert tasks.step(NAV2, 1.05) == []
     assert tasks.step(NAV2, 1.1) == [ZeroTwist()]
-    assert CancelGoals(Action.TO_POSE) in tasks.step(NAV2, 1.6)
-    tasks.cancel_answered(Action.FOLLOW_PATH, CANCELED)
-    tasks.cancel_answered(Action.TO_POSE, CANCELED)
+    assert CancelGoals(RosAction.TO_POSE) in tasks.step(NAV2, 1.6)
+    tasks.cancel_answered(RosAction.FOLLOW_PATH, CANCELED)
+    tasks.cancel_answered(RosAction.TO_POSE, CANCELED)
     assert StopEnded() not in tasks.step(NAV2, 1.7)
     statuses(tasks, GoalStatus.CANCELED)
     assert tasks.step(NAV2, 1.8) == [StopEnded()]
@@ -253,11 +255,11 @@ def test_a_stop_cancels_everything_and_says_speed_0_until_it_is_answered(tasks):
 def test_a_stop_that_is_refused_says_who_did_not_answer_and_goes_on(tasks):
     statuses(tasks, GoalStatus.EXECUTING)
     tasks.abort(NAV2, 0.0)
-    tasks.cancel_answered(Action.FOLLOW_PATH, CANCELED)
-    tasks.cancel_answered(Action.TO_POSE, 1)
+    tasks.cancel_answered(RosAction.FOLLOW_PATH, CANCELED)
+    tasks.cancel_answered(RosAction.TO_POSE, 1)
     ended = [one for one in tasks.step(NAV2, 5.0) if isinstance(one, StopEnded)]
     assert "its server of NavigateToPose does not answer" in ended[0].refusal
-    assert CancelGoals(Action.TO_POSE) in tasks.step(NAV2, 7.5)
+    assert CancelGoals(RosAction.TO_POSE) in tasks.step(NAV2, 7.5)
 
 
 def test_nothing_is_begun_behind_a_stop_that_nobody_confirmed(tasks):
@@ -273,7 +275,7 @@ def test_what_comes_behind_a_stop_waits_for_its_end(tasks):
     for action in NAV2.actions:
         tasks.cancel_answered(action, CANCELED)
     assert tasks.step(NAV2, 0.2) == [StopEnded()]
-    assert tasks.step(NAV2, 0.3) == [SendGoal(Action.TO_POSE, goal_id(8), TARGET, 8)]
+    assert tasks.step(NAV2, 0.3) == [SendGoal(RosAction.TO_POSE, goal_id(8), TARGET, 8)]
 
 
 def test_a_stop_service_has_to_confirm(tasks):

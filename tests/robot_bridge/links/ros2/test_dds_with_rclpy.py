@@ -9,13 +9,19 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from robot_bridge.links.ros import positions
+from robot_bridge.links.ros import sensing
 from robot_bridge.links.ros.errors import FaultError, RosError
 from robot_bridge.links.ros.goals import GoalStatus, goal_id, statuses_of
-from robot_bridge.links.ros.types import GET_MAP
+from robot_bridge.links.ros.messages import GET_MAP
 from robot_bridge.links.ros2.dds import DdsSettings, Participant, Quality, quality_for
-from robot_bridge.links.ros2.interfaces import Interfaces
-from robot_bridge.links.ros2.names import action_names, service_names, topic_to_dds, type_to_dds, vendor_of
+from robot_bridge.links.ros2.interfaces import (
+    Interfaces,
+    action_names,
+    service_names,
+    topic_to_dds,
+    type_to_dds,
+    vendor_of,
+)
 from robot_bridge.links.ros2.services import ServiceClient, ServiceServer
 
 NAVIGATE = "nav2_msgs/action/NavigateToPose"
@@ -72,7 +78,7 @@ def test_odometry_is_read_as_best_effort(here, types):
     odometry = until(here, lambda: offered(here, "rt/r1/odom"))
     reader = here.reader("rt/r1/odom", odometry[0].type_name, quality_for(odometry))
     message = types.decode("nav_msgs/msg/Odometry", until(here, reader.read_samples)[-1])
-    pose = positions.odometry(message, "/r1/odom")
+    pose = sensing.odometry(message, "/r1/odom")
     assert (pose.frame, pose.x, pose.y) == ("map", 20.0, 8.0)
 
 

@@ -7,8 +7,7 @@ import logging
 import pytest
 
 from robot_bridge.links.base.errors import LinkError
-from robot_bridge.links.ros2.adapter import Ros2Adapter
-from robot_bridge.links.ros2.settings import Ros2Settings
+from robot_bridge.links.ros2.adapter import Ros2Adapter, Ros2Settings
 
 
 class Robot:

@@ -9,8 +9,7 @@ import tomllib
 pytest.importorskip("rosbags", reason="rosbags is not installed; run make setup")
 
 from robot_bridge.links.ros.settings import TopicSettings
-from robot_bridge.links.ros2.adapter import load
-from robot_bridge.links.ros2.settings import Ros2Settings
+from robot_bridge.links.ros2.adapter import Ros2Settings, load
 
 
 @pytest.mark.parametrize("name", ["shortest", "all"])

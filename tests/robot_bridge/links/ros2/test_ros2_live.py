@@ -392,7 +392,7 @@ def test_the_shortest_settings_of_the_guide_show_a_robot_and_send_it(bridge, nod
 
 def test_a_hostile_node_is_named_and_the_robots_go_on(desk, robot, adapter, nodes):
     from robot_bridge.links.ros2.dds import DdsSettings, Participant, Quality
-    from robot_bridge.links.ros2.names import type_to_dds
+    from robot_bridge.links.ros2.interfaces import type_to_dds
 
     name = robot(*FAST)
     hostile = Participant(DdsSettings(nodes.domain, "localhost"))

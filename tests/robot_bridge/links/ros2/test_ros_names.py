@@ -5,8 +5,8 @@ from __future__ import annotations
 import pytest
 
 from robot_bridge.links.ros.errors import RosNameError
-from robot_bridge.links.ros.names import TopicPattern
-from robot_bridge.links.ros2.names import (
+from robot_bridge.links.ros.settings import TopicPattern
+from robot_bridge.links.ros2.interfaces import (
     action_names,
     service_names,
     topic_from_dds,

@@ -7,18 +7,18 @@ import json
 
 import pytest
 
-from robot_bridge.access.credentials import Credentials
+from robot_bridge.core.messages import SetPosEnd
 from robot_bridge.links.base.adapter import Command
 from robot_bridge.links.base.errors import CommandRefusedError
-from robot_bridge.links.ros.effects import Action
+from robot_bridge.links.ros.effects import RosAction
 from robot_bridge.links.ros.goals import goal_id
 from robot_bridge.links.rosbridge.adapter import RosbridgeAdapter
 from robot_bridge.links.rosbridge.connection import MOST_ANSWERS_WAITING, MOST_WAITING, RosbridgeConnection
 from robot_bridge.links.rosbridge.decoding import ServiceCall
 from robot_bridge.links.rosbridge.settings import RosbridgeSettings, Server
-from robot_bridge.messages import SetPosEnd
+from robot_bridge.protocol.credentials import ClientCredentials
 
-SERVER = Server("ws://127.0.0.1:9", Credentials())
+SERVER = Server("ws://127.0.0.1:9", ClientCredentials())
 
 
 @pytest.fixture
@@ -45,8 +45,8 @@ async def test_a_command_without_the_server_is_refused_with_the_reason(adapter):
 
 
 def test_the_next_process_reads_which_goals_are_open(adapter, tmp_path):
-    adapter._book("r1").add(Action.TO_POSE, goal_id(7), frozenset([bytes(16)])).real = bytes(range(16))
-    adapter._book("r2").add(Action.TO_POSE, goal_id(8), frozenset()).is_over = True
+    adapter._book("r1").add(RosAction.TO_POSE, goal_id(7), frozenset([bytes(16)])).real = bytes(range(16))
+    adapter._book("r2").add(RosAction.TO_POSE, goal_id(8), frozenset()).is_over = True
     adapter._note_goals()
     again = RosbridgeAdapter(RosbridgeSettings(), SERVER, tmp_path / "far.goals")
     assert again._book("r1").find(goal_id(7)).real == bytes(range(16))

@@ -7,20 +7,19 @@ from collections import deque
 
 import pytest
 
-from robot_bridge.links.ros.effects import Abilities, Action, Answered, CancelGoals, Idle, SendGoal
+from robot_bridge.core.messages import SetPosEnd
+from robot_bridge.links.ros.effects import Abilities, Answered, CancelGoals, Idle, RosAction, SendGoal
 from robot_bridge.links.ros.goals import GoalStatus, goal_id
 from robot_bridge.links.ros.tasks import Tasks
 from robot_bridge.links.rosbridge import goals as goals_module
 from robot_bridge.links.rosbridge.connection import Inbox
 from robot_bridge.links.rosbridge.decoding import ActionFeedback, ActionResult
-from robot_bridge.links.rosbridge.goal_book import GoalBook
-from robot_bridge.links.rosbridge.goals import LEFT, LOST, SETTLED_AFTER, ActionGoals
+from robot_bridge.links.rosbridge.goals import LEFT, LOST, SETTLED_AFTER, ActionGoals, GoalBook
 from robot_bridge.links.rosbridge.graph import Graph
-from robot_bridge.messages import SetPosEnd
 
 TOPIC = "/r1/navigate_to_pose"
 STATUS = f"{TOPIC}/_action/status"
-NAV2 = Abilities(actions=frozenset({Action.TO_POSE}))
+NAV2 = Abilities(actions=frozenset({RosAction.TO_POSE}))
 TARGET = SetPosEnd(5.0, 6.0)
 OTHERS, REAL = bytes(16), bytes(range(16))
 LATER = SETTLED_AFTER + 1.0
@@ -67,7 +66,7 @@ class Robot:
 
     def see(self, *, actions=(TOPIC,), publishers=1):
         graph = Graph(self.connection.session, actions=frozenset(actions), publishers={STATUS: publishers})
-        self.goals.meet(Action.TO_POSE, TOPIC, graph)
+        self.goals.meet(RosAction.TO_POSE, TOPIC, graph)
 
     def hear(self, statuses):
         told = [
@@ -122,7 +121,7 @@ def test_a_goal_waits_no_longer_than_a_latched_message_takes(robot):
 
 def test_a_goal_that_waits_is_not_sent_after_a_stop(robot):
     robot.order(7)
-    assert robot.goals.cancel(CancelGoals(Action.TO_POSE)) == {}
+    assert robot.goals.cancel(CancelGoals(RosAction.TO_POSE)) == {}
     robot.hear({OTHERS: GoalStatus.EXECUTING})
     assert not robot.connection.sent
 
@@ -131,7 +130,7 @@ def test_one_goal_is_canceled_by_the_id_that_it_has_on_the_robot(robot):
     robot.hear({})
     robot.order(7)
     robot.hear({REAL: GoalStatus.EXECUTING})
-    asked = robot.goals.cancel(CancelGoals(Action.TO_POSE, goal_id(7)))
+    asked = robot.goals.cancel(CancelGoals(RosAction.TO_POSE, goal_id(7)))
     assert asked == {"goal_info": {"goal_id": {"uuid": list(REAL)}}}
 
 
@@ -142,7 +141,7 @@ def test_a_goal_that_shows_up_after_it_was_given_up_is_canceled(robot):
     cancel, refused = robot.poll()
     assert "did not answer" in refused.refusal
     assert robot.goals.cancel(cancel) is None and robot.connection.canceled == [robot.connection.sent[0][0]]
-    assert CancelGoals(Action.TO_POSE, goal_id(7)) in robot.hear({REAL: GoalStatus.EXECUTING})
+    assert CancelGoals(RosAction.TO_POSE, goal_id(7)) in robot.hear({REAL: GoalStatus.EXECUTING})
 
 
 def test_a_goal_that_never_showed_up_does_not_claim_the_next_one(robot):

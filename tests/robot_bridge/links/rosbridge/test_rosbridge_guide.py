@@ -5,7 +5,7 @@ from __future__ import annotations
 import msgspec
 import tomllib
 
-from robot_bridge.access import certificates
+from robot_bridge.gateway.auth import certificates
 from robot_bridge.links.rosbridge.adapter import load
 from robot_bridge.links.rosbridge.settings import RosbridgeSettings
 

@@ -10,15 +10,14 @@ import cbor2
 import pytest
 from websockets.asyncio.server import serve
 
-from robot_bridge.access import certificates
-from robot_bridge.access.credentials import Credentials
-from robot_bridge.access.errors import AccessError
+from robot_bridge.gateway.auth import certificates
 from robot_bridge.links.base.errors import LinkError
 from robot_bridge.links.rosbridge.adapter import load
 from robot_bridge.links.rosbridge.connection import RosbridgeConnection, Subscription
 from robot_bridge.links.rosbridge.decoding import LARGEST_FRAME
 from robot_bridge.links.rosbridge.graph import GraphWatch
 from robot_bridge.links.rosbridge.settings import Server
+from robot_bridge.protocol.credentials import AccessError, ClientCredentials
 
 GOOD = json.dumps({"op": "publish", "topic": "/r1/battery", "msg": {"percentage": 0.5}})
 BATTERY = Subscription("sensor_msgs/msg/BatteryState")
@@ -55,7 +54,7 @@ class Client:
     """A connection with one subscription, while the block lasts."""
 
     def __init__(self, url, **options):
-        self.connection = RosbridgeConnection(Server(url, Credentials(**options)))
+        self.connection = RosbridgeConnection(Server(url, ClientCredentials(**options)))
         self.inbox = self.connection.subscribe("/r1/battery", BATTERY)
 
     async def __aenter__(self):
@@ -154,8 +153,10 @@ async def test_wss_is_trusted_by_its_authority_alone_and_shown_a_token(tmp_path)
             await stranger.until(lambda: "certificate" in (stranger.connection.away or "").lower())
         assert len(server.headers) == 1
     with pytest.raises(AccessError, match="without TLS everybody on the way reads"):
-        Server("ws://robots.example:9090", Credentials(token)).options()
-    shown = Server("wss://robots.example", Credentials(), "fleet", token).options()["additional_headers"]
+        Server("ws://robots.example:9090", ClientCredentials(token)).options()
+    shown = Server("wss://robots.example", ClientCredentials(), "fleet", token).options()[
+        "additional_headers"
+    ]
     assert shown == {"Authorization": "Basic ZmxlZXQ6YS10b2tlbi1vZi10aGUtcHJveHk="}
 
 

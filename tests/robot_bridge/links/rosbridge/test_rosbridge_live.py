@@ -14,9 +14,9 @@ from stage.patience import BUSY
 from stage.processes import Processes
 from websockets.sync.client import connect
 
-from robot_bridge.access.credentials import Credentials
 from robot_bridge.links.rosbridge.connection import RosbridgeConnection, Subscription
 from robot_bridge.links.rosbridge.settings import Server
+from robot_bridge.protocol.credentials import ClientCredentials
 
 SETTINGS = """
 [gateway]
@@ -335,7 +335,7 @@ def test_a_network_that_was_cut_loses_nothing_and_does_nothing_twice(
 
 
 async def test_more_than_the_server_takes_at_once_keeps_the_connection_and_all_of_it_arrives(server):
-    connection = RosbridgeConnection(Server(server.url, Credentials()))
+    connection = RosbridgeConnection(Server(server.url, ClientCredentials()))
     carrying = asyncio.create_task(connection.run())
     text, seen = Subscription("std_msgs/msg/String"), []
     try:

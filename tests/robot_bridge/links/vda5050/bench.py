@@ -6,12 +6,11 @@ import itertools
 import json
 from typing import Any
 
-from fleet_supervisor.robot_bridge.links.vda5050.effects import Halted, Keep, Publish, Report, Settled
-from fleet_supervisor.robot_bridge.links.vda5050.inbound import decode_message
-from fleet_supervisor.robot_bridge.links.vda5050.memory import Remembered
-from fleet_supervisor.robot_bridge.links.vda5050.outbound import Order, VehicleId
+from fleet_supervisor.robot_bridge.core.messages import Request, SetPath, SetPosEnd, SetPosIni
+from fleet_supervisor.robot_bridge.links.vda5050.ledger import Halted, Keep, Publish, Settled, VehicleReport
+from fleet_supervisor.robot_bridge.links.vda5050.messages import Order, VehicleId, decode_message
+from fleet_supervisor.robot_bridge.links.vda5050.tasks import Remembered
 from fleet_supervisor.robot_bridge.links.vda5050.vehicle import VehicleController, VehicleSettings
-from fleet_supervisor.robot_bridge.messages import Request, SetPath, SetPosEnd, SetPosIni
 
 VEHICLE = VehicleId("Acme", "agv-1")
 
@@ -124,7 +123,7 @@ class Bench:
     def collect(self) -> None:
         for effect in self.controller.drain():
             self.effects.append(effect)
-            if isinstance(effect, Report):
+            if isinstance(effect, VehicleReport):
                 self.said.append(effect.request)
             elif isinstance(effect, Publish):
                 self.published.append(effect.message)

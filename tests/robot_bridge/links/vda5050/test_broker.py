@@ -13,11 +13,11 @@ from stage.database_server import find_program
 from stage.errors import StageError
 from stage.processes import Processes
 
-from robot_bridge.access import certificates
+from robot_bridge.gateway.auth import certificates
 from robot_bridge.links.base.errors import LinkError
 from robot_bridge.links.base.settings import read_settings
 from robot_bridge.links.vda5050.broker import Broker, check_granted
-from robot_bridge.links.vda5050.outbound import Topics
+from robot_bridge.links.vda5050.messages import Topics
 from robot_bridge.links.vda5050.settings import Vda5050Settings, broker_address, check
 
 from .peers import Yard

@@ -7,7 +7,7 @@ import re
 import pytest
 import tomllib
 
-from robot_bridge.access import certificates
+from robot_bridge.gateway.auth import certificates
 from robot_bridge.links.base.settings import read_settings
 from robot_bridge.links.kinds import load
 from robot_bridge.links.vda5050.settings import Vda5050Settings, check

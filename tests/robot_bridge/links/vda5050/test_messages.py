@@ -7,12 +7,26 @@ from importlib import resources
 
 import jsonschema
 import pytest
-from fleet_supervisor.robot_bridge.links.vda5050.errors import Vda5050Error, VehicleMessageError
-from fleet_supervisor.robot_bridge.links.vda5050.inbound import Connection, Factsheet, State, decode_message
-from fleet_supervisor.robot_bridge.links.vda5050.memory import Memory, Remembered, RememberedTask
-from fleet_supervisor.robot_bridge.links.vda5050.outbound import MessageWriter, Order, Topics, VehicleId
-from fleet_supervisor.robot_bridge.links.vda5050.route import RouteLimits, begin_plan
-from fleet_supervisor.robot_bridge.messages import SendPos, SetPath, SetPosEnd, SetPosIni
+from fleet_supervisor.robot_bridge.core.messages import SendPos, SetPath, SetPosEnd, SetPosIni
+from fleet_supervisor.robot_bridge.links.vda5050.messages import (
+    Connection,
+    Factsheet,
+    MessageWriter,
+    Order,
+    State,
+    Topics,
+    Vda5050Error,
+    VehicleId,
+    VehicleMessageError,
+    decode_message,
+)
+from fleet_supervisor.robot_bridge.links.vda5050.tasks import (
+    Memory,
+    Remembered,
+    RememberedTask,
+    RouteLimits,
+    begin_plan,
+)
 
 from .bench import Bench, fault, of_3_0, state
 

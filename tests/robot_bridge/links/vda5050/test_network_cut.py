@@ -9,7 +9,7 @@ from cut_line import CutLine
 from stage.database_server import free_port
 from stage.processes import Processes
 
-from robot_bridge.access import certificates
+from robot_bridge.gateway.auth import certificates
 
 from .driving import SLOW, begin, orders_of, send, steps, wait_for_standing, wait_under_way
 from .peers import Yard

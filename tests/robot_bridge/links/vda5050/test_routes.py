@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 import pytest
-from fleet_supervisor.robot_bridge.links.vda5050.route import RouteLimits, begin_plan
+from fleet_supervisor.robot_bridge.links.vda5050.tasks import RouteLimits, begin_plan
 from hypothesis import given
 from hypothesis import strategies as st
 

@@ -3,15 +3,8 @@
 from __future__ import annotations
 
 import pytest
-from fleet_supervisor.robot_bridge.links.vda5050.effects import Keep, Publish, Settled
-from fleet_supervisor.robot_bridge.messages import (
-    Alive,
-    SendPos,
-    SetPath,
-    SetPosEnd,
-    SetPosIni,
-    Stopped,
-)
+from fleet_supervisor.robot_bridge.core.messages import Alive, SendPos, SetPath, SetPosEnd, SetPosIni, Stopped
+from fleet_supervisor.robot_bridge.links.vda5050.ledger import Keep, Publish, Settled
 
 from .bench import Bench, fault
 

@@ -8,9 +8,9 @@ import pyogrio.raw
 import pytest
 import shapely
 
-from robot_bridge.roads.centrelines import centrelines
-from robot_bridge.roads.network import Network, build_network
-from robot_bridge.roads.routes import Restrictions, Router
+from robot_bridge.core.roads.centrelines import centrelines
+from robot_bridge.core.roads.network import Network, build_network
+from robot_bridge.core.roads.routes import Restrictions, Router
 
 
 @pytest.fixture(scope="session")

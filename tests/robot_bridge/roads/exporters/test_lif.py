@@ -9,10 +9,9 @@ import networkx
 import numpy as np
 import pytest
 
-from robot_bridge.roads.centrelines import BACKWARD, FORWARD, centrelines
-from robot_bridge.roads.exporters.lif import LayoutNames, lif
-from robot_bridge.roads.exporters.open_roads import open_roads
-from robot_bridge.roads.network import build_network
+from robot_bridge.core.roads.centrelines import BACKWARD, FORWARD, centrelines
+from robot_bridge.core.roads.graph_export import LayoutNames, lif_document, open_roads
+from robot_bridge.core.roads.network import build_network
 
 parser = pytest.importorskip("vdma_lif.parser", reason="make setup installs vdma-lif, which reads layouts")
 interpolate = pytest.importorskip("scipy.interpolate", reason="make setup installs scipy")
@@ -22,7 +21,7 @@ NAMES = LayoutNames("Campus", "ground", "acme.carrier")
 
 
 def layout_of(roads):
-    content = lif(open_roads(build_network(roads)), NAMES, AT)
+    content = lif_document(open_roads(build_network(roads)), NAMES, AT)
     (layout,) = parser.LIFParser.from_json(content.decode()).layouts
     return layout
 
@@ -58,7 +57,7 @@ def _points(trajectory):
 
 
 def test_the_head_says_what_it_is_and_of_when():
-    content = lif(build_network(centrelines([[(0, 0), (10, 0)]])), NAMES, AT)
+    content = lif_document(build_network(centrelines([[(0, 0), (10, 0)]])), NAMES, AT)
     collection = parser.LIFParser.from_json(content.decode())
     meta = collection.meta_information
     assert (meta.project_identification, meta.lif_version) == ("Campus", "1.0.0")
@@ -72,7 +71,9 @@ def test_the_head_says_what_it_is_and_of_when():
 
 
 def test_what_the_published_structure_requires_is_there():
-    layout = json.loads(lif(build_network(centrelines([[(0, 0), (5, 5), (10, 0)]])), NAMES, AT))["layouts"][0]
+    layout = json.loads(lif_document(build_network(centrelines([[(0, 0), (5, 5), (10, 0)]])), NAMES, AT))[
+        "layouts"
+    ][0]
     assert {"layoutId", "layoutVersion", "nodes", "edges", "stations"} <= layout.keys()
     for edge in layout["edges"]:
         (traits,) = edge["vehicleTypeEdgeProperties"]
@@ -101,5 +102,5 @@ def test_curves_have_trajectories_in_their_direction_and_may_be_turned_on():
 
 
 def test_ways_in_a_real_city_are_as_long_as_the_projects_own(helsinki, compared):
-    (layout,) = parser.LIFParser.from_json(lif(open_roads(helsinki), NAMES, AT).decode()).layouts
+    (layout,) = parser.LIFParser.from_json(lif_document(open_roads(helsinki), NAMES, AT).decode()).layouts
     assert compared(graph_of(layout), "metres") > 100

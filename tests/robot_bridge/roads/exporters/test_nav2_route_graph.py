@@ -9,10 +9,9 @@ import networkx
 import numpy as np
 import pytest
 
-from robot_bridge.roads.centrelines import BACKWARD, FORWARD, centrelines
-from robot_bridge.roads.exporters.nav2_route_graph import largest_error, nav2_route_graph
-from robot_bridge.roads.exporters.open_roads import open_roads
-from robot_bridge.roads.network import build_network
+from robot_bridge.core.roads.centrelines import BACKWARD, FORWARD, centrelines
+from robot_bridge.core.roads.graph_export import largest_error, nav2_route_graph, open_roads
+from robot_bridge.core.roads.network import build_network
 
 LARGEST_ID = 2**32 - 1
 

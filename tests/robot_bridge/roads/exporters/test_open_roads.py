@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from robot_bridge.roads.centrelines import centrelines
-from robot_bridge.roads.errors import RoadExportError
-from robot_bridge.roads.exporters.open_roads import open_roads
-from robot_bridge.roads.network import build_network
+from robot_bridge.core.errors import RoadExportError
+from robot_bridge.core.roads.centrelines import centrelines
+from robot_bridge.core.roads.graph_export import open_roads
+from robot_bridge.core.roads.network import build_network
 
 CROSS = [[(0, 0), (10, 0)], [(10, 0), (10, 10)], [(10, 0), (20, 5)]]
 

@@ -10,12 +10,11 @@ import pyogrio.raw
 import pytest
 import shapely
 
-from robot_bridge.roads.centrelines import FORWARD, centrelines
-from robot_bridge.roads.errors import CancelledError, RoadsError
-from robot_bridge.roads.surfaces.generation import generate, polygon_of
-from robot_bridge.roads.surfaces.index import NOWHERE, SurfaceIndex
-from robot_bridge.roads.surfaces.surface import DRAWN, GENERATED, Surface
-from robot_bridge.sites.publication import read_site
+from robot_bridge.core.errors import RoadsCancelledError, RoadsError
+from robot_bridge.core.roads.centrelines import DRAWN, FORWARD, GENERATED, Surface, centrelines
+from robot_bridge.core.roads.surface_generation import generate_surfaces, polygon_of
+from robot_bridge.core.roads.surface_index import NOWHERE, SurfaceIndex
+from robot_bridge.core.sites.site import read_site
 
 
 def shapes(surfaces):
@@ -32,7 +31,7 @@ def same(a, b):
 
 
 def test_a_road_is_a_strip_of_its_width_with_square_ends():
-    (made,) = generate(centrelines([[(0, 0), (10, 0)]], width=4.0, surface="asphalt"))
+    (made,) = generate_surfaces(centrelines([[(0, 0), (10, 0)]], width=4.0, surface="asphalt"))
     assert same(polygon_of(made.rings), shapely.box(0, -2, 10, 2))
     assert (made.label, made.origin) == ("asphalt", GENERATED)
 
@@ -50,33 +49,33 @@ CORNER = outline((0, -2), (12, -2), (12, 10), (8, 10), (8, 2), (0, 2))
     ],
 )
 def test_a_corner_is_mitred_within_a_road_and_where_two_end_in_one_point(lines):
-    made = generate(centrelines(lines, width=4.0, surface="asphalt"))
+    made = generate_surfaces(centrelines(lines, width=4.0, surface="asphalt"))
     assert len(made) == 1
     assert polygon_of(made[0].rings).symmetric_difference(CORNER).area < 0.01
 
 
 def test_a_sharp_corner_is_cut_off_at_twice_half_the_width():
-    (made,) = generate(centrelines([[(0, 0), (100, 0), (0, 10)]], width=4.0))
+    (made,) = generate_surfaces(centrelines([[(0, 0), (100, 0), (0, 10)]], width=4.0))
     # Uncut it would reach 40 m further.
     assert 103 < np.array(made.rings[0])[:, 0].max() < 104.2
 
 
 def test_a_merge_leaves_no_spike_beyond_its_node():
     lines = [[(0, 0), (50, 0)], [(0, 10), (50, 0)], [(50, 0), (100, 0)]]
-    whole = shapes(generate(centrelines(lines, width=4.0)))[""]
+    whole = shapes(generate_surfaces(centrelines(lines, width=4.0)))[""]
     assert whole.intersection(shapely.box(52, -50, 100, 50)).area == pytest.approx(48 * 4, abs=1e-6)
 
 
 def test_roads_that_turn_back_into_each_other_have_no_tip_beyond_their_node():
     lines = [[(0, 0), (50, 0)], [(50, 0), (0, 20)]]
-    whole = shapes(generate(centrelines(lines, width=4.0)))[""]
+    whole = shapes(generate_surfaces(centrelines(lines, width=4.0)))[""]
     strips = [shapely.LineString(line).buffer(2.0, cap_style="flat") for line in lines]
     assert same(whole, shapely.union_all(strips))
 
 
 def test_the_corner_of_two_widths_is_as_wide_as_the_narrower():
     lines = [[(0, 0), (10, 0)], [(10, 0), (10, 10)]]
-    whole = shapes(generate(centrelines(lines, width=[4.0, 2.0])))[""]
+    whole = shapes(generate_surfaces(centrelines(lines, width=[4.0, 2.0])))[""]
     boxes = [(0, -2, 10, 2), (9, 0, 11, 10), (10, -1, 11, 0)]
     assert same(whole, shapely.union_all([shapely.box(*box) for box in boxes]))
 
@@ -84,26 +83,26 @@ def test_the_corner_of_two_widths_is_as_wide_as_the_narrower():
 def test_a_corner_takes_nothing_from_a_wider_road_of_another_class():
     lines = [[(0, 0), (40, 0)], [(20, -30), (20, 0)], [(40, 0), (80, 0)]]
     roads = centrelines(lines, width=[16.0, 6.0, 16.0], surface=["parking pavement", "asphalt", "gravel"])
-    whole = shapes(generate(roads))
+    whole = shapes(generate_surfaces(roads))
     assert same(whole["asphalt"], shapely.box(17, -30, 23, 0))
     two = [[(0, 0), (20, 0)], lines[1], [(20, 0), (40, 0)]]
     apart = centrelines(two, [16.0, 6.0, 16.0], ["parking pavement", "asphalt", "parking pavement"])
-    assert same(shapes(generate(apart))["asphalt"], shapely.box(17, -30, 23, 0))
+    assert same(shapes(generate_surfaces(apart))["asphalt"], shapely.box(17, -30, 23, 0))
     aside = centrelines([lines[0], [(40, -30), (40, 0)]], [16.0, 6.0], ["parking pavement", "asphalt"])
-    whole = shapes(generate(aside))
+    whole = shapes(generate_surfaces(aside))
     assert same(whole["parking pavement"], shapely.box(0, -8, 40, 8) - shapely.box(37, -30, 43, 0))
     assert same(whole["asphalt"], shapely.box(37, -30, 43, 0) | shapely.box(40, 0, 43, 3))
 
 
 def test_slits_between_lanes_that_almost_touch_are_closed():
     lines = [[(0, 0), (30, 0)], [(0, 3.02), (30, 3.02)], [(0, -2), (0, 5)], [(30, -2), (30, 5)]]
-    (made,) = generate(centrelines(lines, width=3.0))
+    (made,) = generate_surfaces(centrelines(lines, width=3.0))
     assert len(made.rings) == 1
 
 
 def test_roads_that_cross_are_one_surface_with_the_holes_that_they_enclose():
     square = [[(0, 0), (20, 0)], [(20, 0), (20, 20)], [(20, 20), (0, 20)], [(0, 20), (0, 0)]]
-    (made,) = generate(centrelines([*square, [(-10, 10), (30, 10)]], width=4.0, surface="asphalt"))
+    (made,) = generate_surfaces(centrelines([*square, [(-10, 10), (30, 10)]], width=4.0, surface="asphalt"))
     assert len(made.rings) == 3
     assert polygon_of(made.rings).area == pytest.approx(24 * 24 - 2 * 16 * 6 + 2 * 8 * 4)
 
@@ -116,7 +115,7 @@ ROADS = centrelines(
 
 
 def test_classes_are_kept_apart_and_the_first_in_the_order_keeps_the_ground():
-    whole = shapes(generate(ROADS))
+    whole = shapes(generate_surfaces(ROADS))
     strips = {
         "asphalt": shapely.box(0, -3, 100, 3),
         "slippery": shapely.box(48, -20, 52, 20),
@@ -130,7 +129,7 @@ def test_classes_are_kept_apart_and_the_first_in_the_order_keeps_the_ground():
 
 
 def test_the_order_can_be_another_and_without_one_less_ground_goes_first():
-    given = shapes(generate(ROADS, precedence=["gravel", "parking pavement"]))
+    given = shapes(generate_surfaces(ROADS, precedence=["gravel", "parking pavement"]))
     assert given["gravel"].area == pytest.approx(200)
     assert given["Parking_pavement"].area == pytest.approx(320)
     assert given["slippery"].area == pytest.approx(160)
@@ -139,7 +138,7 @@ def test_the_order_can_be_another_and_without_one_less_ground_goes_first():
 
 def test_ground_without_a_class_goes_last():
     roads = centrelines([[(0, 0), (10, 0)], [(0, 0), (100, 0)]], width=4.0, surface=["", "sand"])
-    whole = shapes(generate(roads))
+    whole = shapes(generate_surfaces(roads))
     assert set(whole) == {"sand"}
 
 
@@ -147,7 +146,7 @@ def test_what_was_drawn_keeps_its_ground_whatever_its_class():
     square = np.array([(40, -10), (60, -10), (60, 10), (40, 10), (40, -10)], float)
     patch = Surface((square,), "sand", "Patch")
     broken = Surface((np.array([(0, 30), (9, 39), (9, 30), (0, 39), (0, 30)], float),), "bow")
-    made = generate(ROADS, [patch, broken])
+    made = generate_surfaces(ROADS, [patch, broken])
     assert all(polygon_of(one.rings).intersection(polygon_of(patch.rings)).area < 1e-9 for one in made)
     index = SurfaceIndex([*made, patch, broken])
     assert index.surface_at(50, 0).origin == DRAWN
@@ -159,7 +158,7 @@ def test_no_ground_is_in_two_surfaces_and_none_is_lost():
     lines = random.uniform(0, 100, (60, 3, 2))
     names = random.choice(["asphalt", "slippery", "sand", "stone", ""], 60)
     roads = centrelines(lines, width=random.uniform(2, 6, 60), surface=names)
-    made = [polygon_of(one.rings) for one in generate(roads)]
+    made = [polygon_of(one.rings) for one in generate_surfaces(roads)]
     assert all(a.intersection(b).area < 1e-6 for a, b in combinations(made, 2))
     strips = [
         shapely.LineString(line).buffer(width / 2, cap_style="flat", join_style="mitre", mitre_limit=2)
@@ -170,20 +169,20 @@ def test_no_ground_is_in_two_surfaces_and_none_is_lost():
 
 def test_it_can_be_cancelled_and_tells_how_far_it_is():
     shares = []
-    generate(ROADS, progress=lambda share: shares.append(share) or True)
+    generate_surfaces(ROADS, progress=lambda share: shares.append(share) or True)
     assert shares == sorted(shares) and shares[-1] == pytest.approx(1.0)
-    with pytest.raises(CancelledError):
-        generate(ROADS, progress=lambda share: share < 0.5)
+    with pytest.raises(RoadsCancelledError):
+        generate_surfaces(ROADS, progress=lambda share: share < 0.5)
 
 
 def test_without_roads_there_are_no_surfaces():
-    assert generate(centrelines([])) == []
+    assert generate_surfaces(centrelines([])) == []
 
 
 def test_without_shapely_it_says_what_to_install(monkeypatch):
     monkeypatch.setitem(sys.modules, "shapely", None)
     with pytest.raises(RoadsError, match="shapely 2 is missing"):
-        generate(ROADS)
+        generate_surfaces(ROADS)
 
 
 def test_the_real_track_of_its_lanes_and_a_real_drive_on_it(data):
@@ -193,7 +192,7 @@ def test_the_real_track_of_its_lanes_and_a_real_drive_on_it(data):
     meta, _, wkb, columns = pyogrio.raw.read(lanes, layer="centrelines", where=where)
     width = dict(zip(meta["fields"], columns, strict=True))["width_m"]
     lines = [shapely.get_coordinates(line) for line in shapely.from_wkb(wkb)]
-    made = generate(centrelines(lines, width=width, surface="asphalt", direction=FORWARD))
+    made = generate_surfaces(centrelines(lines, width=width, surface="asphalt", direction=FORWARD))
     whole = shapely.union_all([polygon_of(one.rings) for one in made])
     _, _, wkb, _ = pyogrio.raw.read(data / "zalazone" / "university_track_surfaces_derived_utm33.gpkg")
     digitised = shapely.union_all(shapely.from_wkb(wkb))
@@ -212,7 +211,7 @@ def test_the_sample_sites_roads_make_the_surfaces_that_are_drawn_there_but_for_r
     site = read_site(root / "resources" / "sample_site")
     lines = site.centrelines
     made = shapes(
-        generate(
+        generate_surfaces(
             centrelines(
                 [line.points for line in lines],
                 width=[line.width_m for line in lines],

@@ -7,10 +7,10 @@ import pyogrio.raw
 import pytest
 import shapely
 
-from robot_bridge.roads.errors import RoadInputError
-from robot_bridge.roads.surfaces.generation import polygon_of, rings_of
-from robot_bridge.roads.surfaces.index import NOWHERE, SurfaceIndex
-from robot_bridge.roads.surfaces.surface import GENERATED, Surface
+from robot_bridge.core.errors import RoadInputError
+from robot_bridge.core.roads.centrelines import GENERATED, Surface
+from robot_bridge.core.roads.surface_generation import polygon_of, rings_of
+from robot_bridge.core.roads.surface_index import NOWHERE, SurfaceIndex
 
 
 def ring(*corners):

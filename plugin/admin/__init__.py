@@ -1,0 +1,1 @@
+"""Administration by a supervisor: operators' accounts and the site that is served."""

@@ -1,0 +1,482 @@
+"""Operators' accounts: the dialog, its model and its forms."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from datetime import datetime
+from typing import Any
+
+from qgis.gui import QgisInterface
+from qgis.PyQt.QtCore import QObject, Qt, pyqtSignal
+from qgis.PyQt.QtGui import QFontDatabase
+from qgis.PyQt.QtWidgets import (
+    QApplication,
+    QComboBox,
+    QDialog,
+    QDialogButtonBox,
+    QLineEdit,
+    QMessageBox,
+    QPushButton,
+    QVBoxLayout,
+    QWidget,
+)
+
+from ...robot_bridge.core.messages import (
+    AddOperator,
+    GetOperators,
+    GetSessions,
+    NewToken,
+    OperatorReport,
+    Operators,
+    RevokeToken,
+    Role,
+    RotateToken,
+    SessionReport,
+    SetRole,
+    TokenState,
+    new_token,
+    open_session,
+    operators_report,
+)
+from ..control.fleet_controller import FleetController
+from ..gateway_client.link import ROLES
+from ..help import ACCOUNTS
+from ..panel.connection_panel import ConnectionMenu
+from ..ui.dialogs import QuestionDialog, WrappingLabel, confirm
+from ..ui.language import tr, tr_count
+from ..ui.tables import TextModel
+from .supervisor_dialog import DialogAction, SupervisorDialog, fit_columns
+
+# --- Operators' accounts as rows of a table ---
+
+COLUMNS = (tr("Operator"), tr("Role"), tr("Since"), tr("Last connected"), tr("Token"))
+NOW = tr("connected now")
+
+
+@dataclass(frozen=True)
+class Account:
+    """An account; ``is_own`` when this desk is connected with it, ``is_connected`` when any desk is."""
+
+    report: OperatorReport
+    is_own: bool = False
+    is_connected: bool = False
+
+    @property
+    def name(self) -> str:
+        return self.report.operator
+
+
+def read_accounts(
+    operators: Iterable[OperatorReport], sessions: Iterable[SessionReport], own: str
+) -> list[Account]:
+    """Return the accounts in the order in which they are given; ``own`` is this desk's."""
+    connected = {session.operator for session in sessions}
+    return [Account(one, one.operator == own, one.operator in connected) for one in operators]
+
+
+class AccountModel(TextModel):
+    """One row for each account."""
+
+    def __init__(self, parent: QObject | None = None):
+        super().__init__(COLUMNS, account_cells, parent)
+
+
+def account_cells(account: Account) -> tuple[str, ...]:
+    """Return what the columns show of an account."""
+    report = account.report
+    name = tr("{operator} (you)", operator=report.operator) if account.is_own else report.operator
+    seen = NOW if account.is_connected else day_and_time(report.used_at)
+    return name, ROLES[report.role], day_and_time(report.created_at), seen, token_in_words(report)
+
+
+def token_in_words(report: OperatorReport) -> str:
+    """Return how an account's newest token stands."""
+    if report.token is TokenState.REVOKED:
+        return tr("revoked {time}", time=day_and_time(report.revoked_at))
+    if report.token is TokenState.EXPIRED:
+        return tr("expired {time}", time=day_and_time(report.expires_at))
+    if report.token is TokenState.NONE:
+        return tr("none")
+    return until_in_words(report.expires_at)
+
+
+def until_in_words(expires_at: float | None) -> str:
+    """Return how long a token holds."""
+    if expires_at is None:
+        return tr("holds")
+    return tr("holds until {time}", time=day_and_time(expires_at))
+
+
+def day_and_time(at: float | None) -> str:
+    """Return a time since 1970 in the computer's time zone, to the minute; a dash for none."""
+    return "–" if at is None else datetime.fromtimestamp(at).strftime("%Y-%m-%d %H:%M")
+
+
+# --- What is asked before an account is made or changed. None of these does anything by itself ---
+
+DAY = 86_400.0
+VALIDITIES = (
+    (tr("until it is revoked"), None),
+    (tr("for 1 day"), DAY),
+    (tr("for 7 days"), 7 * DAY),
+    (tr("for 30 days"), 30 * DAY),
+    (tr("for 90 days"), 90 * DAY),
+    (tr("for 1 year"), 365 * DAY),
+)
+"""How long a token may hold; seconds, None for no end."""
+LONGEST_NAME = 128
+"""Characters of an operator's name that gateways take."""
+
+
+class NewAccountDialog(QuestionDialog):
+    """``confirmed`` has the name, the role and for how many seconds the token holds, None for no end."""
+
+    confirmed = pyqtSignal(str, object, object)
+
+    def __init__(self, is_first: bool, parent: QWidget):
+        text = tr("The gateway makes a token for the account. It is shown once, to be handed over.")
+        if is_first:
+            text = tr(
+                "This gateway has no accounts yet: everybody on its computer may do everything. The first "
+                "account ends that for good, and this connection too: connect again with its token. It "
+                "has to be a supervisor's."
+            )
+        super().__init__(
+            "fleet_new_account",
+            tr("New account"),
+            ("fleet_new_account_confirm", tr("Make account")),
+            is_safe=False,
+            parent=parent,
+        )
+        self.add_text(text)
+        self._name = QLineEdit()
+        self._name.setMaxLength(LONGEST_NAME)
+        self.add_field(tr("&Name"), self._name, "fleet_account_name")
+        self._role = _add_role(self, Role.SUPERVISOR if is_first else Role.VIEWER)
+        self._validity = _add_validity(self)
+        self.lay_out()
+        self._name.textChanged.connect(self._named)
+        self._named()
+        self.accepted.connect(
+            lambda: self.confirmed.emit(
+                self._name.text().strip(), _chosen(self._role), self._validity.currentData()
+            )
+        )
+
+    def _named(self) -> None:
+        self.confirm.setEnabled(bool(self._name.text().strip()))
+
+
+class ChangeRoleDialog(QuestionDialog):
+    """``confirmed`` has the role that was chosen."""
+
+    confirmed = pyqtSignal(object)
+
+    def __init__(self, account: Account, parent: QWidget):
+        text = tr(
+            "{operator} is {role}. Another role holds from the next thing on that is asked for, also over "
+            "connections that are open.",
+            operator=account.name,
+            role=ROLES[account.report.role],
+        )
+        warning = tr("This is your own account: without being a supervisor you cannot undo it.")
+        super().__init__(
+            "fleet_another_role",
+            tr("Role of {operator}", operator=account.name),
+            ("fleet_another_role_confirm", tr("Change role")),
+            is_safe=account.is_own,
+            parent=parent,
+        )
+        self.add_text(text)
+        self.add_text(warning if account.is_own else "")
+        self._role = _add_role(self, account.report.role)
+        self.lay_out()
+        self.accepted.connect(lambda: self.confirmed.emit(_chosen(self._role)))
+
+
+class RenewTokenDialog(QuestionDialog):
+    """``confirmed`` has for how many seconds the new token holds, None for no end."""
+
+    confirmed = pyqtSignal(object)
+
+    def __init__(self, account: Account, parent: QWidget):
+        text = tr(
+            "{operator} gets a new token. The one before ends at once, with every connection that it opened.",
+            operator=account.name,
+        )
+        warning = tr("This is your own account: this desk is cut off until you enter the new token.")
+        super().__init__(
+            "fleet_another_token",
+            tr("New token for {operator}", operator=account.name),
+            ("fleet_another_token_confirm", tr("Make token")),
+            is_safe=True,
+            parent=parent,
+        )
+        self.add_text(text)
+        self.add_text(warning if account.is_own else "")
+        self._validity = _add_validity(self)
+        self.lay_out()
+        self.accepted.connect(lambda: self.confirmed.emit(self._validity.currentData()))
+
+
+def confirm_revocation(account: Account, parent: QWidget, then: Callable[[], object]) -> QMessageBox:
+    """Ask whether an operator's token is to be taken away; ``then`` is done when it is."""
+    texts = [
+        tr(
+            "The token of {operator} ends at once, with every connection that it opened. The account "
+            "stays, and a new token can be made for it. Robots go on with what they were told.",
+            operator=account.name,
+        )
+    ]
+    if account.is_own:
+        texts.append(tr("This is your own account: this desk is cut off and does not come back by itself."))
+    yes = ("fleet_revocation_confirm", tr("Revoke"))
+    box = confirm(parent, "fleet_revocation", "\n\n".join(texts), yes, tr("Cancel"), then)
+    box.setWindowTitle(tr("Revoke the token of {operator}?", operator=account.name))
+    box.setTextFormat(Qt.TextFormat.PlainText)
+    return box
+
+
+def _add_role(question: QuestionDialog, chosen: Role) -> QComboBox:
+    choices = ((words, role) for role, words in ROLES.items())
+    box = question.add_choice(tr("&Role"), choices, "fleet_account_role")
+    box.setCurrentText(ROLES[chosen])
+    return box
+
+
+def _chosen(roles: QComboBox) -> Role:
+    # Qt keeps text that is an enum, too, as mere text.
+    return Role(roles.currentData())
+
+
+def _add_validity(question: QuestionDialog) -> QComboBox:
+    return question.add_choice(tr("&Token holds"), VALIDITIES, "fleet_account_validity")
+
+
+# --- Shows a token that was just made, this one time ---
+
+EDGES = 24
+"""Pixels beside the token in its field."""
+
+
+class TokenDialog(QDialog):
+    """The token is in its field and nowhere else here, and gone when this closes."""
+
+    def __init__(self, made: NewToken, *, ends_link: bool, parent: QWidget):
+        super().__init__(parent)
+        self.setObjectName("fleet_token_dialog")
+        self.setWindowTitle(tr("Token of {operator}", operator=made.operator))
+        self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
+        self._field = _field(made.token)
+        self._copied = WrappingLabel(lines=2)
+        self._copied.setObjectName("fleet_token_copied")
+        rows = QVBoxLayout(self)
+        rows.addWidget(WrappingLabel(_words(made)))
+        if ends_link:
+            rows.addWidget(WrappingLabel(ENDS_LINK))
+        rows.addWidget(self._field)
+        rows.addWidget(self._copied)
+        self._add_foot(rows)
+        self.finished.connect(self._forget)
+
+    def _add_foot(self, rows: QVBoxLayout) -> None:
+        copy = QPushButton(tr("&Copy"))
+        copy.setObjectName("fleet_token_copy")
+        copy.clicked.connect(self._copy)
+        foot = QDialogButtonBox(QDialogButtonBox.StandardButton.Close)
+        foot.addButton(copy, QDialogButtonBox.ButtonRole.ActionRole)
+        # Enter takes the token along; it must not make it vanish.
+        foot.button(QDialogButtonBox.StandardButton.Close).setAutoDefault(False)
+        foot.rejected.connect(self.reject)
+        rows.addWidget(foot)
+        # Only within the dialog: Enter would mean nothing once another button had the keyboard.
+        copy.setDefault(True)
+
+    def _copy(self) -> None:
+        QApplication.clipboard().setText(self._field.text())
+        self._copied.setText(tr("Copied. It stays in the clipboard until something else is copied."))
+
+    def _forget(self) -> None:
+        # setText, other than clear, also empties what could be undone.
+        self._field.setText("")
+
+
+ENDS_LINK = tr(
+    "This desk was connected with what the token takes the place of, and is cut off. Enter the token in the "
+    "Fleet panel under Access, then press Connect."
+)
+
+
+def _words(made: NewToken) -> str:
+    return tr(
+        "{operator}, {role}: the token {until}. It is shown now and never again, and kept nowhere: hand it "
+        "over on a way that others do not read. If it gets lost, make a new one.",
+        operator=made.operator,
+        role=ROLES[made.role],
+        until=until_in_words(made.expires_at),
+    )
+
+
+def _field(token: str) -> QLineEdit:
+    field = QLineEdit(token)
+    field.setObjectName("fleet_new_token")
+    field.setReadOnly(True)
+    field.setFont(QFontDatabase.systemFont(QFontDatabase.SystemFont.FixedFont))
+    field.setMinimumWidth(field.fontMetrics().horizontalAdvance(token) + EDGES)
+    field.setAccessibleName(tr("Token"))
+    return field
+
+
+# --- The operators' accounts of the gateway: who has one, made and changed by a supervisor ---
+
+LIST = tr("Accounts")
+WIDEST = (
+    tr("{operator} (you)", operator="00000000000"),
+    max(ROLES.values(), key=len),
+    "2026-00-00 00:00",
+    "2026-00-00 00:00",
+    tr("holds until {time}", time="2026-00-00 00:00"),
+)
+
+
+class AccountsDialog(SupervisorDialog):
+    """A row for each account. A token that the gateway makes is shown even when this is closed by then."""
+
+    def __init__(self, desk: FleetController, parent: QWidget):
+        super().__init__(desk, AccountModel(), "fleet_accounts_dialog", tr("Accounts"), ACCOUNTS, parent)
+        self._sessions: list[SessionReport] = []
+        self._tokens: list[TokenDialog] = []
+        self._has_none = False
+        for name, text, press, for_row in (
+            ("fleet_account_add", tr("&Add…"), self._add, False),
+            ("fleet_account_set_role", tr("Change &role…"), self._change_role, True),
+            ("fleet_account_rotate", tr("New &token…"), self._make_token, True),
+            ("fleet_account_revoke", tr("Re&voke…"), self._revoke, True),
+            ("fleet_accounts_refresh", tr("Re&fresh"), self.refresh, False),
+        ):
+            self._button(name, text, press, for_row=for_row)
+        fit_columns(self.view, WIDEST)
+        self._lay_out()
+
+    def close_tokens(self) -> None:
+        """Close what shows tokens: nobody will be there to do it."""
+        for shown in list(self._tokens):
+            shown.reject()
+
+    # --- the list ---
+
+    def _ask_rows(self) -> None:
+        self._has_none = False
+        # First: the accounts are shown with who is connected.
+        self._listing.ask(GetSessions(), LIST, self._take_sessions)
+        self._listing.ask(GetOperators(), LIST, self._take_operators)
+
+    def _key(self, row: Account) -> str:
+        return row.name
+
+    def _take_sessions(self, result: dict[str, Any]) -> None:
+        self._sessions = [open_session(one) for one in result["sessions"]]
+
+    def _take_operators(self, result: dict[str, Any]) -> None:
+        self._show(operators_report(result))
+
+    def _show(self, found: Operators) -> None:
+        self._show_rows(read_accounts(found.operators, self._sessions, self._desk.link.operator))
+        self._has_none = not found.operators
+        if found.operators:
+            self._say_once_known(tr_count(len(found.operators), "1 account", "%n accounts"))
+        else:
+            self._say_once_known(
+                tr(
+                    "This gateway has no accounts: everybody on its computer may do everything. The first "
+                    "account, a supervisor's, ends that."
+                )
+            )
+
+    # --- what a supervisor does ---
+
+    def _add(self) -> None:
+        is_first = self._has_none
+        question = NewAccountDialog(is_first, self)
+        question.confirmed.connect(
+            lambda name, role, seconds: self._ask_for_token(
+                AddOperator(name, role, seconds), tr("New account {operator}", operator=name), is_first
+            )
+        )
+        self._open(question)
+
+    def _make_token(self) -> None:
+        account = self.selected()
+        question = RenewTokenDialog(account, self)
+        question.confirmed.connect(
+            lambda seconds: self._ask_for_token(
+                RotateToken(account.name, seconds),
+                tr("New token for {operator}", operator=account.name),
+                account.is_own,
+            )
+        )
+        self._open(question)
+
+    def _change_role(self) -> None:
+        account = self.selected()
+        question = ChangeRoleDialog(account, self)
+        question.confirmed.connect(lambda role: self._ask_for_role(account, role))
+        self._open(question)
+
+    def _revoke(self) -> None:
+        account = self.selected()
+        self._open(confirm_revocation(account, self, lambda: self._ask_for_revocation(account)))
+
+    def _ask_for_revocation(self, account: Account) -> None:
+        self._ask_for_change(
+            RevokeToken(account.name),
+            tr("Revoke {operator}", operator=account.name),
+            tr("The token of {operator} is revoked.", operator=account.name),
+        )
+
+    def _ask_for_role(self, account: Account, role: Role) -> None:
+        self._ask_for_change(
+            SetRole(account.name, role),
+            tr("Role of {operator}", operator=account.name),
+            tr("{operator} is {role} now.", operator=account.name, role=ROLES[role]),
+        )
+
+    def _ask_for_change(self, request: Any, words: str, done: str) -> None:
+        self._ask(request, words, lambda _result: self._changed(done))
+
+    def _ask_for_token(self, request: AddOperator | RotateToken, words: str, ends_link: bool) -> None:
+        self._ask(request, words, lambda result: self._show_token(result, ends_link))
+
+    def _show_token(self, result: dict[str, Any], ends_link: bool) -> None:
+        # Beside the QGIS window and not this one: it must not go when this is closed.
+        dialog = TokenDialog(new_token(result), ends_link=ends_link, parent=self.parentWidget())
+        self._tokens.append(dialog)
+        dialog.finished.connect(lambda: self._tokens.remove(dialog))
+        dialog.show()
+        dialog.raise_()
+        self._changed(tr("The token of {operator} is made.", operator=result["operator"]))
+
+
+# --- The menu entry that opens the operators' accounts ---
+
+
+class AccountsAction(DialogAction):
+    """The entry and its window."""
+
+    def __init__(self, iface: QgisInterface, menu: str, connections: ConnectionMenu, desk: FleetController):
+        self._accounts = AccountsDialog(desk, iface.mainWindow())
+        super().__init__(
+            iface,
+            menu,
+            connections,
+            self._accounts,
+            icon="accounts.svg",
+            text=tr("Accounts…"),
+            name="fleet_accounts",
+            tip=tr("Who may connect to the gateway and do what; takes a supervisor"),
+        )
+
+    def remove(self) -> None:
+        self._accounts.close_tokens()
+        super().remove()

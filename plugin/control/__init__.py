@@ -1,0 +1,1 @@
+"""Control of the fleet: pending command, its validation and sending, requests, messages, FleetController."""

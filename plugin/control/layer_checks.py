@@ -1,0 +1,471 @@
+"""Checks of a pending command's points and paths against layers: keepouts, obstacles, road surfaces."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from itertools import chain
+
+import numpy as np
+from qgis.core import (
+    QgsCoordinateTransform,
+    QgsCsException,
+    QgsFeature,
+    QgsFeatureRequest,
+    QgsGeometry,
+    QgsGeometryEngine,
+    QgsProject,
+    QgsRectangle,
+    QgsSpatialIndex,
+    QgsVectorLayer,
+)
+
+from ..layers.crs import check_transform, line_of
+from ..layers.layer_expressions import FeatureFilter
+from ..layers.roles import FURNITURE, KEEPOUT, OBSTACLE, ROAD_SURFACE, STAIRS
+from ..layers.site_transform import SiteToMapTransform, transform_or_raise
+from ..ui.errors import MapTransformError
+from ..ui.language import tr
+from ..ui.scheduling import Steps
+from .pending_command import ROUTE, START, ApproachKind, Findings, PendingCommand, Point
+
+# --- What of a draft is looked at: places, and the ways between them ---
+# Each is looked at by itself, so that after a change only what has changed is looked at again.
+
+CheckedPath = tuple[Point, ...]
+"""One point is a place, several are a way; metres in the site frame."""
+AT_BEGINNING_M = 0.5
+"""Metres within which a robot stands where its route begins."""
+AT_ONCE = 200
+"""Tracks that become geometries between two looks at the clock."""
+
+
+def legs(draft: PendingCommand) -> Iterator[CheckedPath]:
+    """Yield a draft's places and the way there, or each leg of a route with the point it leads on from."""
+    if draft.kind != ROUTE:
+        yield from _places(draft)
+        if draft.way.line:
+            yield draft.way.line
+        return
+    yield from _way_to_route(draft)
+    for begin, end in _spans(draft):
+        # The first click of several is where the second leg begins.
+        if begin > 0 or end > 1 or len(draft.points) == 1:
+            yield draft.points[max(0, begin - 1) : end]
+
+
+def drawn_by_hand(draft: PendingCommand) -> Iterator[CheckedPath]:
+    """Yield the places of a draft and the straight way to it, and legs of a route that follow no roads.
+
+    Legs along the roads are the gateway's, which knows obstacles as the site was published.
+    """
+    if draft.kind != ROUTE:
+        yield from _places(draft)
+        if draft.way.kind is ApproachKind.STRAIGHT:
+            yield draft.way.line
+        return
+    yield from _way_to_route(draft)
+    if len(draft.points) == 1:
+        yield from _places(draft)
+    for begin, end in _spans(draft):
+        if end - begin == 1 and begin > 0:
+            yield draft.points[begin - 1 : end]
+
+
+def stops(draft: PendingCommand) -> Iterator[CheckedPath]:
+    """Yield the places of a draft, or those where the legs of a route end."""
+    if draft.kind != ROUTE:
+        yield from _places(draft)
+        return
+    for _, end in _spans(draft):
+        yield (draft.points[end - 1],)
+
+
+def is_looked_at(draft: PendingCommand) -> bool:
+    """Tell whether a draft is held against layers: where a robot says it stands it may have been put."""
+    return draft.kind != START
+
+
+def lines_in(
+    tracks: Sequence[CheckedPath],
+    placement: SiteToMapTransform,
+    layer: QgsVectorLayer | None,
+    project: QgsProject,
+) -> Steps[list[QgsGeometry]]:
+    """Make geometries of tracks, in the CRS of ``layer``, or of the site for None.
+
+    :raises MapTransformError: when a point has no place in the layer's CRS.
+    """
+    flat = np.fromiter(chain.from_iterable(chain.from_iterable(tracks)), np.float64)
+    yield 0.0
+    corners = placement.frame.to_crs(flat.reshape(-1, 2))
+    if layer is not None and layer.crs().isValid():
+        corners = transform_or_raise(
+            corners, QgsCoordinateTransform(placement.site_crs, layer.crs(), project)
+        )
+    lines = []
+    at = 0
+    for number, track in enumerate(tracks):
+        lines.append(line_of(corners[at : at + len(track)]))
+        at += len(track)
+        if number % AT_ONCE == 0:
+            yield 0.0
+    return lines
+
+
+def boxes_of(lines: Sequence[QgsGeometry], around: float) -> Steps[list[QgsRectangle]]:
+    """Return what each geometry takes up, and so much around it, in its own units."""
+    boxes = []
+    for number, line in enumerate(lines):
+        boxes.append(line.boundingBox().buffered(around))
+        if number % AT_ONCE == 0:
+            yield 0.0
+    return boxes
+
+
+def place_in_words(track: CheckedPath) -> str:
+    """Return the end of a track as operators read it."""
+    x, y = track[-1]
+    return tr("({x:.2f}, {y:.2f}) m", x=x, y=y)
+
+
+def _way_to_route(draft: PendingCommand) -> Iterator[CheckedPath]:
+    """Yield the straight way of a robot to the beginning of its route, none to one that it stands at."""
+    if draft.way.line and math.dist(*draft.way.line) > AT_BEGINNING_M:
+        yield draft.way.line
+
+
+def _places(draft: PendingCommand) -> Iterator[CheckedPath]:
+    for point in draft.points:
+        yield (point,)
+
+
+def _spans(draft: PendingCommand) -> Iterator[tuple[int, int]]:
+    """Yield the first point of each leg of a route, and the one after its last."""
+    begin = 0
+    for leg in draft.legs:
+        yield begin, begin + leg
+        begin += leg
+
+
+# --- The features of a layer near many places ---
+
+FEW = 20
+"""Places that the layer is asked for one by one; for more it is read once."""
+
+Near = list[tuple[QgsFeature, list[int]]]
+"""Features, each with the numbers of the places that it is near to."""
+
+
+class LayerFeatures:
+    """Those features of a layer that count.
+
+    :raises ExpressionError: when the filter of the layer is no expression.
+    """
+
+    def __init__(self, layer: QgsVectorLayer):
+        self._layer = layer
+        self._counted = FeatureFilter.of_layer(layer, layer.createExpressionContext())
+
+    def near(self, boxes: Sequence[QgsRectangle]) -> Steps[Near]:
+        """Find the features whose boxes meet one of ``boxes``, which are in the layer's CRS."""
+        if len(boxes) <= FEW:
+            return (yield from self._near_few(boxes))
+        around = QgsRectangle(boxes[0])
+        index = QgsSpatialIndex()
+        for number, box in enumerate(boxes):
+            around.combineExtentWith(box)
+            index.addFeature(number, box)
+            yield 0.0
+        found = []
+        for feature in self._layer.getFeatures(QgsFeatureRequest().setFilterRect(around)):
+            numbers = index.intersects(feature.geometry().boundingBox())
+            if numbers and self._counts(feature):
+                found.append((feature, sorted(numbers)))
+            yield 0.0
+        return found
+
+    def _near_few(self, boxes: Sequence[QgsRectangle]) -> Steps[Near]:
+        features: dict[int, QgsFeature] = {}
+        near: dict[int, list[int]] = {}
+        for number, box in enumerate(boxes):
+            for feature in self._read(box):
+                features[feature.id()] = feature
+                near.setdefault(feature.id(), []).append(number)
+                yield 0.0
+            yield 0.0
+        return [(features[id], numbers) for id, numbers in near.items()]
+
+    def _read(self, box: QgsRectangle) -> Iterator[QgsFeature]:
+        for feature in self._layer.getFeatures(QgsFeatureRequest().setFilterRect(box)):
+            if self._counts(feature):
+                yield feature
+
+    def _counts(self, feature: QgsFeature) -> bool:
+        doubts: list[str] = []
+        # What the filter cannot tell of may be in the way.
+        return self._counted.keeps(feature, doubts) or bool(doubts)
+
+
+def engine_of(geometry: QgsGeometry, times: int) -> QgsGeometryEngine:
+    """Return what answers so many questions about ``geometry``, which has to outlive it."""
+    engine = QgsGeometry.createGeometryEngine(geometry.constGet())
+    if times > 1:
+        engine.prepareGeometry()
+    return engine
+
+
+def name_of(feature: QgsFeature, layer: QgsVectorLayer) -> str:
+    """Return what a feature is called, by its attribute ``name``, else by its layer and number."""
+    index = layer.fields().lookupField("name")
+    name = feature.attribute(index) if index >= 0 else None
+    if isinstance(name, str) and name:
+        return name
+    return tr("{layer} (feature {id})", layer=layer.name(), id=feature.id())
+
+
+# --- Whether a draft leads into a keepout of the project's layers ---
+
+
+class KeepoutCheck:
+    """Finds for each track the keepouts that it touches."""
+
+    roles = (KEEPOUT,)
+    only_polygons = True
+
+    def __init__(self, project: QgsProject):
+        self._project = project
+
+    def tracks(self, draft: PendingCommand) -> Iterator[CheckedPath]:
+        """Yield what of a draft is looked at: all of it."""
+        return legs(draft)
+
+    def look(
+        self, layer: QgsVectorLayer, tracks: Sequence[CheckedPath], placement: SiteToMapTransform
+    ) -> Steps[dict[int, list[str]]]:
+        """Find the names of the keepouts in ``layer`` by the numbers of the tracks that enter them."""
+        found: dict[int, list[str]] = {}
+        lines = yield from lines_in(tracks, placement, layer, self._project)
+        boxes = yield from boxes_of(lines, 0.0)
+        near = yield from LayerFeatures(layer).near(boxes)
+        for feature, numbers in near:
+            area = feature.geometry()
+            engine = engine_of(area, len(numbers))
+            for number in numbers:
+                if engine.intersects(lines[number].constGet()):
+                    found.setdefault(number, []).append(name_of(feature, layer))
+                yield 0.0
+        return found
+
+    def told(
+        self, draft: PendingCommand, found: Sequence[tuple[CheckedPath, list[str]]], is_watched: bool
+    ) -> Steps[Findings]:
+        """Return the findings of what was found for each track."""
+        texts: dict[str, None] = {}
+        for track, names in found:
+            place = place_in_words(track)
+            is_leg = draft.kind == ROUTE and track != draft.way.line
+            way = tr("The route") if is_leg else tr("The way to {to}", to=place)
+            spot = place if len(track) == 1 else way
+            for name in names:
+                texts[
+                    tr(
+                        "{spot} enters the keepout {name}. Choose a place or way outside it.",
+                        spot=spot,
+                        name=name,
+                    )
+                ] = None
+            yield 1.0
+        return Findings(overridable=tuple(texts))
+
+
+# --- Whether a draft leads onto an obstacle of the project's layers ---
+
+CLEARANCE_M = 0.25
+"""Metres within which a place is taken to be on an obstacle: half the width of a small robot."""
+
+Hit = tuple[str, float]
+"""The name of an obstacle, and how many metres away it is."""
+
+
+class ObstacleCheck:
+    """Finds for each track the obstacles, stairs and furniture in its way; ramps can be driven."""
+
+    roles = (OBSTACLE, STAIRS, FURNITURE)
+    only_polygons = False
+
+    def __init__(self, project: QgsProject):
+        self._project = project
+
+    def tracks(self, draft: PendingCommand) -> Iterator[CheckedPath]:
+        """Yield what of a draft is looked at: what was drawn by hand."""
+        return drawn_by_hand(draft)
+
+    def look(
+        self, layer: QgsVectorLayer, tracks: Sequence[CheckedPath], placement: SiteToMapTransform
+    ) -> Steps[dict[int, list[Hit]]]:
+        """Find the obstacles in ``layer`` by the numbers of the tracks that are too near to them.
+
+        :raises MapTransformError: when the layer has no place in the site's CRS.
+        """
+        way = QgsCoordinateTransform(layer.crs(), placement.site_crs, self._project)
+        lines = yield from lines_in(tracks, placement, None, self._project)
+        found: dict[int, list[Hit]] = {}
+        try:
+            check_transform(way)
+            boxes = yield from _boxes(lines, way)
+            for feature, numbers in (yield from LayerFeatures(layer).near(boxes)):
+                obstacle = QgsGeometry(feature.geometry())
+                if way.isValid():
+                    obstacle.transform(way)
+                engine = engine_of(obstacle, len(numbers))
+                for number in numbers:
+                    away = engine.distance(lines[number].constGet())
+                    if 0 <= away <= CLEARANCE_M:
+                        found.setdefault(number, []).append((name_of(feature, layer), away))
+                    yield 0.0
+        except QgsCsException as error:
+            raise MapTransformError(
+                tr(
+                    "The layer {layer} cannot be placed on the site ({error}), so obstacles in it are not "
+                    "seen. Correct its CRS, or take its role away.",
+                    layer=layer.name(),
+                    error=error,
+                )
+            ) from error
+        return found
+
+    def told(
+        self, draft: PendingCommand, found: Sequence[tuple[CheckedPath, list[Hit]]], is_watched: bool
+    ) -> Steps[Findings]:
+        """Return the findings, each obstacle once for each track."""
+        texts = []
+        for track, hits in found:
+            place = place_in_words(track)
+            spot = place if len(track) == 1 else tr("The way to {to}", to=place)
+            # Several features may have one name: the nearest counts.
+            for name in sorted({name for name, _ in hits}):
+                texts.append(_told(spot, name, min(away for other, away in hits if other == name)))
+            yield 1.0
+        return Findings(overridable=tuple(texts))
+
+
+def _boxes(tracks: Sequence[QgsGeometry], way: QgsCoordinateTransform) -> Steps[list[QgsRectangle]]:
+    """Return what is to be looked at in the layer's CRS, where ``way`` leads from."""
+    boxes = yield from boxes_of(tracks, CLEARANCE_M)
+    if not way.isValid() or way.isShortCircuited():
+        return boxes
+    back = QgsCoordinateTransform(way.destinationCrs(), way.sourceCrs(), way.context())
+    limits = [(box.xMinimum(), box.yMinimum(), box.xMaximum(), box.yMaximum()) for box in boxes]
+    corners = [(limit[x], limit[y]) for limit in limits for x, y in ((0, 1), (2, 1), (2, 3), (0, 3))]
+    # At the scale of a site the corners hold what lies between them, but for a hair.
+    there = transform_or_raise(np.array(corners), back).reshape(-1, 4, 2)
+    least, most = there.min(axis=1), there.max(axis=1)
+    slack = (most - least) * 0.01
+    sides = np.hstack([least - slack, most + slack])
+    return [QgsRectangle(*side) for side in sides.tolist()]
+
+
+def _told(spot: str, name: str, away: float) -> str:
+    where = tr("is on") if away <= 0.0 else tr("is {away:.2f} m from", away=away)
+    return tr("{spot} {where} {name}. Choose a place or way beside it.", spot=spot, where=where, name=name)
+
+
+# --- Whether a draft leads to places, and along ways, on a road surface of the project's layers ---
+
+GAP_M = 0.5
+"""Metres between two surfaces that a robot is not said to leave the road for."""
+
+Share = tuple[float, float]
+"""From where to where of a track one surface reaches: 0 is its beginning, 1 its end."""
+WHOLE: Share = (0.0, 1.0)
+
+
+class SurfaceCheck:
+    """Finds for each place, and each leg that was drawn, what of it is on a road surface."""
+
+    roles = (ROAD_SURFACE,)
+    only_polygons = True
+
+    def __init__(self, project: QgsProject):
+        self._project = project
+
+    def tracks(self, draft: PendingCommand) -> Iterator[CheckedPath]:
+        """Yield what of a draft is looked at: where its legs end, and those that do not follow the roads."""
+        yield from stops(draft)
+        yield from (track for track in drawn_by_hand(draft) if len(track) > 1)
+
+    def look(
+        self, layer: QgsVectorLayer, tracks: Sequence[CheckedPath], placement: SiteToMapTransform
+    ) -> Steps[dict[int, list[Share]]]:
+        """Find what surfaces of ``layer`` hold of the tracks, by the tracks' numbers."""
+        found: dict[int, list[Share]] = {}
+        lines = yield from lines_in(tracks, placement, layer, self._project)
+        boxes = yield from boxes_of(lines, 0.0)
+        near = yield from LayerFeatures(layer).near(boxes)
+        for feature, numbers in near:
+            area = feature.geometry()
+            engine = engine_of(area, len(numbers))
+            for number in numbers:
+                line = lines[number].constGet()
+                if WHOLE in found.get(number, ()):
+                    pass
+                elif engine.contains(line):
+                    found[number] = [WHOLE]
+                elif len(tracks[number]) > 1 and engine.intersects(line):
+                    found.setdefault(number, []).extend(_shares(lines[number], area))
+                yield 0.0
+        return found
+
+    def told(
+        self, draft: PendingCommand, found: Sequence[tuple[CheckedPath, list[Share]]], is_watched: bool
+    ) -> Steps[Findings]:
+        """Return the findings; without any road surface nobody can tell."""
+        yield 1.0
+        if not is_watched:
+            return Findings()
+        points = [(track, shares) for track, shares in found if len(track) == 1]
+        off = [track for track, shares in points if not shares]
+        if off:
+            return Findings(warnings=(_told_of_points(off, len(points)),))
+        legs = [(track, shares) for track, shares in found if len(track) > 1]
+        leave = [track for track, shares in legs if _gap(track, shares) > GAP_M]
+        if leave:
+            return Findings(warnings=(_told_of_legs(leave, len(legs)),))
+        return Findings()
+
+
+def _shares(line: QgsGeometry, area: QgsGeometry) -> list[Share]:
+    """Return what of a straight line is in ``area``, in the CRS of both."""
+    start, *_, end = line.vertices()
+    dx, dy = end.x() - start.x(), end.y() - start.y()
+    square = dx * dx + dy * dy
+    inside = line.intersection(area)
+    if square == 0.0 or inside.isNull():
+        return []
+    shares = []
+    for part in inside.constParts():
+        along = [((v.x() - start.x()) * dx + (v.y() - start.y()) * dy) / square for v in part.vertices()]
+        shares.append((min(along), max(along)))
+    return shares
+
+
+def _gap(track: CheckedPath, shares: Sequence[Share]) -> float:
+    """Return the longest part of a leg that is on no surface, metres."""
+    reached, widest = 0.0, 0.0
+    for start, end in [*sorted(shares), (1.0, 1.0)]:
+        widest = max(widest, start - reached)
+        reached = max(reached, end)
+    return widest * math.dist(track[0], track[-1])
+
+
+def _told_of_points(off: Sequence[CheckedPath], points: int) -> str:
+    if len(off) == 1:
+        return tr("{place} is not on a road surface.", place=place_in_words(off[0]))
+    return tr("{off} of {points} points are not on a road surface.", off=len(off), points=points)
+
+
+def _told_of_legs(leave: Sequence[CheckedPath], legs: int) -> str:
+    if len(leave) == 1:
+        return tr("The way to {to} leaves the road surface.", to=place_in_words(leave[0]))
+    return tr("{leave} of {legs} legs leave the road surface.", leave=len(leave), legs=legs)

@@ -1,0 +1,412 @@
+"""Messages to the operator: topics that end them, and QGIS's message bar."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Hashable, Iterable, Sequence
+from enum import Enum
+from typing import Any, NamedTuple
+
+from qgis.core import Qgis, QgsMessageLog
+from qgis.gui import QgsMessageBar, QgsMessageBarItem
+from qgis.PyQt.QtCore import QObject, QSize, Qt, pyqtSignal
+from qgis.PyQt.QtGui import QResizeEvent
+from qgis.PyQt.QtWidgets import QLabel, QSizePolicy
+
+from ...robot_bridge.core.messages import (
+    Abort,
+    CommandReport,
+    CommandState,
+    LinkReport,
+    Links,
+    Suspension,
+    Suspensions,
+    TaskState,
+)
+from ..gateway_client.report_caches import ObservationCache, QueueCache, is_pending
+from ..ui.language import tr
+from ..ui.times import time_of_day
+from .pending_command import PendingCommandModel
+from .roads import RoadStatus
+
+# --- What the operator is told in QGIS's message bar, and what makes each message untrue ---
+# A message is posted with topics. When the condition that a topic names has ended, all messages with it are
+# withdrawn: what is no longer true hides nothing that is.
+
+SHOWN_ROBOTS = 5
+"""of a link that is down, in its message."""
+
+
+class Level(Enum):
+    """How pressing a message is."""
+
+    ERROR = "error"
+    """It stays until it is closed or no longer true."""
+    WARNING = "warning"
+    INFO = "info"
+
+
+class Topic(NamedTuple):
+    """A condition that a message is about: its kind, and whose."""
+
+    kind: str
+    about: Hashable = ""
+
+
+EMERGENCY = Topic("emergency")
+"""An emergency stop is in force."""
+OUTAGE = Topic("outage")
+"""The link is down."""
+SELECTION = Topic("selection")
+"""Other robots have to be selected."""
+NO_DRAFT = Topic("no_draft")
+"""There is no draft on the map."""
+PLAN_ASKED = Topic("plan", "asked")
+"""Something was asked of cone plans; it ends when something else is."""
+PLAN_SENT = Topic("plan", "sent")
+"""What robots have of the cone plan; it ends when something of it is sent or it is watched no more."""
+PLAN_TROUBLE = Topic("plan", "trouble")
+"""The cone plan cannot go on as it is."""
+REPLAY = Topic("replay")
+"""What was loaded to be replayed; it ends when something else is."""
+
+
+def request_topic(method: str, about: Hashable) -> Topic:
+    """Return the topic of a request that was refused: it ends when the same is asked for again."""
+    return Topic("request", (method, about))
+
+
+def draft_topic(draft: Hashable) -> Topic:
+    """Return the topic of a draft on the map: it ends when another one is there, or none."""
+    return Topic("draft", draft)
+
+
+def conflict_topic(robot: str, other: str) -> Topic:
+    """Return the topic of two robots that will be in each other's way."""
+    return Topic("conflict", frozenset((robot, other)))
+
+
+class QueueStand(NamedTuple):
+    """What of a queue a message is about; ``state`` (a QueueState's, empty without a queue) and ``task``
+    where they count."""
+
+    robot: str
+    state: str | None = None
+    task: str | None = None
+
+
+def queue_topic(stand: QueueStand) -> Topic:
+    """Return the topic of a queue: it ends when its state is another, or its task no longer to be done."""
+    return Topic("queue", stand)
+
+
+def observation_topic(number: int) -> Topic:
+    """Return the topic of an observation that waits for its review."""
+    return Topic("observation", number)
+
+
+def file_topic(what: str) -> Topic:
+    """Return the topic of a file that was not written: it ends when ``what`` is written once more."""
+    return Topic("file", what)
+
+
+def robot_topic(robot: str) -> Topic:
+    """Return the topic of what a robot does: it ends when the robot is ordered to do something else."""
+    return Topic("robot", robot)
+
+
+class MessageBoard(QObject):
+    """Keeps the topics of what is shown, and says what is not true any more."""
+
+    posted = pyqtSignal(str, object)
+    """A message's text and its Level."""
+    withdrawn = pyqtSignal(str)
+    """A message with this text is no longer true."""
+
+    def __init__(self, parent: QObject | None = None):
+        super().__init__(parent)
+        self._topics: dict[str, frozenset[Topic]] = {}
+
+    def post(self, text: str, level: Level, *topics: Topic) -> None:
+        """Show ``text`` until the first of ``topics`` has ended, or the link leads to other robots."""
+        self._topics.pop(text, None)
+        self._topics[text] = frozenset(topics)
+        self.posted.emit(text, level)
+
+    def end(self, *topics: Topic) -> None:
+        """Withdraw every message with one of these topics."""
+        self._withdraw(text for text, its in self._topics.items() if its.intersection(topics))
+
+    def end_others(self, kind: str, holding: Collection[Topic]) -> None:
+        """Withdraw every message with a topic of this ``kind`` that is not among those that still hold."""
+        self.end_where(kind, lambda about: Topic(kind, about) not in holding)
+
+    def end_where(self, kind: str, is_over: Callable[[Any], bool]) -> None:
+        """Withdraw every message with a topic of this ``kind`` where what that is about is over."""
+        self._withdraw(
+            text
+            for text, its in self._topics.items()
+            if any(topic.kind == kind and is_over(topic.about) for topic in its)
+        )
+
+    def withdraw(self, text: str) -> None:
+        """Withdraw the message with this text."""
+        self._topics.pop(text, None)
+        self.withdrawn.emit(text)
+
+    def clear(self) -> None:
+        """Withdraw every message: they are about other robots."""
+        self._withdraw(self._topics)
+
+    def forget(self, text: str) -> None:
+        """Note that a message is not shown any more: its time is over, or the operator has closed it."""
+        self._topics.pop(text, None)
+
+    def _withdraw(self, texts: Iterable[str]) -> None:
+        for text in list(texts):
+            self.withdraw(text)
+
+
+class MessageEndings(QObject):
+    """Tells the board what is over; the desk says of each change that it has happened."""
+
+    def __init__(
+        self, messages: MessageBoard, drafts: PendingCommandModel, roads: RoadStatus, parent: QObject
+    ):
+        super().__init__(parent)
+        self._messages, self._drafts, self._roads = messages, drafts, roads
+        drafts.changed.connect(self._draft_changed)
+        roads.conflicts_changed.connect(self._conflicts_changed)
+
+    def emergency_cleared(self) -> None:
+        """End what was refused because of an emergency stop."""
+        self._messages.end(EMERGENCY)
+
+    def selection_changed(self) -> None:
+        """End what asked for another selection."""
+        self._messages.end(SELECTION)
+
+    def commands_changed(self, reports: Sequence[CommandReport]) -> None:
+        """End what was told of robots that have been ordered to do something else since."""
+        new = (report for report in reports if report.state is CommandState.QUEUED)
+        ordered = {report.robot for report in new if report.op != Abort.__name__}
+        self._messages.end(*map(robot_topic, ordered))
+
+    def robots_removed(self, robots: Collection[str]) -> None:
+        """End what was told of robots that are there no more."""
+        self._messages.end_where("robot", lambda robot: robot in robots)
+
+    def queues_changed(self, queues: QueueCache) -> None:
+        """End what was told of queues that are paused or go on since, or of tasks that are done since."""
+
+        def is_over(stand: QueueStand) -> bool:
+            queue = queues.get(stand.robot)
+            if stand.state is not None:
+                return stand.state != ("" if queue is None else queue.state.value)
+            tasks = () if queue is None else queue.tasks
+            return all(task.task != stand.task or task.state is TaskState.CURRENT for task in tasks)
+
+        self._messages.end_where("queue", is_over)
+
+    def observations_changed(self, book: ObservationCache) -> None:
+        """End what was told of observations that somebody has reviewed since."""
+
+        def is_over(number: int) -> bool:
+            report = book.get(number)
+            return report is None or not is_pending(report)
+
+        self._messages.end_where("observation", is_over)
+
+    def _draft_changed(self) -> None:
+        draft = self._drafts.draft
+        if draft is not None:
+            self._messages.end(NO_DRAFT)
+        holding = set() if draft is None else {draft_topic(draft.place)}
+        self._messages.end_others("draft", holding)
+
+    def _conflicts_changed(self) -> None:
+        conflicts = self._roads.conflicts.conflicts
+        holding = {conflict_topic(one.robot, one.other) for one in conflicts}
+        self._messages.end_others("conflict", holding)
+
+
+class ReportNotices(QObject):
+    """Texts about what the gateway reports: which are new, and which are over."""
+
+    began = pyqtSignal(str)
+    over = pyqtSignal(str)
+
+    def __init__(self, parent: QObject | None = None):
+        super().__init__(parent)
+        self._texts: list[str] = []
+
+    def renew(self, texts: list[str]) -> None:
+        """Say what is new in ``texts``, and that the rest of the former ones is over."""
+        before, self._texts = self._texts, texts
+        for text in before:
+            if text not in texts:
+                self.over.emit(text)
+        for text in texts:
+            if text not in before:
+                self.began.emit(text)
+
+
+class SuspensionNotices(ReportNotices):
+    """Texts about robots whose accounts of the database are locked."""
+
+    def show(self, suspensions: Suspensions) -> None:
+        """Tell of the newest report."""
+        self.renew([_suspended(one) for one in suspensions.robots])
+
+
+class LinkNotices(ReportNotices):
+    """Texts about links to robots of another kind that are down."""
+
+    def __init__(self, parent: QObject | None = None):
+        super().__init__(parent)
+        self.reported = Links()
+
+    def show(self, links: Links) -> None:
+        """Tell of the newest report."""
+        self.reported = links
+        self.renew([_down(one) for one in links.links if not one.up])
+
+
+def _down(link: LinkReport) -> str:
+    told = {"link": link.link, "reason": link.text or "?"}
+    if not link.count:
+        return tr("Link {link} is down: {reason}.", **told)
+    names = ", ".join(link.robots[:SHOWN_ROBOTS])
+    if link.count > SHOWN_ROBOTS:
+        names = tr("{names} and {count} more", names=names, count=link.count - SHOWN_ROBOTS)
+    return tr("Link {link} is down: {reason}. Nothing reaches {robots}.", robots=names, **told)
+
+
+def _suspended(suspension: Suspension) -> str:
+    if suspension.until is None:
+        return tr(
+            "The program of robot {robot} keeps all others waiting at the database, and its account cannot "
+            "be locked. Have an administrator run: robot-bridge database upgrade",
+            robot=suspension.robot,
+        )
+    return tr(
+        "The database account of robot {robot} is locked until {time}: its program kept all others waiting. "
+        "Nothing but a stop reaches it: Abort unlocks the account. Have the program mended.",
+        robot=suspension.robot,
+        time=time_of_day(suspension.until),
+    )
+
+
+# --- The one place where what went wrong becomes a text in QGIS's message bar ---
+
+TITLE = "Fleet Supervisor"
+LEVELS = {
+    Level.ERROR: Qgis.MessageLevel.Critical,
+    Level.WARNING: Qgis.MessageLevel.Warning,
+    Level.INFO: Qgis.MessageLevel.Info,
+}
+SECONDS = {Qgis.MessageLevel.Info: 6, Qgis.MessageLevel.Success: 5, Qgis.MessageLevel.Warning: 12}
+"""How long a text stays; what is critical stays until it is closed."""
+BESIDE_TEXT = 190
+"""Pixels of the bar's width that its icons, counter and buttons take."""
+
+
+class MessageBar(QObject):
+    """Shows texts in the message bar, each once at a time, and writes all of them to QGIS's message log.
+
+    The newest one is seen first, also one that hung beneath others already.
+    """
+
+    closed = pyqtSignal(str)
+    """A text does not hang there any more."""
+
+    def __init__(self, bar: QgsMessageBar, parent: QObject | None = None):
+        super().__init__(parent)
+        self._bar = bar
+        self._shown: dict[str, QgsMessageBarItem] = {}
+        bar.widgetRemoved.connect(self._removed)
+
+    def show_message(self, text: str, level: Level) -> None:
+        """Show a message of the desk."""
+        self._show(text, LEVELS[level])
+
+    def error(self, error: Exception | str) -> None:
+        """Say what failed; stays until it is closed."""
+        self._show(str(error), Qgis.MessageLevel.Critical)
+
+    def warning(self, text: Exception | str) -> None:
+        """Say what the operator should know and mend."""
+        self._show(str(text), Qgis.MessageLevel.Warning)
+
+    def info(self, text: str) -> None:
+        """Say what happened."""
+        self._show(text, Qgis.MessageLevel.Info)
+
+    def texts(self) -> list[str]:
+        """Return what hangs there now."""
+        return list(self._shown)
+
+    def take_down(self, text: str) -> None:
+        """Take down a text that is over; one that does not hang there is passed over."""
+        item = self._shown.pop(text, None)
+        if item is not None:
+            self._bar.popWidget(item)
+
+    def withdraw(self) -> None:
+        """Take down whatever still hangs there."""
+        self._bar.widgetRemoved.disconnect(self._removed)
+        for item in list(self._shown.values()):
+            self._bar.popWidget(item)
+        self._shown.clear()
+
+    def _show(self, text: str, level: Qgis.MessageLevel) -> None:
+        hanging = self._shown.get(text)
+        if hanging is not None and self._bar.currentItem() is hanging:
+            return
+        if hanging is None:
+            QgsMessageLog.logMessage(text, TITLE, level, False)
+        else:
+            self.take_down(text)
+        item = QgsMessageBarItem(MessageLabel(text, self._bar), level, SECONDS.get(level, 0))
+        self._shown[text] = item
+        self._bar.pushItem(item)
+
+    def _removed(self, item: QgsMessageBarItem) -> None:
+        for text in [text for text, shown in self._shown.items() if shown is item]:
+            del self._shown[text]
+            self.closed.emit(text)
+
+
+class MessageLabel(QLabel):
+    """A text on as many lines as it needs; an item of QGIS's own cuts it after one and a half.
+
+    It asks for the width of its longest word and takes what there is: QGIS's bar makes the whole window as
+    wide as what hangs in it wishes to be.
+    """
+
+    def __init__(self, text: str, bar: QgsMessageBar):
+        super().__init__(f"{TITLE}: {text}", bar)
+        self.setObjectName("fleet_notice")
+        self.setTextFormat(Qt.TextFormat.PlainText)
+        self.setTextInteractionFlags(Qt.TextInteractionFlag.TextSelectableByMouse)
+        self.setWordWrap(True)
+        self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
+        self._fit(max(200, bar.width() - BESIDE_TEXT))
+
+    def show_text(self, text: str) -> None:
+        """Show ``text`` in place of the other one; laying out QGIS's bar anew takes time."""
+        if self.text() == f"{TITLE}: {text}":
+            return
+        self.setText(f"{TITLE}: {text}")
+        self._fit(self.width())
+
+    def sizeHint(self) -> QSize:
+        return QSize(self.minimumSizeHint().width(), super().sizeHint().height())
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        super().resizeEvent(event)
+        self._fit(self.width())
+
+    def _fit(self, width: int) -> None:
+        # Qt counts the least height that was set before among what the text takes.
+        self.setMinimumHeight(0)
+        self.setFixedHeight(self.heightForWidth(width))

@@ -1,0 +1,427 @@
+"""The pending command: what the operator is about to send, its changes, and as tasks of a queue."""
+
+from __future__ import annotations
+
+import math
+import uuid
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+from enum import Enum
+from functools import cached_property
+from itertools import accumulate, chain
+from typing import Any
+
+import numpy as np
+from qgis.PyQt.QtCore import QObject, pyqtSignal
+
+from ...robot_bridge.core.messages import QueueTask, SetPath, SetPosEnd, SetPosIni, TaskKind, to_json
+from ..ui.errors import FleetError, NotSentError
+from ..ui.language import tr, tr_count
+
+# --- What the operator is about to ask for: on the canvas, not sent yet ---
+
+Point = tuple[float, float]
+
+CONE = "cone"
+ROUTE = "route"
+START = "start"
+TARGETS = "targets"
+
+LEAST_POINTS = 2
+"""Points that a route needs."""
+MOST_STEPS = 100
+"""Drafts that can be come back to."""
+
+
+@dataclass(frozen=True)
+class Findings:
+    """What a check of a draft found.
+
+    ``refused`` forbids sending it. ``overridable`` does so until somebody overrides it, who says why.
+    ``warnings`` do not. ``of_way`` are those of all these that are about the way to a target from where its
+    robot is now: a task of a queue is driven from elsewhere.
+    """
+
+    refused: tuple[str, ...] = ()
+    warnings: tuple[str, ...] = ()
+    overridable: tuple[str, ...] = ()
+    of_way: tuple[str, ...] = ()
+
+    def __add__(self, other: Findings) -> Findings:
+        return Findings(
+            self.refused + other.refused,
+            self.warnings + other.warnings,
+            self.overridable + other.overridable,
+            self.of_way + other.of_way,
+        )
+
+    @property
+    def faults(self) -> tuple[str, ...]:
+        """All that speaks against sending it."""
+        return self.refused + self.overridable
+
+    @property
+    def all_texts(self) -> frozenset[str]:
+        """All that was found."""
+        return frozenset(self.refused + self.warnings + self.overridable)
+
+    def without_way(self) -> Findings:
+        """Return what was found but for the way to a target."""
+        kinds = (self.refused, self.warnings, self.overridable)
+        return Findings(*(tuple(text for text in kind if text not in self.of_way) for kind in kinds))
+
+
+class ApproachKind(Enum):
+    """How a robot comes to a cone target, or to where its route begins."""
+
+    UNKNOWN = "unknown"
+    """Nobody knows: it has not said where it is, or the gateway does not answer."""
+    SOUGHT = "sought"
+    """The gateway is asked for the way along the roads."""
+    STRAIGHT = "straight"
+    """The target or route is sent, and the robot drives straight to it."""
+    PATH = "path"
+    """The way is sent, with the cone at its end."""
+    ASKED = "asked"
+    """The target is sent, and the robot asks the gateway for the same way."""
+
+
+@dataclass(frozen=True)
+class Approach:
+    """The way to a cone target, or to where a route begins, from where the robot is: metres, site frame.
+
+    ``note`` is what operators are told of it, ``refusal`` why it cannot be driven. ``declared`` is what the
+    robot had declared of its paths when it was found.
+    """
+
+    kind: ApproachKind = ApproachKind.UNKNOWN
+    line: tuple[Point, ...] = ()
+    note: str = ""
+    refusal: str = ""
+    declared: str | None = None
+
+    @property
+    def is_along_roads(self) -> bool:
+        """Whether it leads along the roads."""
+        return self.kind in (ApproachKind.PATH, ApproachKind.ASKED)
+
+
+NO_APPROACH = Approach()
+
+
+@dataclass(frozen=True)
+class PendingCommand:
+    """A cone target or start position (one point), a route (its points) or several cone targets.
+
+    Points are metres in the site frame. ``robot`` is the one that was selected when the draft was begun:
+    another selection does not change it. ``legs`` says how many of a route's points each click brought: one,
+    or a way along the roads. ``note`` is what the operator is told of such ways. ``theta`` is the heading of
+    a start position. ``names`` are those of several targets. ``override`` says why it is sent in spite of
+    what can be overridden. Nothing was found yet unless it ``is_checked``. ``way`` leads to a cone
+    target, or to where a route begins; with ``is_direct`` the operator wants it straight. A robot that cannot
+    place cones is sent there without: ``places_cone`` is false then.
+    """
+
+    robot: str
+    kind: str
+    points: tuple[Point, ...]
+    findings: Findings = field(default_factory=Findings)
+    legs: tuple[int, ...] = ()
+    note: str = ""
+    theta: float | None = None
+    names: tuple[str, ...] = ()
+    override: str | None = None
+    is_checked: bool = False
+    way: Approach = NO_APPROACH
+    is_direct: bool = False
+    places_cone: bool = True
+
+    def with_leg(self, points: tuple[Point, ...], note: str = "") -> PendingCommand:
+        """Return the route with another leg, unchecked."""
+        notes = " + ".join(text for text in (self.note, note) if text)
+        legs = (*self.legs, len(points))
+        return PendingCommand(self.robot, self.kind, self.points + points, legs=legs, note=notes)
+
+    def without_last_leg(self) -> PendingCommand | None:
+        """Return the route without its last leg, unchecked; None where nothing is left."""
+        left = self.points[: -self.legs[-1]] if self.legs else ()
+        if not left:
+            return None
+        note = self.note.rpartition(" + ")[0] if self.legs[-1] > 1 else self.note
+        return PendingCommand(self.robot, self.kind, left, legs=self.legs[:-1], note=note)
+
+    @property
+    def place(self) -> tuple[str, str, tuple[Point, ...]]:
+        """What makes it another draft: for whom, of which kind and where."""
+        return self.robot, self.kind, self.points
+
+    @property
+    def fault(self) -> str | None:
+        """Why it cannot be sent, None if it can."""
+        if self.kind == ROUTE and len(self.points) < LEAST_POINTS:
+            return tr("a route needs at least two points: click the next one")
+        if self.way.kind is ApproachKind.SOUGHT:
+            return tr("the way there is not known yet")
+        if not self.is_checked:
+            return tr("it has not been checked to its end")
+        return in_brief(self.findings.refused if self.override else self.findings.faults) or None
+
+    def as_task(self) -> PendingCommand:
+        """Return what a task of a queue is made of: the way to that is found when its turn has come."""
+        return replace(self, way=NO_APPROACH, findings=self.findings.without_way())
+
+    @property
+    def can_be_overridden(self) -> bool:
+        """Tell whether nothing but an override is wanting."""
+        return bool(self.findings.overridable) and replace(self, override="all").fault is None
+
+    @property
+    def outline(self) -> tuple[Point, ...]:
+        """What is drawn: the points, the way along the roads to a target, a heading of a start position."""
+        if self.way.is_along_roads:
+            return self.way.line
+        if self.theta is None:
+            return self.points
+        ((x, y),) = self.points
+        return ((x, y), (x + math.cos(self.theta), y + math.sin(self.theta)))
+
+    @cached_property
+    def length(self) -> float:
+        """Metres from the first point along all others."""
+        flat = np.fromiter(chain.from_iterable(self.points), np.float64)
+        steps = np.diff(flat.reshape(-1, 2), axis=0)
+        return float(np.hypot(steps[:, 0], steps[:, 1]).sum())
+
+    def message(self) -> tuple[str, dict[str, Any]]:
+        """Return the operation and its parameters."""
+        x, y = self.points[0]
+        if self.kind == CONE and self.way.kind is ApproachKind.PATH:
+            return SetPath.__name__, to_json(SetPath(list(self.way.line), cone=self.places_cone or None))
+        if self.kind == CONE:
+            return SetPosEnd.__name__, to_json(SetPosEnd(x, y, cone=self.places_cone))
+        if self.kind == START:
+            return SetPosIni.__name__, to_json(SetPosIni(x, y, self.theta))
+        return SetPath.__name__, to_json(SetPath(list(self.points)))
+
+    def in_words(self) -> str:
+        """Return what would be sent to whom."""
+        if self.kind == CONE:
+            cone = tr("Cone for {robot} at {place}", robot=self.robot, place=_place(self.points[0]))
+            return cone + self._way_in_words()
+        if self.kind == START:
+            turned = (
+                ""
+                if self.theta is None
+                else tr(
+                    ", theta {degrees:.0f}°",
+                    degrees=math.degrees(self.theta),
+                )
+            )
+            return tr(
+                "Start position of {robot} at {place}{turned}",
+                robot=self.robot,
+                place=_place(self.points[0]),
+                turned=turned,
+            )
+        if self.kind == TARGETS:
+            return tr_count(len(self.points), "1 cone for {robot}", "%n cones for {robot}", robot=self.robot)
+        told = tr("; along the roads {note}", note=self.note) if self.note else ""
+        return tr(
+            "Route for {robot}: {points} points, {length:.1f} m{told}",
+            robot=self.robot,
+            points=len(self.points),
+            length=self.length,
+            told=told,
+        )
+
+    def _way_in_words(self) -> str:
+        if self.way.is_along_roads:
+            return tr("; along the roads {note}", note=self.way.note)
+        if self.way.kind is ApproachKind.SOUGHT:
+            return tr("; the way there is being found")
+        if self.is_direct:
+            return tr("; straight")
+        return ""
+
+
+class PendingCommandModel(QObject):
+    """Holds the one draft that there can be, tells who shows it when it changes, and takes changes back."""
+
+    changed = pyqtSignal()
+    pointed = pyqtSignal()
+
+    def __init__(self, parent: QObject | None = None):
+        super().__init__(parent)
+        self.draft: PendingCommand | None = None
+        self.is_dragged = False
+        """Whether the draft is one under the mouse, which becomes another with each of its moves."""
+        self.cursor: Point | None = None
+        self._before: list[PendingCommand | None] = []
+        self._after: list[PendingCommand | None] = []
+
+    def put(self, draft: PendingCommand | None) -> None:
+        """Make ``draft`` the one, None for no draft."""
+        if draft is not None or self.draft is not None:
+            self._before = [*self._before, self.draft][-MOST_STEPS:]
+            self._after = []
+        self._show(draft)
+
+    def renew(self, draft: PendingCommand) -> None:
+        """Put ``draft`` in place of the present one, of which it differs in what was found or overridden."""
+        self._show(draft, cursor=self.cursor)
+
+    def drag(self, draft: PendingCommand) -> None:
+        """Show ``draft`` as it becomes while the mouse drags it; :meth:`renew` or :meth:`put` ends that."""
+        self._show(draft, is_dragged=True)
+
+    def done(self) -> None:
+        """Take the draft away for good: it was sent, or belongs to another site."""
+        self.forget_changes()
+        self._show(None)
+
+    def forget_changes(self) -> None:
+        """Let no change be taken back that was made so far."""
+        self._before, self._after = [], []
+
+    @property
+    def can_undo(self) -> bool:
+        """Tell whether there is a draft from before."""
+        return bool(self._before)
+
+    @property
+    def can_redo(self) -> bool:
+        """Tell whether something was taken back."""
+        return bool(self._after)
+
+    def undo(self) -> bool:
+        """Go back to the draft from before the last change; false when there is none."""
+        return self._go(self._before, self._after)
+
+    def redo(self) -> bool:
+        """Make the change again that was taken back last; false when there is none."""
+        return self._go(self._after, self._before)
+
+    def point_at(self, cursor: Point | None) -> None:
+        """Say where the mouse is, in the site frame, for the preview of the next leg."""
+        self.cursor = cursor
+        self.pointed.emit()
+
+    def _go(self, here: list[PendingCommand | None], there: list[PendingCommand | None]) -> bool:
+        if not here:
+            return False
+        there.append(self.draft)
+        self._show(here.pop())
+        return True
+
+    def _show(
+        self, draft: PendingCommand | None, is_dragged: bool = False, cursor: Point | None = None
+    ) -> None:
+        self.draft = draft
+        self.is_dragged = is_dragged
+        self.cursor = cursor
+        self.changed.emit()
+
+
+def in_brief(texts: Sequence[str], most: int = 3) -> str:
+    """Return the first of ``texts`` and how many more there are: of a whole layer there may be hundreds."""
+    more = len(texts) - most
+    return " ".join([*texts[:most], *([tr("And {more} more.", more=more)] if more > 0 else [])])
+
+
+def _place(point: Point) -> str:
+    return tr("{x:.2f}, {y:.2f} m", x=point[0], y=point[1])
+
+
+# --- Changes of a route that is drawn: vertices moved, put in, taken out, and the whole turned round ---
+# Legs that follow the roads are the gateway's: their points are no vertices and are not changed by hand.
+
+
+class RouteEditError(FleetError):
+    """A route cannot be changed so."""
+
+
+def vertices(draft: PendingCommand) -> list[int]:
+    """Return the points that were clicked one by one, in order."""
+    ends = accumulate(draft.legs)
+    return [end - 1 for leg, end in zip(draft.legs, ends, strict=True) if leg == 1]
+
+
+def moved(draft: PendingCommand, vertex: int, to: Point) -> PendingCommand:
+    """Return the route with a vertex at another place, unchecked."""
+    _check_vertex(draft, vertex)
+    points = (*draft.points[:vertex], to, *draft.points[vertex + 1 :])
+    return _changed(draft, points, draft.legs)
+
+
+def inserted(draft: PendingCommand, before: int, at: Point) -> PendingCommand:
+    """Return the route with another vertex in front of point ``before``, which ends a straight leg.
+
+    :raises RouteEditError: where the route follows the roads there.
+    """
+    _check_vertex(draft, before)
+    leg = _leg_of(draft, before)
+    points = (*draft.points[:before], at, *draft.points[before:])
+    return _changed(draft, points, (*draft.legs[:leg], 1, *draft.legs[leg:]))
+
+
+def deleted(draft: PendingCommand, vertex: int) -> PendingCommand | None:
+    """Return the route without a vertex, unchecked; None where nothing is left."""
+    _check_vertex(draft, vertex)
+    leg = _leg_of(draft, vertex)
+    legs = (*draft.legs[:leg], *draft.legs[leg + 1 :])
+    if not legs:
+        return None
+    return _changed(draft, (*draft.points[:vertex], *draft.points[vertex + 1 :]), legs)
+
+
+def turned_round(draft: PendingCommand) -> PendingCommand:
+    """Return the route from its end to its beginning, unchecked.
+
+    :raises RouteEditError: when a part follows the roads: the way back may be another.
+    """
+    if len(vertices(draft)) < len(draft.points):
+        raise RouteEditError(
+            tr(
+                "A part of this route follows the roads, and the way back may be another: it is not turned "
+                "round. Draw it from the other end with Route on roads."
+            )
+        )
+    return _changed(draft, draft.points[::-1], draft.legs)
+
+
+def _changed(draft: PendingCommand, points: tuple[Point, ...], legs: tuple[int, ...]) -> PendingCommand:
+    return replace(draft, points=points, legs=legs, findings=Findings(), override=None, is_checked=False)
+
+
+def _leg_of(draft: PendingCommand, vertex: int) -> int:
+    return list(accumulate(draft.legs)).index(vertex + 1)
+
+
+def _check_vertex(draft: PendingCommand, vertex: int) -> None:
+    if vertex not in vertices(draft):
+        raise RouteEditError(
+            tr(
+                "This part of the route follows the roads and is not changed by hand. Take it back with "
+                "Backspace, or draw this part with Draw route."
+            )
+        )
+
+
+# --- Drafts as tasks of a robot's queue ---
+
+
+def queue_tasks(draft: PendingCommand) -> list[QueueTask]:
+    """Return what a robot has to do for a draft, one after the other.
+
+    :raises NotSentError: for what is no task.
+    """
+    if draft.kind == START:
+        raise NotSentError(tr("A start position is no task: Send tells the robot at once."))
+    if draft.kind in (CONE, TARGETS):
+        names = draft.names or (None,) * len(draft.points)
+        return [
+            QueueTask(str(uuid.uuid4()), x, y, kind=TaskKind.PLACE, cone=name)
+            for (x, y), name in zip(draft.points, names, strict=True)
+        ]
+    x, y = draft.points[-1]
+    return [QueueTask(str(uuid.uuid4()), x, y, path=list(draft.points))]

@@ -1,0 +1,234 @@
+"""What the operator asks for, from the press of a button to the gateway's answer."""
+
+from __future__ import annotations
+
+import uuid
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+from qgis.PyQt.QtCore import QObject, pyqtSignal
+
+from ...robot_bridge.core.messages import (
+    Abort,
+    AbortAll,
+    ClearEmergencyStop,
+    EmergencyStop,
+    ResolveConflict,
+    Send,
+    to_json,
+)
+from ..gateway_client.buffers import OperatorRequest, RequestResult
+from ..ui.errors import NotSentError
+from ..ui.language import tr, tr_count
+from .messages import Topic, conflict_topic, request_topic
+from .pending_command import TARGETS, PendingCommand
+
+SLOW_AFTER = 5.0
+
+
+@dataclass
+class PendingRequest:
+    """An order without an answer: what it is in words, and the draft it came from."""
+
+    words: str
+    asked_at: float
+    draft: PendingCommand | None = None
+    stops: bool = False
+    told_slow: str = ""
+    topics: tuple[Topic, ...] = ()
+    """What a refusal is about."""
+
+
+class RequestTracker(QObject):
+    """Gives each press of a button its own id, hands it to the connection and tells what became of it."""
+
+    refused = pyqtSignal(str, object, object)
+    """An order was not carried out: the text, the draft it came from or None, and the text's topics."""
+    asked_again = pyqtSignal(object)
+    """Something is asked for now that may have been refused before: the Topic of that."""
+    accepted = pyqtSignal(str)
+    kept = pyqtSignal(str, str)
+    """A command is in the gateway's keeping: its id, and what it is in words. Its steps follow as reports."""
+    slow = pyqtSignal(str)
+    settled = pyqtSignal(str)
+    """An order that ``slow`` told of with this text has been answered."""
+
+    def __init__(
+        self,
+        submit: Callable[[OperatorRequest], None],
+        clock: Callable[[], float],
+        parent: QObject | None = None,
+    ):
+        super().__init__(parent)
+        self._submit = submit
+        self._clock = clock
+        self._pending: dict[str, PendingRequest] = {}
+
+    def __len__(self) -> int:
+        return len(self._pending)
+
+    def send(self, draft: PendingCommand) -> str:
+        """Send a draft and return the command's id.
+
+        :raises NotSentError: when it must not or cannot be sent; nothing was sent then.
+        """
+        if draft.fault:
+            raise NotSentError(tr("{draft} was not sent: {fault}", draft=draft.in_words(), fault=draft.fault))
+        if draft.kind == TARGETS:
+            raise NotSentError(
+                tr(
+                    "{draft} were not sent: several targets are driven to one after the other. Press Add "
+                    "to queue.",
+                    draft=draft.in_words(),
+                )
+            )
+        op, params = draft.message()
+        return self._command(draft.robot, op, params, draft.in_words(), draft, draft.override)
+
+    def abort(self, robot: str) -> str:
+        """Ask one robot to give up its task and return the command's id.
+
+        :raises NotSentError: when it cannot be sent.
+        """
+        return self._command(robot, Abort.__name__, {}, tr("Abort of {robot}", robot=robot), None)
+
+    def abort_all(self) -> str:
+        """Ask every robot to give up its task and return the order's key.
+
+        :raises NotSentError: when it cannot be sent.
+        """
+        command = str(uuid.uuid4())
+        order = OperatorRequest(command, AbortAll.method, to_json(AbortAll(command)), self._clock())
+        return self._put(order, tr("ABORT ALL"))
+
+    @property
+    def awaits_stop(self) -> bool:
+        """Whether an emergency stop was asked for that the gateway has not answered yet."""
+        return any(pending.stops for pending in self._pending.values())
+
+    def emergency_stop(self) -> str:
+        """Ask for every robot to stop, and for none to be sent until that is cleared; return its id.
+
+        :raises NotSentError: when it cannot be sent.
+        """
+        stop = str(uuid.uuid4())
+        key = self._put(
+            OperatorRequest(
+                stop, EmergencyStop.method, to_json(EmergencyStop(stop)), self._clock(), lasting=True
+            ),
+            tr("EMERGENCY STOP"),
+        )
+        self._pending[key].stops = True
+        return key
+
+    def clear_emergency(self, stop: str, reason: str) -> str:
+        """Ask for robots to be let go again and return the order's key.
+
+        :raises NotSentError: when it cannot be sent.
+        """
+        params = to_json(ClearEmergencyStop(reason or None, stop))
+        order = OperatorRequest(str(uuid.uuid4()), ClearEmergencyStop.method, params, self._clock())
+        return self._put(order, tr("Clear emergency stop"))
+
+    def ask(
+        self,
+        order: OperatorRequest,
+        words: str,
+        topics: tuple[Topic, ...] = (),
+        draft: PendingCommand | None = None,
+    ) -> None:
+        """Ask for something else, which is ``words`` to the operator.
+
+        ``topics`` are what else a refusal is about, ``draft`` what it was made of.
+
+        :raises NotSentError: when it cannot be sent.
+        """
+        self._put(order, words, draft, topics)
+
+    def answered(self, answer: RequestResult) -> None:
+        """Take in what became of an order."""
+        pending = self._pending.pop(answer.order.key, None)
+        if pending is None:
+            return
+        if pending.told_slow:
+            self.settled.emit(pending.told_slow)
+        if answer.error is not None:
+            self.refused.emit(f"{pending.words}: {answer.error}", pending.draft, pending.topics)
+            return
+        result = answer.result or {}
+        commands = result.get("commands")
+        if "text" in result:
+            self.accepted.emit(f"{pending.words}: {result['text']}")
+        elif "closure" in result:
+            self.accepted.emit(tr("{words}: done", words=pending.words))
+        elif result.get("in_force"):
+            # The banner says so, for as long as it is true.
+            return
+        elif result.keys() & {"in_force", "revision", "queues", "placements", "tasks"}:
+            self.accepted.emit(tr("{words}: done", words=pending.words))
+        elif commands is None:
+            self.kept.emit(answer.order.key, pending.words)
+        else:
+            self.accepted.emit(
+                tr_count(
+                    len(commands),
+                    "{words}: sent to 1 robot",
+                    "{words}: sent to %n robots",
+                    words=pending.words,
+                )
+            )
+
+    def watch(self) -> None:
+        """Tell once of each order that waits for its answer for too long."""
+        now = self._clock()
+        for pending in self._pending.values():
+            if not pending.told_slow and now - pending.asked_at > SLOW_AFTER:
+                pending.told_slow = tr(
+                    "{words}: the gateway has not answered for {seconds:g} s, so it may not have "
+                    "arrived. It is repeated when the link is back; it is never done twice.",
+                    words=pending.words,
+                    seconds=SLOW_AFTER,
+                )
+                self.slow.emit(pending.told_slow)
+
+    def _command(
+        self,
+        robot: str,
+        op: str,
+        params: dict,
+        words: str,
+        draft: PendingCommand | None,
+        override: str | None = None,
+    ) -> str:
+        command = str(uuid.uuid4())
+        send = Send(command, robot, op, params, override=override)
+        order = OperatorRequest(command, Send.method, to_json(send), self._clock())
+        return self._put(order, words, draft)
+
+    def _put(
+        self,
+        order: OperatorRequest,
+        words: str,
+        draft: PendingCommand | None = None,
+        more: tuple[Topic, ...] = (),
+    ) -> str:
+        topics = topics_of(order.method, order.params) + more
+        self.asked_again.emit(topics[0])
+        try:
+            self._submit(order)
+        except NotSentError as error:
+            text = tr("{words} was NOT sent: {error}", words=words, error=error)
+            raise NotSentError(text, topics) from error
+        self._pending[order.key] = PendingRequest(words, order.asked_at, draft, topics=topics)
+        return order.key
+
+
+def topics_of(method: str, params: dict[str, Any]) -> tuple[Topic, ...]:
+    """Return what a refusal of this request is about; the first of them is the request itself."""
+    robot, other = params.get("robot", ""), params.get("other", "")
+    # An Abort is no other try of a target that was refused.
+    what = params.get("op", "") == Abort.__name__
+    about = (robot, other, what, params.get("closure", ""), params.get("observation", ""))
+    topics = (request_topic(method, about),)
+    return (*topics, conflict_topic(robot, other)) if method == ResolveConflict.method else topics

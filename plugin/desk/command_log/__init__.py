@@ -1,1 +1,0 @@
-"""The log of commands: what was asked of whom, every step of it, and where."""

@@ -1,1 +1,0 @@
-"""The plugin's page in QGIS's options."""

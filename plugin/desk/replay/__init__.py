@@ -1,1 +1,0 @@
-"""What was: stored positions and commands, played beside the live map."""

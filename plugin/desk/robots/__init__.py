@@ -1,1 +1,0 @@
-"""The table of robots, and all that is known of one of them."""

@@ -1,0 +1,118 @@
+"""Snapshot of robots that expressions read, and its updates."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+from qgis.core import QgsCoordinateReferenceSystem, QgsPointXY
+from qgis.PyQt.QtCore import QObject
+
+from ...robot_bridge.core.steady_time import steady_time
+from ..control.fleet_controller import FleetController
+from ..gateway_client.robot_table import STATES
+from ..layers.site_transform import frame_of
+
+# --- The robots as expressions see them: whatever thread they are evaluated in, one picture that is whole
+
+Numbers = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class RobotSnapshot:
+    """Every robot at ``taken`` (seconds, monotonic clock); nothing in it is changed afterwards.
+
+    ``rows`` leads from a name to a row of the arrays: ``states`` (n) names of states, ``xy`` (n, 2) places in
+    ``crs``, ``age`` (n,) seconds since the last message and ``battery`` (n,) part of a full one, NaN where
+    not known.
+    """
+
+    crs: QgsCoordinateReferenceSystem
+    rows: dict[str, int]
+    states: list[str]
+    xy: Numbers
+    age: Numbers
+    battery: Numbers
+    taken: float
+
+    def state(self, robot: str) -> str | None:
+        """Return a robot's state, None for a robot that is not known."""
+        row = self.rows.get(robot)
+        return None if row is None else self.states[row]
+
+    def charge(self, robot: str) -> float | None:
+        """Return how full a robot's battery is, 0 to 1; None where that is not known."""
+        return self._number(self.battery, robot)
+
+    def silence(self, robot: str, now: float | None = None) -> float | None:
+        """Return the seconds since a robot's last message."""
+        age = self._number(self.age, robot)
+        now = steady_time() if now is None else now
+        return None if age is None else age + max(0.0, now - self.taken)
+
+    def place(self, robot: str) -> QgsPointXY | None:
+        """Return where a robot is, in :attr:`crs`; None where that is not known."""
+        row = self.rows.get(robot)
+        if row is None or not np.isfinite(self.xy[row]).all():
+            return None
+        return QgsPointXY(*self.xy[row].tolist())
+
+    def _number(self, column: Numbers, robot: str) -> float | None:
+        row = self.rows.get(robot)
+        return None if row is None or not np.isfinite(column[row]) else float(column[row])
+
+
+class SnapshotHolder:
+    """Holds the newest :class:`RobotSnapshot`, None while no gateway has told of any robot."""
+
+    def __init__(self) -> None:
+        self.robots: RobotSnapshot | None = None
+
+
+# --- Passes the robots on to QGIS's expressions, twice a second ---
+
+_NAMES = np.array([state.value for state in STATES], dtype=object)
+
+
+class ExpressionUpdater(QObject):
+    """Makes a new picture for expressions out of the desk's; :meth:`remove` leaves them without one."""
+
+    def __init__(self, desk: FleetController, fleet: SnapshotHolder):
+        super().__init__(desk)
+        self._desk, self._fleet = desk, fleet
+        self._turn = desk.beat.turn()
+        self._rows: dict[str, int] = {}
+        self._arrangement = -1
+        desk.pulled.connect(self._pulled)
+        desk.site_changed.connect(self.feed)
+        desk.robots_removed.connect(self.feed)
+
+    def remove(self) -> None:
+        """Feed nothing more."""
+        self._fleet.robots = None
+
+    def feed(self) -> None:
+        """Make the picture of this moment."""
+        desk, now = self._desk, self._desk.clock()
+        if desk.site is None:
+            self._fleet.robots = None
+            return
+        robots = desk.picture.arrays(now)
+        if self._arrangement != desk.picture.arrangement or len(self._rows) != len(robots.names):
+            self._arrangement = desk.picture.arrangement
+            self._rows = {name: row for row, name in enumerate(robots.names)}
+        frame = frame_of(desk.site)
+        self._fleet.robots = RobotSnapshot(
+            crs=QgsCoordinateReferenceSystem(desk.site.crs),
+            rows=self._rows,
+            states=_NAMES[robots.state].tolist(),
+            xy=frame.to_crs(robots.xy),
+            age=robots.age,
+            battery=desk.picture.column("battery"),
+            taken=now,
+        )
+
+    def _pulled(self) -> None:
+        if self._turn.has_come():
+            self.feed()

@@ -1,0 +1,1 @@
+"""Client of the gateway: connection thread, protocol, requests, and the state that the gateway reports."""

@@ -1,0 +1,244 @@
+"""Commands as last reported, as text, and how far robots are from their paths."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from ...robot_bridge.core.messages import Abort, CommandReport, CommandState, SetPath, SetPosEnd
+from ..ui.language import tr
+from .state_texts import COMMAND_STATES
+
+# --- The commands that the desk knows of ---
+
+UNDER_WAY = (CommandState.QUEUED, CommandState.DELIVERED, CommandState.ACKNOWLEDGED)
+MOST_COMMANDS = 2000
+DRIVE_OPERATIONS = (SetPosEnd.__name__, SetPath.__name__)
+"""Operations that lead a robot somewhere; the others are done where it stands."""
+
+
+class CommandCache:
+    """Commands by id. Whatever order they are told in, the newest of a robot is the one asked for last."""
+
+    def __init__(self) -> None:
+        self._reports: dict[str, CommandReport] = {}
+        self._under_way: dict[str, CommandReport] = {}
+        self._reached: dict[str, CommandReport] = {}
+
+    def __len__(self) -> int:
+        return len(self._reports)
+
+    def __contains__(self, command: str) -> bool:
+        return command in self._reports
+
+    def __iter__(self) -> Iterator[CommandReport]:
+        return iter(self._reports.values())
+
+    def merge(self, reports: Iterable[CommandReport]) -> list[CommandReport]:
+        """Take in reports and return those that told something new.
+
+        A report with fewer steps than what is known was overtaken on its way and is passed over.
+        """
+        changed = []
+        late = False
+        newest = asked_at(next(reversed(self._reports.values()))) if self._reports else 0.0
+        for report in reports:
+            known = self._reports.get(report.command)
+            if known is not None and (len(report.steps) < len(known.steps) or report == known):
+                continue
+            if known is None:
+                late, newest = late or asked_at(report) < newest, max(newest, asked_at(report))
+            self._reports[report.command] = report
+            changed.append(report)
+        if not changed:
+            return []
+        if late:
+            # What was asked for before this desk came is told after what came since.
+            self._reports = dict(sorted(self._reports.items(), key=lambda item: asked_at(item[1])))
+        self._forget_oldest()
+        self._look_through()
+        return [report for report in changed if report.command in self._reports]
+
+    def clear(self) -> None:
+        """Forget every command."""
+        self._reports.clear()
+        self._under_way.clear()
+        self._reached.clear()
+
+    def get(self, command: str) -> CommandReport | None:
+        """Return a command, None if it is not known."""
+        return self._reports.get(command)
+
+    def under_way(self) -> list[CommandReport]:
+        """Return what robots are doing: of each the newest target or path that is not finished."""
+        return list(self._under_way.values())
+
+    def task_of(self, robot: str) -> CommandReport | None:
+        """Return what ``robot`` is doing, None if nothing is known of it."""
+        return self._under_way.get(robot)
+
+    def reached_by(self, robot: str) -> CommandReport | None:
+        """Return the target or path that ``robot`` reached last, None if nothing is known of one."""
+        return self._reached.get(robot)
+
+    def of(self, robot: str, most: int) -> list[CommandReport]:
+        """Return the newest commands of a robot, newest first."""
+        found = [report for report in reversed(self._reports.values()) if report.robot == robot]
+        return found[:most]
+
+    def _forget_oldest(self) -> None:
+        too_many = len(self._reports) - MOST_COMMANDS
+        if too_many <= 0:
+            return
+        ended = [key for key, report in self._reports.items() if report.state not in UNDER_WAY]
+        for command in ended[:too_many]:
+            del self._reports[command]
+        for command in list(self._reports)[: max(0, len(self._reports) - 2 * MOST_COMMANDS)]:
+            del self._reports[command]
+
+    def _look_through(self) -> None:
+        self._under_way.clear()
+        self._reached.clear()
+        for report in self._reports.values():
+            if report.op != Abort.__name__:
+                if report.state in UNDER_WAY:
+                    self._under_way[report.robot] = report
+                elif report.state is CommandState.REACHED:
+                    self._reached[report.robot] = report
+
+
+def asked_at(report: CommandReport) -> float:
+    """Return when a command was asked for, seconds since 1970; 0 where that was not told."""
+    return report.steps[0].at if report.steps else 0.0
+
+
+def command_in_words(report: CommandReport) -> str:
+    """Return what a command asks for, as in ``cone at 12.30, 40.00``."""
+    if report.op == SetPosEnd.__name__:
+        x, y = _metres(report.params.get("x")), _metres(report.params.get("y"))
+        if report.params.get("cone"):
+            return tr("cone at {x}, {y}", x=x, y=y)
+        return tr("target at {x}, {y}", x=x, y=y)
+    if report.op == SetPath.__name__ and report.params.get("cone") and (place := place_of(report)):
+        return tr("cone at {x}, {y}", x=_metres(place[0]), y=_metres(place[1]))
+    if report.op == SetPath.__name__:
+        return tr("route of {number} points", number=len(report.params.get("points", [])))
+    return {Abort.__name__: tr("abort")}.get(report.op, report.op)
+
+
+def state_word(op: str, state: CommandState) -> str:
+    """Return a state of a command in a word: an abort leads nowhere, and is done where others are reached."""
+    if state is CommandState.REACHED and op not in DRIVE_OPERATIONS:
+        return tr("done")
+    return COMMAND_STATES[state]
+
+
+def command_state_in_words(report: CommandReport) -> str:
+    """Return how far a command has come, and why where that was told, as in ``failed: battery empty``."""
+    word = state_word(report.op, report.state)
+    if word == tr("done"):
+        return word
+    reason = report.steps[-1].reason if report.steps else None
+    return word + (f": {reason}" if reason else "")
+
+
+def place_of(report: CommandReport) -> tuple[float, float] | None:
+    """Return where a command leads to, metres in the site frame; None for one that leads nowhere."""
+    if report.op == SetPath.__name__:
+        points = report.params.get("points") or [(None, None)]
+        x, y = points[-1][:2]
+    else:
+        x, y = report.params.get("x"), report.params.get("y")
+    if isinstance(x, (int, float)) and isinstance(y, (int, float)):
+        return float(x), float(y)
+    return None
+
+
+def _metres(value: object) -> str:
+    return f"{value:.2f}" if isinstance(value, (int, float)) else "?"
+
+
+# --- Whether a robot has come to its path yet: it drives to the first point, by a way that nobody prescribed
+
+ON_PATH_M = 1.0
+"""Metres beside a path within which a robot has come to it."""
+AWAY_M = 1.0
+"""Metres by which a robot has to go away from a path's first point to have passed it."""
+
+
+@dataclass
+class PathApproach:
+    """How a robot comes to its path: ``nearest`` is metres to its first point, the least."""
+
+    nearest: float = math.inf
+    is_over: bool = False
+
+    def go_on(self, off: float, to_first: float) -> None:
+        """Take in where the robot is: metres beside the path and to its first point.
+
+        One that never comes near passes the first point all the same: it goes away from that again.
+        """
+        self.is_over = self.is_over or off <= ON_PATH_M or to_first > self.nearest + AWAY_M
+        self.nearest = min(self.nearest, to_first)
+
+
+# --- How far a robot is from where it was told to be ---
+
+Floats = npt.NDArray[np.float64]
+
+
+class PathDeviations:
+    """Remembers of each robot whether it has come to its path: the way there is nobody's to prescribe."""
+
+    def __init__(self, book: CommandCache):
+        self._book = book
+        self._ways: dict[str, tuple[str, PathApproach]] = {}
+        """By robot, the command whose path it is to drive, and how it comes to that."""
+
+    def of(self, robot: str, xy: tuple[float, float] | None) -> float | None:
+        """Return metres beside the path that ``robot`` drives, else from the target that it reached last.
+
+        ``xy`` is where it is, in the site frame. None where it has neither, or is on its way to a target or
+        to the first point of its path: it cannot be beside what it was not given.
+        """
+        task = self._book.task_of(robot)
+        if task is None:
+            reached = self._book.reached_by(robot)
+            return None if reached is None else reached.deviation
+        points = _path_points(task) if task.op == SetPath.__name__ else np.empty((0, 2))
+        if xy is None or len(points) == 0:
+            return None
+        off = distance_to_line(points, np.array(xy))
+        command, way = self._ways.get(robot, ("", PathApproach()))
+        if command != task.command:
+            way = PathApproach()
+            self._ways[robot] = task.command, way
+        way.go_on(off, math.dist(points[0], xy))
+        return off if way.is_over else None
+
+    def forget(self, robots: Iterable[str]) -> None:
+        """Remember nothing of ``robots``, which were removed."""
+        for robot in robots:
+            self._ways.pop(robot, None)
+
+
+def distance_to_line(points: Floats, at: Floats) -> float:
+    """Return how far (2,) ``at`` is from the line through (n, 2) ``points``, n > 0."""
+    if len(points) == 1:
+        return float(np.hypot(*(points[0] - at)))
+    start, step = points[:-1], np.diff(points, axis=0)
+    square = np.maximum((step**2).sum(axis=1), 1e-18)
+    part = np.clip(((at - start) * step).sum(axis=1) / square, 0.0, 1.0)
+    return float(np.hypot(*(start + step * part[:, None] - at).T).min())
+
+
+def _path_points(task: CommandReport) -> Floats:
+    try:
+        points = np.array(task.params.get("points", []), dtype=np.float64)
+    except (TypeError, ValueError):
+        return np.empty((0, 2))
+    return points[:, :2] if points.ndim == 2 and points.shape[1] >= 2 else np.empty((0, 2))

@@ -1,0 +1,384 @@
+"""Connection to the gateway: its thread, the client that keeps it up, and retries with backoff."""
+
+from __future__ import annotations
+
+import asyncio
+import random
+import threading
+from collections.abc import Callable
+from types import ModuleType
+from typing import Any
+
+from qgis.PyQt.QtCore import QObject, QThread
+
+from ...robot_bridge.core.steady_time import steady_time
+from ..ui.errors import AddressError, GatewayLinkError, NotSentError
+from ..ui.language import tr
+from .buffers import OperatorRequest, StateUpdate, UpdateBuffer
+from .link import ConnectionPhase, ConnectionStatus, OperatorCredentials, check_address, explain
+from .protocol import GatewayProtocol
+from .websocket_library import websocket_library
+
+# --- How long to wait before the next attempt to reach the gateway ---
+
+
+class Backoff:
+    """Waits that double from attempt to attempt, up to a longest one, each cut at random by up to a half.
+
+    The chance keeps the desks of a site from coming back all in the same moment after a restart. Every wait
+    lies between ``shortest`` and ``longest`` seconds.
+    """
+
+    def __init__(
+        self, shortest: float = 0.5, longest: float = 15.0, chance: Callable[[], float] = random.random
+    ):
+        self._shortest = shortest
+        self._longest = longest
+        self._chance = chance
+        self._attempts = 0
+
+    @property
+    def attempts(self) -> int:
+        """How many waits were handed out since the last success."""
+        return self._attempts
+
+    def next_wait(self) -> float:
+        """Return the seconds to wait before the next attempt."""
+        span = min(self._longest, self._shortest * 2 ** (min(self._attempts, 30) + 1))
+        self._attempts += 1
+        return max(self._shortest, span * (1.0 - 0.5 * self._chance()))
+
+    def reset(self) -> None:
+        """Begin with short waits again, after a success."""
+        self._attempts = 0
+
+
+# --- Keeps a link to the gateway up: connects, converses, and tries again when it breaks ---
+
+ANSWER_WITHIN = 5.0
+PING_EVERY = 2.0
+PONG_WITHIN = 2.5
+"""Together under 5 s: a cable that is pulled out shows before the operator wonders."""
+CLOSE_WITHIN = 0.2
+LARGEST_MESSAGE = 64 * 2**20
+MOST_WAITING = 1
+"""Messages that wait to be read: more would be old news by then, where a gateway that waits has newer."""
+AWAKE_EVERY = 1.0
+ASLEEP_AFTER = 8.0
+"""Seconds: what waited in this computer for longer would be taken for new."""
+
+
+class GatewayClient:
+    """The link to one gateway, for as long as :meth:`run` runs. All methods belong to its event loop."""
+
+    def __init__(
+        self,
+        url: str,
+        operator: str,
+        mailbox: UpdateBuffer,
+        library: ModuleType,
+        rate: float = 10.0,
+        credentials: OperatorCredentials | None = None,
+    ):
+        self._url = url
+        self._credentials = credentials or OperatorCredentials()
+        self._mailbox = mailbox
+        self._library = library
+        self._protocol = GatewayProtocol(operator, rate, url, mailbox, steady_time)
+        self._backoff = Backoff()
+        self._awake_at = steady_time()
+        self._outgoing: asyncio.Queue[str] = asyncio.Queue()
+
+    async def run(self) -> None:
+        """Connect and stay connected until cancelled, or until trying again cannot help."""
+        reason = ""
+        try:
+            while True:
+                self._mailbox.put_link(ConnectionStatus(ConnectionPhase.CONNECTING, reason))
+                failure = await self._attempt()
+                reason = str(failure)
+                if failure.final:
+                    self._mailbox.put_link(
+                        ConnectionStatus(ConnectionPhase.FAILED, reason, wants_token=failure.wants_token)
+                    )
+                    return
+                wait = self._backoff.next_wait()
+                due = steady_time() + wait
+                self._mailbox.put_link(ConnectionStatus(ConnectionPhase.RETRYING, reason, next_try=due))
+                await asyncio.sleep(wait)
+        finally:
+            self._protocol.end()
+
+    def submit(self, order: OperatorRequest) -> None:
+        """Send ``order`` now, or as soon as there is a link again."""
+        self._send_all(self._protocol.submit(order))
+
+    async def _attempt(self) -> GatewayLinkError:
+        """Hold one link and return why it ended."""
+        try:
+            await self._hold()
+        except GatewayLinkError as error:
+            return error
+        except AddressError as error:
+            return GatewayLinkError(str(error), final=True, wants_token=True)
+        except Exception as error:
+            explained = explain(error, self._url, self._library.exceptions)
+            if explained is None:
+                raise
+            return explained
+        finally:
+            self._protocol.ready = False
+        return GatewayLinkError(tr("The gateway at {url} closed the link. It is tried again.", url=self._url))
+
+    async def _hold(self) -> None:
+        socket = None
+        try:
+            async with self._connect() as socket:
+                await self._converse(socket)
+        finally:
+            if socket is not None:
+                # Where closing takes too long while we are cancelled, asyncio of some Pythons (3.11.2)
+                # has the library take the one for the other and leave the socket open.
+                socket.transport.abort()
+
+    def _connect(self) -> Any:
+        options: dict[str, Any] = {
+            "open_timeout": ANSWER_WITHIN,
+            "ping_interval": PING_EVERY,
+            "ping_timeout": PONG_WITHIN,
+            "close_timeout": CLOSE_WITHIN,
+            "max_size": LARGEST_MESSAGE,
+            "max_queue": MOST_WAITING,
+            "compression": None,
+            **self._credentials.options(self._url),
+        }
+        version = self._library.version.version
+        if int(version.split(".")[0]) >= 15:
+            # A gateway stands in the site's own network, where a proxy for the web does not lead.
+            options["proxy"] = None
+        return self._library.connect(self._url, **options)
+
+    async def _converse(self, socket: Any) -> None:
+        self._outgoing = asyncio.Queue()
+        self._send_all(self._protocol.begin())
+        self._awake_at = steady_time()
+        work = (self._read(socket), self._write(socket), self._stay_awake())
+        tasks = [asyncio.ensure_future(one) for one in work]
+        try:
+            done, _ = await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
+            for task in done:
+                task.result()
+        finally:
+            for task in tasks:
+                task.cancel()
+            await asyncio.gather(*tasks, return_exceptions=True)
+
+    async def _read(self, socket: Any) -> None:
+        try:
+            while not self._protocol.ready:
+                text = await asyncio.wait_for(socket.recv(), ANSWER_WITHIN)
+                self._send_all(self._protocol.receive(text))
+        except asyncio.TimeoutError as error:
+            raise GatewayLinkError(
+                tr(
+                    "What answers at {url} opens a WebSocket but did not answer the desk's greeting within "
+                    "{answer_within:g} s. Check that the URL leads to a Fleet Supervisor gateway.",
+                    url=self._url,
+                    answer_within=ANSWER_WITHIN,
+                )
+            ) from error
+        self._backoff.reset()
+        who = {"operator": self._protocol.operator, "role": self._protocol.role}
+        self._mailbox.put_link(ConnectionStatus(ConnectionPhase.CONNECTED, **who))
+        async for text in socket:
+            self._check_awake()
+            self._send_all(self._protocol.receive(text))
+
+    async def _stay_awake(self) -> None:
+        while True:
+            await asyncio.sleep(AWAKE_EVERY)
+            self._check_awake()
+            self._awake_at = steady_time()
+
+    def _check_awake(self) -> None:
+        """Raise LinkError when this computer has slept: what comes in now was sent before or meanwhile."""
+        asleep = steady_time() - self._awake_at
+        if asleep > ASLEEP_AFTER:
+            raise GatewayLinkError(
+                tr(
+                    "This computer slept, or did nothing, for {seconds:.0f} s: what waits for it is old. "
+                    "The link is opened anew.",
+                    seconds=asleep,
+                )
+            )
+
+    async def _write(self, socket: Any) -> None:
+        while True:
+            await socket.send(await self._outgoing.get())
+
+    def _send_all(self, texts: list[str]) -> None:
+        for text in texts:
+            self._outgoing.put_nowait(text)
+
+
+# --- The connection to the gateway: one worker thread, out of the window's way ---
+
+STOP_WITHIN_MS = 3000
+CANCEL_WITHIN = 0.3
+
+
+class ConnectionThread(QObject):
+    """The link to a gateway as the window sees it. No method waits for the network.
+
+    Nothing is signalled message by message: a timer of the window calls :meth:`take`.
+    """
+
+    def __init__(self, parent: QObject | None = None):
+        super().__init__(parent)
+        self._worker: _Worker | None = None
+        self._ending: list[_Worker] = []
+        self._mailbox = UpdateBuffer()
+        self.rate = 10.0
+        """How many times a second positions are asked for at most, by links that are opened from now on."""
+
+    @property
+    def is_open(self) -> bool:
+        """Whether a link is wanted, be it up or not."""
+        return self._worker is not None
+
+    @property
+    def is_ending(self) -> bool:
+        """Whether a link that was given up still has its thread."""
+        return bool(self._ending)
+
+    def open(self, url: str, operator: str, credentials: OperatorCredentials | None = None) -> None:
+        """Connect to the gateway at ``url`` and stay connected until :meth:`close`.
+
+        :raises AddressError: when the URL cannot be a gateway's, or the token or the CA file not be used.
+        :raises LibraryMissingError: when there is no WebSocket library.
+        """
+        url = check_address(url)
+        credentials = credentials or OperatorCredentials()
+        credentials.check(url)
+        library = websocket_library()
+        self.close()
+        self._mailbox = UpdateBuffer()
+        self._mailbox.put_link(ConnectionStatus(ConnectionPhase.CONNECTING))
+        client = GatewayClient(url, operator, self._mailbox, library, self.rate, credentials)
+        self._worker = _Worker(client, self._mailbox)
+        self._worker.start()
+
+    def close(self) -> None:
+        """Give up the link; its thread ends by itself within a moment."""
+        if self._worker is None:
+            return
+        self._worker.ask_to_stop()
+        self._ending.append(self._worker)
+        self._worker = None
+        self._forget_ended()
+
+    def submit(self, order: OperatorRequest) -> None:
+        """Hand an order to the worker thread.
+
+        :raises NotSentError: when no link is wanted.
+        """
+        if self._worker is None or not self._worker.submit(order):
+            raise NotSentError(tr("The desk is not connected to a gateway. Press Connect first."))
+
+    def take(self) -> StateUpdate:
+        """Return what arrived since the last call."""
+        self._forget_ended()
+        news = self._mailbox.take()
+        if self._worker is None:
+            # The worker that is ending may still have said that it will try again.
+            news.link = ConnectionStatus(ConnectionPhase.CLOSED)
+        return news
+
+    def shut_down(self) -> None:
+        """Close the link and wait until every thread has ended."""
+        self.close()
+        for worker in self._ending:
+            worker.wait(STOP_WITHIN_MS)
+        self._forget_ended()
+
+    def _forget_ended(self) -> None:
+        self._ending = [worker for worker in self._ending if not worker.isFinished()]
+
+
+class _Worker(QThread):
+    """Runs one client's event loop."""
+
+    def __init__(self, client: GatewayClient, mailbox: UpdateBuffer):
+        super().__init__()
+        self.setObjectName("fleet_connection")
+        self._client = client
+        self._mailbox = mailbox
+        self._lock = threading.Lock()
+        self._early: list[OperatorRequest] = []
+        self._loop: asyncio.AbstractEventLoop | None = None
+        self._task: asyncio.Task | None = None
+        self._stopping = False
+
+    def submit(self, order: OperatorRequest) -> bool:
+        """Hand ``order`` to the client; false when the worker has ended or is about to."""
+        with self._lock:
+            if self._stopping:
+                return False
+            if self._loop is None:
+                self._early.append(order)
+            else:
+                self._loop.call_soon_threadsafe(self._client.submit, order)
+            return True
+
+    def ask_to_stop(self) -> None:
+        """Make the event loop end, from any thread."""
+        with self._lock:
+            self._stopping = True
+            if self._loop is not None and self._task is not None:
+                self._loop.call_soon_threadsafe(self._task.cancel)
+
+    def run(self) -> None:
+        # An exception that leaves QThread.run ends the process outside QGIS and is lost inside it.
+        try:
+            self._run_loop()
+        except Exception as error:
+            self._mailbox.put_link(
+                ConnectionStatus(
+                    ConnectionPhase.FAILED,
+                    tr(
+                        "The connection stopped on an internal fault ({name}: {error}). Press Connect to "
+                        "try again and report this text.",
+                        name=type(error).__name__,
+                        error=error,
+                    ),
+                )
+            )
+
+    def _run_loop(self) -> None:
+        loop = asyncio.new_event_loop()
+        try:
+            with self._lock:
+                if self._stopping:
+                    return
+                self._loop, self._task = loop, loop.create_task(self._client.run())
+                for order in self._early:
+                    self._client.submit(order)
+            loop.run_until_complete(self._task)
+        except asyncio.CancelledError:
+            return
+        finally:
+            with self._lock:
+                self._stopping, self._loop, self._task = True, None, None
+            _end_tasks(loop)
+            loop.close()
+
+
+def _end_tasks(loop: asyncio.AbstractEventLoop) -> None:
+    """Cancel what a library left running, such as the pings of a link that would not close."""
+    left = asyncio.all_tasks(loop)
+    for task in left:
+        task.cancel()
+    if left:
+        loop.run_until_complete(asyncio.wait(left, timeout=CANCEL_WITHIN))
+    # A link that was cut off closes its socket in the loop's next round, and there would be none.
+    loop.run_until_complete(asyncio.sleep(0))

@@ -1,0 +1,337 @@
+"""The desk's JSON-RPC 2.0 conversation with the gateway: text in, text out, no socket."""
+
+from __future__ import annotations
+
+import itertools
+import json
+import math
+from collections.abc import Callable
+from typing import Any
+
+from ...robot_bridge.core.json_decoder import DOCUMENT, check_bounds
+from ...robot_bridge.core.messages import (
+    LONGEST_OPERATOR,
+    PROTOCOL_VERSION,
+    ClearEmergencyStop,
+    EmergencyStop,
+    GetClosures,
+    GetCommands,
+    GetQueue,
+    Hello,
+    PositionForm,
+    SiteReport,
+    Subscribe,
+    emergency_report,
+    geofence_report,
+    links_report,
+    nearness_report,
+    observation_report,
+    one_line,
+    placement_report,
+    queue_report,
+    site_report,
+    suspensions_report,
+    to_json,
+)
+from ..ui.errors import GatewayLinkError
+from ..ui.language import tr
+from .buffers import COMMAND_METHOD as COMMAND_NEWS
+from .buffers import OBSERVATION_METHOD as OBSERVATION_NEWS
+from .buffers import PLACEMENT_METHOD as PLACEMENT_NEWS
+from .buffers import QUEUE_METHOD as QUEUE_NEWS
+from .buffers import ROAD_METHODS as ROAD_NEWS
+from .buffers import (
+    OperatorRequest,
+    RequestOutbox,
+    RequestResult,
+    UpdateBuffer,
+    command_in,
+    commands_in,
+    observations_in,
+    placements_in,
+    queues_in,
+)
+from .link import DEFAULT_URL
+from .robot_table import table_from_frame, table_from_rows
+
+Clock = Callable[[], float]
+
+UNKNOWN_METHOD, WRONG_PARAMETERS = -32601, -32602
+"""Error codes of JSON-RPC: robots' addresses know no greeting, and links' addresses another one."""
+OUTDATED = -32006
+OVERRIDABLE = -32007
+"""The error code of a change to what is not as it was seen; the newer state comes with it."""
+
+ALL_QUEUES = "every queue"
+"""The key of what asks for all queues when a link begins."""
+
+
+class GatewayProtocol:
+    """One link after the other with the same gateway: hello, subscription, commands, orders and answers.
+
+    What is learnt goes to the mailbox. Orders wait in the outbox until the gateway answered them, across
+    links; each is sent once on each link.
+    """
+
+    def __init__(self, operator: str, rate: float, url: str, mailbox: UpdateBuffer, clock: Clock):
+        self._operator = operator
+        self._rate = rate
+        self._url = url
+        self._mailbox = mailbox
+        self._clock = clock
+        self._outbox = RequestOutbox()
+        self._ids = itertools.count(1)
+        self._asked: dict[int, OperatorRequest] = {}
+        self.ready = False
+        self.operator, self.role = "", ""
+        """Who this desk is to the gateway, and in which role; empty as long as that is not known."""
+
+    def begin(self) -> list[str]:
+        """Return the first texts to send on a new link."""
+        self._asked.clear()
+        self.ready = False
+        # A name that the gateway would refuse must not keep its operator away.
+        name = one_line(self._operator.strip(), LONGEST_OPERATOR)
+        return [self._request(OperatorRequest("hello", Hello.method, to_json(Hello(name))))]
+
+    def submit(self, order: OperatorRequest) -> list[str]:
+        """Return the texts to send now for a new order: none while the link is not ready."""
+        if not self._outbox.put(order) or not self.ready:
+            return []
+        return [self._request(order)]
+
+    def end(self) -> None:
+        """Hand back every order that was not answered: nobody will ask for an answer any more."""
+        for order in self._outbox.clear():
+            self._mailbox.put_answer(
+                RequestResult(
+                    order,
+                    error=tr(
+                        "The link was closed before the gateway answered: whether it arrived is not known. "
+                        "Connect again and look in the command log."
+                    ),
+                )
+            )
+
+    def receive(self, text: str | bytes) -> list[str]:
+        """Take in one text from the gateway and return the texts to send in turn.
+
+        :raises LinkError: when the text is not what a gateway of this protocol sends.
+        """
+        try:
+            if isinstance(text, bytes):
+                self._mailbox.put_robots(table_from_frame(text, self._clock()))
+                return []
+            # Numbers that are none are named by what reads them.
+            check_bounds(text, DOCUMENT)
+            message = json.loads(text)
+            if not isinstance(message, dict):
+                raise ValueError(f"a JSON object was expected, not {type(message).__name__}")
+            if "method" in message:
+                self._notified(message["method"], message.get("params") or {})
+                return []
+            return self._answered(message)
+        except GatewayLinkError:
+            raise
+        except (ValueError, KeyError, TypeError, AttributeError) as error:
+            raise GatewayLinkError(
+                tr(
+                    "What answers at {url} sent something that is not the desk's protocol: {text} "
+                    "({kind}: {error}). Check that the URL leads to a Fleet Supervisor gateway of this "
+                    "version.",
+                    url=self._url,
+                    text=_start_of(text),
+                    kind=type(error).__name__,
+                    error=error,
+                )
+            ) from error
+
+    def _request(self, order: OperatorRequest) -> str:
+        number = next(self._ids)
+        self._asked[number] = order
+        return json.dumps({"jsonrpc": "2.0", "id": number, "method": order.method, "params": order.params})
+
+    def _notified(self, method: str, params: dict[str, Any]) -> None:
+        if method == "positions":
+            self._mailbox.put_robots(table_from_rows(params["robots"], self._clock(), params))
+        elif method == COMMAND_NEWS:
+            self._mailbox.put_commands([command_in(params)])
+        elif method == "emergency":
+            self._mailbox.put_emergency(emergency_report(params))
+        elif method == "site":
+            self._mailbox.put_site(checked_site(site_report(params)))
+        elif method == QUEUE_NEWS:
+            self._mailbox.put_queue(queue_report(params))
+        elif method in ROAD_NEWS:
+            self._mailbox.put_roads(method, params)
+        elif method == "geofence":
+            self._mailbox.put_geofence(geofence_report(params))
+        elif method == PLACEMENT_NEWS:
+            self._mailbox.put_placements([placement_report(params)])
+        elif method == OBSERVATION_NEWS:
+            self._mailbox.put_observations([observation_report(params)])
+        else:
+            self._notified_of_robots(method, params)
+
+    def _notified_of_robots(self, method: str, params: dict[str, Any]) -> None:
+        if method == "suspensions":
+            self._mailbox.put_suspensions(suspensions_report(params))
+        elif method == "links":
+            self._mailbox.put_links(links_report(params))
+        elif method == "nearness":
+            self._mailbox.put_nearness(nearness_report(params))
+        # Another notification is of a newer gateway and nothing that this desk asked for.
+
+    def _answered(self, message: dict[str, Any]) -> list[str]:
+        order = self._asked.pop(message.get("id", 0), None)
+        if order is None:
+            if "error" in message:
+                raise GatewayLinkError(
+                    tr(
+                        "The gateway at {url} refused a message: {error}",
+                        url=self._url,
+                        error=_error_text(message),
+                    )
+                )
+            return []
+        if order.method == Hello.method:
+            return self._welcomed(message)
+        if order.method == Subscribe.method:
+            if "error" in message:
+                raise GatewayLinkError(
+                    tr(
+                        "The gateway at {url} sends no positions: {error}",
+                        url=self._url,
+                        error=_error_text(message),
+                    )
+                )
+            return []
+        return self._order_answered(order, message)
+
+    def _welcomed(self, message: dict[str, Any]) -> list[str]:
+        if "error" in message:
+            if _code(message) == UNKNOWN_METHOD:
+                raise GatewayLinkError(
+                    tr(
+                        "No operator can connect at {url}: what answers there knows no desk, as the address "
+                        "of robots does not. A gateway's desk has the path /desk, as in {default_url}. "
+                        "Correct the URL, then press Connect.",
+                        url=self._url,
+                        default_url=DEFAULT_URL,
+                    ),
+                    final=True,
+                )
+            raise GatewayLinkError(
+                tr(
+                    "The gateway at {url} turned the desk away: {error}",
+                    url=self._url,
+                    error=_error_text(message),
+                ),
+                final=_code(message) == WRONG_PARAMETERS,
+            )
+        result = message["result"]
+        if result.get("protocol") != PROTOCOL_VERSION:
+            raise GatewayLinkError(
+                tr(
+                    "The gateway at {url} speaks protocol {theirs}, this plugin protocol {ours}. "
+                    "Update whichever of the two is older, then press Connect.",
+                    url=self._url,
+                    theirs=result.get("protocol"),
+                    ours=PROTOCOL_VERSION,
+                ),
+                final=True,
+            )
+        database = str(result.get("database") or "")
+        self._mailbox.put_site(checked_site(site_report(result["site"])), greeting_of=database)
+        self.operator, self.role = (str(result.get(name) or "") for name in ("operator", "role"))
+        if "emergency" in result:
+            self._mailbox.put_emergency(emergency_report(result["emergency"]))
+        self.ready = True
+        orders, too_old = self._outbox.renew(self._clock())
+        for order in too_old:
+            self._mailbox.put_answer(RequestResult(order, error=_too_old(self._clock() - order.asked_at)))
+        first = [
+            OperatorRequest(
+                "subscribe", Subscribe.method, to_json(Subscribe(self._rate, PositionForm.COLUMNS))
+            ),
+            OperatorRequest("get_commands", GetCommands.method, to_json(GetCommands())),
+            OperatorRequest("get_closures", GetClosures.method),
+            OperatorRequest(ALL_QUEUES, GetQueue.method, to_json(GetQueue())),
+        ]
+        return [self._request(order) for order in (*first, *orders)]
+
+    def _order_answered(self, order: OperatorRequest, message: dict[str, Any]) -> list[str]:
+        waiting = self._outbox.answered(order.key)
+        if "error" in message:
+            outdated = _code(message) == OUTDATED
+            if outdated:
+                self._take_queues(message["error"].get("data") or {})
+            if waiting is not None:
+                found = _found(message) if _code(message) == OVERRIDABLE else ()
+                self._mailbox.put_answer(
+                    RequestResult(order, error=_error_text(message), outdated=outdated, overridable=found)
+                )
+            return []
+        result = message.get("result") or {}
+        if order.method in (EmergencyStop.method, ClearEmergencyStop.method):
+            self._mailbox.put_emergency(emergency_report(result))
+        if order.method == GetClosures.method:
+            self._mailbox.put_roads("closures", result)
+        if order.key == ALL_QUEUES:
+            self._mailbox.put_every_queue(queues_in(result))
+        else:
+            self._take_queues(result)
+        self._mailbox.put_commands(commands_in(result))
+        self._mailbox.put_placements(placements_in(result))
+        self._mailbox.put_observations(observations_in(result))
+        if waiting is not None:
+            self._mailbox.put_answer(RequestResult(order, result=result))
+        return []
+
+    def _take_queues(self, values: dict[str, Any]) -> None:
+        for report in queues_in(values):
+            self._mailbox.put_queue(report)
+
+
+def checked_site(site: SiteReport) -> SiteReport:
+    """Return ``site`` if its numbers are finite numbers, else raise ValueError naming the field."""
+    numbers = (*site.origin, *site.bounds, site.rotation, site.stale_after, site.lost_after)
+    for value in numbers:
+        _check_number(f"a number of site {site.id}", value)
+    if len(site.origin) != 2 or len(site.bounds) != 4:
+        raise ValueError(f"origin or bounds of site {site.id} have the wrong length")
+    return site
+
+
+def _check_number(name: str, value: Any) -> None:
+    if isinstance(value, bool) or not isinstance(value, (int, float)) or not math.isfinite(value):
+        raise ValueError(f"{name} is {value!r}, not a finite number")
+
+
+def _error_text(message: dict[str, Any]) -> str:
+    error = message["error"]
+    return str(error.get("message", error)) if isinstance(error, dict) else str(error)
+
+
+def _code(message: dict[str, Any]) -> Any:
+    error = message["error"]
+    return error.get("code") if isinstance(error, dict) else None
+
+
+def _found(message: dict[str, Any]) -> tuple[str, ...]:
+    """Return what speaks against a request that can be overridden."""
+    return tuple(str(text) for text in message["error"]["data"]["found"])
+
+
+def _too_old(age: float) -> str:
+    return tr(
+        "The link was lost before the gateway answered, and {age:.0f} s later it was not repeated: a "
+        "robot shall not drive off on an old order. Look in the command log and send it again if it is "
+        "not there.",
+        age=age,
+    )
+
+
+def _start_of(text: str | bytes) -> str:
+    shown = text if isinstance(text, str) else f"{len(text)} bytes"
+    return repr(shown if len(shown) <= 60 else f"{shown[:60]}…")

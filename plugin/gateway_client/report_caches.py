@@ -1,0 +1,260 @@
+"""Queues, placed cones, observations, geofence and nearness as last reported."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator
+
+from ...robot_bridge.core.messages import (
+    FenceAlarm,
+    Geofence,
+    Nearness,
+    NearnessAlarm,
+    ObservationReport,
+    ObservationState,
+    PlacementReport,
+    QueueReport,
+)
+from ..ui.language import tr
+from .buffers import ObservationUpdates, PlacedConeUpdates, QueueUpdates
+
+# --- The queues of the robots, as the gateway told them last ---
+
+
+class QueueCache:
+    """The newest report of each queue, by its robot."""
+
+    def __init__(self) -> None:
+        self.queues: dict[str, QueueReport] = {}
+
+    def __iter__(self) -> Iterator[QueueReport]:
+        return iter(self.queues.values())
+
+    def __len__(self) -> int:
+        return len(self.queues)
+
+    def merge(self, news: QueueUpdates) -> list[str]:
+        """Take in news and return the robots of whose queues they tell something new."""
+        gone = self.queues.keys() - news.queues.keys() if news.every else set()
+        for robot in gone:
+            del self.queues[robot]
+        new = [robot for robot, report in news.queues.items() if self.queues.get(robot) != report]
+        self.queues.update(news.queues)
+        return [*gone, *new]
+
+    def forget(self, robots: Iterable[str]) -> None:
+        """Forget the queues of robots that are there no more."""
+        for robot in robots:
+            self.queues.pop(robot, None)
+
+    def get(self, robot: str) -> QueueReport | None:
+        """Return a robot's queue, None for one that has none."""
+        return self.queues.get(robot)
+
+    def revision(self, robot: str) -> int:
+        """Return the revision that an edit of a robot's queue has to name: 0 where it has none yet."""
+        report = self.queues.get(robot)
+        return 0 if report is None else report.revision
+
+    def clear(self) -> None:
+        """Forget everything: it is another site's."""
+        self.queues.clear()
+
+
+# --- The cones that robots put down, as the gateway told them last ---
+
+MOST_PLACEMENTS = 20_000
+MOST_ASKED = 5000
+"""As many as a gateway tells at once."""
+
+
+class PlacedConeCache:
+    """The newest report of each placed cone, by its number; of very many the newest."""
+
+    def __init__(self) -> None:
+        self._reports: dict[int, PlacementReport] = {}
+
+    def __iter__(self) -> Iterator[PlacementReport]:
+        return iter(self._reports.values())
+
+    def __len__(self) -> int:
+        return len(self._reports)
+
+    def merge(self, news: PlacedConeUpdates) -> list[int]:
+        """Take in news and return the numbers of the cones of which they tell something new."""
+        new = [number for number, one in news.placements.items() if self._reports.get(number) != one]
+        self._reports.update(news.placements)
+        for number in sorted(self._reports)[: max(0, len(self._reports) - MOST_PLACEMENTS)]:
+            del self._reports[number]
+        return new
+
+    def clear(self) -> None:
+        """Forget everything: it is another site's."""
+        self._reports.clear()
+
+
+# --- The observations that the desk knows of, as the gateway told them last ---
+
+MOST_REVIEWED = 1000
+"""Reviewed ones that are kept; those that wait for their review are all kept."""
+
+
+class ObservationCache:
+    """The newest report of each observation, by its number."""
+
+    def __init__(self) -> None:
+        self._reports: dict[int, ObservationReport] = {}
+
+    def __iter__(self) -> Iterator[ObservationReport]:
+        return iter(self._reports.values())
+
+    def __len__(self) -> int:
+        return len(self._reports)
+
+    @property
+    def pending(self) -> int:
+        """How many wait for their review."""
+        return sum(is_pending(report) for report in self._reports.values())
+
+    def merge(self, news: ObservationUpdates) -> list[int]:
+        """Take in news and return the numbers of those of which they tell something new."""
+        new = [number for number, one in news.observations.items() if self._reports.get(number) != one]
+        self._reports.update(news.observations)
+        if new:
+            reviewed = sorted(n for n, one in self._reports.items() if not is_pending(one))
+            for number in reviewed[: max(0, len(reviewed) - MOST_REVIEWED)]:
+                del self._reports[number]
+        return new
+
+    def get(self, number: int) -> ObservationReport | None:
+        """Return an observation, None if it is not known."""
+        return self._reports.get(number)
+
+    def ordered(self) -> list[ObservationReport]:
+        """Return all, those that wait first, of these the newest first."""
+        return sorted(self._reports.values(), key=lambda one: (not is_pending(one), -one.observation))
+
+    def clear(self) -> None:
+        """Forget everything: it is another site's."""
+        self._reports.clear()
+
+
+def is_pending(report: ObservationReport) -> bool:
+    """Tell whether nobody has reviewed an observation yet."""
+    return report.state is ObservationState.PENDING
+
+
+# --- What the gateway told last of robots in keepouts and at obstacles, and what it does not watch ---
+
+GEOFENCE_SILENT_AFTER = 10.0
+"""Seconds without a word after which nothing is known: a gateway tells of them every few seconds."""
+NAMED = 3
+
+
+class GeofenceState:
+    """Keeps the newest report; ``clock`` returns seconds that only ever go on."""
+
+    def __init__(self, clock: Callable[[], float]):
+        self._clock = clock
+        self._report: Geofence | None = None
+        self._since = clock()
+
+    def update(self, report: Geofence) -> None:
+        """Take in what the gateway told."""
+        self._report, self._since = report, self._clock()
+
+    def begin_link(self) -> None:
+        """Wait for the first word on a new link; what was told on the one before holds until then."""
+        self._since = self._clock()
+
+    def clear(self) -> None:
+        """Forget everything, and wait for the first word of another gateway."""
+        self._report, self._since = None, self._clock()
+
+    @property
+    def is_silent(self) -> bool:
+        """Whether the gateway has not told of them for so long that nothing is known."""
+        return self._clock() - self._since > GEOFENCE_SILENT_AFTER
+
+    @property
+    def alarms(self) -> list[FenceAlarm]:
+        """The robots in keepouts and at obstacles now."""
+        return [] if self._report is None or self.is_silent else self._report.alarms
+
+    def why_not(self) -> str:
+        """Return what is not watched and why, empty when everything is or nothing was to be heard yet."""
+        if self.is_silent:
+            return tr(
+                "Keepouts and obstacles are not watched: the gateway tells nothing of them. It may be older "
+                "than this plugin."
+            )
+        report = self._report
+        if report is None:
+            return ""
+        if report.fault:
+            return tr("Keepouts and obstacles are not watched: {why}.", why=report.fault.rstrip("."))
+        return " ".join(text for text in (*_without(report), _unjudged(report), _more(report)) if text)
+
+
+def _without(report: Geofence) -> list[str]:
+    texts = []
+    if not report.keepouts:
+        texts.append(tr("The published site has no keepouts."))
+    if not report.obstacles:
+        texts.append(tr("The published site has no obstacles, so nobody is told to be at one."))
+    return texts
+
+
+def _unjudged(report: Geofence) -> str:
+    if not report.unjudged:
+        return ""
+    hidden = max(len(report.unjudged) - NAMED, 0) + report.unjudged_more
+    names = [*report.unjudged[:NAMED], *([tr("{more} more", more=hidden)] if hidden else [])]
+    return tr(
+        "Not judged by keepouts and obstacles, since it is not known where they are: {names}.",
+        names=", ".join(names),
+    )
+
+
+def _more(report: Geofence) -> str:
+    if not report.more:
+        return ""
+    return tr("{more} more are in keepouts or at obstacles and not listed.", more=report.more)
+
+
+# --- What the gateway told last of people and vehicles near robots ---
+
+NEARNESS_SILENT_AFTER = 5.0
+"""Seconds without a word after which nobody is near: as long as somebody is, it is told every second."""
+
+
+class NearnessState:
+    """Keeps the newest report; ``clock`` returns seconds that only ever go on."""
+
+    def __init__(self, clock: Callable[[], float]):
+        self._clock = clock
+        self._report: Nearness | None = None
+        self._since = clock()
+
+    def update(self, report: Nearness) -> None:
+        """Take in what the gateway told."""
+        self._report, self._since = report, self._clock()
+
+    def clear(self) -> None:
+        """Forget everything."""
+        self._report = None
+
+    @property
+    def alarms(self) -> list[NearnessAlarm]:
+        """Who is near which robot now, or will be soon."""
+        report = self._current()
+        return [] if report is None else report.alarms
+
+    def why_not(self) -> str:
+        """Return why nothing is watched, empty when it is."""
+        report = self._current()
+        if report is None or not report.fault:
+            return ""
+        return tr("People near robots are not watched: {why}.", why=report.fault.rstrip("."))
+
+    def _current(self) -> Nearness | None:
+        return None if self._clock() - self._since > NEARNESS_SILENT_AFTER else self._report

@@ -1,0 +1,222 @@
+"""States of all robots as last reported, and how far they can be trusted as time goes on."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from ...robot_bridge.core.messages import RobotReport, RobotState, robot_report
+from .robot_table import STATES, RobotTable
+
+# --- The order in which people look for names: r2 before r10, and capitals among small letters ---
+
+_NUMBER = re.compile(r"[0-9]+")
+_DIGITS = 20
+"""To so many digits numbers within names are compared as numbers."""
+
+
+def name_order(name: str) -> str:
+    """Return what ``name`` is sorted by; no two names have the same."""
+    filled = _NUMBER.sub(lambda number: number[0].zfill(_DIGITS), name.casefold())
+    return f"{filled}\0{name}"
+
+
+# --- What the desk knows of the robots, and how far it can be trusted as time goes on without news ---
+
+__all__ = ["STATES", "RemovedRobots", "RobotArrays", "RobotStates", "RobotView"]
+
+_FRESH, _STALE, _LOST, _OFFLINE = range(len(STATES))
+Numbers = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class RobotView:
+    """One robot at one moment: what was told of it last, its state now and its age in seconds now."""
+
+    name: str
+    told: dict[str, Any]
+    state: RobotState
+    age: float
+
+    @cached_property
+    def report(self) -> RobotReport:
+        """The newest report."""
+        return robot_report(self.told)
+
+    @property
+    def has_pose(self) -> bool:
+        """Whether the robot ever said where it is."""
+        return self.told.get("x") is not None and self.told.get("y") is not None
+
+
+class RemovedRobots(NamedTuple):
+    """Robots that are there no more, and (n,) the rows that they had."""
+
+    names: frozenset[str]
+    rows: npt.NDArray[np.intp]
+
+
+@dataclass(frozen=True)
+class RobotArrays:
+    """The robots at one moment, as arrays of one row each; a robot keeps its row in one arrangement.
+
+    ``xy`` (n, 2) metres in the site frame, ``theta`` (n,) radians in the site frame, ``v`` (n,) metres a
+    second, ``accuracy`` (n,) metres, each NaN where not known; ``state`` (n,) index into :data:`STATES`;
+    ``age`` (n,) seconds since the last message.
+    """
+
+    names: list[str]
+    xy: Numbers
+    theta: Numbers
+    v: Numbers
+    accuracy: Numbers
+    state: npt.NDArray[np.intp]
+    age: Numbers
+
+
+class RobotStates:
+    """The newest sighting of every robot, aged by this computer's own clock.
+
+    A gateway that falls silent says nothing about its robots any more: they turn stale and lost here all
+    the same, and stay on the map.
+    """
+
+    def __init__(self, stale_after: float = 3.0, lost_after: float = 10.0):
+        self.stale_after = stale_after
+        self.lost_after = lost_after
+        self.generation = 0
+        """Counts how often everything was forgotten: rows of another generation are other robots."""
+        self.arrangement = 0
+        """Counts how often rows became other robots': all were forgotten, or one was removed."""
+        self.revision = 0
+        """Counts how often something was taken in."""
+        self._seen = RobotTable()
+        self._names: list[str] = []
+        self._by_name: list[int] = []
+        self._orders: list[str] = []
+        """What the robots are sorted by, by row."""
+
+    def __len__(self) -> int:
+        return len(self._seen)
+
+    def merge(self, sightings: RobotTable) -> RemovedRobots:
+        """Take in newer sightings; one that arrived before what is known is passed over.
+
+        Return the robots that are there no more.
+        """
+        gone = self._gone_by(sightings)
+        if not sightings.tells_nothing:
+            self._seen.merge(sightings)
+            self.revision += 1
+        if gone.names:
+            self._names, self._by_name, self._orders = [], [], []
+            self.arrangement += 1
+        return gone
+
+    def _gone_by(self, sightings: RobotTable) -> RemovedRobots:
+        rows = self._seen.gone_by(sightings)
+        return RemovedRobots(frozenset(self._seen.names[row] for row in rows), np.array(rows, dtype=np.intp))
+
+    def clear(self) -> None:
+        """Forget every robot."""
+        self._seen = RobotTable()
+        self._names, self._by_name, self._orders = [], [], []
+        self.generation += 1
+        self.arrangement += 1
+        self.revision += 1
+
+    def row(self, name: str) -> int | None:
+        """Return the row of robot ``name`` in the arrays, None if it is not known."""
+        return self._seen.row(name)
+
+    def view(self, name: str, now: float) -> RobotView | None:
+        """Return robot ``name`` as it is to be shown at ``now`` (monotonic clock), None if not known."""
+        row = self._seen.row(name)
+        return None if row is None else self.views(now, [row])[0]
+
+    def views(self, now: float, rows: list[int] | None = None) -> list[RobotView]:
+        """Return the robots in ``rows``, or every one by name, as they are to be shown at ``now``."""
+        rows = self._sorted() if rows is None else rows
+        state, age = self._aged(now, rows)
+        return [
+            RobotView(self._seen.names[row], self._seen.told(row), STATES[code], seconds)
+            for row, code, seconds in zip(rows, state.tolist(), age.tolist(), strict=True)
+        ]
+
+    def arrays(self, now: float, rows: slice = slice(None)) -> RobotArrays:
+        """Return the robots in ``rows`` at ``now``; NaN is the place of one that never said where it is."""
+        seen = self._seen
+        state, age = self._aged(now, rows)
+        x = seen.column("x")[rows]
+        xy = np.empty((len(x), 2))
+        xy[:, 0], xy[:, 1] = x, seen.column("y")[rows]
+        return RobotArrays(
+            names=self._all_names() if rows == slice(None) else seen.names[rows],
+            xy=xy,
+            theta=seen.column("theta")[rows].copy(),
+            v=seen.column("v")[rows].copy(),
+            accuracy=seen.column("accuracy")[rows].copy(),
+            state=state,
+            age=age,
+        )
+
+    def column(self, name: str) -> Numbers:
+        """Return (n,) of one of :data:`~.sightings.COLUMNS` of every robot, NaN where nothing was told."""
+        return self._seen.column(name).copy()
+
+    def texts(self, name: str, rows: slice = slice(None)) -> list[str]:
+        """Return what the robots in ``rows`` told last as the text ``name``, empty where nothing."""
+        places, words = self._seen.texts(name)
+        # What is not known points behind the last word.
+        found = [*words, ""]
+        at = np.nan_to_num(places[rows], nan=len(words)).astype(np.intp)
+        return [found[place] for place in at.tolist()]
+
+    def says(self, name: str, word: str) -> npt.NDArray[np.bool_]:
+        """Tell which robots' text ``name`` holds ``word``, in lower case; the empty word is in any text."""
+        places, words = self._seen.texts(name)
+        # What is not known points behind the last word.
+        holds = np.array([bool(text) and word in text.casefold() for text in words] + [False])
+        return holds[np.nan_to_num(places, nan=len(words)).astype(np.intp)]
+
+    def only_seen(self) -> npt.NDArray[np.bool_]:
+        """Tell which robots said that they take no commands."""
+        places, words = self._seen.texts("abilities")
+        return places == words.index("") if "" in words else np.zeros(len(places), dtype=bool)
+
+    def told(self, row: int) -> dict[str, Any]:
+        """Return what was told last of the robot in ``row``, as it came."""
+        return self._seen.told(row)
+
+    def by_name(self) -> list[int]:
+        """Return every row, in the order of the robots' names."""
+        return self._sorted()
+
+    def _all_names(self) -> list[str]:
+        """Return every name by row: the same list until there are more of them."""
+        if len(self._names) != len(self._seen):
+            self._names = list(self._seen.names)
+        return self._names
+
+    def _sorted(self) -> list[int]:
+        names = self._seen.names
+        if len(self._by_name) != len(names):
+            self._orders += [name_order(name) for name in names[len(self._orders) :]]
+            self._by_name = sorted(range(len(names)), key=self._orders.__getitem__)
+        return self._by_name
+
+    def _aged(self, now: float, rows: list[int] | slice) -> tuple[npt.NDArray[np.intp], Numbers]:
+        """Return states and ages, as ``gateway.model.robots.liveness`` says for each robot."""
+        age = self._seen.column("age")[rows] + np.maximum(0.0, now - self._seen.column("received")[rows])
+        state = self._seen.column("state")[rows].astype(np.intp)
+        silent = np.flatnonzero(~(age < self.stale_after))
+        told, ended_in_order = state[silent], self._seen.column("stopped")[rows][silent] == 1.0
+        here = np.where(ended_in_order, _OFFLINE, np.where(age[silent] < self.lost_after, _STALE, _LOST))
+        # The gateway may know more than the age tells, such as a link closed in good order.
+        state[silent] = np.where((told == _LOST) | (told == _OFFLINE), told, here)
+        return state, age

@@ -1,1 +1,0 @@
-"""The guides in QGIS, beside the part that is asked about."""

@@ -1,0 +1,1 @@
+"""Project layers: their roles, their features read into arrays, publication of a site."""

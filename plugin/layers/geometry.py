@@ -1,0 +1,401 @@
+"""QGIS geometries as plain arrays: parts, repair, outlines, ramps, well-known binary."""
+
+from __future__ import annotations
+
+import struct
+from collections.abc import Iterator, Sequence
+from typing import NamedTuple
+
+import numpy as np
+from qgis.core import (
+    Qgis,
+    QgsAbstractGeometry,
+    QgsCurve,
+    QgsCurvePolygon,
+    QgsGeometry,
+    QgsGeometryCollection,
+    QgsPointXY,
+)
+
+from ...robot_bridge.core.errors import ShapingError
+from ...robot_bridge.core.robotmap.model import ShapeType
+from ...robot_bridge.core.robotmap.parametric_shapes import ramp_normal
+from ..ui.language import tr, tr_count
+from .roles import RAMP, STAIRS
+
+# --- Plain arrays to and from well-known binary, which geometry libraries speak (OGC 06-103r4, section 8)
+
+_LINE, _POLYGON, _MULTI_LINE, _MULTI_POLYGON = 2, 3, 5, 6
+_HEAD, _COUNT = struct.Struct("<BI"), struct.Struct("<I")
+_BEFORE_POINTS = _HEAD.size + _COUNT.size
+_POINT_BYTES = (16, 24, 24, 32)
+"""Bytes of a point without Z and M, with Z, with M, and with both: a thousand between their kinds."""
+_OLD_Z = 0x80000000
+"""What a kind with Z has besides itself in older files."""
+
+
+class Rings(NamedTuple):
+    """The rings or lines of one geometry: ``points`` holds x and y of each as bytes of float64.
+
+    ``inner`` says of each whether it is a hole of the ring before it; lines are not ``closed``.
+    """
+
+    points: list[bytes]
+    inner: list[bool]
+    closed: bool
+
+
+def rings_of(wkb: bytes) -> Rings | None:
+    """Return what a line, a polygon or several of them are made of; Z and M are dropped.
+
+    None for everything else: points, curves, collections, and big-endian ones.
+    """
+    order, kind = _HEAD.unpack_from(wkb)
+    dimensions, kind = (1, kind - _OLD_Z) if kind >= _OLD_Z else divmod(kind, 1000)
+    closed = kind in (_POLYGON, _MULTI_POLYGON)
+    if order != 1 or dimensions > 3 or not (closed or kind in (_LINE, _MULTI_LINE)):
+        return None
+    size = _POINT_BYTES[dimensions]
+    parts, at = 1, 0
+    if kind in (_MULTI_LINE, _MULTI_POLYGON):
+        (parts,), at = _COUNT.unpack_from(wkb, _HEAD.size), _BEFORE_POINTS
+    points: list[bytes] = []
+    inner: list[bool] = []
+    for _ in range(parts):
+        count = 1
+        if closed:
+            (count,), at = _COUNT.unpack_from(wkb, at + _HEAD.size), at + _BEFORE_POINTS
+        else:
+            at += _HEAD.size
+        for k in range(count):
+            start = at + _COUNT.size
+            at = start + size * _COUNT.unpack_from(wkb, at)[0]
+            points.append(wkb[start:at])
+            inner.append(k > 0)
+    return Rings(points if size == _POINT_BYTES[0] else [_flat(one, size) for one in points], inner, closed)
+
+
+def _flat(points: bytes, size: int) -> bytes:
+    return np.frombuffer(points, "<f8").reshape(-1, size // 8)[:, :2].tobytes()
+
+
+def line_wkb(points: bytes) -> bytes:
+    """Return a line string; ``points`` is x and y of each as bytes of float64."""
+    return _HEAD.pack(1, _LINE) + _COUNT.pack(len(points) // _POINT_BYTES[0]) + points
+
+
+def multi_line_wkb(lines: Sequence[bytes]) -> bytes:
+    """Return lines, as :func:`line_wkb` takes each, as one multi line string."""
+    return _HEAD.pack(1, _MULTI_LINE) + _COUNT.pack(len(lines)) + b"".join(map(line_wkb, lines))
+
+
+def polygon_wkb(rings: Sequence[bytes]) -> bytes:
+    """Return closed rings, the outer one first, as a polygon; each as :func:`line_wkb` takes a line."""
+    pieces = [_HEAD.pack(1, _POLYGON), _COUNT.pack(len(rings))]
+    for ring in rings:
+        pieces += (_COUNT.pack(len(ring) // _POINT_BYTES[0]), ring)
+    return b"".join(pieces)
+
+
+# --- The polygons and lines of a QGIS geometry as plain arrays ---
+
+FARTHEST_M = 1e8
+"""Metres: more than twice around the Earth, and more than any projection has."""
+
+
+class GeometryParts(NamedTuple):
+    """Polygons as lists of (n, 2) rings, shell first; (n, 2) lines; a note for each part that is neither."""
+
+    polygons: list[list[np.ndarray]]
+    lines: list[np.ndarray]
+    notes: list[str]
+
+    @property
+    def on_earth(self) -> bool:
+        """Whether every coordinate is a number within :data:`FARTHEST_M` of the origin."""
+        return all((np.abs(points) <= FARTHEST_M).all() for points in [*self._rings(), *self.lines])
+
+    @property
+    def rings_have_points(self) -> bool:
+        """Whether every ring has the four points of a triangle."""
+        return all(len(ring) >= 4 for ring in self._rings())
+
+    def _rings(self) -> Iterator[np.ndarray]:
+        return (ring for polygon in self.polygons for ring in polygon)
+
+
+def parts_of(geometry: QgsGeometry) -> GeometryParts:
+    """Return what ``geometry`` is made of: collections opened, rings closed, Z and M dropped.
+
+    A null geometry has no parts.
+    """
+    parts = GeometryParts([], [], [])
+    for part in _simple(geometry.constGet()) if not geometry.isNull() else ():
+        if isinstance(part, QgsCurvePolygon):
+            rings = [part.exteriorRing(), *(part.interiorRing(k) for k in range(part.numInteriorRings()))]
+            parts.polygons.append([_closed(_points(ring)) for ring in rings if ring is not None])
+        elif isinstance(part, QgsCurve):
+            parts.lines.append(_points(part))
+        else:
+            kind = part.geometryType().lower()
+            parts.notes.append(tr("has a {kind}, which is no area or line; it is left out", kind=kind))
+    return parts
+
+
+def _simple(part: QgsAbstractGeometry) -> Iterator[QgsAbstractGeometry]:
+    if isinstance(part, QgsGeometryCollection):
+        for k in range(part.numGeometries()):
+            yield from _simple(part.geometryN(k))
+    else:
+        yield part
+
+
+def _points(curve: QgsCurve) -> np.ndarray:
+    line = curve.curveToLine()
+    line.dropZValue()
+    line.dropMValue()
+    wkb = line.asWkb().data()
+    order = "<" if wkb[:1] == b"\x01" else ">"
+    # 9 bytes come first: byte order, geometry type, number of points.
+    return np.frombuffer(wkb, order + "f8", offset=9).reshape(-1, 2).astype(np.float64)
+
+
+def _closed(ring: np.ndarray) -> np.ndarray:
+    if len(ring) and (ring[0] != ring[-1]).any():
+        return np.concatenate([ring, ring[:1]])
+    return ring
+
+
+# --- Repairs polygons and lines where that is safe, and says what it did or could not do ---
+
+STRAIGHT_M = 0.02
+"""How far a riser's middle points may be from the line between its ends."""
+
+
+def repair_polygons(polygons: Sequence[list[np.ndarray]]) -> tuple[list[list[np.ndarray]], list[str]]:
+    """Return polygons that are valid, without rings that enclose nothing, and a note for each change."""
+    notes: list[str] = []
+    kept = []
+    for number, rings in enumerate(polygons, 1):
+        flat = [k for k, ring in enumerate(rings) if _encloses_nothing(ring)]
+        notes += [_flat_note(number, k, rings[k]) for k in flat]
+        if rings and 0 not in flat:
+            kept.append([ring for k, ring in enumerate(rings) if k not in flat])
+    geometry = _as_geometry(kept)
+    if not kept or geometry.isGeosValid():
+        return kept, notes
+    repaired = geometry.makeValid()
+    parts = parts_of(repaired) if not repaired.isNull() else GeometryParts([], [], [])
+    if not parts.polygons:
+        return [], [*notes, tr("{fault}; it cannot be repaired and is left out", fault=_fault(geometry))]
+    return parts.polygons, [*notes, tr("{fault}; it was repaired", fault=_fault(geometry))]
+
+
+def lines_with_length(lines: Sequence[np.ndarray]) -> tuple[list[np.ndarray], list[str]]:
+    """Return lines without repeated points, and a note for each that is one point and left out."""
+    kept, notes = [], []
+    for number, line in enumerate(lines, 1):
+        moves = np.ones(len(line), dtype=bool)
+        moves[1:] = (line[1:] != line[:-1]).any(axis=1)
+        if len(line) > 1 and moves.all():
+            kept.append(line)
+        elif moves.sum() < 2:
+            notes.append(
+                tr("line {number} has fewer than two different points; it is left out", number=number)
+            )
+        else:
+            kept.append(line[moves])
+    return kept, notes
+
+
+def risers_of(lines: Sequence[np.ndarray]) -> tuple[np.ndarray, list[str]]:
+    """Return the two ends of each line, (2 n, 2), and a note for each line that is not straight.
+
+    ``lines`` are two or more risers, bottom first. Seen from the bottom each runs from left to right,
+    whichever way it was drawn (paper 1, section II).
+    """
+    notes = []
+    for number, line in enumerate(lines, 1):
+        along = line[-1] - line[0]
+        length = max(float(np.hypot(*along)), 1e-9)
+        off = along[0] * (line[:, 1] - line[0, 1]) - along[1] * (line[:, 0] - line[0, 0])
+        if np.abs(off).max() / length > STRAIGHT_M or length == 1e-9:
+            notes.append(
+                tr("riser {number} is bent; the straight line between its ends is used", number=number)
+            )
+    ends = np.array([line[[0, -1]] for line in lines])
+    middle = ends.mean(axis=1)
+    climb = np.diff(middle, axis=0, append=middle[-1:] * 2 - middle[-2:-1])
+    along = ends[:, 1] - ends[:, 0]
+    backwards = along[:, 1] * climb[:, 0] - along[:, 0] * climb[:, 1] > 0
+    ends[backwards] = ends[backwards, ::-1]
+    return ends.reshape(-1, 2), notes
+
+
+def _encloses_nothing(ring: np.ndarray) -> bool:
+    """Tell whether all points of a closed ring lie on one line; a ring that crosses itself does enclose."""
+    if len(np.unique(ring, axis=0)) < 3:
+        return True
+    x, y = (ring - ring[0]).T
+    size = max(float(np.ptp(ring, axis=0).max()), 1.0)
+    return bool(np.abs(x[:-1] * y[1:] - x[1:] * y[:-1]).sum() < 1e-9 * size)
+
+
+def _flat_note(number: int, k: int, ring: np.ndarray) -> str:
+    place = _place(*ring[0]) if len(ring) else ""
+    count = len(np.unique(ring, axis=0))
+    points = tr_count(count, "1 different point", "%n different points")
+    if k == 0:
+        return tr(
+            "the outer ring of part {number}{place} has {points} and encloses nothing; the part is left out",
+            number=number,
+            place=place,
+            points=points,
+        )
+    return tr(
+        "courtyard {k} of part {number}{place} has {points} and encloses nothing; the courtyard is left out",
+        k=k,
+        number=number,
+        place=place,
+        points=points,
+    )
+
+
+def _place(x: float, y: float) -> str:
+    return tr(" at ({x:.2f} {y:.2f})", x=x, y=y)
+
+
+def _as_geometry(polygons: Sequence[list[np.ndarray]]) -> QgsGeometry:
+    return QgsGeometry.fromMultiPolygonXY(
+        [[[QgsPointXY(x, y) for x, y in ring.tolist()] for ring in polygon] for polygon in polygons]
+    )
+
+
+def _fault(geometry: QgsGeometry) -> str:
+    """Return what GEOS finds wrong first, and where."""
+    for error in geometry.validateGeometry(Qgis.GeometryValidationEngine.Geos):
+        place = _place(error.where().x(), error.where().y()) if error.hasWhere() else ""
+        return tr("the polygon is broken{place}: {what}", place=place, what=error.what())
+    return tr("the polygon is broken{place}: {what}", place="", what=geometry.lastError() or tr("not valid"))
+
+
+# --- Which way the surface of a ramp faces, where its polygon says how high its corners are ---
+
+NORMAL = "n"
+"""The extra of a ramp: the upward unit normal of its surface in the site frame (paper 1, section II)."""
+
+
+def corner_heights(geometry: QgsGeometry) -> dict[tuple[float, float], float]:
+    """Return the Z of each corner (x, y) of ``geometry``; NaN for one that has two, as of a step."""
+    heights: dict[tuple[float, float], float] = {}
+    for point in geometry.vertices() if geometry.constGet().is3D() else ():
+        z = point.z()
+        known = heights.setdefault((point.x(), point.y()), z)
+        if known != z:
+            heights[point.x(), point.y()] = np.nan
+    return heights
+
+
+def normal_extra(points: np.ndarray, z: np.ndarray, notes: list[str]) -> dict[str, str]:
+    """Return the extra of a ramp whose outline is ``points``, (n, 2) in the site frame, ``z``, (n,), high.
+
+    There is none without a height for each corner, nor where all are equal: such a polygon was drawn in 3D
+    without its heights. A surface that cannot be driven on is told in ``notes``.
+    """
+    if not np.isfinite(z).all() or not np.ptp(z):
+        return {}
+    try:
+        return {NORMAL: ramp_normal(np.column_stack([points, z]))}
+    except ShapingError:
+        notes.append(tr("its corners span no surface that one can drive on; its normal is left out"))
+        return {}
+
+
+# --- From one QGIS geometry to the rings, lines and risers of a robot map ---
+
+SAGITTA_M = 0.02
+"""How far a chord may be from the curve it stands for (design, section 6)."""
+
+NO_PLACE = tr(
+    "has a coordinate that is no number, has no place in the site's CRS or lies beyond 100 000 km; "
+    "it is left out"
+)
+
+
+class FeatureShape(NamedTuple):
+    """One outline: ``points`` is (n, 2) in the geometry's coordinates, rings repeat their first point.
+
+    ``z`` is (n,), the height of each point of a ramp in metres, NaN where the geometry does not say it.
+    """
+
+    points: np.ndarray
+    shape_type: ShapeType
+    courtyard: bool = False
+    z: np.ndarray | None = None
+
+    @property
+    def closed(self) -> bool:
+        """Whether it is a ring."""
+        return bool(len(self.points) > 3 and (self.points[0] == self.points[-1]).all())
+
+
+class FeatureShapes(NamedTuple):
+    """What was found in a geometry, and a note for each thing that was repaired or left out."""
+
+    shapes: list[FeatureShape]
+    notes: list[str]
+
+
+def shapes_of(geometry: QgsGeometry, role: str = "") -> FeatureShapes:
+    """Return the outlines in ``geometry``, which is in metres, for a layer of ``role``.
+
+    Curves become chords with a sagitta of 2 cm. Rings and lines without extent are left out, a ring that
+    crosses itself is repaired; ``notes`` says so for each. Several lines of a stairs layer are one flight,
+    a riser each, bottom first; a single one stays a low wall, which is what the paper makes of a riser.
+    """
+    curved = geometry.constGet().hasCurvedSegments()
+    if curved:
+        maximum = QgsAbstractGeometry.SegmentationToleranceType.MaximumDifference
+        geometry = QgsGeometry(geometry.constGet().segmentize(SAGITTA_M, maximum))
+    parts = parts_of(geometry)
+    if not parts.on_earth:
+        return FeatureShapes([], [NO_PLACE])
+    # Valid as a whole is the rule and quickly told; GEOS takes a ring without points for valid, too.
+    sound = parts.rings_have_points and geometry.isGeosValid()
+    polygons, polygon_notes = (parts.polygons, []) if sound else repair_polygons(parts.polygons)
+    lines, line_notes = lines_with_length(parts.lines)
+    notes = [*parts.notes, *polygon_notes, *line_notes]
+    closed = _closed_type(role, curved)
+    shapes = [FeatureShape(ring, closed, k > 0) for polygon in polygons for k, ring in enumerate(polygon)]
+    if role == RAMP:
+        shapes = _with_heights(shapes, geometry)
+    if role == STAIRS and len(lines) > 1:
+        risers, bent = risers_of(lines)
+        return FeatureShapes([*shapes, FeatureShape(risers, ShapeType.STAIRS)], [*notes, *bent])
+    opened = ShapeType.OPEN_CURVE if curved else ShapeType.OPEN_POLYGON
+    return FeatureShapes([*shapes, *(FeatureShape(line, opened) for line in lines)], notes)
+
+
+def polygons_of(shapes: Sequence[FeatureShape]) -> list[list[np.ndarray]]:
+    """Return the rings of each polygon among ``shapes``, its outer ring first; lines are passed over."""
+    polygons: list[list[np.ndarray]] = []
+    for shape in shapes:
+        if shape.courtyard:
+            polygons[-1].append(shape.points)
+        elif shape.closed:
+            polygons.append([shape.points])
+    return polygons
+
+
+def _with_heights(ramps: list[FeatureShape], geometry: QgsGeometry) -> list[FeatureShape]:
+    heights = corner_heights(geometry)
+    return [
+        ramp._replace(z=np.array([heights.get((x, y), np.nan) for x, y in ramp.points.tolist()]))
+        for ramp in ramps
+    ]
+
+
+def _closed_type(role: str, curved: bool) -> ShapeType:
+    if role == RAMP:
+        return ShapeType.RAMP
+    return ShapeType.CLOSED_CURVE if curved else ShapeType.CLOSED_POLYGON

@@ -1,0 +1,371 @@
+"""Source of a layer in its role: features, attributes, geometries, points."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from qgis.core import (
+    NULL,
+    QgsAbstractFeatureSource,
+    QgsCoordinateReferenceSystem,
+    QgsDataSourceUri,
+    QgsExpressionContext,
+    QgsExpressionContextUtils,
+    QgsFeature,
+    QgsFeatureRequest,
+    QgsFields,
+    QgsProviderRegistry,
+    QgsVectorLayer,
+    QgsVectorLayerFeatureSource,
+    QgsWkbTypes,
+)
+from qgis.PyQt import sip
+from qgis.PyQt.QtCore import QObject, pyqtSignal
+
+from ..ui.language import tr
+from .crs import stated_crs
+from .errors import LayerReadingError, LayerTypeError
+from .roles import EXPRESSIONS, FURNITURE, LayerExpressions, LayerSetup, setup_of
+from .site_transform import LayerToSiteTransform, SiteTransformError
+
+# --- A layer as it is read: everything that must be taken from it while the main thread holds it ---
+
+
+@dataclass(frozen=True)
+class ObstacleSource:
+    """One obstacle layer, readable from any thread.
+
+    ``name`` is unique among the layers read together, so that ``name:id`` names one feature. ``provider`` and
+    ``uri`` say where its features are stored; there is no ``uri`` while it has changes that are not.
+    """
+
+    name: str
+    role: str
+    crs: QgsCoordinateReferenceSystem
+    fields: QgsFields
+    count: int
+    features: QgsAbstractFeatureSource
+    expressions: LayerExpressions
+    context: QgsExpressionContext
+    provider: str = ""
+    uri: str = ""
+
+
+Setups = Callable[[QgsVectorLayer], LayerSetup]
+"""Tells what a layer is: by what it keeps itself, by a profile, by a dialog."""
+
+
+def obstacle_sources(
+    layers: Sequence[QgsVectorLayer],
+    general: LayerExpressions,
+    context: QgsExpressionContext,
+    setups: Setups = setup_of,
+) -> list[ObstacleSource]:
+    """Return what is read of ``layers``; to be called in the thread that they belong to.
+
+    An expression that ``setups`` has for a layer wins over the one in ``general``. ``context`` is what
+    expressions see besides the layer.
+
+    :raises LayerTypeError: naming the layer that holds neither lines nor polygons; points are furniture only.
+    """
+    for layer in layers:
+        _check(layer, setups(layer).role)
+    names = _unique([plain_name(layer) for layer in layers])
+    return [
+        _source(layer, name, setups(layer), general, context)
+        for layer, name in zip(layers, names, strict=True)
+    ]
+
+
+def _check(layer: QgsVectorLayer, role: str) -> None:
+    name = plain_name(layer)
+    if not layer.isValid():
+        raise LayerTypeError(
+            tr(
+                "The layer {name} cannot be opened ({source}): repair its data source or leave it out.",
+                name=name,
+                source=layer.source(),
+            )
+        )
+    points = QgsWkbTypes.GeometryType.PointGeometry
+    of_points = layer.isSpatial() and layer.geometryType() == points
+    if not layer.isSpatial() or (of_points and role != FURNITURE):
+        held = tr("points") if layer.isSpatial() else tr("no geometry")
+        raise LayerTypeError(
+            tr(
+                "The layer {name} holds {held}, and only lines and polygons are obstacles: leave it out, "
+                "give it an extent first (for example with Buffer), or the role furniture.",
+                name=name,
+                held=held,
+            )
+        )
+
+
+def _source(
+    layer: QgsVectorLayer,
+    name: str,
+    setup: LayerSetup,
+    general: LayerExpressions,
+    context: QgsExpressionContext,
+) -> ObstacleSource:
+    own = setup.expressions
+    scoped = QgsExpressionContext(context)
+    scoped.appendScope(QgsExpressionContextUtils.layerScope(layer))
+    return ObstacleSource(
+        name=name,
+        role=setup.role,
+        crs=stated_crs(layer.crs()),
+        fields=layer.fields(),
+        count=layer.featureCount(),
+        features=QgsVectorLayerFeatureSource(layer),
+        expressions=LayerExpressions(
+            **{name: getattr(own, name) or getattr(general, name) for name in EXPRESSIONS}
+        ),
+        context=scoped,
+        provider=layer.providerType(),
+        uri="" if layer.isEditable() else layer.source(),
+    )
+
+
+def plain_name(layer: QgsVectorLayer) -> str:
+    """Return the layer's name; the one inside its file where it is only called as the file is.
+
+    That is what qgis_process calls ``campus.gpkg|layername=walls``: all layers of a file alike.
+    """
+    inside, path = _source_of(layer)
+    called_as_file = bool(inside and path) and layer.name() == Path(path).stem
+    return inside if called_as_file else layer.name()
+
+
+def names_of(layer: QgsVectorLayer) -> list[str]:
+    """Return the names that the layer goes by: the one that is shown, and the one in its file or database.
+
+    QGIS's browser shows ``campus — walls`` for the layer ``walls`` of ``campus.gpkg``. A file of one layer
+    may say no name of it: then it is the file's.
+    """
+    inside, path = _source_of(layer)
+    return list(dict.fromkeys(name for name in (plain_name(layer), inside or Path(path).stem) if name))
+
+
+def _source_of(layer: QgsVectorLayer) -> tuple[str, str]:
+    """Return the layer's name in its source, and the source's path; each empty where there is none."""
+    parts = QgsProviderRegistry.instance().decodeUri(layer.providerType(), layer.source())
+    # Of a database the name of the table is the layer's.
+    inside = parts.get("layerName") or parts.get("table") or ""
+    return str(inside), str(parts.get("path") or "")
+
+
+def _unique(names: Sequence[str]) -> list[str]:
+    """Return ``names`` with a number after each one that was there before."""
+    taken: set[str] = set()
+    unique = []
+    for name in names:
+        candidate, number = name, 1
+        while candidate in taken:
+            number += 1
+            candidate = f"{name} ({number})"
+        taken.add(candidate)
+        unique.append(candidate)
+    return unique
+
+
+# --- Features of a layer that have no geometry: a window, which is asked for by place, never has them ---
+
+_NONE = "is_empty_or_null($geometry)"
+
+
+def without_geometry(source: ObstacleSource) -> Iterator[QgsFeature]:
+    """Yield the features of ``source`` whose geometry is missing or empty; from any thread.
+
+    Files and databases that know of it by themselves are asked; of others every feature is looked at.
+    """
+    subset = subset_without_geometry(source.provider, source.uri) if source.uri else ""
+    if subset:
+        options = QgsVectorLayer.LayerOptions()
+        options.loadDefaultStyle = False
+        layer = QgsVectorLayer(subset, source.name, source.provider, options)
+        if layer.isValid():
+            # Named, since its features do not keep it alive.
+            found = QgsVectorLayerFeatureSource(layer)
+            yield from found.getFeatures(QgsFeatureRequest())
+            return
+    yield from source.features.getFeatures(QgsFeatureRequest().setFilterExpression(_NONE))
+
+
+def subset_without_geometry(provider: str, uri: str) -> str:
+    """Return the source of what has no geometry in the layer ``uri``, nothing where it cannot be asked."""
+    if provider == "ogr":
+        return _in_geopackage(uri)
+    if provider == "postgres":
+        source = QgsDataSourceUri(uri)
+        column = source.geometryColumn()
+        source.setSql(_both(source.sql(), f"{_quoted(column)} IS NULL"))
+        return source.uri(False) if column else ""
+    return ""
+
+
+def _in_geopackage(uri: str) -> str:
+    registry = QgsProviderRegistry.instance()
+    parts = registry.decodeUri("ogr", uri)
+    path, subset = str(parts.get("path") or ""), str(parts.get("subset") or "")
+    if not path.lower().endswith(".gpkg") or subset.lstrip().lower().startswith("select"):
+        return ""
+    sublayers = registry.providerMetadata("ogr").querySublayers(path)
+    name = parts.get("layerName")
+    columns = [one.geometryColumnName() for one in sublayers if name in (None, "", one.name())]
+    if len(columns) != 1 or not columns[0]:
+        return ""
+    column = _quoted(columns[0])
+    parts["subset"] = _both(subset, f"({column} IS NULL OR ST_IsEmpty({column}))")
+    return str(registry.encodeUri("ogr", parts))
+
+
+def _both(subset: str, condition: str) -> str:
+    return f"({subset}) AND {condition}" if subset else condition
+
+
+def _quoted(column: str) -> str:
+    return '"' + column.replace('"', '""') + '"'
+
+
+# --- Tells when what was read of layers has to be read anew ---
+
+_CHANGES = (
+    "afterCommitChanges",
+    "afterRollBack",
+    "crsChanged",
+    "customPropertyChanged",
+    "dataChanged",
+    "dataSourceChanged",
+    "layerModified",
+    "subsetStringChanged",
+    "willBeDeleted",
+)
+"""Signals of a layer after which its features, or what they are, are others; older QGIS lacks some."""
+
+
+class LayerWatch(QObject):
+    """Watches layers from :meth:`watch` on, until they are deleted or :meth:`remove`."""
+
+    changed = pyqtSignal()
+    """A watched layer is not as it was, or is about to be deleted."""
+
+    def __init__(self, parent: QObject | None = None):
+        super().__init__(parent)
+        self._watched: dict[str, QgsVectorLayer] = {}
+
+    def watch(self, layers: Iterable[QgsVectorLayer]) -> None:
+        """Watch these layers besides those that are watched already."""
+        for layer in layers:
+            known = self._watched.get(layer.id())
+            # A project that is read again brings other layers under the same ids.
+            if known is None or sip.isdeleted(known):
+                self._watched[layer.id()] = layer
+                for name in _signals_of(layer):
+                    getattr(layer, name).connect(self._tell)
+
+    def remove(self) -> None:
+        """Watch no layer any longer."""
+        for layer in self._watched.values():
+            if not sip.isdeleted(layer):
+                for name in _signals_of(layer):
+                    getattr(layer, name).disconnect(self._tell)
+        self._watched.clear()
+
+    def _tell(self, *_what: object) -> None:
+        self.changed.emit()
+
+
+def _signals_of(layer: QgsVectorLayer) -> list[str]:
+    return [name for name in _CHANGES if hasattr(layer, name)]
+
+
+# --- Points of a layer with the values of their fields, as cones, robots and stores are read ---
+
+
+@dataclass(frozen=True)
+class PointRow:
+    """One feature: what it is called in errors, its name, its place (metres, site frame), its values."""
+
+    where: str
+    name: str
+    x: float
+    y: float
+    values: dict[str, Any]
+
+    def number(self, field: str, otherwise: float) -> float:
+        """Return the number in ``field``; ``otherwise`` where the layer has no such field, or no value.
+
+        :raises LayerReadingError: when it holds something else.
+        """
+        value = self.values.get(field)
+        if value is None or value == "":
+            return otherwise
+        try:
+            number = float(value)
+        except (TypeError, ValueError):
+            number = math.nan
+        if not math.isfinite(number):
+            raise LayerReadingError(
+                tr(
+                    "{layer}: {field} is {value!r}, which is no number; correct it.",
+                    layer=self.where,
+                    field=field,
+                    value=value,
+                )
+            )
+        return number
+
+    def whole(self, field: str, otherwise: float) -> int:
+        """Return the whole number in ``field``; raises as :meth:`number`."""
+        number = self.number(field, otherwise)
+        if number != int(number):
+            raise LayerReadingError(
+                tr(
+                    "{layer}: {field} is {value:g}; give a whole number.",
+                    layer=self.where,
+                    field=field,
+                    value=number,
+                )
+            )
+        return int(number)
+
+
+def point_rows(
+    layer: str, features: Iterable[QgsFeature], placing: LayerToSiteTransform, names: Sequence[str]
+) -> Iterator[PointRow]:
+    """Yield the features of the layer called ``layer``; the first of the fields ``names`` names each.
+
+    One that none of them names is called by its number in the layer.
+
+    :raises LayerReadingError: at a feature that is not one point with a place on the site.
+    """
+    for feature in features:
+        where = tr("{layer}, feature {id}", layer=layer, id=feature.id())
+        x, y = _place(feature, placing, where)
+        values = {
+            field: None if value == NULL else value
+            for field, value in zip(feature.fields().names(), feature.attributes(), strict=True)
+        }
+        named = (str(values[field]) for field in names if values.get(field) not in (None, ""))
+        yield PointRow(where, next(named, str(feature.id())), x, y, values)
+
+
+def _place(feature: QgsFeature, placing: LayerToSiteTransform, where: str) -> tuple[float, float]:
+    try:
+        # Named, since its vertices do not keep it alive.
+        geometry = placing.to_metres(feature.geometry())
+        vertices = [(vertex.x(), vertex.y()) for vertex in geometry.vertices()]
+    except SiteTransformError:
+        vertices = []
+    if len(vertices) != 1 or not np.isfinite(vertices).all():
+        raise LayerReadingError(
+            tr("{where} is not one point with a place on the site: correct or delete it.", where=where)
+        )
+    ((x, y),) = placing.to_site(np.array(vertices)).tolist()
+    return x, y

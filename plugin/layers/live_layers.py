@@ -1,0 +1,408 @@
+"""Layers filled while connected: kept out of the project's file, a feature for each row."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from typing import Any
+
+import numpy as np
+from qgis.core import (
+    QgsCoordinateReferenceSystem,
+    QgsFeature,
+    QgsGeometry,
+    QgsLayerTreeGroup,
+    QgsLineString,
+    QgsMapLayer,
+    QgsMapLayerStyle,
+    QgsPalLayerSettings,
+    QgsPoint,
+    QgsProject,
+    QgsVectorLayer,
+    QgsVectorLayerSimpleLabeling,
+)
+from qgis.PyQt.QtCore import QObject, QTimer, pyqtSignal
+from qgis.PyQt.QtGui import QColor
+from qgis.PyQt.QtXml import QDomDocument, QDomElement, QDomNode
+
+from ...robot_bridge.core.messages import SiteReport
+from ...robot_bridge.core.sites.frame import SiteFrame
+from ..ui.scheduling import CooperativeTask, Steps
+from .site_transform import frame_of
+
+# --- Knows when QGIS is in the middle of reading a project, and when another one is there ---
+
+
+class ProjectWatch(QObject):
+    """While a project is read QGIS lets timers run, and ends abruptly if one of them touches its layers."""
+
+    opened = pyqtSignal()
+    """Another project is there, read to its end or a new one, and has none of the layers before."""
+
+    def __init__(self, project: QgsProject, parent: QObject | None = None):
+        super().__init__(parent)
+        self._project = project
+        self._is_cleared = False
+        # Others that are told of a project's reading have their turn first; one of a file is not read yet.
+        self._soon = QTimer(self)
+        self._soon.setSingleShot(True)
+        self._soon.setInterval(0)
+        self._soon.timeout.connect(self._tell)
+        project.cleared.connect(self._cleared)
+        project.readProject.connect(self._read)
+        project.projectSaved.connect(self._complete)
+
+    def remove(self) -> None:
+        """Hear of the project no more: it is there longer than the plugin, and keeps each connection."""
+        self._soon.stop()
+        self._project.cleared.disconnect(self._cleared)
+        self._project.readProject.disconnect(self._read)
+        self._project.projectSaved.disconnect(self._complete)
+
+    @property
+    def is_reading(self) -> bool:
+        """Whether layers are being read: a project that is new has no file yet."""
+        return self._is_cleared and bool(self._project.fileName())
+
+    def _cleared(self) -> None:
+        self._is_cleared = True
+        self._soon.start()
+
+    def _read(self, *_: object) -> None:
+        self._complete()
+        self._soon.start()
+
+    def _complete(self, *_: object) -> None:
+        self._is_cleared = False
+
+    def _tell(self) -> None:
+        if not self.is_reading:
+            self.opened.emit()
+
+
+# --- Layers that the desk fills while it is connected: they are in the project, and never in its file ---
+
+MARK = "fleet/live"
+"""The custom property of a layer whose content comes anew with each connection."""
+SCOPE = "fleet_supervisor"
+NOT_A_LAYER = "fleet-live"
+
+
+class LiveLayers(QObject):
+    """Keeps layers with :data:`MARK` out of the files of a project, and their styles in them.
+
+    An older file, or one of another program, may bring such a layer along: nobody would fill it, so it is
+    taken out when the project is read. :meth:`remove` undoes the constructor.
+    """
+
+    def __init__(self, project: QgsProject, parent: QObject | None = None):
+        super().__init__(parent)
+        self._project = project
+        project.writeProject.connect(self._leave_out_of_tree)
+        project.writeMapLayer.connect(self._leave_out)
+        project.readProject.connect(self._take_out)
+
+    def remove(self) -> None:
+        """Leave the project's reading and writing alone."""
+        self._project.writeProject.disconnect(self._leave_out_of_tree)
+        self._project.writeMapLayer.disconnect(self._leave_out)
+        self._project.readProject.disconnect(self._take_out)
+
+    def _leave_out_of_tree(self, document: QDomDocument) -> None:
+        left_out = {layer.id() for layer in live_layers(self._project)}
+        for layer in live_layers(self._project):
+            keep_style(self._project, layer)
+        groups = []
+        for tag in ("layer-tree-layer", "layer-setting"):
+            for node in _elements(document, tag):
+                if node.attribute("id") in left_out:
+                    groups.append(node.parentNode())
+                    node.parentNode().removeChild(node)
+        for item in _elements(document, "item"):
+            if item.parentNode().nodeName() == "custom-order" and item.text() in left_out:
+                item.parentNode().removeChild(item)
+        for group in groups:
+            _remove_if_empty(group)
+
+    def _leave_out(self, layer: QgsMapLayer, element: QDomElement, _document: QDomDocument) -> None:
+        if not layer.customProperty(MARK):
+            return
+        # QGIS adds the element to the document after this, and reads back only those that are a maplayer.
+        element.setTagName(NOT_A_LAYER)
+        while element.hasChildNodes():
+            element.removeChild(element.firstChild())
+        attributes = element.attributes()
+        for name in [attributes.item(k).nodeName() for k in range(attributes.count())]:
+            element.removeAttribute(name)
+
+    def _take_out(self, *_: object) -> None:
+        was_dirty = self._project.isDirty()
+        for layer in live_layers(self._project):
+            keep_style(self._project, layer)
+            node = self._project.layerTreeRoot().findLayer(layer.id())
+            group = node.parent() if node is not None else None
+            self._project.removeMapLayer(layer.id())
+            if group is not None and group.parent() is not None and not group.children():
+                above: QgsLayerTreeGroup = group.parent()
+                above.removeChildNode(group)
+        self._project.setDirty(was_dirty)
+
+
+def make_live(layer: QgsVectorLayer, kind: str) -> None:
+    """Make ``layer`` one that the desk alone fills with ``kind``.
+
+    It cannot be edited, as robots that somebody drew would look like those that there are, and QGIS does not
+    ask on closing whether its contents may be lost.
+    """
+    layer.setCustomProperty(MARK, kind)
+    layer.setCustomProperty("skipMemoryLayersCheck", 1)
+    layer.setReadOnly(True)
+
+
+def live_layers(project: QgsProject) -> list[QgsMapLayer]:
+    """Return the layers of ``project`` that the desk fills."""
+    return [layer for layer in project.mapLayers().values() if layer.customProperty(MARK)]
+
+
+def keep_style(project: QgsProject, layer: QgsMapLayer) -> None:
+    """Keep the style of a live layer with ``project``, under the layer's kind."""
+    style = QgsMapLayerStyle()
+    style.readFromLayer(layer)
+    project.writeEntry(SCOPE, _entry(layer), style.xmlData())
+
+
+def give_style(project: QgsProject, layer: QgsMapLayer) -> bool:
+    """Style a live layer as ``project`` has kept it; false where it has kept nothing."""
+    text, found = project.readEntry(SCOPE, _entry(layer))
+    if not found or not text:
+        return False
+    QgsMapLayerStyle(text).writeToLayer(layer)
+    return True
+
+
+def _entry(layer: QgsMapLayer) -> str:
+    return f"styles/{layer.customProperty(MARK)}"
+
+
+def _elements(document: QDomDocument, tag: str) -> list[QDomElement]:
+    nodes = document.elementsByTagName(tag)
+    return [nodes.item(k).toElement() for k in range(nodes.count())]
+
+
+def _remove_if_empty(group: QDomNode) -> None:
+    """Take a group out of the saved tree when nothing is left in it but its properties."""
+    children = group.childNodes()
+    names = {children.item(k).nodeName() for k in range(children.count())}
+    is_inner = group.nodeName() == "layer-tree-group" and group.parentNode().nodeName() == "layer-tree-group"
+    if is_inner and not names & {"layer-tree-layer", "layer-tree-group"}:
+        group.parentNode().removeChild(group)
+
+
+# --- The group of the project's layer tree that holds the fleet's layers ---
+
+GROUP = "Fleet"
+"""Its name; what the user moves elsewhere in the tree stays the same group."""
+
+
+def fleet_group(project: QgsProject) -> QgsLayerTreeGroup:
+    """Return the group, made on top of the layer tree where there is none."""
+    root = project.layerTreeRoot()
+    return root.findGroup(GROUP) or root.insertGroup(0, GROUP)
+
+
+def leave_clean(project: QgsProject, was_dirty: bool) -> None:
+    """Have ``project`` as saved as it was: layers that come anew with each link are no change to save."""
+    if was_dirty:
+        project.setDirty(True)
+        return
+    project.setDirty(False)
+    # QGIS's layer panel notes a change once more when it has laid out a new group.
+    QTimer.singleShot(0, lambda: project.setDirty(False))
+
+
+def remove_if_empty(project: QgsProject) -> None:
+    """Take the group out of the layer tree, unless somebody keeps layers in it."""
+    group = project.layerTreeRoot().findGroup(GROUP)
+    if group is not None and not group.children():
+        above: QgsLayerTreeGroup = group.parent()
+        above.removeChildNode(group)
+
+
+# --- A memory layer with a feature for each row of what the desk knows ---
+
+Row = tuple[Sequence[tuple[float, float]], Sequence[Any]]
+"""Points in the site frame, one for a point layer, and the values of the fields."""
+
+AT_ONCE = 50
+"""Features written in one step of a slice."""
+
+
+class RowLayer:
+    """A layer of one kind of geometry in the site's CRS; made when there is a row to show.
+
+    It goes with its project, and comes anew in the next one: what it shows is the desk's, not the project's.
+    It is written in slices, between which the window looks for events.
+    """
+
+    def __init__(
+        self,
+        project: QgsProject,
+        mark: str,
+        name: str,
+        kind: str,
+        fields: str,
+        style: Callable[[QgsVectorLayer], None],
+    ):
+        self._project, self._mark = project, mark
+        self._name, self._kind, self._fields, self._style = name, kind, fields, style
+        self._id: str | None = None
+        self._frame: SiteFrame | None = None
+        self._written: dict[tuple[Any, ...], list[tuple[Sequence[tuple[float, float]], int]]] = {}
+        """The points and the id of each feature, by its values."""
+        self._has_changed = False
+        """Whether it was written since it was painted."""
+        self._shown: tuple[Sequence[Row], SiteReport | None] = ((), None)
+        self._writing = CooperativeTask()
+        self._watch = ProjectWatch(project)
+        self._watch.opened.connect(self._renew)
+
+    @property
+    def layer(self) -> QgsVectorLayer | None:
+        """The layer, None while there is none, or the user took it out."""
+        return self._project.mapLayer(self._id) if self._id is not None else None
+
+    def show(self, rows: Sequence[Row], site: SiteReport | None) -> None:
+        """Have a feature for each of ``rows`` soon; those that are there already are left as they are."""
+        self._shown = rows, site
+        self._renew()
+
+    def finish(self) -> None:
+        """Write at once all that is left to be: somebody is about to take the layer as it is."""
+        self._writing.finish()
+
+    def remove(self) -> None:
+        """Take the layer out of the project for good, and show nothing in the next one."""
+        self._watch.remove()
+        self._writing.stop()
+        self._shown = (), None
+        self._take_out()
+
+    def _renew(self) -> None:
+        self._writing.begin_soon(self._renewed())
+
+    def _renewed(self) -> Steps[None]:
+        """Show what is to be shown; begin anew where the layer is taken out meanwhile."""
+        for share in self._steps(*self._shown):
+            yield share
+            if self.layer is None:
+                self._renew()
+                return
+
+    def _steps(self, rows: Sequence[Row], site: SiteReport | None) -> Iterator[float]:
+        if self._watch.is_reading or site is None or (not rows and self.layer is None):
+            return
+        self._have_layer(site)
+        yield 0.0
+        new = self._left_of(rows)
+        for first in range(0, len(new), AT_ONCE):
+            yield first / len(new)
+            self._write(new[first : first + AT_ONCE])
+        if self._has_changed:
+            self._has_changed = False
+            self.layer.updateExtents()
+            self.layer.triggerRepaint()
+
+    def _have_layer(self, site: SiteReport) -> None:
+        """Have a layer in the site's CRS, without what was written of a site that lay elsewhere."""
+        if self.layer is not None and self.layer.crs() != QgsCoordinateReferenceSystem(site.crs):
+            self._take_out()
+        frame = frame_of(site)
+        if self.layer is None:
+            self._make(site.crs)
+        elif frame != self._frame:
+            self.layer.dataProvider().truncate()
+        else:
+            return
+        self._frame, self._written = frame, {}
+
+    def _take_out(self) -> None:
+        if self.layer is not None:
+            dirty = self._project.isDirty()
+            self._project.removeMapLayer(self._id)
+            remove_if_empty(self._project)
+            leave_clean(self._project, dirty)
+        self._id = None
+
+    def _left_of(self, rows: Sequence[Row]) -> list[Row]:
+        """Delete features whose rows are gone, and return the rows that have none yet."""
+        before, after = self._written, {}
+        new: list[Row] = []
+        for points, values in rows:
+            same = before.get(tuple(values), [])
+            at = next((k for k, (known, _) in enumerate(same) if known == points), None)
+            if at is None:
+                new.append((points, values))
+            else:
+                after.setdefault(tuple(values), []).append(same.pop(at))
+        gone = [number for features in before.values() for _, number in features]
+        self.layer.dataProvider().deleteFeatures(gone)
+        self._written = after
+        self._has_changed = self._has_changed or bool(gone or new)
+        return new
+
+    def _write(self, rows: Sequence[Row]) -> None:
+        """Add a feature for each of ``rows``."""
+        _, added = self.layer.dataProvider().addFeatures(_features(self.layer, rows, self._frame))
+        for (points, values), feature in zip(rows, added, strict=True):
+            self._written.setdefault(tuple(values), []).append((points, feature.id()))
+
+    def _make(self, crs: str) -> None:
+        dirty = self._project.isDirty()
+        fields = "&".join(f"field={field}" for field in self._fields.split(","))
+        layer = QgsVectorLayer(f"{self._kind}?{fields}", self._name, "memory")
+        layer.setCrs(QgsCoordinateReferenceSystem(crs))
+        make_live(layer, self._mark)
+        if not give_style(self._project, layer):
+            self._style(layer)
+        self._project.addMapLayer(layer, False)
+        fleet_group(self._project).addLayer(layer)
+        self._id = layer.id()
+        leave_clean(self._project, dirty)
+
+
+def _features(layer: QgsVectorLayer, rows: Sequence[Row], frame: SiteFrame) -> list[QgsFeature]:
+    fields = layer.fields()
+    # All at once: to take each row's few points to the map takes longer than all else.
+    placed = frame.to_crs(np.concatenate([np.array(points) for points, _ in rows]))
+    ends = np.cumsum([len(points) for points, _ in rows])[:-1]
+    features = []
+    for (_, values), line in zip(rows, np.split(placed, ends), strict=True):
+        x, y = line.T.tolist()
+        feature = QgsFeature(fields)
+        feature.setGeometry(QgsGeometry(QgsPoint(x[0], y[0]) if len(x) == 1 else QgsLineString(x, y)))
+        feature.setAttributes(list(values))
+        features.append(feature)
+    return features
+
+
+def label(
+    layer: QgsVectorLayer,
+    expression: str,
+    placement: QgsPalLayerSettings.LabelPlacement,
+    millimetres: float,
+) -> None:
+    """Label the features with an expression, so far from them, readable on any ground."""
+    settings = QgsPalLayerSettings()
+    settings.fieldName, settings.isExpression = expression, True
+    settings.placement, settings.dist = placement, millimetres
+    letters = settings.format()
+    letters.setSize(9)
+    letters.setColor(QColor("#101418"))
+    ground = letters.buffer()
+    ground.setEnabled(True)
+    ground.setColor(QColor("#FFFFFF"))
+    ground.setOpacity(1.0)
+    ground.setSize(1.0)
+    letters.setBuffer(ground)
+    settings.setFormat(letters)
+    layer.setLabeling(QgsVectorLayerSimpleLabeling(settings))
+    layer.setLabelsEnabled(True)

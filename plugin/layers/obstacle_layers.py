@@ -1,0 +1,536 @@
+"""Obstacle layers read into outlines, with a warning for all that could not be read as it is."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+from itertools import chain, pairwise
+from typing import Any, NamedTuple
+
+import numpy as np
+from qgis.core import QgsFeature, QgsFeatureRequest, QgsFeedback, QgsGeometry, QgsWkbTypes
+
+from ...robot_bridge.core.errors import ShapingError
+from ...robot_bridge.core.robotmap.model import ShapeType
+from ...robot_bridge.core.robotmap.outlines import OutlineRow, Outlines
+from ...robot_bridge.core.robotmap.parametric_shapes import Template, template
+from ..ui.language import tr, tr_count
+from .errors import FeatureWarnings, SomeFeatures
+from .geometry import (
+    FARTHEST_M,
+    NO_PLACE,
+    FeatureShape,
+    FeatureShapes,
+    Rings,
+    normal_extra,
+    rings_of,
+    shapes_of,
+)
+from .layer_expressions import FeatureFilter, FeatureValues, LayerRules, ObstacleValues
+from .layer_source import ObstacleSource, without_geometry
+from .roles import OBSTACLE_ROLES, RAMP, STAIRS, LayerExpressions
+from .site_transform import Bounds, LayerToSiteTransform, SiteGeoreference, SiteTransformError, widen_bounds
+
+# --- Furniture that is drawn as points: the small closed shape that stands for each ---
+
+POST_ACROSS_M = 0.5
+"""How far across a piece of furniture is that is drawn as a point and says nothing of its size."""
+
+REACH_M = 100.0
+"""How far the shape of a point can reach from it: a triangle around the largest circle there is."""
+
+
+class PointObstacles:
+    """Makes shapes of points by the expressions of one layer: by template, else as an octagon of a width.
+
+    :raises ExpressionError: when one of the expressions is none.
+    """
+
+    def __init__(self, rules: LayerRules, expressions: LayerExpressions):
+        self._rules = rules
+        self._width = rules.rule("width", expressions.width)
+        self._template = rules.rule("template", expressions.template)
+        self._rotation = rules.rule("rotation", expressions.rotation)
+
+    def of(self, feature: QgsFeature, points: QgsGeometry) -> FeatureShapes:
+        """Return a shape around each of ``points``, the geometry of ``feature`` in metres.
+
+        ``rotation`` turns it clockwise, so that a heading turns what faces north to face there.
+        """
+        places = np.array([(point.x(), point.y()) for point in points.vertices()]).reshape(-1, 2)
+        if not np.isfinite(places).all():
+            return FeatureShapes([], [NO_PLACE])
+        self._rules.at(feature)
+        notes: list[str] = []
+        made = self._named(notes) or self._round(notes)
+        turned = -math.radians(self._degrees(notes))
+        rings = [made.at(x, y, turned) for x, y in places.tolist()]
+        return FeatureShapes([FeatureShape(ring, ShapeType.CLOSED_POLYGON) for ring in rings], notes)
+
+    def _named(self, notes: list[str]) -> Template | None:
+        value = self._rules.value("template", self._template, notes)
+        if value is None or not str(value).strip():
+            return None
+        try:
+            return template(str(value))
+        except ShapingError as error:
+            notes.append(tr("{error}; its width is used", error=error))
+            return None
+
+    def _round(self, notes: list[str]) -> Template:
+        width = self._rules.metres("width", self._width, notes)
+        try:
+            return template(f"circle {POST_ACROSS_M if width is None else width}")
+        except ShapingError:
+            notes.append(
+                tr(
+                    "its width {width:g} m is none of furniture; {used:g} is used",
+                    width=width,
+                    used=POST_ACROSS_M,
+                )
+            )
+            return template(f"circle {POST_ACROSS_M}")
+
+    def _degrees(self, notes: list[str]) -> float:
+        value = self._rules.value("rotation", self._rotation, notes)
+        if value is None or value == "":
+            return 0.0
+        try:
+            degrees = float(str(value).strip().rstrip("°"))
+        except ValueError:
+            degrees = math.nan
+        if not math.isfinite(degrees):
+            notes.append(
+                tr("its rotation {value!r} is not a number of degrees; it is not turned", value=value)
+            )
+            return 0.0
+        return degrees
+
+
+# --- Features of one obstacle layer made into outlines, many at a time ---
+
+ESTIMATED = {"h": "est"}
+"""The extra of an obstacle whose height nobody knows."""
+
+_NO_RINGS = Rings([], [], True)
+
+
+class ReadFeature(NamedTuple):
+    """A feature that counts: its geometry in metres, and what its layer says of it.
+
+    ``rings`` is what the geometry is made of, where that can be told from its bytes and its role wants
+    nothing else. ``shapes`` is what it was made into already, such as the template of a point; what there is
+    to say of them stands in the notes of ``values``.
+    """
+
+    id: int
+    geometry: QgsGeometry
+    rings: Rings | None
+    shapes: Sequence[FeatureShape] | None
+    values: ObstacleValues
+
+
+class OutlineBatch:
+    """Makes the outlines of the layer ``name`` with ``role``; warns of what was repaired or left out.
+
+    ``unknown`` are features whose height nobody knows, ``odd_for_role`` those that such a layer should not
+    hold.
+    """
+
+    def __init__(
+        self, name: str, role: str, placing: LayerToSiteTransform, warnings: FeatureWarnings
+    ) -> None:
+        self._name, self._role, self._placing, self._warnings = name, role, placing, warnings
+        self.unknown = SomeFeatures()
+        self.odd_for_role = SomeFeatures()
+
+    def outlines(self, features: Sequence[ReadFeature]) -> Iterator[Outlines]:
+        """Yield the outlines of ``features`` in their order.
+
+        Sound lines and polygons together, which is quick; each of the others by itself.
+        """
+        if not features:
+            return
+        table = _RingTable(features)
+        changes = np.flatnonzero(table.sound[1:] != table.sound[:-1]) + 1
+        edges = [0, *changes.tolist(), len(features)]
+        for first, last in pairwise(edges):
+            some = features[first:last]
+            if table.sound[first]:
+                yield self._together(some, *table.slice(first, last))
+            else:
+                rows = [row for feature in some for row in self._one_by_one(feature)]
+                if rows:
+                    yield Outlines.from_rows(rows)
+
+    def _together(
+        self, features: Sequence[ReadFeature], coordinates: np.ndarray, lengths: np.ndarray
+    ) -> Outlines:
+        counts = [len(feature.rings.points) for feature in features if feature.rings is not None]
+        values = [feature.values for feature in features]
+        for feature in features:
+            if feature.values.unknown:
+                self.unknown.add(feature.id)
+            for note in feature.values.notes:
+                self._warnings.add(self._name, feature.id, note)
+        closed = [feature.rings.closed for feature in features if feature.rings is not None]
+        base = np.repeat([one.base for one in values], counts)
+        estimated = any(one.estimated for one in values)
+        offsets = np.concatenate([[0], np.cumsum(lengths)])
+        points = np.array(self._placing.to_site(coordinates))
+        # The frame may place the two ends of a ring a rounding error apart.
+        rings = np.flatnonzero(np.repeat(closed, counts))
+        points[offsets[rings + 1] - 1] = points[offsets[rings]]
+        kinds = np.where(closed, int(ShapeType.CLOSED_POLYGON), int(ShapeType.OPEN_POLYGON))
+        return Outlines(
+            coordinates=points,
+            offsets=offsets,
+            shape_type=np.repeat(kinds, counts).astype(np.int8),
+            courtyard=np.array([one for f in features if f.rings is not None for one in f.rings.inner]),
+            height=np.repeat([one.height for one in values], counts),
+            outdoor=np.repeat([one.outdoor for one in values], counts),
+            semantics=_repeated([one.semantics for one in values], counts),
+            source=_repeated([f"{self._name}:{feature.id}" for feature in features], counts),
+            base=base if base.any() else None,
+            ext=_repeated([ESTIMATED if one.estimated else {} for one in values], counts)
+            if estimated
+            else None,
+        )
+
+    def _one_by_one(self, feature: ReadFeature) -> list[OutlineRow]:
+        shapes, notes = feature.shapes, list(feature.values.notes)
+        if shapes is None:
+            shapes, said = shapes_of(feature.geometry, self._role)
+            notes = [*said, *(notes if shapes else [])]
+        rows = self._rows(feature, shapes, notes) if shapes else []
+        for note in notes:
+            self._warnings.add(self._name, feature.id, note)
+        return rows
+
+    def _rows(
+        self, feature: ReadFeature, shapes: Sequence[FeatureShape], notes: list[str]
+    ) -> list[OutlineRow]:
+        values = feature.values
+        if values.unknown:
+            self.unknown.add(feature.id)
+        if any(_odd(shape, self._role) for shape in shapes):
+            self.odd_for_role.add(feature.id)
+        rows: list[OutlineRow] = []
+        ext: dict[str, str] = {}
+        for shape in shapes:
+            points = np.array(self._placing.to_site(shape.points))
+            if shape.closed:
+                points[-1] = points[0]
+            if not shape.courtyard:
+                # A courtyard is in the surface of the ring around it and says the same.
+                ext = _extras(shape, points, values.estimated, notes)
+            rows.append(
+                OutlineRow(
+                    points=points,
+                    shape_type=shape.shape_type,
+                    height=values.height,
+                    semantics=values.semantics,
+                    source=f"{self._name}:{feature.id}",
+                    courtyard=shape.courtyard,
+                    outdoor=values.outdoor,
+                    base=values.base,
+                    ext=ext,
+                )
+            )
+        return rows
+
+
+class _RingTable:
+    """The rings of many features one after the other, and which features are ``sound``, (n,) bool.
+
+    Sound are those that need no repair and no word: closed rings of three corners or more that are valid
+    together, lines without repeated points, every coordinate a number on Earth.
+    """
+
+    def __init__(self, features: Sequence[ReadFeature]) -> None:
+        rings = [feature.rings or _NO_RINGS for feature in features]
+        points = list(chain.from_iterable(one.points for one in rings))
+        counts = np.array([len(one.points) for one in rings])
+        self._coordinates = np.frombuffer(b"".join(points), "<f8").reshape(-1, 2)
+        self._lengths = np.array([len(one) for one in points], dtype=np.int64) // 16
+        self._first_ring = np.concatenate([[0], np.cumsum(counts)])
+        self._first_point = np.concatenate([[0], np.cumsum(self._lengths)])
+        closed = np.array([one.closed for one in rings], dtype=bool)
+        self.sound = counts > 0
+        odd = self._odd_rings(np.repeat(closed, counts))
+        self.sound[np.repeat(np.arange(len(rings)), counts)[odd]] = False
+        for k in np.flatnonzero(self.sound & closed).tolist():
+            self.sound[k] = features[k].shapes is not None or features[k].geometry.isGeosValid()
+
+    def slice(self, first: int, last: int) -> tuple[np.ndarray, np.ndarray]:
+        """Return the coordinates, (m, 2), of features ``first`` to ``last``, and the length of each ring."""
+        low, high = self._first_ring[first], self._first_ring[last]
+        return self._coordinates[self._first_point[low] : self._first_point[high]], self._lengths[low:high]
+
+    def _odd_rings(self, closed: np.ndarray) -> np.ndarray:
+        """Tell of each ring whether it needs a closer look; ``closed`` says which of them are no lines."""
+        odd: np.ndarray = self._lengths < np.where(closed, 4, 2)
+        xy = self._coordinates
+        if not len(xy):
+            return odd
+        last = len(xy) - 1
+        starts = np.minimum(self._first_point[:-1], last)
+        ends = np.clip(self._first_point[1:] - 1, 0, last)
+        odd |= closed & (xy[starts] != xy[ends]).any(axis=1)
+        ring = np.repeat(np.arange(len(odd)), self._lengths)
+        # So that what is no number is none on Earth either.
+        odd[ring[~(np.abs(xy) <= FARTHEST_M).all(axis=1)]] = True
+        repeated = (xy[1:] == xy[:-1]).all(axis=1) & (ring[1:] == ring[:-1]) & ~closed[ring[1:]]
+        odd[ring[1:][repeated]] = True
+        return odd
+
+
+def _repeated(values: Sequence[Any], counts: Sequence[int]) -> list[Any]:
+    return [value for value, count in zip(values, counts, strict=True) for _ in range(count)]
+
+
+def _extras(shape: FeatureShape, points: np.ndarray, estimated: bool, notes: list[str]) -> dict[str, str]:
+    """Return what else ``shape`` has to say, whose ``points`` are (n, 2) in the site frame."""
+    if shape.z is not None:
+        return normal_extra(points, shape.z, notes)
+    return dict(ESTIMATED) if estimated else {}
+
+
+def _odd(shape: FeatureShape, role: str) -> bool:
+    """Tell whether a layer of ``role`` should not hold this shape."""
+    return (role == STAIRS and shape.closed) or (role == RAMP and not shape.closed)
+
+
+# --- Obstacle layers read into outlines; whatever could not be read as it is becomes a warning ---
+
+TOGETHER = 2000
+"""Features made into outlines at a time: few enough to keep, enough to be quick."""
+NO_GEOMETRY = tr("has no geometry; it is left out")
+
+
+@dataclass
+class ObstacleReading:
+    """What was read: outlines in the site frame, warnings naming layer and feature.
+
+    Outlines whose height is the default say so in their ``ext``. ``complete`` is false after a cancel.
+    """
+
+    parts: list[Outlines] = field(default_factory=list)
+    warnings: list[str] = field(default_factory=list)
+    complete: bool = True
+
+    @property
+    def rows(self) -> list[OutlineRow]:
+        """The outlines one by one, in the order of layers and features."""
+        return [row for part in self.parts for row in part.rows()]
+
+    def outlines(self) -> Outlines:
+        """Return the outlines in the order of layers and features."""
+        return Outlines.joined(self.parts)
+
+
+def read_outlines(
+    sources: Sequence[ObstacleSource],
+    site: SiteGeoreference,
+    window: Bounds | None,
+    default_height: float,
+    feedback: QgsFeedback,
+) -> ObstacleReading:
+    """Return the outlines of all features whose bounding box touches ``window``, metres in the site frame.
+
+    All features where there is no window.
+
+    Expressions and CRSs of every layer are checked before the first feature is read.
+
+    :raises LayerReadingError: when a layer has no known place on the site or an expression is not one.
+    """
+    reader = ObstacleReader(sources, site, window, default_height)
+    parts = list(reader.parts(feedback))
+    return ObstacleReading(parts, reader.warnings.texts(), reader.complete)
+
+
+def check_sources(sources: Sequence[ObstacleSource], site: SiteGeoreference) -> None:
+    """Raise :class:`LayerReadingError` for what :func:`read_outlines` would refuse, without reading."""
+    ObstacleReader(sources, site, (0.0, 0.0, 1.0, 1.0), 0.0)
+
+
+class ObstacleReader:
+    """Reads as :func:`read_outlines`, and keeps nothing of what it has read but ``warnings``.
+
+    ``complete`` is false after a cancel.
+    """
+
+    def __init__(
+        self,
+        sources: Sequence[ObstacleSource],
+        site: SiteGeoreference,
+        window: Bounds | None,
+        default_height: float,
+    ) -> None:
+        self.warnings = FeatureWarnings()
+        self.complete = True
+        self._layers = [
+            _LayerReader(source, site, window, default_height, self.warnings) for source in sources
+        ]
+
+    def parts(self, feedback: QgsFeedback) -> Iterator[Outlines]:
+        """Yield the outlines, some features' at a time, in the order of layers and features."""
+        total = max(sum(max(layer.source.count, 0) for layer in self._layers), 1)
+        step, done = max(total // 1000, 1), 0
+        for layer in self._layers:
+            for feature in layer.features():
+                if feedback.isCanceled():
+                    self.complete = False
+                    return
+                layer.read(feature)
+                done += 1
+                if done % step == 0:
+                    feedback.setProgress(90.0 * done / total)
+                if layer.waiting >= TOGETHER:
+                    yield from layer.outlines()
+            yield from layer.outlines()
+            layer.finish()
+
+
+class _LayerReader:
+    """Reads the features of one layer, and keeps them until their outlines are asked for."""
+
+    def __init__(
+        self,
+        source: ObstacleSource,
+        site: SiteGeoreference,
+        window: Bounds | None,
+        default_height: float,
+        warnings: FeatureWarnings,
+    ):
+        self.source = source
+        self._default_height = default_height
+        self._warnings = warnings
+        self._filter = FeatureFilter(source.name, source.fields, source.expressions.filter, source.context)
+        self._rules = LayerRules(source.name, source.fields, source.context)
+        self._values = FeatureValues(
+            source.name, source.role, source.expressions, default_height, self._rules
+        )
+        self._posts = PointObstacles(self._rules, source.expressions)
+        self._placing: LayerToSiteTransform = site.of_layer(source.name, source.crs)
+        # Ramps need their corners' heights, stairs their risers in order.
+        self._is_plain = source.role not in (RAMP, STAIRS)
+        self._window = window
+        self._area = self._placing.area_of(window) if window else None
+        self._around = self._placing.area_of(widen_bounds(window, REACH_M)) if window else None
+        self._batch = OutlineBatch(source.name, source.role, self._placing, warnings)
+        self._read: list[ReadFeature] = []
+
+    @property
+    def waiting(self) -> int:
+        """How many features are read whose outlines nobody has asked for."""
+        return len(self._read)
+
+    def features(self) -> Iterator[QgsFeature]:
+        """Yield the features that may touch the window, and those that are nowhere.
+
+        By the layer's own index: most of a city is nowhere near a window. All features where the window has
+        no place in the layer.
+        """
+        request = QgsFeatureRequest()
+        if self._around is not None:
+            yield from without_geometry(self.source)
+            request.setFilterRect(self._around)
+        yield from self.source.features.getFeatures(request)
+
+    def read(self, feature: QgsFeature) -> None:
+        """Keep ``feature`` if it counts, or a warning why there is nothing of it."""
+        doubts: list[str] = []
+        if not self._filter.keeps(feature, doubts):
+            self._warn(feature, doubts)
+            return
+        geometry = feature.geometry()
+        if geometry.isNull() or geometry.isEmpty():
+            self._warn(feature, [NO_GEOMETRY])
+            return
+        if self._area is not None and not self._may_touch(geometry):
+            return
+        try:
+            metres = self._placing.to_metres(geometry)
+        except SiteTransformError as error:
+            note = tr("cannot be transformed into the site's CRS ({error}); it is left out", error=error)
+            self._warn(feature, [note])
+            return
+        values = self._values.of(feature)
+        rings, shapes = rings_of(metres.asWkb().data()) if self._is_plain else None, None
+        if rings is None and _is_points(geometry):
+            shapes, notes = self._posts_in(feature, metres)
+            rings = _rings(shapes)
+            values = values._replace(notes=[*notes, *(values.notes if shapes else [])])
+        self._read.append(ReadFeature(feature.id(), metres, rings, shapes, values))
+
+    def outlines(self) -> Iterator[Outlines]:
+        """Yield the outlines of the features that wait."""
+        read, self._read = self._read, []
+        yield from self._batch.outlines(read)
+
+    def finish(self) -> None:
+        """Add the warnings that are about the layer as a whole."""
+        name, role = self.source.name, self.source.role
+        for warning in self._rules.warnings:
+            self._warnings.add_text(warning)
+        if role and role not in OBSTACLE_ROLES:
+            self._warnings.add_text(
+                tr("Layer {name}: its role is {role}, yet it is exported as obstacles", name=name, role=role)
+            )
+        if self._batch.unknown.count:
+            self._warnings.add_text(
+                tr_count(
+                    self._batch.unknown.count,
+                    "Layer {name}: 1 height is not known and estimated as {height:g} m ({features})",
+                    "Layer {name}: %n heights are not known and estimated as {height:g} m ({features})",
+                    name=name,
+                    height=self._default_height,
+                    features=self._batch.unknown,
+                )
+            )
+        if self._batch.odd_for_role.count:
+            wanted = tr("lines, one a riser") if role == STAIRS else tr("polygons")
+            self._warnings.add_text(
+                tr(
+                    "Layer {name}: its role {role} wants {wanted}; other features are exported as plain "
+                    "obstacles ({features})",
+                    name=name,
+                    role=role,
+                    wanted=wanted,
+                    features=self._batch.odd_for_role,
+                )
+            )
+
+    def _may_touch(self, geometry: QgsGeometry) -> bool:
+        """Tell whether a feature of ``geometry`` must be looked at, where there is a window."""
+        area = self._around if _is_points(geometry) else self._area
+        box = geometry.boundingBox()
+        return area is None or box.isNull() or not box.isFinite() or area.intersects(box)
+
+    def _posts_in(self, feature: QgsFeature, points: QgsGeometry) -> FeatureShapes:
+        """Return the shapes of ``points``; nothing where none of them reaches into the window."""
+        posts = self._posts.of(feature, points)
+        reaching = any(self._reaches_in(self._placing.to_site(post.points)) for post in posts.shapes)
+        return posts if reaching or not posts.shapes else FeatureShapes([], [])
+
+    def _reaches_in(self, points: np.ndarray) -> bool:
+        if self._window is None:
+            return True
+        x_min, y_min, x_max, y_max = self._window
+        return bool(
+            (points.max(axis=0) >= (x_min, y_min)).all() and (points.min(axis=0) <= (x_max, y_max)).all()
+        )
+
+    def _warn(self, feature: QgsFeature, notes: Sequence[str]) -> None:
+        for note in notes:
+            self._warnings.add(self.source.name, feature.id(), note)
+
+
+def _rings(posts: Sequence[FeatureShape]) -> Rings:
+    return Rings([post.points.tobytes() for post in posts], [False] * len(posts), True)
+
+
+def _is_points(geometry: QgsGeometry) -> bool:
+    return bool(geometry.type() == QgsWkbTypes.GeometryType.PointGeometry)

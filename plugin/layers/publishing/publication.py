@@ -1,0 +1,279 @@
+"""Publication of a site into its folder, whole or not at all, by one process at a time."""
+
+from __future__ import annotations
+
+import re
+import shutil
+import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from qgis.core import QgsFeedback
+from qgis.PyQt.QtCore import QLockFile
+
+from ....robot_bridge.core.errors import SettingsError
+from ....robot_bridge.core.sites.geopackage import GEOPACKAGE_FILE
+from ....robot_bridge.core.sites.settings import (
+    SETTINGS_FILE,
+    SiteSettings,
+    check_values,
+    earlier_settings,
+    settings_text,
+)
+from ....robot_bridge.core.sites.site import cache_writer, put_cache, write_site_cache
+from ....robot_bridge.core.sites.site_cache import CACHE_FILE, CacheWriter
+from ...ui.language import tr
+from ..errors import PublicationError
+from .site_file import SiteContent, stamp_in, write_site_file
+
+# --- One publication at a time into a folder, whichever processes publish ---
+
+LOCK_FILE = ".publishing.lock"
+
+
+@contextmanager
+def exclusive_publication(folder: Path) -> Iterator[None]:
+    """Keep other publications out of ``folder``, which is made where it is missing, until the block ends.
+
+    A lock that a process left behind when it was killed holds nobody up.
+
+    :raises PublicationError: when another publication is under way, or the folder cannot be written.
+    """
+    is_new = not folder.exists()
+    _check_is_folder(folder)
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise unwritable(folder, error.strerror or str(error)) from error
+    lock = QLockFile(str(folder / LOCK_FILE))
+    # However long a publication takes: the lock is void only when its process has ended.
+    lock.setStaleLockTime(0)
+    if not lock.tryLock(0):
+        raise _why_not(lock, folder)
+    try:
+        yield
+    finally:
+        lock.unlock()
+        if is_new:
+            with suppress(OSError):
+                folder.rmdir()
+
+
+def unwritable(folder: Path, reason: str) -> PublicationError:
+    """Return the error of a ``folder`` that cannot be written for ``reason``."""
+    return PublicationError(
+        tr(
+            "The site cannot be published in {folder}: {reason}. Check the folder's rights and the free "
+            "space.",
+            folder=folder,
+            reason=reason,
+        )
+    )
+
+
+def _check_is_folder(folder: Path) -> None:
+    in_the_way = next(
+        (path for path in (folder, *folder.parents) if path.exists() and not path.is_dir()), None
+    )
+    if in_the_way is not None:
+        raise PublicationError(
+            tr(
+                "The site cannot be published in {folder}: {file} is a file. Choose a folder: a new one, or "
+                "the one that the site was published in before.",
+                folder=folder,
+                file=in_the_way,
+            )
+        )
+
+
+def _why_not(lock: QLockFile, folder: Path) -> PublicationError:
+    if lock.error() != QLockFile.LockError.LockFailedError:
+        return unwritable(folder, tr("no file {lock_file} can be made in it", lock_file=LOCK_FILE))
+    known, process, host, _ = lock.getLockInfo()
+    who = tr("process {process} on {host}", process=process, host=host) if known else tr("another process")
+    return PublicationError(
+        tr(
+            "Another publication into {folder} is under way, by {who}: wait until it has ended, or choose "
+            "another folder. If it ended on another computer without a word, remove {file}.",
+            folder=folder,
+            who=who,
+            file=folder / LOCK_FILE,
+        )
+    )
+
+
+# --- Publishes a site from QGIS: a folder with ``site.toml`` and ``site.gpkg``, whole or as it was before
+
+_ID = re.compile(r"""^[ \t]*id[ \t]*=[ \t]*(?:"([^"\n]*)"|'([^'\n]*)')""", re.MULTILINE)
+_VERSION = re.compile(r"^[ \t]*version[ \t]*=[ \t]*(\d+)", re.MULTILINE)
+_PARTIAL = ".publishing-"
+_STAMP = re.compile(r"(.+) version (\d+)")
+
+
+@dataclass(frozen=True)
+class EarlierPublication:
+    """The publication that a folder holds already."""
+
+    id: str
+    version: int
+
+
+def earlier_publication(folder: Path) -> EarlierPublication | None:
+    """Return what is published in ``folder``, None when nothing is.
+
+    The two lines wanted of ``site.toml`` are found by their shape, because Python before 3.11 reads no TOML.
+    After a publication cut off between its two files the higher version counts, so that it is not used twice.
+
+    :raises PublicationError: when the folder holds files of these names that are no publication.
+    """
+    settings_file, layers_file = folder / SETTINGS_FILE, folder / GEOPACKAGE_FILE
+    found = []
+    if settings_file.is_file():
+        text = settings_file.read_text(encoding="utf-8", errors="replace")
+        name, version = _ID.search(text), _VERSION.search(text)
+        if name is None or version is None:
+            raise _not_a_publication(settings_file)
+        found.append(EarlierPublication(name[1] or name[2] or "", int(version[1])))
+    if layers_file.is_file():
+        stamp = _STAMP.fullmatch(stamp_in(layers_file))
+        if stamp is None and not found:
+            raise _not_a_publication(layers_file)
+        if stamp is not None and (not found or stamp[1] == found[0].id):
+            found.append(EarlierPublication(stamp[1], int(stamp[2])))
+    return max(found, key=lambda earlier: earlier.version, default=None)
+
+
+def next_version(settings: SiteSettings, folder: Path, *, replace_other: bool = False) -> SiteSettings:
+    """Return ``settings`` with the version after the one published in ``folder``, 1 for a first one.
+
+    :raises PublicationError: when the folder holds another site and ``replace_other`` is not said.
+    """
+    try:
+        earlier = earlier_publication(folder)
+    except PublicationError:
+        if not replace_other:
+            raise
+        earlier = None
+    if earlier is not None and earlier.id == settings.id:
+        return replace(settings, version=earlier.version + 1)
+    if earlier is not None and not replace_other:
+        raise PublicationError(
+            tr(
+                "{folder} holds version {version} of another site, {other}: choose another folder for "
+                "{site}, or say that the other site may be replaced (REPLACE=true).",
+                folder=folder,
+                version=earlier.version,
+                other=earlier.id,
+                site=settings.id,
+            )
+        )
+    return replace(settings, version=1)
+
+
+class NewPublication:
+    """A publication that is being made in ``partial``, a folder inside ``folder``."""
+
+    def __init__(self, folder: Path, partial: Path) -> None:
+        self._folder, self._partial = folder, partial
+        self._cache: CacheWriter | None = None
+
+    def write_layers(self, content: SiteContent, settings: SiteSettings, feedback: QgsFeedback) -> bool:
+        """Write the layers, in the frame and with the stamp of ``settings``; return false after a cancel.
+
+        :raises PublicationError: when a layer cannot be written.
+        """
+        self._cache = cache = cache_writer(self._partial, settings.frame)
+        return write_site_file(self._partial / GEOPACKAGE_FILE, content, settings, cache, feedback)
+
+    def replace_earlier(self, settings: SiteSettings, feedback: QgsFeedback) -> bool:
+        """Put the layers that were written, and ``settings``, in the place of what is published.
+
+        To be called behind :meth:`write_layers`. Return false after a cancel. Other files in the folder stay,
+        and in ``site.toml`` the tables that the operator set. A gateway that reads between the replacement of
+        the files refuses what it finds and reads no half site.
+
+        :raises PublicationError: when a setting is wrong.
+        """
+        check_publication_values(settings, self._folder)
+        text = settings_text(settings, earlier_settings(self._folder, settings.id))
+        (self._partial / SETTINGS_FILE).write_text(text, encoding="utf-8")
+        if self._cache is not None:
+            write_site_cache(self._partial, settings, text, self._cache)
+        if feedback.isCanceled():
+            return False
+        _replace(self._partial, self._folder)
+        return True
+
+    def remove(self) -> None:
+        """Delete what was written and not put into the folder."""
+        if self._cache is not None:
+            self._cache.remove()
+        shutil.rmtree(self._partial, ignore_errors=True)
+
+
+@contextmanager
+def new_publication(folder: Path) -> Iterator[NewPublication]:
+    """Give a publication to be made in ``folder``; what is not complete at the end leaves nothing there.
+
+    To be called where no other publication is under way, see ``publication_lock``.
+
+    :raises PublicationError: when the folder cannot be written.
+    """
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        for left_by_a_crash in folder.glob(f"{_PARTIAL}*"):
+            shutil.rmtree(left_by_a_crash, ignore_errors=True)
+        # A folder inside the target, so that both renames stay on one file system.
+        publication = NewPublication(folder, Path(tempfile.mkdtemp(prefix=_PARTIAL, dir=folder)))
+        try:
+            yield publication
+        finally:
+            publication.remove()
+    except OSError as error:
+        raise unwritable(folder, error.strerror or str(error)) from error
+
+
+def _replace(partial: Path, folder: Path) -> None:
+    """Put the files of ``partial`` in the place of those in ``folder``, or leave these as they were."""
+    layers, cache = folder / GEOPACKAGE_FILE, folder / CACHE_FILE
+    earlier, earlier_cache = partial / "earlier.gpkg", partial / "earlier.cache"
+    if layers.exists():
+        shutil.copyfile(layers, earlier)
+    if cache.exists():
+        # A gateway that looks meanwhile does without.
+        cache.replace(earlier_cache)
+    try:
+        put_cache(partial, folder)
+        (partial / GEOPACKAGE_FILE).replace(layers)
+        (partial / SETTINGS_FILE).replace(folder / SETTINGS_FILE)
+    except OSError:
+        _put_back(earlier, layers)
+        _put_back(earlier_cache, cache)
+        raise
+
+
+def _put_back(earlier: Path, file: Path) -> None:
+    if earlier.exists():
+        earlier.replace(file)
+    else:
+        file.unlink(missing_ok=True)
+
+
+def check_publication_values(settings: SiteSettings, folder: Path) -> None:
+    """Raise :class:`PublicationError` for the first setting that is wrong in itself."""
+    try:
+        check_values(settings, folder / SETTINGS_FILE)
+    except SettingsError as error:
+        raise PublicationError(str(error)) from error
+
+
+def _not_a_publication(file: Path) -> PublicationError:
+    return PublicationError(
+        tr(
+            "{file} is there and is no part of a published site: choose another folder, or say that it may "
+            "be replaced (REPLACE=true).",
+            file=file,
+        )
+    )

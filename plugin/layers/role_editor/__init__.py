@@ -1,0 +1,1 @@
+"""The dialog Layer roles, with its live preview."""

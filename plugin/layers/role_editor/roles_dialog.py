@@ -1,0 +1,439 @@
+"""The dialog Layer roles, and its menu entry."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from qgis.core import (
+    QgsApplication,
+    QgsCoordinateReferenceSystem,
+    QgsExpressionContext,
+    QgsExpressionContextUtils,
+    QgsProject,
+    QgsTask,
+)
+from qgis.gui import QgisInterface, QgsMessageBar
+from qgis.PyQt import sip
+from qgis.PyQt.QtCore import QObject, QSize, Qt, QTimer, pyqtSignal
+from qgis.PyQt.QtGui import QIcon, QImage
+from qgis.PyQt.QtWidgets import (
+    QAbstractItemView,
+    QAction,
+    QComboBox,
+    QDialog,
+    QDialogButtonBox,
+    QHBoxLayout,
+    QHeaderView,
+    QLabel,
+    QPushButton,
+    QSplitter,
+    QTableView,
+    QVBoxLayout,
+    QWidget,
+)
+
+from ....robot_bridge.core.sites.frame import SiteFrame
+from ...ui.dialogs import file_to_read
+from ...ui.errors import FleetError
+from ...ui.language import tr, tr_count
+from ...ui.tables import fit_headers
+from ..crs import frame_in_project, site_crs_for, stated_crs
+from ..layer_source import ObstacleSource, obstacle_sources
+from ..profiles import SUFFIXES, read_profile, shipped_profiles
+from ..roles import PUBLISHED_ROLES, LayerExpressions, keep_setup, setup_of
+from ..site_transform import SiteGeoreference
+from .preview import LayerMeasure, PreviewTask, PreviewView, measure_summary
+from .role_table import (
+    BASE,
+    ESTIMATE,
+    FILTER,
+    HEIGHT,
+    LAYER,
+    OUTDOOR,
+    RESULT,
+    ROLE,
+    ROTATION,
+    SEMANTICS,
+    TEMPLATE,
+    TITLES,
+    WHAT,
+    WIDTH,
+    ExpressionDelegate,
+    RoleDelegate,
+    RoleRow,
+    RoleTableModel,
+    role_rows,
+)
+
+# --- Keeps the counts and the picture up with the table, without the GUI thread ever waiting ---
+
+DELAY_MS = 250
+"""How long the table must be left alone before layers are read anew."""
+
+GIVE_UP_S = 5.0
+
+
+class LivePreview(QObject):
+    """Measures the layers of ``rows`` as they are set up now; what was measured once is kept.
+
+    ``measured`` tells a layer's id and what it comes to, None as long as it is not known.
+    """
+
+    measured = pyqtSignal(str, object)
+    drawn = pyqtSignal(QImage)
+    summed = pyqtSignal(str)
+
+    def __init__(self, project: QgsProject, rows: Sequence[RoleRow], parent: QObject):
+        super().__init__(parent)
+        self._project, self._rows = project, rows
+        self._known: dict[object, LayerMeasure] = {}
+        self._size, self._ratio = QSize(400, 300), 1.0
+        self._task: PreviewTask | None = None
+        self._timer = QTimer(self)
+        self._timer.setSingleShot(True)
+        self._timer.setInterval(DELAY_MS)
+        self._timer.timeout.connect(self._start)
+
+    @property
+    def busy(self) -> bool:
+        """Whether counts or picture are behind the table."""
+        return self._timer.isActive() or self._task is not None
+
+    def resize(self, size: QSize, ratio: float) -> None:
+        """Draw for a widget of ``size`` from now on."""
+        if (size, ratio) != (self._size, self._ratio) and not size.isEmpty():
+            self._size, self._ratio = QSize(size), ratio
+            self.refresh()
+
+    def refresh(self) -> None:
+        """Catch up with the rows soon."""
+        for row in self._rows:
+            self.measured.emit(row.layer_id, self._known.get(_key(row)))
+        if self._task is not None:
+            self._task.cancel()
+        self._timer.start()
+
+    def stop(self) -> None:
+        """End what is under way, for good, and wait until no thread touches it."""
+        self._timer.stop()
+        task, self._task = self._task, None
+        if task is None:
+            return
+        running = task.status() == QgsTask.TaskStatus.Running
+        task.cancel()
+        if running:
+            task.left.wait(GIVE_UP_S)
+
+    def _start(self) -> None:
+        if self._task is not None:
+            # The one that was cancelled ends soon, and starts this again.
+            return
+        wanted = [row for row in self._rows if row.setup.role in PUBLISHED_ROLES]
+        missing = [row for row in wanted if _key(row) not in self._known]
+        try:
+            site = self._site(wanted)
+        except FleetError as error:
+            self.summed.emit(str(error))
+            return
+        sources = {_key(row): source for row in missing if (source := self._source(row)) is not None}
+        known = {_key(row): self._known[_key(row)] for row in wanted if _key(row) in self._known}
+        self.summed.emit(
+            tr_count(len(sources), "Reading 1 layer …", "Reading %n layers …")
+            if sources
+            else measure_summary(list(known.values()))
+        )
+        self._task = PreviewTask(sources, known, site, self._size, self._ratio)
+        self._task.measured.connect(self._keep)
+        self._task.drawn.connect(self.drawn)
+        self._task.taskCompleted.connect(self._ended)
+        self._task.taskTerminated.connect(self._ended)
+        QgsApplication.taskManager().addTask(self._task)
+
+    def _source(self, row: RoleRow) -> ObstacleSource | None:
+        context = QgsExpressionContext()
+        context.appendScope(QgsExpressionContextUtils.globalScope())
+        context.appendScope(QgsExpressionContextUtils.projectScope(self._project))
+        try:
+            (source,) = obstacle_sources([row.layer], LayerExpressions(), context, lambda _: row.setup)
+        except FleetError as error:
+            self._keep(_key(row), LayerMeasure(row.setup.role, refused=str(error)))
+            return None
+        return source
+
+    def _site(self, rows: Sequence[RoleRow]) -> SiteGeoreference:
+        layers = [stated_crs(row.layer.crs()) for row in rows]
+        crs = site_crs_for(QgsCoordinateReferenceSystem(), self._project.crs(), layers)
+        frame = frame_in_project(self._project, crs) or SiteFrame(crs.authid(), (0.0, 0.0))
+        return SiteGeoreference(crs, frame, self._project.transformContext())
+
+    def _keep(self, key: object, found: LayerMeasure) -> None:
+        self._known[key] = found
+        layer_id, setup = key
+        if any(row.layer_id == layer_id and row.setup == setup for row in self._rows):
+            self.measured.emit(layer_id, found)
+
+    def _ended(self) -> None:
+        if self._task is None:
+            return
+        cancelled, self._task = self._task.isCanceled(), None
+        if cancelled:
+            self._timer.start()
+            return
+        keys = [_key(row) for row in self._rows if row.setup.role in PUBLISHED_ROLES]
+        self.summed.emit(measure_summary([self._known[key] for key in keys if key in self._known]))
+
+
+def _key(row: RoleRow) -> object:
+    return row.layer_id, row.setup
+
+
+# --- The dialog *Layer roles*: what each layer of the project is to robots, with a live preview ---
+
+WIDTHS = {
+    LAYER: 140,
+    ROLE: 130,
+    FILTER: 70,
+    HEIGHT: 80,
+    ESTIMATE: 90,
+    BASE: 65,
+    SEMANTICS: 110,
+    OUTDOOR: 70,
+    WIDTH: 75,
+    TEMPLATE: 75,
+    ROTATION: 75,
+    RESULT: 200,
+}
+WIDEST_NAME = 320
+"""Pixels that names of layers get at most; longer ones are cut in the middle, and whole in a tool tip."""
+WIDE = 1280
+"""Pixels that the dialog is wide with short names."""
+
+MOST_OF_TABLE = 370
+"""How high the table is at first when it has many rows, pixels."""
+
+
+class RolesDialog(QDialog):
+    """Nothing changes in the project before *Apply* or *OK*."""
+
+    def __init__(self, project: QgsProject, parent: QWidget | None = None):
+        super().__init__(parent)
+        self.setObjectName("fleet_roles_dialog")
+        self.setWindowTitle(tr("Layer roles"))
+        self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
+        self._project = project
+        self.model = RoleTableModel(role_rows(project), self)
+        self.preview = LivePreview(project, self.model.rows, self)
+        self._bar = QgsMessageBar(self)
+        self._table = self._make_table()
+        self._view = PreviewView(self)
+        self._summary = QLabel(self)
+        self._summary.setObjectName("fleet_roles_summary")
+        self._summary.setWordWrap(True)
+        self._buttons = self._make_buttons()
+        self._lay_out()
+        self._wire()
+        long_names = self._table.columnWidth(LAYER) - WIDTHS[LAYER]
+        self.resize(max(WIDE, min(WIDE + long_names, self.screen().availableGeometry().width())), 760)
+        self.preview.refresh()
+
+    def apply(self) -> None:
+        """Keep what the table says in the layers."""
+        changed = [row for row in self.model.rows if row.setup != setup_of(row.layer)]
+        for row in changed:
+            keep_setup(row.layer, row.setup)
+        if changed:
+            self._project.setDirty(True)
+        self._show_changed()
+
+    def apply_profile(self, file: Path) -> None:
+        """Set the layers up that the profile in ``file`` knows; say how many those were, or what is wrong."""
+        try:
+            profile = read_profile(file)
+        except FleetError as error:
+            self._bar.pushWarning("", str(error))
+            return
+        setups = {row.layer_id: profile.setup_for(row.layer) for row in self.model.rows}
+        known = {layer_id: setup for layer_id, setup in setups.items() if setup is not None}
+        self.model.set_up(known)
+        self._bar.clearWidgets()
+        if known:
+            self._bar.pushInfo(
+                "",
+                tr_count(
+                    len(setups),
+                    "{name}: {known} of 1 layer set up.",
+                    "{name}: {known} of %n layers set up.",
+                    name=profile.name,
+                    known=len(known),
+                ),
+            )
+        else:
+            self._bar.pushWarning(
+                "",
+                tr(
+                    "{name} knows none of these layers. It looks for layers that are named, in their source "
+                    "or in the project: {sought}.",
+                    name=profile.name,
+                    sought=profile.sought(),
+                ),
+            )
+
+    def done(self, result: int) -> None:
+        """End the preview whichever way the dialog closes."""
+        self.preview.stop()
+        super().done(result)
+
+    # --- how it looks ---
+
+    def _make_table(self) -> QTableView:
+        table = QTableView(self)
+        table.setObjectName("fleet_roles_table")
+        table.setModel(self.model)
+        table.setItemDelegateForColumn(ROLE, RoleDelegate(table))
+        for column in WHAT.keys() - {ROLE}:
+            table.setItemDelegateForColumn(column, ExpressionDelegate(table))
+        triggers = QAbstractItemView.EditTrigger
+        table.setEditTriggers(
+            triggers.SelectedClicked
+            | triggers.DoubleClicked
+            | triggers.EditKeyPressed
+            | triggers.AnyKeyPressed
+        )
+        table.verticalHeader().hide()
+        table.verticalHeader().setDefaultSectionSize(26)
+        table.setAlternatingRowColors(True)
+        table.setWordWrap(False)
+        # Layers of one file differ at their ends, as in "campus — buildings".
+        table.setTextElideMode(Qt.TextElideMode.ElideMiddle)
+        header = table.horizontalHeader()
+        for column, width in WIDTHS.items():
+            table.setColumnWidth(column, width)
+        name_width = min(table.sizeHintForColumn(LAYER), WIDEST_NAME)
+        table.setColumnWidth(LAYER, max(name_width, WIDTHS[LAYER]))
+        fit_headers(table)
+        # The column that takes what is left keeps room for its head.
+        header.setMinimumSectionSize(header.fontMetrics().horizontalAdvance(TITLES[RESULT]) + 8)
+        header.setSectionResizeMode(RESULT, QHeaderView.ResizeMode.Stretch)
+        return table
+
+    def _make_buttons(self) -> QDialogButtonBox:
+        standard = QDialogButtonBox.StandardButton
+        return QDialogButtonBox(standard.Ok | standard.Apply | standard.Cancel, self)
+
+    def _lay_out(self) -> None:
+        layout = QVBoxLayout(self)
+        layout.addWidget(self._bar)
+        layout.addLayout(self._profile_line())
+        splitter = QSplitter(Qt.Orientation.Vertical, self)
+        splitter.addWidget(self._table)
+        splitter.addWidget(self._view)
+        splitter.setStretchFactor(0, 1)
+        splitter.setStretchFactor(1, 1)
+        rows = self._table.verticalHeader().length() + self._table.horizontalHeader().height()
+        splitter.setSizes([min(rows + 10, MOST_OF_TABLE), 300])
+        layout.addWidget(splitter, 1)
+        layout.addWidget(self._summary)
+        layout.addWidget(self._buttons)
+
+    def _profile_line(self) -> QHBoxLayout:
+        self._profiles = QComboBox(self)
+        self._profiles.setObjectName("fleet_roles_profile")
+        for file in shipped_profiles():
+            try:
+                profile = read_profile(file)
+            except FleetError as error:
+                self._bar.pushWarning("", str(error))
+                continue
+            self._profiles.addItem(profile.name, str(file))
+            self._profiles.setItemData(self._profiles.count() - 1, profile.about, Qt.ItemDataRole.ToolTipRole)
+        self._apply_profile = QPushButton(tr("Apply profile"), self)
+        self._apply_profile.setObjectName("fleet_roles_apply_profile")
+        self._from_file = QPushButton(tr("Profile from file…"), self)
+        self._apply_profile.setEnabled(self._profiles.count() > 0)
+        line = QHBoxLayout()
+        line.addWidget(QLabel(tr("Map profile:"), self))
+        for widget in (self._profiles, self._apply_profile, self._from_file):
+            line.addWidget(widget)
+        line.addStretch(1)
+        return line
+
+    # --- what it does ---
+
+    def _wire(self) -> None:
+        self._buttons.accepted.connect(self._accept)
+        self._buttons.rejected.connect(self.reject)
+        self._buttons.button(QDialogButtonBox.StandardButton.Apply).clicked.connect(self.apply)
+        self._apply_profile.clicked.connect(lambda: self.apply_profile(Path(self._profiles.currentData())))
+        self._from_file.clicked.connect(self._choose_profile)
+        self.model.edited.connect(self.preview.refresh)
+        self.model.edited.connect(self._show_changed)
+        self.preview.measured.connect(self.model.show_result)
+        self.preview.drawn.connect(self._view.show_image)
+        self.preview.summed.connect(self._summary.setText)
+        self._view.resized.connect(
+            lambda: self.preview.resize(self._view.size(), self._view.devicePixelRatioF())
+        )
+        self._project.layersWillBeRemoved.connect(self._close_without)
+        self._show_changed()
+
+    def _accept(self) -> None:
+        self.apply()
+        self.accept()
+
+    def _close_without(self, layer_ids: list[str]) -> None:
+        # A row speaks of its layer: without it the dialog has nothing to show or to keep.
+        if any(row.layer_id in layer_ids for row in self.model.rows):
+            self.reject()
+
+    def _show_changed(self) -> None:
+        changed = any(row.setup != setup_of(row.layer) for row in self.model.rows)
+        self._buttons.button(QDialogButtonBox.StandardButton.Apply).setEnabled(changed)
+
+    def _choose_profile(self) -> None:
+        kinds = " ".join(f"*{suffix}" for suffix in SUFFIXES)
+        name = file_to_read(
+            self,
+            tr("Map profile"),
+            "",
+            tr(
+                "Map profile ({kinds})",
+                kinds=kinds,
+            ),
+        )
+        if name:
+            self.apply_profile(Path(name))
+
+
+# --- The menu entry that opens the dialog *Layer roles*, and takes it away again ---
+
+ICON = Path(__file__).parents[3] / "resources" / "icons" / "layer_roles.svg"
+
+
+class RolesAction:
+    """An entry of ``menu``. :meth:`remove` undoes the constructor and closes the dialog."""
+
+    def __init__(self, iface: QgisInterface, menu: str):
+        self._iface, self._menu = iface, menu
+        self._dialog: RolesDialog | None = None
+        self.action = QAction(QIcon(str(ICON)), tr("Layer roles…"), iface.mainWindow())
+        self.action.setObjectName("fleet_layer_roles")
+        self.action.setToolTip(tr("Say what each layer of the project is to robots"))
+        self.action.triggered.connect(self.open)
+        iface.addPluginToMenu(menu, self.action)
+
+    def open(self) -> None:
+        """Open the dialog, or bring it to the front."""
+        if self._dialog is None or sip.isdeleted(self._dialog) or not self._dialog.isVisible():
+            self._dialog = RolesDialog(QgsProject.instance(), self._iface.mainWindow())
+            self._dialog.open()
+        self._dialog.raise_()
+
+    def remove(self) -> None:
+        """Close the dialog without keeping anything, and take the entry out of the menu."""
+        if self._dialog is not None and not sip.isdeleted(self._dialog):
+            self._dialog.reject()
+            self._dialog.deleteLater()
+        self._dialog = None
+        self._iface.removePluginMenu(self._menu, self.action)
+        self.action.deleteLater()

@@ -1,0 +1,361 @@
+"""Transforms of coordinates: layers to the site, the site to the map's CRS and back, positions as shown."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+from qgis.core import (
+    Qgis,
+    QgsCoordinateReferenceSystem,
+    QgsCoordinateTransform,
+    QgsCoordinateTransformContext,
+    QgsCsException,
+    QgsFeature,
+    QgsGeometry,
+    QgsPointXY,
+    QgsProject,
+    QgsRectangle,
+    QgsSettings,
+)
+from qgis.PyQt.QtCore import QObject, pyqtSignal
+
+from ...robot_bridge.core.messages import SiteReport
+from ...robot_bridge.core.sites.frame import SiteFrame
+from ..ui.errors import MapTransformError
+from ..ui.language import tr
+from .crs import (
+    check_transform,
+    crs_name,
+    is_engineering,
+    stated_crs,
+    transform_points,
+    transform_points_or_nan,
+)
+from .errors import LayerCrsError
+
+# --- From a layer's coordinates to metres in the site frame ---
+
+Bounds = tuple[float, float, float, float]
+"""x_min, y_min, x_max, y_max."""
+
+
+class SiteTransformError(Exception):
+    """One geometry cannot be transformed into the site's CRS."""
+
+
+@dataclass(frozen=True)
+class SiteGeoreference:
+    """Where the site is: its CRS (invalid when nothing has one) and its frame in it.
+
+    ``local`` says whether layers whose place is not known are in the site frame's metres already; None: they
+    cannot be, and nobody is asked.
+    """
+
+    crs: QgsCoordinateReferenceSystem
+    frame: SiteFrame
+    transform_context: QgsCoordinateTransformContext
+    local: bool | None = None
+
+    @classmethod
+    def in_crs(
+        cls, crs: QgsCoordinateReferenceSystem, transform_context: QgsCoordinateTransformContext
+    ) -> SiteGeoreference:
+        """Return a site whose frame is ``crs`` itself: for what knows no other one."""
+        return cls(crs, SiteFrame(crs.authid(), (0.0, 0.0)), transform_context)
+
+    def of_layer(self, name: str, crs: QgsCoordinateReferenceSystem) -> LayerToSiteTransform:
+        """Return how the coordinates of the layer ``name`` come into the site frame.
+
+        :raises LayerCrsError: when they do not.
+        """
+        crs = stated_crs(crs)
+        if crs.isValid() and crs == self.crs:
+            return LayerToSiteTransform(None, self.frame)
+        unrelated = not crs.isValid() or is_engineering(crs) or is_engineering(self.crs)
+        if unrelated and not self.local:
+            raise LayerCrsError(self._why_unplaced(name, crs))
+        if unrelated:
+            return LayerToSiteTransform(None, None)
+        return LayerToSiteTransform(QgsCoordinateTransform(crs, self.crs, self.transform_context), self.frame)
+
+    def _why_unplaced(self, name: str, crs: QgsCoordinateReferenceSystem) -> str:
+        if self.local is None:
+            return _why_not_related(name, crs, self.crs)
+        tick = tr("tick 'Layers without a CRS are in metres of the site' (LOCAL=true)")
+        if not crs.isValid():
+            return tr(
+                "The layer {name} has no CRS, so its place on the site is not known: set the layer's "
+                "CRS (Layer > Set CRS of Layer), or {tick}.",
+                name=name,
+                tick=tick,
+            )
+        return tr(
+            "The layer {name} is in the CRS {crs}, which has no known relation to the site CRS "
+            "{site_crs}: choose the layer's CRS as the site CRS, or {tick}.",
+            name=name,
+            crs=crs_name(crs),
+            site_crs=crs_name(self.crs),
+            tick=tick,
+        )
+
+
+def _why_not_related(
+    name: str, crs: QgsCoordinateReferenceSystem, others: QgsCoordinateReferenceSystem
+) -> str:
+    if not crs.isValid():
+        return tr(
+            "The layer {name} has no CRS, so its place is not known: set the layer's CRS (Layer > Set CRS of "
+            "Layer).",
+            name=name,
+        )
+    return tr(
+        "The layer {name} is in the CRS {crs}, which has no known relation to the CRS {site_crs}: give both "
+        "layers a CRS that says where on the Earth they are.",
+        name=name,
+        crs=crs_name(crs),
+        site_crs=crs_name(others),
+    )
+
+
+@dataclass(frozen=True)
+class LayerToSiteTransform:
+    """How one layer's coordinates come into the site frame: by a transform or none, then a frame or none."""
+
+    transform: QgsCoordinateTransform | None
+    frame: SiteFrame | None
+
+    def area_of(self, window: Bounds) -> QgsRectangle | None:
+        """Return the rectangle in the layer's CRS that holds ``window``; None when it cannot be told."""
+        corners = corners_of(window)
+        if self.frame is not None:
+            corners = self.frame.to_crs(corners)
+        area = QgsRectangle(*corners.min(axis=0), *corners.max(axis=0))
+        if self.transform is None:
+            return area
+        try:
+            back = Qgis.TransformDirection.Reverse
+            return self.transform.transformBoundingBox(area, back)
+        except QgsCsException:
+            return None
+
+    def to_metres(self, geometry: QgsGeometry) -> QgsGeometry:
+        """Return ``geometry`` in metres: the site CRS's, or the site frame's where there is no frame.
+
+        :raises SiteTransformError: when the transform fails somewhere on it.
+        """
+        if self.transform is None:
+            return geometry
+        moved = QgsGeometry(geometry)
+        try:
+            moved.transform(self.transform)
+        except QgsCsException as error:
+            raise SiteTransformError(str(error)) from error
+        return moved
+
+    def of_feature(self, feature: QgsFeature, notes: list[str]) -> QgsGeometry | None:
+        """Return the geometry of ``feature`` in metres; None, with a note of why, where it has none there."""
+        geometry = feature.geometry()
+        if geometry.isNull() or geometry.isEmpty():
+            notes.append(tr("has no geometry; it is left out"))
+            return None
+        try:
+            return self.to_metres(geometry)
+        except SiteTransformError as error:
+            notes.append(
+                tr("cannot be transformed into the site's CRS ({error}); it is left out", error=error)
+            )
+            return None
+
+    def to_site(self, xy: np.ndarray) -> np.ndarray:
+        """Return ``xy``, (n, 2) metres as :meth:`to_metres` gives them, as (n, 2) in the site frame."""
+        return xy if self.frame is None else self.frame.to_site(xy)
+
+
+def widen_bounds(bounds: Bounds, by: float) -> Bounds:
+    """Return ``bounds`` with ``by`` metres more on each side."""
+    x_min, y_min, x_max, y_max = bounds
+    return x_min - by, y_min - by, x_max + by, y_max + by
+
+
+def corners_of(bounds: Sequence[float]) -> np.ndarray:
+    """Return the four corners of (x_min, y_min, x_max, y_max) as (4, 2)."""
+    x_min, y_min, x_max, y_max = bounds
+    return np.array([[x_min, y_min], [x_max, y_min], [x_max, y_max], [x_min, y_max]])
+
+
+# --- From the site frame to the canvas and back, many points at once ---
+
+Points = npt.NDArray[np.float64]
+
+
+def frame_of(site: SiteReport) -> SiteFrame:
+    """Return the frame of a site as the gateway tells of it."""
+    return SiteFrame(site.crs, site.origin, site.rotation)
+
+
+class SiteToMapTransform:
+    """Site frame → site CRS → a map's CRS, and back.
+
+    :raises MapTransformError: when QGIS does not know the site's CRS.
+    """
+
+    def __init__(
+        self,
+        site: SiteReport,
+        map_crs: QgsCoordinateReferenceSystem,
+        context: QgsCoordinateTransformContext,
+    ):
+        self.site_crs = QgsCoordinateReferenceSystem(site.crs)
+        if not self.site_crs.isValid():
+            raise MapTransformError(
+                tr(
+                    "The site {name} is in the CRS {crs}, which this QGIS does not know: its robots cannot "
+                    "be placed on the map. Correct crs in the site's site.toml, or update QGIS.",
+                    name=site.name,
+                    crs=site.crs,
+                )
+            )
+        self.site = site
+        self.map_crs = map_crs
+        self._context = context
+        self.frame = frame_of(site)
+        self._forward = QgsCoordinateTransform(self.site_crs, map_crs, context)
+
+    def leads_to(self, crs: QgsCoordinateReferenceSystem, context: QgsCoordinateTransformContext) -> bool:
+        """Tell whether this is the way to ``crs`` by the operations that ``context`` prefers."""
+        return self.map_crs == crs and self._context == context
+
+    def to_map(self, xy: Points) -> Points:
+        """Return (n, 2) metres in the site frame as (n, 2) coordinates of the map's CRS.
+
+        :raises MapTransformError: when a point cannot be expressed in the map's CRS.
+        """
+        return transform_or_raise(self.frame.to_crs(xy), self._forward)
+
+    @property
+    def axes(self) -> Points | None:
+        """The site's x and y, a metre of each in the map's CRS as a row of (2, 2); None unless they are the
+        same all over the map, as they are in the site's own CRS.
+        """
+        return self.frame.axes() if self._forward.isShortCircuited() else None
+
+    def to_site(self, point: QgsPointXY) -> tuple[float, float]:
+        """Return a point in the map's CRS as metres in the site frame.
+
+        :raises MapTransformError: when the point cannot be expressed in the site's CRS.
+        """
+        try:
+            check_transform(self._forward)
+            in_site_crs = self._forward.transform(point, Qgis.TransformDirection.Reverse)
+        except QgsCsException as error:
+            raise _out_of_reach(self.map_crs, self.site_crs, error) from error
+        ((x, y),) = self.frame.to_site([(in_site_crs.x(), in_site_crs.y())])
+        return float(x), float(y)
+
+
+def transform_or_raise(xy: Points, transform: QgsCoordinateTransform) -> Points:
+    """Return (n, 2) coordinates through ``transform``, as one line string and not point by point.
+
+    :raises MapTransformError: when a point has no place in the target CRS.
+    """
+    try:
+        out = transform_points(xy, transform)
+    except QgsCsException as error:
+        raise _out_of_reach(transform.sourceCrs(), transform.destinationCrs(), error) from error
+    if not np.isfinite(out).all():
+        raise _out_of_reach(transform.sourceCrs(), transform.destinationCrs(), tr("not a finite place"))
+    return out
+
+
+def _out_of_reach(
+    source: QgsCoordinateReferenceSystem, target: QgsCoordinateReferenceSystem, error: object
+) -> MapTransformError:
+    return MapTransformError(
+        tr(
+            "A position in {crs} has no place in {target} ({error}). Choose the site's CRS as the "
+            "project's CRS (bottom right in the QGIS window).",
+            crs=crs_name(source),
+            target=crs_name(target),
+            error=error,
+        )
+    )
+
+
+# --- The CRS in which positions are shown: the site's own metres, or whatever the operator chooses ---
+
+POSITION_CRS_KEY = "fleet_supervisor/position_crs"
+Floats = np.ndarray
+
+
+class PositionCrs(QObject):
+    """Puts places of the site frame into the chosen CRS; an invalid one stands for the site frame."""
+
+    changed = pyqtSignal()
+
+    def __init__(self, project: QgsProject, parent: QObject | None = None):
+        super().__init__(parent)
+        self._project = project
+        self._crs = QgsCoordinateReferenceSystem(QgsSettings().value(POSITION_CRS_KEY, "") or "")
+        self._way: tuple[SiteToMapTransform | None, QgsCoordinateTransform | None] = (None, None)
+
+    @property
+    def crs(self) -> QgsCoordinateReferenceSystem:
+        """The chosen CRS, invalid for the site frame."""
+        return self._crs
+
+    @property
+    def name(self) -> str:
+        """What the chosen CRS is called."""
+        return self._crs.authid() or self._crs.description() if self._crs.isValid() else tr("site frame")
+
+    def choose(self, crs: QgsCoordinateReferenceSystem) -> None:
+        """Show positions in ``crs``, in later sessions as well; an invalid one is the site frame."""
+        self._crs = crs
+        self._way = (None, None)
+        QgsSettings().setValue(POSITION_CRS_KEY, crs.authid() if crs.isValid() else "")
+        self.changed.emit()
+
+    def placed(self, xy: Floats, placement: SiteToMapTransform) -> Floats:
+        """Return (n, 2) metres in the site frame in the chosen CRS, not finite where it has no such place.
+
+        :raises MapTransformError: when the site's CRS is not usable.
+        """
+        if not self._crs.isValid():
+            return xy
+        known, way = self._way
+        if known is not placement or way is None:
+            way = QgsCoordinateTransform(placement.site_crs, self._crs, self._project)
+            self._way = placement, way
+        if not way.isValid():
+            site = placement.site_crs.authid()
+            raise MapTransformError(
+                tr(
+                    "There is no way from {site} to {crs}. Choose another CRS under Columns.",
+                    site=site,
+                    crs=self.name,
+                )
+            )
+        out = np.full((len(xy), 2), np.nan)
+        there = np.isfinite(xy).all(axis=1)
+        if there.any():
+            out[there] = transform_points_or_nan(placement.frame.to_crs(xy[there]), way)
+        return out
+
+    def place_in_words(self, x: float, y: float, placement: SiteToMapTransform) -> str:
+        """Return a place of the site frame, in the chosen CRS, as text.
+
+        :raises MapTransformError: as :meth:`placed`.
+        """
+        ((x, y),) = self.placed(np.array([[x, y]]), placement).tolist()
+        return self.in_words(x, y)
+
+    def in_words(self, x: float, y: float) -> str:
+        """Return a place in the chosen CRS as text: degrees as latitude, longitude, metres as x, y."""
+        if not (np.isfinite(x) and np.isfinite(y)):
+            return ""
+        if self._crs.isValid() and self._crs.isGeographic():
+            return f"{y:.7f}, {x:.7f}"
+        return f"{x:.2f}, {y:.2f}"

@@ -1,1 +1,0 @@
-"""What the plugin adds to QGIS's locator bar."""

@@ -1,0 +1,534 @@
+"""Layers of what the gateway reports: robots, closed roads, conflicts, placed cones."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from typing import Any, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+from qgis.core import (
+    QgsCategorizedSymbolRenderer,
+    QgsCoordinateReferenceSystem,
+    QgsExpression,
+    QgsFeature,
+    QgsGeometry,
+    QgsLineSymbol,
+    QgsMapLayerStyle,
+    QgsMarkerSymbol,
+    QgsPalLayerSettings,
+    QgsPointXY,
+    QgsProject,
+    QgsRendererCategory,
+    QgsSingleSymbolRenderer,
+    QgsTextFormat,
+    QgsVectorLayer,
+    QgsVectorLayerSimpleLabeling,
+)
+from qgis.gui import QgsMapCanvas
+from qgis.PyQt import sip
+from qgis.PyQt.QtCore import QObject, pyqtSignal
+
+from ...robot_bridge.core.geometry import headings_of
+from ...robot_bridge.core.messages import (
+    ClosureReport,
+    CommandReport,
+    CommandState,
+    ConflictReport,
+    RobotState,
+    SiteReport,
+)
+from ...robot_bridge.core.sites.frame import SiteFrame
+from ..control.fleet_controller import FleetController
+from ..gateway_client.command_cache import DRIVE_OPERATIONS, place_of
+from ..gateway_client.robot_states import RobotStates
+from ..gateway_client.robot_table import STATES
+from ..gateway_client.state_texts import ROBOT_STATES
+from ..layers.live_layers import (
+    Row,
+    RowLayer,
+    fleet_group,
+    give_style,
+    label,
+    leave_clean,
+    make_live,
+    remove_if_empty,
+)
+from ..layers.site_transform import frame_of
+from ..ui.glyphs import STATE_COLOURS
+from ..ui.language import tr
+from ..ui.times import date_and_time, time_of_day
+
+# --- Robots as features: their attributes, geometries, and how they look unless the user styles them ---
+
+NAME = tr("Robots (live)")
+FIELDS = (
+    "robot:string",
+    "state:string",
+    "theta:double",
+    "heading_deg:double",
+    "v:double",
+    "battery:double",
+    "status:string",
+    "age:double",
+    "link:string",
+    "command:string",
+    "accuracy:double",
+)
+ALIASES = (
+    tr("Robot"),
+    tr("State"),
+    tr("Theta (rad)"),
+    tr("Heading (°)"),
+    tr("Speed (m/s)"),
+    tr("Battery (0 to 1)"),
+    tr("Status"),
+    tr("Age (s)"),
+    tr("Link"),
+    tr("Command"),
+    tr("Accuracy (m)"),
+)
+"""What people read for each of :data:`FIELDS`; expressions go by the fields' names."""
+LABEL_OFFSET_MM = 6.5
+"""How far below a robot a label is: the live map's arrow and name are above that."""
+NAME_AT, STATE_AT, AGE_AT = (FIELDS.index(field) for field in ("robot:string", "state:string", "age:double"))
+
+
+class RobotFeature(NamedTuple):
+    """A robot as the layer shows it: a value for each of :data:`FIELDS`; the place in the site's CRS."""
+
+    values: list[Any]
+    place: tuple[float, float] | None
+
+    def since(self, before: RobotFeature) -> dict[int, Any]:
+        """Return the values that are others than ``before``, by their fields' places."""
+        pairs = zip(self.values, before.values, strict=True)
+        return {at: value for at, (value, old) in enumerate(pairs) if value != old}
+
+
+def made_layer(crs: QgsCoordinateReferenceSystem) -> QgsVectorLayer:
+    """Return an empty memory layer in ``crs``."""
+    fields = "&".join(f"field={field}" for field in FIELDS)
+    layer = QgsVectorLayer(f"Point?{fields}", NAME, "memory")
+    layer.setCrs(crs)
+    layer.setDisplayExpression('"robot" || \' · \' || "state"')
+    layer.setRenderer(_renderer())
+    for at, alias in enumerate(ALIASES):
+        layer.setFieldAlias(at, alias)
+    layer.setLabeling(QgsVectorLayerSimpleLabeling(_labels()))
+    layer.setLabelsEnabled(False)
+    return layer
+
+
+def _labels() -> QgsPalLayerSettings:
+    """Return how labels look once the user switches them on: legible, and beside what the live map draws."""
+    labels = QgsPalLayerSettings()
+    labels.fieldName = "state"
+    labels.placement = QgsPalLayerSettings.Placement.OverPoint
+    labels.yOffset = LABEL_OFFSET_MM
+    looks = QgsTextFormat()
+    looks.setSize(9)
+    around = looks.buffer()
+    around.setEnabled(True)
+    looks.setBuffer(around)
+    labels.setFormat(looks)
+    return labels
+
+
+def features_of(picture: RobotStates, now: float, rows: slice, frame: SiteFrame) -> list[RobotFeature]:
+    """Return what the layer has to say at ``now`` of the robots in ``rows`` of ``picture``."""
+    robots = picture.arrays(now, rows)
+    turn = frame.theta_to_crs(0.0)
+    columns = (
+        robots.names,
+        [STATES[state].value for state in robots.state.tolist()],
+        _or_none(robots.theta),
+        _or_none(np.round(headings_of(robots.theta + turn), 2)),
+        _or_none(robots.v),
+        _or_none(picture.column("battery")[rows]),
+        [text or None for text in picture.texts("status", rows)],
+        np.round(robots.age, 1).tolist(),
+        picture.texts("link", rows),
+        [text or None for text in picture.texts("command", rows)],
+        _or_none(robots.accuracy),
+    )
+    on_map = frame.to_crs(robots.xy)
+    there = np.isfinite(on_map).all(axis=1).tolist()
+    places = [
+        tuple(place) if is_there else None for place, is_there in zip(on_map.tolist(), there, strict=True)
+    ]
+    return [RobotFeature(values, place) for *values, place in zip(*columns, places, strict=True)]
+
+
+def geometry_at(place: tuple[float, float] | None) -> QgsGeometry:
+    """Return a point, or an empty geometry for no place."""
+    return QgsGeometry() if place is None else QgsGeometry.fromPointXY(QgsPointXY(*place))
+
+
+def _or_none(column: npt.NDArray[np.float64]) -> list[float | None]:
+    return [None if value != value else value for value in column.tolist()]
+
+
+def _renderer() -> QgsCategorizedSymbolRenderer:
+    """Small dots: the live picture over the map draws the robots themselves."""
+    categories = []
+    for state in STATES:
+        symbol = QgsMarkerSymbol.createSimple(
+            {
+                "name": "circle",
+                "color": STATE_COLOURS[state].name(),
+                "outline_color": "#ffffff",
+                "outline_width": "0.3",
+                "size": "1.6",
+            }
+        )
+        categories.append(QgsRendererCategory(state.value, symbol, ROBOT_STATES[state]))
+    return QgsCategorizedSymbolRenderer("state", categories)
+
+
+# --- The robots as an ordinary vector layer: attribute table, identify, labels, styling, printing ---
+
+KIND = "robots"
+AT_ONCE = 100
+"""Robots that are written in one go; more take several, so that the window does not wait for them."""
+
+
+class RobotLayer(QObject):
+    """A memory layer in the site's CRS, in the group "Fleet", kept up to date by writes to its provider.
+
+    The way a user has styled it lasts as long as the project, saved with it.
+    """
+
+    robots_selected = pyqtSignal(list)
+    """The user selected robots by QGIS's own means: on the map or in the attribute table."""
+
+    def __init__(self, project: QgsProject, canvas: QgsMapCanvas, parent: QObject | None = None):
+        super().__init__(parent)
+        self._project = project
+        self._canvas = canvas
+        self._layer: QgsVectorLayer | None = None
+        self._frame: SiteFrame | None = None
+        self._style: QgsMapLayerStyle | None = None
+        self._ids: dict[str, int] = {}
+        self._written: dict[str, RobotFeature] = {}
+        self._waiting = range(0)
+        self._marking = False
+        self.is_new = False
+        """Whether the last write brought robots that were not there before."""
+
+    def __len__(self) -> int:
+        return len(self._ids)
+
+    @property
+    def layer(self) -> QgsVectorLayer | None:
+        """The layer, None while there is none (or its project was closed)."""
+        return self._layer
+
+    def show_site(self, site: SiteReport) -> None:
+        """Make the layer for ``site``, in place of one for another site."""
+        frame = frame_of(site)
+        if self._layer is not None and frame == self._frame:
+            return
+        self.remove()
+        self._frame = frame
+        was_dirty = self._project.isDirty()
+        self._layer = made_layer(QgsCoordinateReferenceSystem(site.crs))
+        make_live(self._layer, KIND)
+        if self._style is not None:
+            self._style.writeToLayer(self._layer)
+        else:
+            give_style(self._project, self._layer)
+        self._layer.willBeDeleted.connect(self._gone)
+        self._layer.selectionChanged.connect(self._selection_changed)
+        self._project.addMapLayer(self._layer, False)
+        fleet_group(self._project).insertLayer(0, self._layer)
+        leave_clean(self._project, was_dirty)
+
+    def begin(self, robots: int) -> None:
+        """Have every one of the first ``robots`` rows written, unless the last round is still under way."""
+        if not self._waiting:
+            self._waiting = range(robots)
+
+    def go_on(self, picture: RobotStates, now: float) -> None:
+        """Write some of those that wait; the canvas takes it up when all are written."""
+        self.is_new = False
+        if self._layer is None or not self._waiting:
+            return
+        rows, self._waiting = self._waiting[:AT_ONCE], self._waiting[AT_ONCE:]
+        self._write(features_of(picture, now, slice(rows.start, rows.stop), self._frame))
+        if not self._waiting:
+            self._show_written()
+
+    def drop(self, robots: Iterable[str]) -> None:
+        """Take robots out of the layer that are there no more."""
+        known = [robot for robot in robots if robot in self._ids]
+        if self._layer is not None and known:
+            self._marking = True
+            self._layer.dataProvider().deleteFeatures([self._ids[robot] for robot in known])
+            self._marking = False
+            self._show_written()
+        for robot in known:
+            del self._ids[robot], self._written[robot]
+        # A round that is under way goes by rows that are others' now.
+        self._waiting = range(0)
+
+    def clear(self) -> None:
+        """Take every robot out of the layer."""
+        if self._layer is not None and self._ids:
+            self._marking = True
+            self._layer.removeSelection()
+            self._marking = False
+            self._layer.dataProvider().truncate()
+            self._show_written()
+        self._forget()
+
+    def mark(self, robots: Iterable[str]) -> None:
+        """Select ``robots`` in the layer, and no others."""
+        if self._layer is None:
+            return
+        ids = [self._ids[robot] for robot in robots if robot in self._ids]
+        if set(ids) == set(self._layer.selectedFeatureIds()):
+            return
+        self._marking = True
+        self._layer.selectByIds(ids)
+        self._marking = False
+
+    def remove(self) -> None:
+        """Take the layer and, when nothing else is in it, the group out of the project."""
+        if self._layer is None:
+            return
+        was_dirty = self._project.isDirty()
+        layer, self._layer = self._layer, None
+        self._forget()
+        if not sip.isdeleted(layer):
+            self._keep_style(layer)
+            layer.willBeDeleted.disconnect(self._gone)
+            layer.selectionChanged.disconnect(self._selection_changed)
+            self._project.removeMapLayer(layer.id())
+        remove_if_empty(self._project)
+        leave_clean(self._project, was_dirty)
+
+    def _write(self, features: list[RobotFeature]) -> None:
+        """Write what is not in the layer yet, and no value that is: the provider looks at each one given."""
+        attributes, geometries, new = {}, {}, []
+        for feature in features:
+            name = feature.values[NAME_AT]
+            before = self._written.get(name)
+            if before is None:
+                new.append(feature)
+                continue
+            changed = feature.since(before)
+            has_moved = feature.place != before.place
+            if not has_moved and (not changed or _is_only_age(feature, changed)):
+                continue
+            self._written[name] = feature
+            if changed:
+                attributes[self._ids[name]] = changed
+            if has_moved:
+                geometries[self._ids[name]] = geometry_at(feature.place)
+        if attributes or geometries:
+            self._layer.dataProvider().changeFeatures(attributes, geometries)
+        if new:
+            self._add(new)
+
+    def _add(self, features: list[RobotFeature]) -> None:
+        made = []
+        for feature in features:
+            made.append(QgsFeature(self._layer.fields()))
+            made[-1].setAttributes(feature.values)
+            made[-1].setGeometry(geometry_at(feature.place))
+        _, stored = self._layer.dataProvider().addFeatures(made)
+        for feature, in_layer in zip(features, stored, strict=True):
+            self._ids[feature.values[NAME_AT]] = in_layer.id()
+            self._written[feature.values[NAME_AT]] = feature
+        self._layer.updateExtents()
+        self.is_new = True
+
+    def _show_written(self) -> None:
+        # A canvas that is still drawing would begin anew and, on a slow map, never come to its end.
+        self._layer.triggerRepaint(self._canvas.isDrawing())
+        # An attribute table learns of writes in no other way; to look whether one is open takes 40 ms.
+        self._layer.dataChanged.emit()
+
+    def _keep_style(self, layer: QgsVectorLayer) -> None:
+        self._style = QgsMapLayerStyle()
+        self._style.readFromLayer(layer)
+
+    def _selection_changed(self, selected: list[int]) -> None:
+        if self._marking:
+            return
+        chosen = set(selected)
+        self.robots_selected.emit([robot for robot, fid in self._ids.items() if fid in chosen])
+
+    def _gone(self) -> None:
+        self._layer = self._style = None
+        self._forget()
+
+    def _forget(self) -> None:
+        self._ids.clear()
+        self._written.clear()
+        self._waiting = range(0)
+
+
+def _is_only_age(feature: RobotFeature, changed: Iterable[int]) -> bool:
+    """Tell whether it is only the age of a robot that talks: not worth writing all of them anew."""
+    return feature.values[STATE_AT] == RobotState.FRESH.value and set(changed) == {AGE_AT}
+
+
+# --- Closed roads and conflicts as ordinary vector layers: identify, attribute table, labels, printing
+
+LABEL_MM = 1.5
+CLOSED_FIELDS = "closure:string,reason:string,closed_by:string,closed_at:string,until:string,edges:integer"
+CONFLICT_FIELDS = (
+    "robot:string,other:string,kind:string,begins:string,nearest_at:string,ends:string,metres:double"
+)
+
+
+class RoadLayers(QObject):
+    """A layer of each, made when there is something to show and taken out with the plugin."""
+
+    def __init__(self, desk: FleetController, parent: QObject | None = None):
+        super().__init__(parent)
+        self._desk = desk
+        project = desk.project
+        self._closures = RowLayer(
+            project, "closed_roads", tr("Closed roads"), "LineString", CLOSED_FIELDS, _style_closures
+        )
+        self._conflicts = RowLayer(
+            project, "conflicts", tr("Conflicts"), "Point", CONFLICT_FIELDS, _style_conflicts
+        )
+        desk.roads.closures_changed.connect(self._show_closures)
+        desk.roads.conflicts_changed.connect(self._show_conflicts)
+        desk.site_changed.connect(self._show)
+
+    def remove(self) -> None:
+        """Take both out of the project."""
+        self._closures.remove()
+        self._conflicts.remove()
+
+    def _show(self) -> None:
+        self._show_closures()
+        self._show_conflicts()
+
+    def _show_closures(self) -> None:
+        rows = [(closure.line, _closure_values(closure)) for closure in self._desk.roads.closures]
+        self._closures.show(rows, self._desk.site)
+
+    def _show_conflicts(self) -> None:
+        conflicts = self._desk.roads.conflicts.conflicts
+        rows = [([(one.x, one.y)], _conflict_values(one)) for one in conflicts]
+        self._conflicts.show(rows, self._desk.site)
+
+
+def _closure_values(closure: ClosureReport) -> list[Any]:
+    reason, since, until = closure.reason or "", date_and_time(closure.closed_at), time_of_day(closure.until)
+    return [closure.closure, reason, closure.closed_by, since, until, closure.edges]
+
+
+def _conflict_values(one: ConflictReport) -> list[Any]:
+    times = [time_of_day(at) for at in (one.begins, one.nearest_at, one.ends)]
+    return [one.robot, one.other, one.kind, *times, one.metres]
+
+
+def _style_closures(layer: QgsVectorLayer) -> None:
+    line = {"line_color": "198,40,40,255", "line_width": "1.6", "line_style": "solid", "capstyle": "round"}
+    symbol = QgsLineSymbol.createSimple(line)
+    symbol.appendSymbolLayer(
+        QgsLineSymbol.createSimple(
+            {"line_color": "255,255,255,255", "line_width": "0.6", "line_style": "dash"}
+        ).takeSymbolLayer(0)
+    )
+    layer.setRenderer(QgsSingleSymbolRenderer(symbol))
+    closed = QgsExpression.quotedString(tr("closed"))
+    until = QgsExpression.quotedString(tr("until"))
+    words = (
+        f"{closed} || if(reason != '', ': ' || reason, '')"
+        f" || if(until != '', ', ' || {until} || ' ' || until, '')"
+    )
+    label(layer, words, QgsPalLayerSettings.Placement.Line, LABEL_MM)
+
+
+def _style_conflicts(layer: QgsVectorLayer) -> None:
+    mark = {
+        "name": "triangle",
+        "color": "255,193,7,255",
+        "outline_color": "33,33,33,255",
+        "outline_width": "0.5",
+        "size": "6",
+    }
+    layer.setRenderer(QgsSingleSymbolRenderer(QgsMarkerSymbol.createSimple(mark)))
+    words = "robot || ' × ' || other || ' ' || nearest_at"
+    label(layer, words, QgsPalLayerSettings.Placement.OrderedPositionsAroundPoint, LABEL_MM)
+
+
+# --- The cones that robots put down, as an ordinary layer: what was reached stays on the map ---
+
+PLACED_CONE_FIELDS = "robot:string,label:string,placed_at:string,deviation_m:double"
+MOST = 2000
+"""Cones that are shown: of more the newest."""
+
+
+class StandingCones(QObject):
+    """A layer of the cones that queues' tasks put down and nobody has collected, and of cone targets that
+    were reached, straight or along a path. :meth:`remove` takes it out of the project.
+    """
+
+    def __init__(self, desk: FleetController, parent: QObject | None = None):
+        super().__init__(parent)
+        self._desk = desk
+        self._reached: dict[str, CommandReport] = {}
+        self._layer = RowLayer(
+            desk.project, "standing_cones", tr("Cones put down"), "Point", PLACED_CONE_FIELDS, _style_cones
+        )
+        desk.commands_changed.connect(self._add_reached)
+        desk.placements_changed.connect(self._show)
+        desk.site_changed.connect(self._site_changed)
+
+    def remove(self) -> None:
+        """Take the layer out of the project."""
+        self._layer.remove()
+
+    def _add_reached(self, reports: Iterable[CommandReport]) -> None:
+        new = {report.command: report for report in reports if _is_cone_put_down(report)}
+        if new:
+            self._reached.update(new)
+            for command in list(self._reached)[:-MOST]:
+                del self._reached[command]
+            self._show()
+
+    def _site_changed(self) -> None:
+        # Another site's commands are out of the book by now.
+        self._reached = {command: one for command, one in self._reached.items() if command in self._desk.book}
+        self._show()
+
+    def _show(self, *_: object) -> None:
+        self._layer.show(list(self._rows())[-MOST:], self._desk.site)
+
+    def _rows(self) -> Iterator[Row]:
+        known = set()
+        for cone in self._desk.placements:
+            known.add(cone.command)
+            if cone.collected_at is None:
+                values = [cone.robot, cone.label or cone.cone or "", date_and_time(cone.placed_at)]
+                yield [(cone.x, cone.y)], [*values, cone.deviation]
+        for command, report in self._reached.items():
+            place = place_of(report)
+            if command not in known and place is not None:
+                at = report.steps[-1].at if report.steps else None
+                yield [place], [report.robot, "", date_and_time(at), report.deviation]
+
+
+def _is_cone_put_down(report: CommandReport) -> bool:
+    is_cone = report.op in DRIVE_OPERATIONS and report.params.get("cone") is True
+    return is_cone and report.state is CommandState.REACHED
+
+
+def _style_cones(layer: QgsVectorLayer) -> None:
+    mark = {
+        "name": "triangle",
+        "color": "242,106,27,255",
+        "outline_color": "255,255,255,255",
+        "outline_width": "0.4",
+        "size": "3.6",
+    }
+    layer.setRenderer(QgsSingleSymbolRenderer(QgsMarkerSymbol.createSimple(mark)))

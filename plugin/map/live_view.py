@@ -1,0 +1,267 @@
+"""Keeps the canvas true to the desk: the overlay up to twenty times a second, the vector layer once, the view
+on the robots that are followed."""
+
+from __future__ import annotations
+
+import time
+
+import numpy as np
+from qgis.PyQt import sip
+from qgis.PyQt.QtCore import QObject, QTimer
+
+from ..control.fleet_controller import FleetController
+from ..gateway_client.robot_states import RemovedRobots
+from ..layers.live_layers import ProjectWatch
+from ..layers.site_transform import SiteToMapTransform
+from ..ui.errors import MapTransformError
+from ..ui.language import tr
+from ..ui.scheduling import PULL_EVERY_MS
+from .layers import RobotLayer
+from .overlay.fleet_overlay import FleetOverlay
+from .overlay.hover_card import HoverTracker, card
+from .overlay.paths_painter import MANY
+from .overlay.scene import SceneTransformer, SiteScene, TaskPaths
+from .overlay.screen import FollowMode, keep_in_view, show_places
+from .overlay.trails import Trails
+
+FRAME_MS = 15
+"""For what the operator does; what robots do is painted when it was pulled."""
+EVERY_SECOND = 1000 // PULL_EVERY_MS
+EVERY_HALF = EVERY_SECOND // 2
+PART_OF_THE_WINDOW = 0.5
+"""The part of the window's time that painting may take; on a slow computer frames come less often."""
+ZOOM_METRES = 30.0
+NEW_PLANS = 50
+"""Plans that are made for one frame: a desk that connects is told of a thousand at once."""
+
+
+class LiveView(QObject):
+    """Owns the overlay, the card under the mouse and the robot layer."""
+
+    def __init__(self, desk: FleetController, parent: QObject | None = None):
+        super().__init__(parent)
+        self._desk = desk
+        self._pulls = 0
+        self.shown: tuple[int, int] = (0, 0)
+        """The generation and revision of the desk's picture that the overlay was given last."""
+        self._last_frame = self._took = 0.0
+        self._placement: SiteToMapTransform | None = None
+        """The desk's, None when it has to be asked anew, which copies all that the canvas has set."""
+        self._placer = SceneTransformer()
+        self._plans = TaskPaths()
+        self._trails = Trails()
+        self.following = FollowMode.NOBODY
+        self._by_layer = False
+        self.layer_every = EVERY_SECOND
+        """After how many pulls the layer of robots is written anew."""
+        self.overlay = FleetOverlay(desk.canvas, self._trails)
+        self.layer = RobotLayer(desk.project, desk.canvas, self)
+        self._project = ProjectWatch(desk.project, self)
+        self._hovering = HoverTracker(desk.canvas, self.overlay, self._card, self)
+        self._frame = QTimer(self)
+        self._frame.setSingleShot(True)
+        self._frame.setInterval(FRAME_MS)
+        self._frame.timeout.connect(self.show_now)
+        self._after_pull = QTimer(self)
+        self._after_pull.setSingleShot(True)
+        self._after_pull.timeout.connect(self._show_pulled)
+        self._after_frame = QTimer(self)
+        self._after_frame.setSingleShot(True)
+        self._after_frame.timeout.connect(self._write_layer)
+        desk.pulled.connect(self._pulled)
+        desk.site_changed.connect(self._site_changed)
+        desk.robots_removed.connect(self._robots_removed)
+        desk.selection_changed.connect(self._selection_changed)
+        desk.commands_changed.connect(self._frame.start)
+        desk.drafts.changed.connect(self._frame.start)
+        desk.drafts.pointed.connect(self._frame.start)
+        desk.canvas.destinationCrsChanged.connect(self._way_changed)
+        desk.project.transformContextChanged.connect(self._way_changed)
+        desk.canvas.extentsChanged.connect(self._frame.start)
+        self.layer.robots_selected.connect(self._selected_in_layer)
+
+    def remove(self) -> None:
+        """Take the overlay and the card off the canvas and the layer out of the project."""
+        self._frame.stop()
+        self._after_pull.stop()
+        self._after_frame.stop()
+        self._desk.canvas.destinationCrsChanged.disconnect(self._way_changed)
+        self._desk.project.transformContextChanged.disconnect(self._way_changed)
+        self._desk.canvas.extentsChanged.disconnect(self._frame.start)
+        self._project.remove()
+        self._hovering.remove()
+        self.layer.remove()
+        if not sip.isdeleted(self.overlay):
+            self._desk.canvas.scene().removeItem(self.overlay)
+
+    def show_now(self) -> None:
+        """Paint what the desk knows at this moment."""
+        began = time.perf_counter()
+        if self._desk.site is None:
+            self.overlay.show_scene(None)
+            return
+        # Without the layer on the map there would be no robots at all.
+        self.overlay.draw_arrows(not (self._by_layer and self.layer.layer in self._desk.canvas.layers()))
+        try:
+            if self._placement is None:
+                self._placement = self._desk.placement()
+            self.overlay.show_scene(self._placer.placed(self._scene(), self._placement))
+        except MapTransformError as error:
+            self.overlay.show_scene(None)
+            self._desk.complained.emit(str(error))
+        self._last_frame = time.perf_counter()
+        self._took = self._last_frame - began
+        self.shown = self._desk.picture.generation, self._desk.picture.revision
+
+    def draw_by_layer(self, wanted: bool) -> None:
+        """Let the style of the layer of robots draw them, where that is on the map, in place of arrows."""
+        self._by_layer = wanted
+        self._frame.start()
+
+    def zoom_to(self, *robots: str) -> None:
+        """Show ``robots`` and their surroundings."""
+        views = [self._desk.picture.view(robot, self._desk.clock()) for robot in robots]
+        placed = [view for view in views if view is not None and view.has_pose]
+        if not placed:
+            for robot in robots[:1]:
+                self._desk.complained.emit(
+                    tr("{robot} has not said yet where it is; the map cannot go there.", robot=robot)
+                )
+            return
+        self._show(np.array([(view.report.x, view.report.y) for view in placed]))
+
+    def show_place(self, x: float, y: float) -> None:
+        """Show a place and its surroundings, metres in the site frame."""
+        self._show(np.array([(x, y)]))
+
+    def _show(self, at: np.ndarray) -> None:
+        around = np.array([(dx, dy) for dx in (-1, 1) for dy in (-1, 1)]) * ZOOM_METRES
+        try:
+            corners = self._desk.placement().to_map((at[:, None, :] + around).reshape(-1, 2))
+        except MapTransformError as error:
+            self._desk.complained.emit(str(error))
+            return
+        show_places(self._desk.canvas, corners)
+
+    def follow(self, whom: FollowMode) -> None:
+        """Keep the selected robots or all of them in view, or stop doing so."""
+        self.following = whom
+        if whom is FollowMode.SELECTED and not self._desk.selection:
+            self._desk.complained.emit(
+                tr("No robot is selected to be followed. Select one in the table or on the map.")
+            )
+
+    def _pulled(self) -> None:
+        self._pulls += 1
+        # In a piece of its own: the lists that look at the news are painted in this one.
+        self._after_pull.start(0)
+
+    def _show_pulled(self) -> None:
+        picture = self._desk.picture
+        is_whole = self._plans.is_whole and self.overlay.is_whole
+        is_new = self.shown != (picture.generation, picture.revision) or not is_whole
+        rested = time.perf_counter() - self._last_frame
+        costs = self._took + self.overlay.took
+        if (is_new or self._pulls % EVERY_HALF == 0) and rested >= costs * (1 / PART_OF_THE_WINDOW - 1):
+            self.show_now()
+        if self._pulls % EVERY_HALF == 0:
+            self._hovering.refresh()
+        # In a piece of its own: it takes as long as the frame.
+        self._after_frame.start(0)
+        if self._pulls % EVERY_SECOND == 0:
+            self._go_after()
+
+    def _site_changed(self) -> None:
+        if not self._project.is_reading:
+            self.layer.show_site(self._desk.site)
+        if self.shown[0] != self._desk.picture.generation:
+            # Not for a moment does the map show what another gateway told.
+            self.overlay.show_scene(None)
+            self.layer.clear()
+            self._trails.clear()
+        self._placement = None
+        self._frame.start()
+
+    def _robots_removed(self, gone: RemovedRobots) -> None:
+        self._trails.drop(gone.rows)
+        self.layer.drop(gone.names)
+        self._frame.start()
+
+    def _way_changed(self) -> None:
+        """Place everything anew: the map has another CRS, or coordinates come to it by other operations."""
+        self._placement = None
+        self._frame.start()
+
+    def _selection_changed(self) -> None:
+        self.layer.mark(self._desk.selection)
+        self._frame.start()
+
+    def _selected_in_layer(self, robots: list[str]) -> None:
+        # The one that drafts are made for stays so as long as it is among them.
+        self._desk.select_all(sorted(robots, key=lambda robot: robot == self._desk.selected))
+
+    def _write_layer(self) -> None:
+        if self._project.is_reading:
+            return
+        if self._desk.site is not None and self.layer.layer is None:
+            # The project that held it was closed; the robots are still there.
+            self.layer.show_site(self._desk.site)
+        newcomers = len(self._desk.picture) != len(self.layer)
+        if self._pulls % self.layer_every == 0 or newcomers:
+            self.layer.begin(len(self._desk.picture))
+        self.layer.go_on(self._desk.picture, self._desk.clock())
+        if self.layer.is_new:
+            self.layer.mark(self._desk.selection)
+
+    def _go_after(self) -> None:
+        if self.following is FollowMode.NOBODY or self._desk.site is None:
+            return
+        robots = self._desk.picture.arrays(self._desk.clock())
+        xy = robots.xy
+        if self.following is FollowMode.SELECTED:
+            rows = [self._desk.picture.row(name) for name in self._desk.selection]
+            xy = xy[[row for row in rows if row is not None]]
+        there = xy[np.isfinite(xy).all(axis=1)]
+        try:
+            places = self._desk.placement().to_map(there)
+        except MapTransformError as error:
+            self._desk.complained.emit(str(error))
+            return
+        keep_in_view(self._desk.canvas, self.overlay.screen(), places)
+
+    def _scene(self) -> SiteScene:
+        desk, now = self._desk, self._desk.clock()
+        robots = desk.picture.arrays(now)
+        self._trails.extend(robots.xy, now)
+        plans = self._plans.of(desk.book.under_way(), NEW_PLANS)
+        measured = plans if len(plans) <= MANY else [p for p in plans if p.robot in desk.selection][:MANY]
+        named = {*desk.selection, *(plan.robot for plan in measured)}
+        if desk.drafts.draft is not None:
+            named.add(desk.drafts.draft.robot)
+        rows = {name: row for name in named if (row := desk.picture.row(name)) is not None}
+        return SiteScene(
+            robots=robots,
+            now=now,
+            chosen=desk.selection,
+            plans=plans,
+            remaining={
+                plan.command: self._plans.remaining(plan, robots.xy[rows[plan.robot]])
+                for plan in measured
+                if plan.robot in rows and np.isfinite(robots.xy[rows[plan.robot]]).all()
+            },
+            draft=desk.drafts.draft,
+            cursor=desk.drafts.cursor,
+            rows=rows,
+        )
+
+    def _card(self, robot: str) -> str | None:
+        view = self._desk.picture.view(robot, self._desk.clock())
+        if view is None or self._desk.site is None:
+            return None
+        task = self._desk.book.task_of(robot)
+        left = None
+        if task is not None and view.has_pose:
+            for plan in self._plans.of(self._desk.book.under_way()):
+                if plan.robot == robot:
+                    left = self._plans.remaining(plan, np.array([view.report.x, view.report.y]))
+        return card(view, task, left, self._desk.placement().frame)

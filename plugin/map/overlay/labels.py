@@ -1,0 +1,342 @@
+"""Labels: short texts as pictures, the room for them, and robots' names."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+import numpy.typing as npt
+from qgis.PyQt.QtCore import QPointF, Qt
+from qgis.PyQt.QtGui import QColor, QFont, QFontMetricsF, QPainter, QPixmap, QStaticText
+
+from ....robot_bridge.core.messages import RobotState
+from ...gateway_client.robot_states import RobotArrays
+from ...gateway_client.robot_table import STATES
+from ...gateway_client.state_texts import ROBOT_STATES
+from ...ui.glyphs import PAPER
+from ...ui.language import tr
+from .scene import InView, MapScene
+from .screen import Screen
+
+# --- Short texts as pictures, readable on any ground ---
+
+INK = QColor("#101418")
+MOST = 600
+"""Pictures that are kept: about twice as many as fit on a screen."""
+MARGIN = 4
+CASING = 1.6
+"""Pixels of light around the letters."""
+_AT = QPointF(MARGIN, MARGIN)
+_AROUND = [
+    _AT + QPointF(CASING * math.cos(turn), CASING * math.sin(turn))
+    for turn in (k * math.pi / 4 for k in range(8))
+]
+"""Where the letters stand in their picture, and where the light around them."""
+HEIGHT = 18
+"""Logical pixels that a text needs from the one below it."""
+
+
+class Labels:
+    """Makes each picture once; painting text anew for each robot and frame would cost more than all else."""
+
+    def __init__(self) -> None:
+        self._pictures: dict[tuple[str, float], QPixmap] = {}
+
+    def known(self, text: str, ratio: float) -> bool:
+        """Tell whether the picture of ``text`` is there already."""
+        return (text, ratio) in self._pictures
+
+    def picture(self, text: str, ratio: float) -> QPixmap:
+        """Return ``text`` as a picture for ``ratio`` device pixels per logical pixel."""
+        key = (text, ratio)
+        picture = self._pictures.pop(key, None)
+        if picture is None:
+            picture = _drawn(text, ratio)
+        # Those longest unused stand first, and go first.
+        self._pictures[key] = picture
+        if len(self._pictures) > MOST:
+            del self._pictures[next(iter(self._pictures))]
+        return picture
+
+
+def age_in_words(seconds: float) -> str:
+    """Return how long ago, as in ``12 s``, ``5 min``, ``3 h``, ``2 d``."""
+    if seconds < 60:
+        return tr("{seconds:.0f} s", seconds=seconds)
+    if seconds < 3600:
+        return tr("{minutes:.0f} min", minutes=seconds / 60)
+    return (
+        tr(
+            "{hours:.0f} h",
+            hours=seconds / 3600,
+        )
+        if seconds < 48 * 3600
+        else tr("{days:.0f} d", days=seconds / 86400)
+    )
+
+
+def _drawn(text: str, ratio: float) -> QPixmap:
+    font = QFont()
+    font.setPixelSize(13)
+    font.setBold(True)
+    metrics = QFontMetricsF(font)
+    width = math.ceil(metrics.horizontalAdvance(text)) + 2 * MARGIN
+    height = math.ceil(metrics.height()) + 2 * MARGIN
+    pixmap = QPixmap(math.ceil(width * ratio), math.ceil(height * ratio))
+    pixmap.setDevicePixelRatio(ratio)
+    pixmap.fill(QColor(0, 0, 0, 0))
+    painter = QPainter(pixmap)
+    painter.setFont(font)
+    painter.setPen(PAPER)
+    written = QStaticText(text)
+    written.setTextFormat(Qt.TextFormat.PlainText)
+    # To stroke the letters' outlines would take six times as long as to write them eight times.
+    for beside in _AROUND:
+        painter.drawStaticText(beside, written)
+    painter.setPen(INK)
+    painter.drawStaticText(_AT, written)
+    painter.end()
+    return pixmap
+
+
+# --- Where on the screen there is room for a text ---
+
+Points = npt.NDArray[np.float64]
+Widths = npt.NDArray[np.float64]
+Cells = npt.NDArray[np.intp]
+GRID = 6.0
+"""Pixels of a cell that is taken or free as a whole."""
+LINES = int(HEIGHT // GRID) + 1
+"""Lines of cells that a text lies on, wherever it begins."""
+
+
+class LabelPlacer:
+    """What of the screen is taken, by (n, 2) ``robots`` in pixels and by texts.
+
+    ``texts`` are left, top, right and bottom of those that are there already.
+    """
+
+    def __init__(
+        self, screen: Screen, robots: Points, texts: Sequence[tuple[float, float, float, float]] = ()
+    ) -> None:
+        self._lines, self._columns = int(screen.height // GRID) + LINES, int(screen.width // GRID) + 2
+        self._robots = self._counted(robots)
+        self._taken = [0] * self._lines
+        """For each line the cells, a bit each, where no other text may lie that begins on it."""
+        for left, top, right, bottom in texts:
+            cells = _bits(max(0, int(left // GRID)), max(0, int(right // GRID) + 1))
+            self._cover(int(top // GRID), int(bottom // GRID) + 1, cells)
+
+    def cells(self, corner: Points, width: Widths) -> Cells:
+        """Return (3, n) the first line, the left cell, and the one just right of the texts that have so much
+        ``width`` and begin at the left upper ``corner``, (n, 2), all in pixels.
+        """
+        x, y = corner[:, 0], corner[:, 1]
+        found = np.empty((3, len(corner)), dtype=np.intp)
+        edges = (y, self._lines - LINES), (x, self._columns), (x + width + GRID, self._columns)
+        for cell, (edge, most) in zip(found, edges, strict=True):
+            # numpy takes ten times as long for //.
+            cell[:] = np.minimum(np.maximum(np.floor(edge * (1.0 / GRID)), 0), most)
+        return found
+
+    def without_robots(self, cells: Cells) -> npt.NDArray[np.bool_]:
+        """Tell which texts, as :meth:`cells` has them, cover no robot."""
+        line, left, right = cells
+        stride = self._lines + 2
+        return self._robots.take(right * stride + line) == self._robots.take(left * stride + line)
+
+    def take(self, cells: Cells) -> list[int]:
+        """Take one place after the other unless a text has a part of it; return the indices of those."""
+        found = []
+        for index, (line, left, right) in enumerate(cells.T.tolist()):
+            wanted = _bits(left, right)
+            if not self._taken[line] & wanted:
+                self._cover(line, line + LINES, wanted)
+                found.append(index)
+        return found
+
+    def _cover(self, top: int, bottom: int, cells: int) -> None:
+        """Let no text lie on ``cells`` of the lines from ``top`` to before ``bottom``."""
+        for line in range(max(0, top - LINES + 1), min(self._lines, bottom)):
+            self._taken[line] |= cells
+
+    def _counted(self, robots: Points) -> npt.NDArray[np.int32]:
+        """Return for each cell in how many of those left of it a text that begins on its line covers a robot:
+        where that differs between two cells, a robot is between them.
+        """
+        # What is beyond the screen goes to lines and columns that no text lies on.
+        line = np.minimum(np.maximum(np.floor(robots[:, 1] * (1.0 / GRID)), -1), self._lines) + 1
+        column = np.minimum(np.maximum(np.floor(robots[:, 0] * (1.0 / GRID)), -1), self._columns - 1) + 1
+        # Line beside line in memory: numpy sums up rows faster than along them.
+        shape = self._columns + 1, self._lines + 2
+        stands = np.zeros(shape[0] * shape[1] + LINES, dtype=np.uint8)
+        stands[(column * shape[1] + line).astype(np.intp)] = 1
+        below = stands[1 : 1 - LINES].copy()
+        for down in range(1, LINES):
+            below |= stands[1 + down : len(below) + 1 + down]
+        return below.reshape(shape).cumsum(axis=0, dtype=np.int32)
+
+
+def _bits(left: int, right: int) -> int:
+    """Return a number with a bit for each cell from ``left`` to before ``right``."""
+    return (1 << right) - (1 << left)
+
+
+# --- Paints robots' names, as many as there is room for, and what is to be known of those that are silent
+
+Rows = npt.NDArray[np.intp]
+
+CHOOSE_EVERY = 0.25
+"""Seconds for which the same robots keep their texts, so that names do not come and go as robots pass."""
+NEW_IN_A_FRAME = 8
+"""Pictures of names are made by so many a frame: a map full of new ones must not hold up the window."""
+BESIDE = (15.0, -12.0)
+"""Where a text begins, its middle, as seen from the robot."""
+LETTER = 8.0
+"""About what a letter is wide."""
+SPOT = (36.0, 16.0)
+"""Pixels within which one text is tried."""
+SPOTS = 10_000
+"""More than any screen has from top to bottom."""
+STATE_LETTERS = 14.0
+"""Letters that a robot's state and age take at most, but for hours and days."""
+_URGENT = np.array([5, 3, 1, 7], dtype=np.int8)
+"""The rank of each of STATES: the lost before the stale before the fresh before those that are off, each with
+one before it for those that had their texts shown already. Small numbers: numpy sorts them faster."""
+
+
+class NamesPainter:
+    """Chooses which robots have their names shown, and paints them."""
+
+    def __init__(self, labels: Labels) -> None:
+        self._labels = labels
+        self._named: Rows = np.empty(0, dtype=np.intp)
+        self._written: list[list[str]] = []
+        self._widths = np.empty(0)
+        self._pieces: list[tuple[int, float, float, QPixmap]] = []
+        """Of the k-th of the written: how far along and how far down which picture stands."""
+        self._waiting: list[int] = []
+        self._chosen_at = -np.inf
+        self._screen: Screen | None = None
+        self._names: list[str] = []
+        self._lengths = np.empty(0)
+        """Of each of the names."""
+
+    def paint(
+        self,
+        painter: QPainter,
+        placed: MapScene,
+        view: InView,
+        screen: Screen,
+        taken: Sequence[tuple[float, float, float, float]] = (),
+    ) -> None:
+        """Paint names of those in view.
+
+        ``taken`` are left, top, right and bottom of what has texts already.
+        """
+        robots = placed.scene.robots
+        now = placed.scene.now
+        if abs(now - self._chosen_at) >= CHOOSE_EVERY or screen != self._screen or self._are_others(robots):
+            self._named = self._chosen(placed, view, screen, taken)
+            self._chosen_at, self._screen = now, screen
+            self._written = [texts(robots, row) for row in self._named.tolist()]
+            self._widths = np.array([_width(parts) for parts in self._written])
+            self._wait_for_pictures(screen.ratio)
+        self._make_pictures(screen.ratio)
+        corners = _corners(view.pixels.take(self._named, axis=0), self._widths, screen).tolist()
+        for k, along, down, picture in self._pieces:
+            x, y = corners[k]
+            painter.drawPixmap(QPointF(x + along, y + down), picture)
+
+    def _wait_for_pictures(self, ratio: float) -> None:
+        """Have at once what is written wherever its pictures are there already."""
+        self._pieces, self._waiting = [], []
+        for k, parts in enumerate(self._written):
+            if all(self._labels.known(text, ratio) for text in parts):
+                self._put(k, ratio)
+            else:
+                self._waiting.append(k)
+
+    def _make_pictures(self, ratio: float) -> None:
+        """Make some of the pictures that are waited for; the others come with the next frames."""
+        new = NEW_IN_A_FRAME
+        while self._waiting and new > 0:
+            k = self._waiting.pop(0)
+            new -= sum(not self._labels.known(text, ratio) for text in self._written[k])
+            self._put(k, ratio)
+
+    def _put(self, k: int, ratio: float) -> None:
+        """Have what is written beside the k-th robot painted, its parts one after the other."""
+        along = 0.0
+        for text in self._written[k]:
+            picture = self._labels.picture(text, ratio)
+            self._pieces.append((k, along, (HEIGHT - picture.height() / ratio) / 2, picture))
+            along += picture.width() / ratio - 2 * MARGIN + 4
+
+    def _are_others(self, robots: RobotArrays) -> bool:
+        """Tell whether another robot stands in the row of one that was chosen."""
+        if robots.names is self._names:
+            return False
+        rows = self._named.tolist()
+        if rows and max(rows) >= len(robots.names):
+            return True
+        return any(robots.names[row] != parts[0] for row, parts in zip(rows, self._written, strict=True))
+
+    def _chosen(
+        self,
+        placed: MapScene,
+        view: InView,
+        screen: Screen,
+        taken: Sequence[tuple[float, float, float, float]] = (),
+    ) -> Rows:
+        """Return the rows whose texts do not cover another's text or robot, the most urgent first."""
+        robots, scene, seen = placed.scene.robots, placed.scene, view.rows
+        rank = _URGENT.take(robots.state)
+        rank[self._named[self._named < len(rank)]] -= 1
+        rank[[scene.rows[name] for name in scene.chosen if name in scene.rows]] = -1
+        rank = rank.take(seen)
+        if robots.names is not self._names and robots.names != self._names:
+            self._lengths = np.fromiter(map(len, robots.names), np.float64, len(robots.names))
+        self._names = robots.names
+        more = np.where(robots.state.take(seen) > 0, STATE_LETTERS + 1.0, 1.0)
+        width = LETTER * (self._lengths.take(seen) + more)
+        corner = _corners(view.there, width, screen)
+        room = LabelPlacer(screen, view.there, taken)
+        # Texts that urge may cover a robot; the others stand where there is none.
+        cells = room.cells(corner, width)
+        possible = np.flatnonzero((rank < 4) | room.without_robots(cells))
+        order = possible[np.argsort(rank[possible], kind="stable")]
+        order = order[_first_of_each_spot(corner.take(order, axis=0))]
+        return seen[order[room.take(cells.take(order, axis=1))]]
+
+
+def texts(robots: RobotArrays, row: int) -> list[str]:
+    """Return the texts beside a robot: its name; and its state and its last message's age unless fresh."""
+    state = STATES[robots.state[row]]
+    if state is RobotState.FRESH:
+        return [robots.names[row]]
+    if state is RobotState.OFFLINE:
+        return [robots.names[row], tr("· offline")]
+    return [robots.names[row], f"· {ROBOT_STATES[state]} {age_in_words(robots.age[row])}"]
+
+
+def _width(written: list[str]) -> float:
+    return LETTER * sum(len(text) + 1 for text in written)
+
+
+def _corners(pixels: Points, width: npt.NDArray[np.float64], screen: Screen) -> Points:
+    """Return the left upper corners of texts beside robots at (n, 2) ``pixels``: where they are whole."""
+    right = pixels[:, 0] + BESIDE[0]
+    top = pixels[:, 1] + (BESIDE[1] - HEIGHT / 2)
+    corners = np.empty_like(pixels)
+    corners[:, 0] = np.where(right + width <= screen.width, right, pixels[:, 0] - BESIDE[0] - width)
+    corners[:, 1] = np.minimum(np.maximum(top, 0.0), screen.height - HEIGHT)
+    return corners
+
+
+def _first_of_each_spot(corner: Points) -> Rows:
+    """Return the indices of texts that begin where none before them does, to try no spot twice."""
+    across, down = np.floor(corner[:, 0] * (1.0 / SPOT[0])), np.floor(corner[:, 1] * (1.0 / SPOT[1]))
+    _, first = np.unique(across * SPOTS + down, return_index=True)
+    return np.sort(first)

@@ -1,0 +1,394 @@
+"""Robots, painted: glyphs, selection, velocity, uncertainty, and hints at the map's border."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import pairwise
+
+import numpy as np
+import numpy.typing as npt
+from qgis.PyQt.QtCore import QPointF, QRectF, QSizeF, Qt
+from qgis.PyQt.QtGui import QColor, QPainter, QPixmap
+
+from ...gateway_client.robot_table import STATES
+from ...ui.glyphs import CASING, PAPER, STATE_COLOURS, pen
+from .labels import Labels
+from .primitives import (
+    ARROW_SIZE,
+    ARROW_TURNS,
+    HEADINGS,
+    MARK_SIZE,
+    OTHER_RING,
+    RING,
+    Sprites,
+    arrow_atlas,
+    cell,
+    flat,
+    lines,
+    mark_atlas,
+    polygon,
+    robot_atlas,
+    segments,
+)
+from .scene import InView, MapScene
+from .screen import Screen
+
+# --- Paints robots: what they are, which are selected, how fast they go and how sure their place is ---
+
+Points = npt.NDArray[np.float64]
+Rows = npt.NDArray[np.intp]
+
+SIZES = ((150, 1.0), (1500, 0.7), (np.inf, 0.46))
+"""Up to how many robots on the screen each is drawn in which size."""
+NOTICEABLE = 0.7
+"""No robot that needs to be noticed, because it is not fresh, is drawn smaller."""
+VELOCITY_SECONDS = 2.0
+"""A robot's line leads to where it will be after so long."""
+NOSE = 15.5
+"""Pixels that a robot drawn in full size reaches forward."""
+SHORTEST_VELOCITY = 4.0
+"""Pixels beyond the nose."""
+MOST_VELOCITIES = 1500
+FINE_VELOCITIES = 300
+"""With more of them the lines are thin: smooth ones would take half of the frame."""
+CORNERS = 32
+SMALLEST_CIRCLE = 12.0
+MOST_CIRCLES = 300
+_FRESH, _STALE, _LOST, _OFFLINE = range(len(STATES))
+_UPWARDS = (_OFFLINE, _FRESH, _STALE, _LOST)
+"""In which order robots are painted, the selected ones last: what needs to be noticed lies on top."""
+_LAYER = np.argsort(_UPWARDS).astype(np.uint16)
+"""The place of each of STATES in that order."""
+STRIP = 16
+STRIPS = 4096
+"""Pixels of a strip of the screen, and more strips than any screen has."""
+_TURNS = np.arange(HEADINGS)
+_CIRCLE = np.column_stack([f(np.arange(CORNERS) * 2 * np.pi / CORNERS) for f in (np.cos, np.sin)])
+
+
+class RobotsPainter:
+    """Paints the robots on one screen at a time."""
+
+    def __init__(self) -> None:
+        self._drawings: dict[tuple[float, int], Sprites] = {}
+        self._marks: dict[float, Sprites] = {}
+        self._made_for = 0.0, 0.0
+        """The pixel ratio and the magnification that the drawings are for: of others none is kept."""
+        self.magnification = 1.0
+        """How many times as large as they come robots are drawn."""
+        self.arrows = True
+        """Whether the robots themselves are painted; their rings always are."""
+
+    def marks(self, ratio: float, size: float = 1.0) -> Sprites:
+        """Return the marks of :func:`~.desk.live.atlases.mark_atlas`."""
+        if self._made_for != (ratio, self.magnification):
+            self._drawings.clear()
+            self._marks.clear()
+            self._made_for = ratio, self.magnification
+        if size not in self._marks:
+            self._marks[size] = Sprites(mark_atlas(ratio, size), cell(ratio, MARK_SIZE * size), ratio)
+        return self._marks[size]
+
+    def prepare(self, placed: MapScene, view: InView, screen: Screen) -> None:
+        """Make the drawings that are missing for :meth:`paint`: that takes as long as all else in it."""
+        self.marks(screen.ratio, self.magnification)
+        size = _size(view)
+        states = np.bincount(placed.scene.robots.state.take(view.rows))
+        for state in np.flatnonzero(states).tolist() if self.arrows else []:
+            self._sprites(_worth(state, size), state)
+
+    def paint(
+        self,
+        painter: QPainter,
+        placed: MapScene,
+        view: InView,
+        screen: Screen,
+    ) -> None:
+        """Paint those that are in view."""
+        marks = self.marks(screen.ratio, self.magnification)
+        robots, scene = placed.scene.robots, placed.scene
+        size = _size(view)
+        known = np.isfinite(robots.theta.take(view.rows))
+        speed = robots.v.take(view.rows)
+        _velocities(painter, view, speed, known, NOSE * size * self.magnification + SHORTEST_VELOCITY)
+        chosen = [scene.rows[name] for name in scene.chosen if name in scene.rows]
+        layer = _LAYER.take(robots.state)
+        if chosen:
+            rings = np.full(len(chosen), OTHER_RING)
+            rings[-1:] = RING
+            marks.paint(painter, view.pixels[chosen], rings)
+            layer[chosen] += len(STATES)
+        if not self.arrows:
+            return
+        cells = np.where(known, _directions(view.metre), HEADINGS)
+        self._paint_drawings(painter, view.there, cells, layer.take(view.rows), size)
+
+    def _paint_drawings(
+        self,
+        painter: QPainter,
+        at: Points,
+        cells: Rows,
+        layer: npt.NDArray[np.uint16],
+        size: float,
+    ) -> None:
+        """Paint one of the ``cells`` at each ``at``, layer upon layer."""
+        order = _from_the_top(layer, at[:, 1])
+        at, cells = at.take(order, axis=0), cells.take(order)
+        ends = np.bincount(layer, minlength=2 * len(STATES)).cumsum().tolist()
+        for k, (begin, end) in enumerate(pairwise([0, *ends])):
+            if begin < end:
+                is_chosen, of_state = divmod(k, len(STATES))
+                worth = 1.0 if is_chosen else _worth(_UPWARDS[of_state], size)
+                self._sprites(worth, _UPWARDS[of_state]).paint(painter, at[begin:end], cells[begin:end])
+
+    def _sprites(self, size: float, state: int) -> Sprites:
+        """Return the drawings of robots in a state, made when the first such robot is seen."""
+        if (size, state) not in self._drawings:
+            ratio, magnification = self._made_for
+            drawn = size * magnification
+            atlas = robot_atlas(ratio, drawn, STATES[state])
+            self._drawings[size, state] = Sprites(atlas, cell(ratio, drawn), ratio)
+        return self._drawings[size, state]
+
+
+def _size(view: InView) -> float:
+    """Return the size in which robots are drawn where so many are in view."""
+    return next(size for most, size in SIZES if len(view.rows) <= most)
+
+
+def _worth(state: int, size: float) -> float:
+    """Return the size of robots in a state where those that are as they should be are drawn in ``size``."""
+    return size if state == _FRESH else max(size, NOTICEABLE)
+
+
+def _directions(way: Points) -> Rows:
+    """Return which of the :data:`HEADINGS` (n, 2) ``way`` in pixels points in, clockwise from +x."""
+    # Floats of half the size are exact enough, and numpy is several times as fast with them.
+    x, y = way[:, 0].astype(np.float32), way[:, 1].astype(np.float32)
+    turns = np.rint(np.arctan2(y, x) * np.float32(HEADINGS / (2 * np.pi)))
+    # What is negative counts from the end.
+    return _TURNS.take(turns.astype(np.intp))
+
+
+def _from_the_top(layer: npt.NDArray[np.uint16], y: npt.NDArray[np.float64]) -> Rows:
+    """Return in which order to paint: layer after layer, each from the top of the screen to its bottom.
+
+    Ten thousand robots painted here and there take half as long again: a screen's lines lie apart in memory.
+    Within a strip they keep their order, so that those that overlap do not change places all the time.
+    """
+    # What reaches in from above is less than a strip off the screen: cut off, that is the first one.
+    strip = (y * (1 / STRIP)).astype(np.uint16)
+    # numpy sorts numbers of 16 bits in a fifth of the time.
+    return np.argsort(layer * np.uint16(STRIPS) + strip, kind="stable")
+
+
+def circles(placed: MapScene, view: InView) -> list[tuple[int, Points]]:
+    """Return the rows of robots whose accuracy is known and can be seen, with (m, 2) corners on the map."""
+    robots = placed.scene.robots
+    # What is NaN compares false.
+    wide = view.rows[robots.accuracy.take(view.rows) * view.scale > SMALLEST_CIRCLE]
+    if len(wide) > MOST_CIRCLES:
+        wide = wide[np.argsort(-robots.accuracy[wide])[:MOST_CIRCLES]]
+    if len(wide) == 0:
+        return []
+    corners = robots.xy[wide, None, :] + _CIRCLE * robots.accuracy[wide, None, None]
+    on_map = placed.to_map(corners.reshape(-1, 2)).reshape(len(wide), CORNERS, 2)
+    return list(zip(wide.tolist(), on_map, strict=True))
+
+
+def paint_circles(
+    painter: QPainter, found: list[tuple[int, Points]], placed: MapScene, screen: Screen
+) -> None:
+    """Paint what :func:`circles` found: the robot is somewhere inside."""
+    for row, corners in found:
+        colour = QColor(STATE_COLOURS[STATES[placed.scene.robots.state[row]]])
+        outline = polygon(screen.pixels(corners))
+        painter.setPen(pen(PAPER, 2.6, 0.55))
+        colour.setAlpha(30)
+        painter.setBrush(colour)
+        painter.drawPolygon(outline)
+        colour.setAlpha(255)
+        painter.setPen(pen(colour, 1.2))
+        painter.setBrush(Qt.BrushStyle.NoBrush)
+        painter.drawPolygon(outline)
+
+
+def _velocities(
+    painter: QPainter,
+    view: InView,
+    speed: npt.NDArray[np.float64],
+    known: npt.NDArray[np.bool_],
+    shortest: float,
+) -> None:
+    """Draw a line from each robot to where it will be soon, unless that is less than ``shortest`` pixels.
+
+    ``speed`` is in metres a second, ``known`` whether there is a heading.
+    """
+    # What is NaN compares false.
+    long = np.flatnonzero(np.abs(speed) * view.scale > shortest / VELOCITY_SECONDS)
+    long = long[known[long]]
+    if len(long) == 0 or len(long) > MOST_VELOCITIES:
+        return
+    start = view.there[long]
+    end = start + view.metre[long] * (speed[long, None] * VELOCITY_SECONDS)
+    if len(long) > FINE_VELOCITIES:
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing, False)
+        painter.strokePath(segments(start, end), flat(pen(PAPER, 1.0)))
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        return
+    long_ones = lines(start, end)
+    for stroke in (pen(CASING, 4.2), pen(PAPER, 2.0)):
+        painter.setPen(flat(stroke))
+        painter.drawLines(long_ones)
+
+
+# --- Points, at the border of the map, to the robots beyond it ---
+
+MARGIN = 14.0
+APART = 56.0
+"""Pixels of the border that share one arrow."""
+FIND_EVERY = 0.25
+"""Seconds for which the arrows and their numbers stay as they are unless the view moves."""
+_SLOTS = 10_000
+"""More than fit along any border."""
+_URGENT = np.array([1, 2, 3, 0])
+"""The rank of each of STATES: an arrow for several robots has the colour of the one to worry about."""
+_BY_RANK = np.argsort(_URGENT)
+
+
+@dataclass(frozen=True)
+class Hint:
+    """One arrow: where, which way it points (radians clockwise from +x), and the rows it stands for."""
+
+    x: float
+    y: float
+    turn: float
+    rows: Rows
+
+    @cached_property
+    def area(self) -> tuple[float, float, float, float]:
+        """About what the arrow and its text cover: left, top, right, bottom."""
+        # A single robot has its name there, several their number.
+        inward, wide = (48.0, 44.0) if len(self.rows) == 1 else (24.0, 16.0)
+        x, y = self.x - inward * math.cos(self.turn), self.y - inward * math.sin(self.turn)
+        return min(x, self.x) - wide, min(y, self.y) - 14.0, max(x, self.x) + wide, max(y, self.y) + 14.0
+
+
+def hints(pixels: Points, beyond: Rows, screen: Screen) -> list[Hint]:
+    """Return the arrows for the robots in rows ``beyond``; ``pixels`` (n, 2) is where each robot is."""
+    if len(beyond) == 0:
+        return []
+    middle = np.array([screen.width, screen.height]) / 2.0
+    way = pixels[beyond] - middle
+    reach = (middle - MARGIN) / np.maximum(np.abs(way), 1e-9)
+    at = middle + way * np.minimum(reach[:, 0], reach[:, 1])[:, None]
+    slot = np.round(at / APART).astype(np.intp)
+    _, of, count = np.unique(slot[:, 0] * _SLOTS + slot[:, 1], return_inverse=True, return_counts=True)
+    order = np.argsort(of, kind="stable")
+    first = np.cumsum(count) - count
+    x, y, dx, dy = np.add.reduceat(np.hstack([at, way])[order], first).T / count
+    groups = np.split(beyond[order], first[1:])
+    turns = np.arctan2(dy, dx)
+    return [Hint(*given) for given in zip(x.tolist(), y.tolist(), turns.tolist(), groups, strict=True)]
+
+
+class BorderHints:
+    """Finds the arrows a few times a second, and paints them from an atlas."""
+
+    def __init__(self, labels: Labels) -> None:
+        self._labels = labels
+        self._atlases: dict[tuple[int, bool], Sprites] = {}
+        self._ratio = 0.0
+        self._found_for: tuple[Screen, list[str]] | None = None
+        self._found_at = -np.inf
+        self.hints: list[Hint] = []
+        self._chosen: tuple[str, ...] | None = None
+        """For which selection it was made ready what is painted; None when it has to be made anew."""
+        self._arrows: list[tuple[Sprites, Points, Rows]] = []
+        self._texts: list[tuple[QPointF, QPixmap]] = []
+
+    def find(self, placed: MapScene, view: InView, screen: Screen) -> None:
+        """Find the arrows for robots that are not in view, unless that was done just now."""
+        now, names = placed.scene.now, placed.scene.robots.names
+        is_new = self._found_for is None or self._found_for[0] != screen or self._found_for[1] != names
+        if not is_new and abs(now - self._found_at) < FIND_EVERY:
+            return
+        self._found_for, self._found_at = (screen, names), now
+        beyond = np.isfinite(view.pixels[:, 0])
+        beyond[view.rows] = False
+        self.hints, self._chosen = hints(view.pixels, np.flatnonzero(beyond), screen), None
+
+    def paint(self, painter: QPainter, placed: MapScene, screen: Screen) -> None:
+        """Paint each arrow in its robots' colour, with their name or number."""
+        if self._chosen != placed.scene.chosen:
+            names, ranks = placed.scene.robots.names, _ranks(placed)
+            self._arrows = self._coloured(placed, screen) if self.hints else []
+            pressing = sorted(self.hints, key=lambda hint: -ranks[hint.rows].max())
+            texts = [_beside(self._labels, hint, names, screen) for hint in pressing]
+            self._texts = _apart(texts, screen.ratio)
+            self._chosen = placed.scene.chosen
+        for arrow, at, cells in self._arrows:
+            arrow.paint(painter, at, cells)
+        for place, text in self._texts:
+            painter.drawPixmap(place, text)
+
+    def _coloured(self, placed: MapScene, screen: Screen) -> list[tuple[Sprites, Points, Rows]]:
+        """Return for each colour the arrow, the places where it stands, and its cells."""
+        chosen = [placed.scene.rows[name] for name in placed.scene.chosen if name in placed.scene.rows]
+        rows = np.concatenate([hint.rows for hint in self.hints])
+        first = np.cumsum([0, *(len(hint.rows) for hint in self.hints[:-1])])
+        states = _BY_RANK[np.maximum.reduceat(_URGENT[placed.scene.robots.state[rows]], first)]
+        is_chosen = np.logical_or.reduceat(np.isin(rows, chosen), first)
+        turns = np.array([hint.turn for hint in self.hints]) / (2 * np.pi)
+        cells = np.round(turns * ARROW_TURNS).astype(np.intp) % ARROW_TURNS
+        at = np.array([(hint.x, hint.y) for hint in self.hints])
+        found = []
+        for state, to_chosen in sorted({*zip(states.tolist(), is_chosen.tolist(), strict=True)}):
+            those = np.flatnonzero((states == state) & (is_chosen == to_chosen))
+            found.append((self._arrow(state, to_chosen, screen.ratio), at[those], cells[those]))
+        return found
+
+    def _arrow(self, state: int, to_chosen: bool, ratio: float) -> Sprites:
+        """Return the arrow to robots in a state, made when it is needed first."""
+        if ratio != self._ratio:
+            self._atlases.clear()
+            self._ratio = ratio
+        if (state, to_chosen) not in self._atlases:
+            atlas = arrow_atlas(ratio, STATES[state], to_chosen)
+            self._atlases[state, to_chosen] = Sprites(atlas, cell(ratio, ARROW_SIZE), ratio)
+        return self._atlases[state, to_chosen]
+
+
+def _ranks(placed: MapScene) -> npt.NDArray[np.int64]:
+    """Return how much each robot is to be noticed: a selected one most, then one to worry about."""
+    ranks = _URGENT[placed.scene.robots.state]
+    rows = placed.scene.rows
+    ranks[[rows[name] for name in placed.scene.chosen if name in rows]] = len(STATES)
+    return ranks
+
+
+def _apart(texts: list[tuple[QPointF, QPixmap]], ratio: float) -> list[tuple[QPointF, QPixmap]]:
+    """Leave out what would lie over a text before it; its arrow stays, and says by a click who it is."""
+    shown: list[tuple[QPointF, QPixmap]] = []
+    taken: list[QRectF] = []
+    for place, picture in texts:
+        area = QRectF(place, QSizeF(picture.size()) / ratio)
+        if not any(area.intersects(other) for other in taken):
+            shown.append((place, picture))
+            taken.append(area)
+    return shown
+
+
+def _beside(labels: Labels, hint: Hint, names: list[str], screen: Screen) -> tuple[QPointF, QPixmap]:
+    """Return the robot's name, or how many there are, and where it is whole on the arrow's inner side."""
+    text = names[hint.rows[0]] if len(hint.rows) == 1 else str(len(hint.rows))
+    picture = labels.picture(text, screen.ratio)
+    width, height = picture.width() / screen.ratio, picture.height() / screen.ratio
+    inward = 8.0 + math.hypot(width, height) / 2
+    x = hint.x - math.cos(hint.turn) * inward - width / 2
+    y = hint.y - math.sin(hint.turn) * inward - height / 2
+    x = min(max(x, 0.0), screen.width - width)
+    y = min(max(y, 0.0), screen.height - height)
+    return QPointF(x, y), picture

@@ -1,0 +1,262 @@
+"""The pending command and the tasks of queues, painted."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from itertools import accumulate
+
+import numpy as np
+import numpy.typing as npt
+from qgis.gui import QgsMapCanvasItem
+from qgis.PyQt import sip
+from qgis.PyQt.QtCore import QPointF, QRectF, Qt
+from qgis.PyQt.QtGui import QBrush, QColor, QFont, QImage, QPainter, QPen
+from qgis.PyQt.QtWidgets import QStyleOptionGraphicsItem, QWidget
+
+from ...control.fleet_controller import FleetController
+from ...control.pending_command import CONE, START, TARGETS, ApproachKind, PendingCommand
+from ...ui.errors import FleetError
+from ...ui.glyphs import CASING, PAPER, REFUSED, ROUTE, draw_cone
+from ...ui.glyphs import CONE as QUEUE_MARKS_CONE
+from .primitives import CONE_TARGET, Sprites, dashes, lines, polygon, ring, route
+from .scene import MapScene
+from .screen import Screen, screen_image, screen_of
+
+# --- Paints what the operator is about to send ---
+
+Points = npt.NDArray[np.float64]
+Marks = Callable[[float, float], Sprites]
+MANY = 60
+"""With more points targets are small and the line is painted once into an image; more clicks get no rings."""
+SMALL = 0.5
+MANY_LEGS, FAR_PX = 2000, 10000.0
+"""With more legs, or a longer way on the screen, a route is thin: in full width it would take over 10 ms."""
+
+
+class PendingCommandPainter:
+    """Keeps an image of a large draft: to stroke a thousand legs anew for each frame takes seconds."""
+
+    def __init__(self) -> None:
+        self._image: QImage | None = None
+        self._made_for: tuple = ()
+
+    def paint(
+        self, painter: QPainter, placed: MapScene, robots: Points, screen: Screen, marks: Marks
+    ) -> None:
+        """Paint the draft and the next leg to the mouse; ``robots`` (n, 2) is where each robot is, in pixels.
+
+        ``marks`` gives the marks of a pixel ratio and a size.
+        """
+        draft = placed.scene.draft
+        if draft is None:
+            self._image, self._made_for = None, ()
+            return
+        is_wrong = bool(draft.findings.faults) and draft.override is None
+        colour = REFUSED if is_wrong else PAPER
+        points, cursor = screen.pixels(placed.draft), screen.pixels(placed.cursor)
+        if draft.kind == START:
+            _paint_start(painter, points, colour)
+            return
+        start = _robot_of(draft, placed, robots)
+        if draft.way.is_along_roads:
+            self._paint_way(painter, placed, points, screen, colour if is_wrong else ROUTE)
+            _paint_targets(painter, points[-1:], colour)
+            return
+        targets = draft.kind in (CONE, TARGETS)
+        first = Qt.PenStyle.DashLine if targets else Qt.PenStyle.DotLine
+        dashes(painter, np.concatenate([start, points[:1]]), colour, first)
+        if targets and len(points) > MANY:
+            self._paint_many(painter, placed.draft, points, screen, colour, marks)
+        elif targets:
+            _paint_targets(painter, points, colour)
+        else:
+            self._paint_way(painter, placed, points, screen, colour if is_wrong else ROUTE)
+        if not targets:
+            _paint_clicks(painter, points, draft, colour)
+            dashes(painter, np.concatenate([points[-1:], cursor]), colour, Qt.PenStyle.DashLine)
+
+    def _paint_way(
+        self, painter: QPainter, placed: MapScene, points: Points, screen: Screen, colour: QColor
+    ) -> None:
+        if len(points) > MANY:
+            self._paint_many(painter, placed.draft, points, screen, colour, None)
+        else:
+            route(painter, points, colour)
+
+    def _paint_many(
+        self,
+        painter: QPainter,
+        on_map: Points,
+        points: Points,
+        screen: Screen,
+        colour: QColor,
+        marks: Marks | None,
+    ) -> None:
+        made_for = (on_map, screen, colour.rgba(), marks is None)
+        if not self._made_for or self._made_for[0] is not on_map or self._made_for[1:] != made_for[1:]:
+            self._image, self._made_for = _drawn(points, screen, colour, marks), made_for
+        painter.drawImage(QPointF(0.0, 0.0), self._image)
+
+
+def _drawn(points: Points, screen: Screen, colour: QColor, marks: Marks | None) -> QImage:
+    def paint(painter: QPainter) -> None:
+        if marks is None and _is_cheap(points, screen):
+            painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+            route(painter, points, colour)
+            return
+        painter.setPen(QPen(colour, 0.0))
+        painter.drawPolyline(polygon(points))
+        if marks is not None:
+            seen = points[screen.seen(points, 30.0)]
+            marks(screen.ratio, SMALL).paint(painter, seen, CONE_TARGET)
+
+    return screen_image(screen, paint)
+
+
+def _is_cheap(points: Points, screen: Screen) -> bool:
+    """Tell whether a route through (n, 2) pixels is painted soon: what is off the screen costs nothing."""
+    low, high = np.minimum(points[:-1], points[1:]), np.maximum(points[:-1], points[1:])
+    seen = (high > 0.0).all(axis=1) & (low < (screen.width, screen.height)).all(axis=1)
+    length = np.hypot(*(high - low)[seen].T).sum()
+    return len(points) <= MANY_LEGS and float(length) <= FAR_PX
+
+
+def _robot_of(draft: PendingCommand, placed: MapScene, robots: Points) -> Points:
+    """Return where the draft's robot is, (1, 2) pixels; (0, 2) where that is not known.
+
+    Nor while the way to a target is sought: a straight line would be taken for it.
+    """
+    row = placed.scene.rows.get(draft.robot)
+    if row is None or draft.way.kind is ApproachKind.SOUGHT or not np.isfinite(robots[row]).all():
+        return np.empty((0, 2))
+    return robots[[row]]
+
+
+def _paint_targets(painter: QPainter, points: Points, colour: QColor) -> None:
+    dashes(painter, points, colour, Qt.PenStyle.DashLine)
+    painter.setOpacity(0.85)
+    for point in points:
+        ring(painter, point, 12.0, colour)
+        draw_cone(painter, QPointF(*point), 26.0)
+    painter.setOpacity(1.0)
+
+
+def _paint_clicks(painter: QPainter, points: Points, draft: PendingCommand, colour: QColor) -> None:
+    """Paint a ring at each click of a route; a way along the roads has hundreds of points between two."""
+    if len(draft.legs) > MANY:
+        return
+    for end in accumulate(draft.legs):
+        ring(painter, points[end - 1], 3.5, colour)
+
+
+def _paint_start(painter: QPainter, points: Points, colour: QColor) -> None:
+    """Paint a start position, the first of ``points``; the second is in its heading, if it has one."""
+    place, ahead = points[0], points[1:]
+    for radius in (12.0, 3.0):
+        ring(painter, place, radius, colour)
+    length = float(np.hypot(*(ahead - place).T)[0]) if len(ahead) else 0.0
+    if length > 0.0:
+        tip = place + (ahead - place) / length * 34.0
+        dashes(painter, np.concatenate([place[None], tip]), colour, Qt.PenStyle.SolidLine)
+
+
+# --- The queue of the selected robot on the map: its tasks as numbers in their order, joined by a thin line
+
+RADIUS = 9.0
+MOST_DOTTED = 60
+"""With more tasks the line between them is thin: dots on all of it would take longer than a frame."""
+MOST_NUMBERED = 200
+"""Tasks with a number; the line leads on through all."""
+BELOW_ROBOTS = 80
+"""Beneath the live picture, which lies at 90."""
+INK = QColor(20, 24, 28)
+NOWHERE: Points = np.empty((0, 2))
+
+
+class QueueMarks(QgsMapCanvasItem):
+    """Covers the whole viewport. Painted into an image once for each queue, selection and view: the robots
+    above it are painted twenty times a second, and it with them.
+    """
+
+    def __init__(self, desk: FleetController):
+        super().__init__(desk.canvas)
+        self._desk = desk
+        self.places = NOWHERE
+        """Of the tasks in their order, (n, 2) in the map's CRS."""
+        self._image: QImage | None = None
+        self._made_for: Screen | None = None
+        self.setZValue(BELOW_ROBOTS)
+        desk.queues_changed.connect(self._place)
+        desk.selection_changed.connect(self._place)
+        desk.site_changed.connect(self._place)
+        desk.canvas.destinationCrsChanged.connect(self._place)
+        desk.project.transformContextChanged.connect(self._place)
+
+    def remove(self) -> None:
+        """Take it off the canvas."""
+        self._desk.canvas.destinationCrsChanged.disconnect(self._place)
+        self._desk.project.transformContextChanged.disconnect(self._place)
+        if not sip.isdeleted(self._desk.canvas):
+            self._desk.canvas.scene().removeItem(self)
+
+    def boundingRect(self) -> QRectF:
+        return QRectF(0, 0, self._desk.canvas.width(), self._desk.canvas.height())
+
+    def updatePosition(self) -> None:
+        self.prepareGeometryChange()
+        self.setPos(0, 0)
+
+    def paint(
+        self, painter: QPainter, option: QStyleOptionGraphicsItem | None = None, widget: QWidget | None = None
+    ) -> None:
+        if len(self.places) == 0:
+            return
+        ratio = painter.device().devicePixelRatioF() if painter.device() else 1.0
+        screen = screen_of(self._desk.canvas, self, ratio)
+        if screen != self._made_for:
+            pixels = screen.pixels(self.places)
+            self._image, self._made_for = screen_image(screen, lambda on: _paint(on, pixels, screen)), screen
+        painter.drawImage(QPointF(0.0, 0.0), self._image)
+
+    def _place(self, *_: object) -> None:
+        robot = self._desk.selected
+        queue = self._desk.queues.get(robot) if robot is not None else None
+        points = [(task.x, task.y) for task in queue.tasks] if queue is not None else []
+        self.places, self._image, self._made_for = NOWHERE, None, None
+        if points:
+            try:
+                self.places = self._desk.placement().to_map(np.array(points))
+            except FleetError:
+                # The live picture says why nothing can be placed on this map.
+                self.places = NOWHERE
+        self.update()
+
+
+def _paint(painter: QPainter, pixels: Points, screen: Screen) -> None:
+    """Paint tasks at (n, 2) ``pixels`` and the line through them."""
+    painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+    if len(pixels) <= MOST_DOTTED:
+        legs = lines(pixels[:-1], pixels[1:])
+        for colour, width in ((CASING, 3.4), (PAPER, 1.4)):
+            painter.setPen(QPen(colour, width, Qt.PenStyle.DotLine))
+            painter.drawLines(legs)
+    else:
+        painter.setPen(QPen(QUEUE_MARKS_CONE, 0.0))
+        painter.drawPolyline(polygon(pixels))
+    font = QFont(painter.font())
+    font.setPixelSize(11)
+    font.setBold(True)
+    painter.setFont(font)
+    numbered = pixels[:MOST_NUMBERED]
+    # The first on top: where several stand in one place it comes next.
+    for number in np.flatnonzero(screen.seen(numbered, 2 * RADIUS))[::-1].tolist():
+        _paint_number(painter, QPointF(*numbered[number].tolist()), number + 1)
+
+
+def _paint_number(painter: QPainter, at: QPointF, number: int) -> None:
+    painter.setPen(QPen(QUEUE_MARKS_CONE, 2.0))
+    painter.setBrush(QBrush(PAPER))
+    painter.drawEllipse(at, RADIUS, RADIUS)
+    painter.setPen(INK)
+    box = QRectF(at.x() - 2 * RADIUS, at.y() - RADIUS, 4 * RADIUS, 2 * RADIUS)
+    painter.drawText(box, Qt.AlignmentFlag.AlignCenter, str(number))

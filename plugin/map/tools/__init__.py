@@ -1,0 +1,1 @@
+"""Map tools: select robots, set targets, draw routes, close roads, read surfaces."""

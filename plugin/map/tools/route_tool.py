@@ -1,0 +1,361 @@
+"""Map tool that draws a route, with handles to drag its vertices and legs."""
+
+from __future__ import annotations
+
+from itertools import chain
+
+import numpy as np
+from qgis.core import QgsPointXY
+from qgis.gui import QgsMapCanvas, QgsMapMouseEvent, QgsVertexMarker
+from qgis.PyQt import sip
+from qgis.PyQt.QtCore import QEvent, QObject, QPoint, Qt
+from qgis.PyQt.QtGui import QColor, QKeyEvent
+
+from ...control import pending_command
+from ...control.fleet_controller import FleetController
+from ...control.pending_command import LEAST_POINTS, ROUTE, PendingCommand, Point, vertices
+from ...ui.errors import FleetError, MapTransformError
+from ...ui.language import tr
+from .drawing_tool import DrawingTool, is_arrow_move, moved_by_arrow
+
+# --- Where on the screen a route can be taken hold of ---
+
+REACH = 9.0
+"""Pixels by which the mouse may miss a vertex or a leg."""
+MARK = QColor("#FFE14D")
+
+
+class RouteHandles:
+    """Finds vertices and legs near the mouse, and marks the vertex in hand."""
+
+    def __init__(self, desk: FleetController):
+        self._desk = desk
+        self._marker: QgsVertexMarker | None = None
+        # Which points were placed on the map last, how, the points themselves, and where they are.
+        self._placed: tuple = (None, None, (), np.empty((0, 2)))
+
+    def vertex_at(self, draft: PendingCommand, mouse: QPoint) -> int | None:
+        """Return the vertex nearest to the mouse, None where none is near.
+
+        :raises MapTransformError: when the route has no place on the map.
+        """
+        found = vertices(draft)
+        if not found:
+            return None
+        away = np.hypot(*(self._pixels(draft, found) - (mouse.x(), mouse.y())).T)
+        nearest = int(np.argmin(away))
+        return found[nearest] if away[nearest] <= REACH else None
+
+    def leg_at(self, draft: PendingCommand, mouse: QPoint) -> int | None:
+        """Return the end of the straight leg that the mouse is on, None where there is none."""
+        ends = [end for end in vertices(draft) if end > 0]
+        if not ends:
+            return None
+        a, b = self._pixels(draft, [end - 1 for end in ends]), self._pixels(draft, ends)
+        step, from_a = b - a, np.array([mouse.x(), mouse.y()]) - a
+        square = np.maximum((step * step).sum(axis=1), 1e-9)
+        share = np.clip((from_a * step).sum(axis=1) / square, 0.0, 1.0)
+        away = np.hypot(*(from_a - share[:, None] * step).T)
+        nearest = int(np.argmin(away))
+        return ends[nearest] if away[nearest] <= REACH else None
+
+    def mark(self, draft: PendingCommand | None, vertex: int | None) -> None:
+        """Mark a vertex, None for none."""
+        if self._marker is not None and not sip.isdeleted(self._marker):
+            self._desk.canvas.scene().removeItem(self._marker)
+        self._marker = None
+        if draft is None or vertex is None:
+            return
+        ((x, y),) = self._desk.placement().to_map(np.array([draft.points[vertex]]))
+        self._marker = QgsVertexMarker(self._desk.canvas)
+        self._marker.setCenter(QgsPointXY(x, y))
+        self._marker.setIconType(QgsVertexMarker.IconType.ICON_BOX)
+        self._marker.setIconSize(14)
+        self._marker.setPenWidth(3)
+        self._marker.setColor(MARK)
+
+    def _pixels(self, draft: PendingCommand, which: list[int]) -> np.ndarray:
+        placement = self._desk.placement()
+        if self._placed[:2] != (id(draft.points), placement):
+            flat = np.fromiter(chain.from_iterable(draft.points), np.float64).reshape(-1, 2)
+            self._placed = id(draft.points), placement, draft.points, placement.to_map(flat)
+        return _on_screen(self._placed[3][which], self._desk.canvas)
+
+
+def _on_screen(places: np.ndarray, canvas: QgsMapCanvas) -> np.ndarray:
+    """Return (n, 2) map coordinates as pixels, together: a route may have thousands of points."""
+    screen, centre = canvas.getCoordinateTransform(), canvas.center()
+    unit = canvas.mapUnitsPerPixel() * 1000.0
+    at = screen.transform(centre)
+    right = screen.transform(QgsPointXY(centre.x() + unit, centre.y()))
+    up = screen.transform(QgsPointXY(centre.x(), centre.y() + unit))
+    axes = np.array([(right.x() - at.x(), right.y() - at.y()), (up.x() - at.x(), up.y() - at.y())]) / unit
+    return (places - (centre.x(), centre.y())) @ axes + (at.x(), at.y())
+
+
+def middle(draft: PendingCommand, vertex: int) -> tuple[float, float]:
+    """Return the middle of the leg that ends in a vertex which is not the first point."""
+    (ax, ay), (bx, by) = draft.points[vertex - 1 : vertex + 1]
+    return (ax + bx) / 2, (ay + by) / 2
+
+
+# --- A vertex or a leg of a route that is dragged by the mouse; nothing of it is sent ---
+
+
+class RouteDrag:
+    """What is dragged is shown as it would become; only letting go changes the route."""
+
+    def __init__(self, desk: FleetController, handles: RouteHandles):
+        self._desk = desk
+        self._handles = handles
+        self._from: PendingCommand | None = None
+        self._vertex = 0
+        self._puts_in = False
+        self._shown: PendingCommand | None = None
+
+    @property
+    def holds(self) -> bool:
+        """Tell whether the mouse went down on something that can be dragged."""
+        return self._from is not None
+
+    @property
+    def moves(self) -> bool:
+        """Tell whether it is dragged."""
+        return self._shown is not None
+
+    def press(self, draft: PendingCommand, mouse: QPoint) -> None:
+        """Take hold of what is under the mouse, if anything is."""
+        try:
+            vertex = self._handles.vertex_at(draft, mouse)
+            self._puts_in = vertex is None
+            if vertex is None:
+                vertex = self._handles.leg_at(draft, mouse)
+        except MapTransformError:
+            return
+        if vertex is not None:
+            self._from, self._vertex = draft, vertex
+
+    def move(self, event: QgsMapMouseEvent) -> None:
+        """Show the route with what is held where the mouse is, snapped."""
+        assert self._from is not None
+        change = pending_command.inserted if self._puts_in else pending_command.moved
+        try:
+            to = self._desk.placement().to_site(event.snapPoint())
+            self._shown = change(self._from, self._vertex, to)
+        except FleetError as error:
+            self._desk.complained.emit(str(error))
+            self.give_up()
+            return
+        self._desk.drafts.drag(self._shown)
+        self._handles.mark(self._shown, self._vertex)
+
+    def release(self) -> PendingCommand | None:
+        """Let go and return the route as it becomes, None when nothing was dragged; shown is the old one."""
+        shown = self._shown
+        self.give_up()
+        return shown
+
+    def give_up(self) -> None:
+        """Let go and show the route as it was."""
+        before, moved = self._from, self._shown
+        self._from = self._shown = None
+        # Another draft may have taken its place meanwhile.
+        if moved is not None and self._desk.drafts.draft is moved:
+            self._desk.drafts.renew(before)
+
+
+# --- The map tool that draws a route ---
+
+BACKWARD, FORWARD = ("<", ","), (">", ".")
+
+
+class RouteTool(DrawingTool):
+    """Each click adds a point to the route of the robot that was selected at the first click.
+
+    A vertex is dragged; a leg that is dragged gets a vertex there. The vertex in hand, under the mouse or
+    chosen by ``<`` and ``>``, is deleted by Delete and moved by Ctrl and the arrow keys; Insert puts one
+    before it; R turns the route round.
+
+    A right click ends drawing: the next leg follows the mouse no more. Another click goes on from the end.
+    """
+
+    kind = ROUTE
+
+    def __init__(self, desk: FleetController):
+        super().__init__(desk)
+        self._handles = RouteHandles(desk)
+        self._drag = RouteDrag(desk, self._handles)
+        self._vertex: int | None = None
+        self._points: tuple[Point, ...] = ()
+        self._is_finished = False
+        desk.drafts.changed.connect(self._changed)
+
+    def deactivate(self) -> None:
+        self._drag.give_up()
+        self._let_go()
+        self._is_finished = False
+        super().deactivate()
+
+    def canvasPressEvent(self, event: QgsMapMouseEvent) -> None:
+        super().canvasPressEvent(event)
+        if event.button() == Qt.MouseButton.LeftButton and self.draft is not None:
+            self._drag.press(self.draft, event.pos())
+
+    def canvasMoveEvent(self, event: QgsMapMouseEvent) -> None:
+        if self._drag.holds and self._pressed_at is not None:
+            if self._drag.moves or self.is_drag(self._pressed_at, event.pos()):
+                self._drag.move(event)
+            return
+        self._take_hold(event)
+        super().canvasMoveEvent(event)
+
+    def canvasReleaseEvent(self, event: QgsMapMouseEvent) -> None:
+        moves, changed = self._drag.moves, self._drag.release()
+        if not moves:
+            super().canvasReleaseEvent(event)
+            return
+        self._pressed_at = None
+        if changed is not None:
+            self._try(lambda: self.put(changed))
+
+    def hovered(self, event: QgsMapMouseEvent) -> None:
+        if self.draft is None or self._is_finished:
+            return
+        if self._vertex is not None:
+            self.desk.drafts.point_at(None)
+            return
+        try:
+            self.desk.drafts.point_at(self.desk.placement().to_site(event.mapPoint()))
+        except MapTransformError:
+            # A place the site frame cannot express has no preview; a click there says why.
+            self.desk.drafts.point_at(None)
+
+    def eventFilter(self, watched: QObject, event: QEvent) -> bool:
+        # The canvas keeps keys from its tools while a mouse button is down.
+        if event.type() == QEvent.Type.KeyPress and self._drag.holds:
+            if event.key() == Qt.Key.Key_Escape:
+                self._drag.give_up()
+                self._pressed_at = None
+            return True
+        return super().eventFilter(watched, event)
+
+    def key(self, event: QKeyEvent) -> bool:
+        draft, vertex = self.draft, self._vertex
+        if draft is None or self._drag.holds:
+            return super().key(event)
+        if event.text() in (*BACKWARD, *FORWARD):
+            self._step(draft, -1 if event.text() in BACKWARD else 1)
+        elif event.key() == Qt.Key.Key_R:
+            self._try(lambda: self.put(pending_command.turned_round(draft)))
+        elif vertex is None:
+            return super().key(event)
+        elif event.key() == Qt.Key.Key_Delete:
+            self._try(lambda: self._put_or_end(pending_command.deleted(draft, vertex)))
+        elif event.key() == Qt.Key.Key_Insert:
+            self._insert(draft, vertex)
+        elif is_arrow_move(event):
+            self._nudge(event, draft, vertex)
+        else:
+            return super().key(event)
+        return True
+
+    def finish(self) -> None:
+        draft = self.draft
+        if draft is None:
+            return
+        if len(draft.points) < LEAST_POINTS:
+            self.desk.complained.emit(
+                tr("A route needs at least two points, so its drawing goes on: click the next one.")
+            )
+            return
+        self._is_finished = True
+        self.desk.drafts.point_at(None)
+
+    def clicked(self, point: Point) -> None:
+        self._is_finished = False
+        draft = self.draft
+        if draft is None:
+            draft = PendingCommand(self.desk.selected, ROUTE, ())
+        if self.is_for_selected(draft):
+            self.put(draft.with_leg((point,)))
+
+    def back(self) -> None:
+        draft = self.draft
+        if draft is not None:
+            self._put_or_end(draft.without_last_leg())
+        else:
+            self.desk.drafts.put(None)
+
+    def is_for_selected(self, draft: PendingCommand) -> bool:
+        """Tell whether the draft is for the robot that is selected; say so where it is for another."""
+        if self.desk.selected in (None, draft.robot):
+            return True
+        self.desk.complained.emit(
+            tr(
+                "The route on the map is for {robot}, but {selected} is selected. Send it (Enter) or "
+                "cancel it (Esc) first, or select {robot} again.",
+                robot=draft.robot,
+                selected=self.desk.selected,
+            )
+        )
+        return False
+
+    def _put_or_end(self, draft: PendingCommand | None) -> None:
+        if draft is None:
+            self.desk.drafts.put(None)
+        else:
+            self.put(draft)
+
+    def _take_hold(self, event: QgsMapMouseEvent) -> None:
+        draft = self.draft
+        if draft is not None:
+            try:
+                vertex = self._handles.vertex_at(draft, event.pos())
+                if vertex != self._vertex:
+                    self._hold(draft, vertex)
+            except MapTransformError:
+                self._let_go()
+
+    def _hold(self, draft: PendingCommand, vertex: int | None) -> None:
+        self._vertex, self._points = vertex, draft.points
+        self._handles.mark(draft, vertex)
+
+    def _changed(self) -> None:
+        # Where only a check has come to its end, the vertex stays in hand.
+        draft = self.draft
+        if draft is None or draft.points is not self._points:
+            self._let_go()
+        if draft is None or len(draft.points) < LEAST_POINTS:
+            self._is_finished = False
+
+    def _let_go(self) -> None:
+        self._vertex = None
+        self._handles.mark(None, None)
+
+    def _step(self, draft: PendingCommand, by: int) -> None:
+        found = pending_command.vertices(draft)
+        if found:
+            here = found.index(self._vertex) if self._vertex in found else (-1 if by > 0 else 0)
+            self._try(lambda: self._hold(draft, found[(here + by) % len(found)]))
+
+    def _insert(self, draft: PendingCommand, vertex: int) -> None:
+        if vertex == 0:
+            self.desk.complained.emit(
+                tr("This is the first vertex: another is put before one that comes later.")
+            )
+            return
+        self._try(lambda: self.put(pending_command.inserted(draft, vertex, middle(draft, vertex))))
+        self._hold_again(vertex)
+
+    def _nudge(self, event: QKeyEvent, draft: PendingCommand, vertex: int) -> None:
+        def nudge() -> None:
+            self.put(
+                pending_command.moved(draft, vertex, moved_by_arrow(event, self.desk, draft.points[vertex]))
+            )
+
+        self._try(nudge)
+        self._hold_again(vertex)
+
+    def _hold_again(self, vertex: int) -> None:
+        if self.draft is not None and vertex in pending_command.vertices(self.draft):
+            self._hold(self.draft, vertex)

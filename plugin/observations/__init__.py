@@ -1,0 +1,1 @@
+"""Observations of robots: list, layer, images and review."""

@@ -1,0 +1,1 @@
+"""The Fleet panel: connection, robots, pending command, queue, conflicts, command log, alarms."""

@@ -1,0 +1,1 @@
+"""Alarms: rules on arrays, hysteresis, board of alarms, and what shows them."""

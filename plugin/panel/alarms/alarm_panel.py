@@ -1,0 +1,320 @@
+"""Panel of alarms: table, log, thresholds."""
+
+from __future__ import annotations
+
+from qgis.PyQt.QtCore import QItemSelection, QItemSelectionModel, QModelIndex, QObject, Qt, pyqtSignal
+from qgis.PyQt.QtGui import QFont
+from qgis.PyQt.QtWidgets import (
+    QAbstractItemView,
+    QDialog,
+    QDialogButtonBox,
+    QHBoxLayout,
+    QHeaderView,
+    QLabel,
+    QPushButton,
+    QSizePolicy,
+    QTableView,
+    QVBoxLayout,
+    QWidget,
+)
+
+from ...settings.preferences import export_path
+from ...ui.dialogs import file_to_write, push_button
+from ...ui.errors import FleetError
+from ...ui.language import tr, tr_count
+from ...ui.steady_widgets import ElidedText
+from ...ui.tables import RowModel, TextModel, TimeColumn, ZoomMenu, iso_time, shrink_view, write_csv
+from ...ui.times import date_and_time, short_time, time_of_day
+from .board import ALARM_KINDS, CHANGES, alarm_state_in_words, colour_of, robots_of
+from .rules import Alarm, AlarmEvent
+from .thresholds_form import ThresholdsDialog
+from .watch import AlarmWatch
+
+# --- The alarms as rows of a table ---
+
+ALARM_COLUMNS = (tr("Since"), tr("Alarm"), tr("State"))
+
+
+class AlarmModel(RowModel):
+    """One row for each alarm, in the order in which they are given."""
+
+    def __init__(self, parent: QObject | None = None):
+        super().__init__(ALARM_COLUMNS, parent)
+
+    def data(self, index: QModelIndex, role: int = 0) -> object:
+        alarm = self.rows[index.row()]
+        if role == Qt.ItemDataRole.DisplayRole:
+            return (short_time(alarm.began), alarm.text, alarm_state_in_words(alarm))[index.column()]
+        if role == Qt.ItemDataRole.ToolTipRole:
+            return tip(alarm)
+        if role == Qt.ItemDataRole.ForegroundRole:
+            return colour_of(alarm)
+        if role == Qt.ItemDataRole.FontRole and alarm.is_new:
+            font = QFont()
+            font.setPointSizeF(max(7.0, font.pointSizeF() - 1.0))
+            font.setBold(True)
+            return font
+        return None
+
+    def show_alarms(self, alarms: list[Alarm]) -> None:
+        """Show these; rows that stay the same alarms keep their selection."""
+        self.show_rows(alarms, lambda alarm: alarm.key)
+
+    def alarm_at(self, row: int) -> Alarm:
+        """Return the alarm in ``row``."""
+        return self.rows[row]
+
+    def rows_of(self, keys: set) -> list[int]:
+        """Return the rows of alarms by their keys."""
+        return [row for row, alarm in enumerate(self.rows) if alarm.key in keys]
+
+
+def tip(alarm: Alarm) -> str:
+    """Return all that is known of an alarm."""
+    lines = [f"{ALARM_KINDS[alarm.kind]}: {alarm.text}", tr("since {time}", time=time_of_day(alarm.began))]
+    if alarm.times > 1:
+        lines.append(tr("it began {times} times", times=alarm.times))
+    if alarm.ended is not None:
+        lines.append(tr("over since {time}, not acknowledged yet", time=time_of_day(alarm.ended)))
+    if alarm.acknowledged is not None:
+        seen = time_of_day(alarm.acknowledged)
+        lines.append(tr("acknowledged {time} by {operator}", time=seen, operator=alarm.by))
+    return "\n".join(lines)
+
+
+# --- The log of alarms: what began, ended and was acknowledged in this session ---
+
+LOG_COLUMNS = (tr("Time"), tr("What"), tr("Kind"), tr("Robot"), tr("Alarm"), tr("By"))
+CSV_HEAD = ("time", "change", "kind", "robot", "other", "x", "y", "alarm", "by")
+
+
+class AlarmLogDialog(QDialog):
+    """Newest first; the whole of it can be written as CSV."""
+
+    def __init__(self, parent: QWidget | None = None):
+        super().__init__(parent)
+        self.setObjectName("fleet_alarm_log_dialog")
+        self.setWindowTitle(tr("Log of alarms"))
+        self._events: list[AlarmEvent] = []
+        self._model = EventModel(self)
+        view = QTableView()
+        view.setObjectName("fleet_alarm_events")
+        view.setModel(self._model)
+        view.setShowGrid(False)
+        view.setWordWrap(False)
+        view.verticalHeader().hide()
+        change, kind = (max(known.values(), key=len) for known in (CHANGES, ALARM_KINDS))
+        widths = (date_and_time(0.0), change, kind, "robot-00", "", "operator")
+        for column, widest in enumerate(widths):
+            view.setColumnWidth(column, view.fontMetrics().horizontalAdvance(widest) + 16)
+        view.horizontalHeader().setSectionResizeMode(4, QHeaderView.ResizeMode.Stretch)
+        self._said = QLabel()
+        self._said.setObjectName("fleet_alarm_log_said")
+        self._said.setWordWrap(True)
+        buttons = QDialogButtonBox(QDialogButtonBox.StandardButton.Close)
+        export = buttons.addButton(tr("Export CSV…"), QDialogButtonBox.ButtonRole.ActionRole)
+        export.setObjectName("fleet_export_alarms")
+        export.clicked.connect(self._ask_where)
+        buttons.rejected.connect(self.reject)
+        rows = QVBoxLayout(self)
+        rows.addWidget(view, 1)
+        rows.addWidget(self._said)
+        rows.addWidget(buttons)
+        self.resize(1040, 440)
+
+    def show_events(self, events: list[AlarmEvent]) -> None:
+        """Show these, oldest given first."""
+        self._events = events
+        self._model.show_events(events[::-1])
+
+    def export(self, path: str) -> None:
+        """Write all that is shown to ``path`` and say so."""
+        try:
+            count = write_csv(path, CSV_HEAD, map(_csv_row, self._events))
+        except FleetError as error:
+            self._said.setText(str(error))
+            return
+        self._said.setText(
+            tr_count(count, "1 line written to {path}", "%n lines written to {path}", path=path)
+        )
+
+    def _ask_where(self) -> None:
+        title = tr("Export the log of alarms")
+        path = file_to_write(self, title, export_path("alarms.csv"), tr("CSV (*.csv)"))
+        if path:
+            self.export(path)
+
+
+class EventModel(TextModel):
+    """One row for each event."""
+
+    def __init__(self, parent: QObject | None = None):
+        super().__init__(LOG_COLUMNS, _cells, parent)
+
+    def show_events(self, events: list[AlarmEvent]) -> None:
+        """Show these, in this order."""
+        self.show_rows(events)
+
+
+def _cells(event: AlarmEvent) -> tuple[str, ...]:
+    alarm = event.alarm
+    what = CHANGES[event.change], ALARM_KINDS[alarm.kind], robots_of(alarm), alarm.text
+    return (date_and_time(event.at), *what, event.by)
+
+
+def _csv_row(event: AlarmEvent) -> tuple[object, ...]:
+    alarm = event.alarm
+    x, y = alarm.xy if alarm.xy is not None else (None, None)
+    return (
+        iso_time(event.at),
+        event.change.value,
+        alarm.kind.value,
+        alarm.robot,
+        alarm.other,
+        x,
+        y,
+        alarm.text,
+        event.by,
+    )
+
+
+# --- The panel of alarms: what is the matter now, seen or not, and what to do about it ---
+
+
+class AlarmPanel(QWidget):
+    """A row for each alarm; a double click or Enter goes to the robot."""
+
+    robots_wanted = pyqtSignal(list)
+    """The names of robots to be selected and shown."""
+    counted = pyqtSignal(int)
+    """How many alarms nobody has acknowledged yet."""
+
+    def __init__(self, watch: AlarmWatch, parent: QWidget | None = None):
+        super().__init__(parent)
+        self.setObjectName("fleet_alarm_panel")
+        self._watch = watch
+        self._model = AlarmModel(self)
+        self._view = QTableView()
+        self._note = ElidedText("fleet_alarm_note")
+        self._log: AlarmLogDialog | None = None
+        self._set_up_view()
+        self._lay_out()
+        watch.changed.connect(self.refresh)
+        watch.happened.connect(self._happened)
+        self.refresh()
+
+    def refresh(self) -> None:
+        """Show the alarms as they are."""
+        chosen = {alarm.key for alarm in self._chosen()}
+        alarms = self._watch.board.alarms()
+        self._model.show_alarms(alarms)
+        self._times.make_room(min((alarm.began for alarm in alarms), default=None))
+        self._choose(chosen)
+        note = self._watch.why_not()
+        self._note.setText(note)
+        new = sum(alarm.is_new for alarm in alarms)
+        self._all.setEnabled(new > 0)
+        self._allow()
+        self.counted.emit(new)
+
+    def _set_up_view(self) -> None:
+        view = self._view
+        view.setObjectName("fleet_alarms")
+        view.setModel(self._model)
+        view.setSelectionBehavior(QAbstractItemView.SelectionBehavior.SelectRows)
+        view.setEditTriggers(QAbstractItemView.EditTrigger.NoEditTriggers)
+        view.setShowGrid(False)
+        view.setWordWrap(False)
+        view.verticalHeader().hide()
+        shrink_view(view)
+        view.verticalHeader().setDefaultSectionSize(view.fontMetrics().height() + 8)
+        self._times = TimeColumn(view, beside=14)
+        view.setColumnWidth(2, view.fontMetrics().horizontalAdvance(tr("over") + " ×00") + 14)
+        view.horizontalHeader().setSectionResizeMode(1, QHeaderView.ResizeMode.Stretch)
+        view.horizontalHeader().setHighlightSections(False)
+        ZoomMenu(view, lambda index: self._go(self._model.alarm_at(index.row())))
+        view.selectionModel().selectionChanged.connect(self._allow)
+
+    def _buttons(self) -> QHBoxLayout:
+        self._seen = _button(
+            "fleet_acknowledge", tr("Acknowledge"), tr("Say that you have seen the chosen alarms")
+        )
+        self._all = _button(
+            "fleet_acknowledge_all", tr("Acknowledge all"), tr("Say that you have seen every alarm")
+        )
+        log = _button(
+            "fleet_alarm_log", tr("Log…"), tr("Every alarm of this session, and who acknowledged it when")
+        )
+        limits = _button("fleet_alarm_limits", tr("Settings…"), tr("What is an alarm, and from where on"))
+        self._seen.clicked.connect(lambda: self._watch.acknowledge([alarm.key for alarm in self._chosen()]))
+        self._all.clicked.connect(self._watch.acknowledge_all)
+        log.clicked.connect(self.show_log)
+        limits.clicked.connect(self._ask_for_limits)
+        buttons = QHBoxLayout()
+        buttons.setSpacing(4)
+        for button in (self._seen, self._all, log, limits):
+            buttons.addWidget(button)
+        return buttons
+
+    def _lay_out(self) -> None:
+        rows = QVBoxLayout(self)
+        rows.setContentsMargins(0, 2, 0, 0)
+        rows.setSpacing(4)
+        # At the top: what takes room from the panel takes it from the end of the list.
+        rows.addLayout(self._buttons())
+        rows.addWidget(self._view, 1)
+        rows.addWidget(self._note)
+
+    def show_log(self) -> None:
+        """Open the log of this session."""
+        if self._log is None:
+            self._log = AlarmLogDialog(self.window())
+        self._log.show_events(list(self._watch.board.log))
+        self._log.show()
+        self._log.raise_()
+
+    def remove(self) -> None:
+        """Close what it opened."""
+        if self._log is not None:
+            self._log.close()
+            self._log.deleteLater()
+            self._log = None
+
+    def _happened(self, _events: list) -> None:
+        if self._log is not None and self._log.isVisible():
+            self._log.show_events(list(self._watch.board.log))
+
+    def _ask_for_limits(self) -> None:
+        dialog = ThresholdsDialog(self._watch.board.limits, self.window())
+        dialog.chosen.connect(self._watch.set_limits)
+        dialog.open()
+
+    def _chosen(self) -> list[Alarm]:
+        rows = self._view.selectionModel().selectedRows()
+        return [self._model.alarm_at(index.row()) for index in rows]
+
+    def _choose(self, keys: set) -> None:
+        rows = self._model.rows_of(keys)
+        if {index.row() for index in self._view.selectionModel().selectedRows()} == set(rows):
+            return
+        wanted = QItemSelection()
+        for row in rows:
+            index = self._model.index(row, 0)
+            wanted.merge(QItemSelection(index, index), QItemSelectionModel.SelectionFlag.Select)
+        flags = QItemSelectionModel.SelectionFlag
+        self._view.selectionModel().select(wanted, flags.ClearAndSelect | flags.Rows)
+
+    def _allow(self, *_what: object) -> None:
+        self._seen.setEnabled(any(alarm.is_new for alarm in self._chosen()))
+
+    def _go(self, alarm: Alarm) -> None:
+        self.robots_wanted.emit([name for name in (alarm.other, alarm.robot) if name])
+
+
+def _button(name: str, text: str, tip: str) -> QPushButton:
+    button = push_button(name, text, tip)
+    button.setAutoDefault(False)
+    button.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
+    # Four of them have to fit into a panel of 420 pixels, in longer languages as well.
+    button.setMinimumWidth(40)
+    return button

@@ -1,0 +1,426 @@
+"""Board of alarms, of the plugin's rules and of the gateway's reports, their texts and colours, the log."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Iterable
+from typing import NamedTuple
+
+import numpy as np
+from qgis.PyQt.QtGui import QColor, QPalette
+from qgis.PyQt.QtWidgets import QApplication
+
+from ....robot_bridge.core.messages import ConflictReport, Conflicts, FenceAlarm, NearnessAlarm
+from ...gateway_client.robot_states import RemovedRobots
+from ...ui.glyphs import is_dark
+from ...ui.language import tr
+from .rules import (
+    RULES,
+    Alarm,
+    AlarmChange,
+    AlarmEvent,
+    AlarmKind,
+    AlarmSnapshot,
+    Key,
+    PairHysteresis,
+    RowHysteresis,
+    Thresholds,
+    too_close,
+)
+
+# --- Alarms in words ---
+
+ALARM_KINDS = {
+    AlarmKind.LOST: tr("lost"),
+    AlarmKind.UNSURE: tr("unsure of its place"),
+    AlarmKind.IN_KEEPOUT: tr("in a keepout"),
+    AlarmKind.AT_OBSTACLE: tr("at an obstacle"),
+    AlarmKind.NEAR_ROBOT: tr("near a robot"),
+    AlarmKind.COMES_NEAR: tr("will come near a robot"),
+    AlarmKind.TOO_CLOSE: tr("too close"),
+    AlarmKind.WILL_PASS: tr("will pass too near"),
+    AlarmKind.OUTSIDE_SITE: tr("outside the site"),
+    AlarmKind.OFF_ROAD: tr("off the road"),
+    AlarmKind.STOPPED: tr("stopped unasked"),
+    AlarmKind.LOW_BATTERY: tr("low battery"),
+}
+CHANGES = {
+    AlarmChange.BEGAN: tr("began"),
+    AlarmChange.ENDED: tr("ended"),
+    AlarmChange.ACKNOWLEDGED: tr("acknowledged"),
+}
+
+
+def alarm_text(kind: AlarmKind, now: AlarmSnapshot, row: int, other: int | None = None) -> str:
+    """Return what is the matter with the robot in ``row``, or with two."""
+    name = now.names[row]
+    x, y = now.xy[row].tolist()
+    where = tr(" at {x:.1f}, {y:.1f} m", x=x, y=y) if np.isfinite(x) and np.isfinite(y) else ""
+    if kind is AlarmKind.TOO_CLOSE and other is not None:
+        apart = float(np.hypot(*(now.xy[row] - now.xy[other])))
+        return tr(
+            "{robot} and {other} are {apart:.1f} m apart{where}",
+            robot=name,
+            other=now.names[other],
+            apart=apart,
+            where=where,
+        )
+    if kind is AlarmKind.LOST:
+        last = tr("; last{where}", where=where) if where else ""
+        return tr("{robot} is lost: nothing is heard of it{last}", robot=name, last=last)
+    if kind is AlarmKind.UNSURE:
+        accuracy = now.accuracy[row]
+        return tr(
+            "{robot} does not know its place: ± {accuracy:.1f} m{where}",
+            robot=name,
+            accuracy=accuracy,
+            where=where,
+        )
+    if kind is AlarmKind.LOW_BATTERY:
+        return tr("{robot} has {part:.0%} of its battery left", robot=name, part=now.battery[row])
+    if kind is AlarmKind.STOPPED:
+        return tr("{robot} has a task and stands{where}", robot=name, where=where)
+    if kind is AlarmKind.OUTSIDE_SITE:
+        return tr("{robot} is outside the site{where}", robot=name, where=where)
+    return tr("{robot} is off the road{where}", robot=name, where=where)
+
+
+def robots_of(alarm: Alarm) -> str:
+    """Return the robot, or both."""
+    if not alarm.other:
+        return alarm.robot
+    return tr("{robot} and {other}", robot=alarm.robot, other=alarm.other)
+
+
+def alarm_state_in_words(alarm: Alarm) -> str:
+    """Return whether an alarm holds and was seen, as in ``new ×3`` or ``over``."""
+    if not alarm.is_new:
+        return tr("seen")
+    state = tr("new") if alarm.ended is None else tr("over")
+    return f"{state} ×{alarm.times}" if alarm.times > 1 else state
+
+
+# --- How pressing an alarm looks ---
+
+URGENT_KINDS = frozenset(
+    {
+        AlarmKind.LOST,
+        AlarmKind.UNSURE,
+        AlarmKind.IN_KEEPOUT,
+        AlarmKind.AT_OBSTACLE,
+        AlarmKind.NEAR_ROBOT,
+        AlarmKind.COMES_NEAR,
+        AlarmKind.TOO_CLOSE,
+        AlarmKind.WILL_PASS,
+        AlarmKind.OUTSIDE_SITE,
+    }
+)
+"""Kinds for which somebody has to act at once."""
+
+
+def colour_of(alarm: Alarm) -> QColor:
+    """Return the colour of an alarm's letters; pale where it is over."""
+    if alarm.ended is not None:
+        return QApplication.palette().color(QPalette.ColorGroup.Disabled, QPalette.ColorRole.Text)
+    return alarm_colour(alarm.kind in URGENT_KINDS)
+
+
+def alarm_colour(pressing: bool) -> QColor:
+    """Return red for what is pressing, else amber, legible on the background of lists."""
+    if pressing:
+        return QColor("#FF8A80" if is_dark() else "#B71C1C")
+    return QColor("#FFB74D" if is_dark() else "#A15C00")
+
+
+# --- Alarms that the gateway judges: robots in keepouts, at obstacles, in each other's way, near people
+
+
+class ReportedAlarm(NamedTuple):
+    """An alarm as long as the gateway reports it; ``xy`` is metres in the site frame.
+
+    ``began`` is seconds since 1970, None where the desk's own time counts.
+    """
+
+    kind: AlarmKind
+    robot: str
+    text: str
+    xy: tuple[float, float]
+    other: str = ""
+    area: str = ""
+    began: float | None = None
+
+    @property
+    def key(self) -> Key:
+        """What makes it the same alarm in the next report."""
+        return self.kind, self.robot, self.other or self.area
+
+
+def fence_alarms(alarms: Iterable[FenceAlarm]) -> list[ReportedAlarm]:
+    """Return robots in keepouts and at obstacles as alarms, with what the gateway has done."""
+    found = []
+    for one in alarms:
+        kind = AlarmKind.IN_KEEPOUT if one.kind == "keepout" else AlarmKind.AT_OBSTACLE
+        text = _fence_text(one)
+        found.append(ReportedAlarm(kind, one.robot, text, (one.x, one.y), area=one.name, began=one.since))
+    return found
+
+
+def passing_alarms(conflicts: Conflicts, limits: Thresholds) -> list[ReportedAlarm]:
+    """Return the robots that will pass one another too near soon, or do so now, as alarms."""
+    soon = (one for one in conflicts.conflicts if one.begins - conflicts.t <= limits.pass_within)
+    found = [_passing_alarm(one) for one in soon]
+    # Of several meetings of the same two the soonest is told.
+    return list({alarm.key: alarm for alarm in reversed(found)}.values())
+
+
+def nearness_alarms(alarms: Iterable[NearnessAlarm]) -> list[ReportedAlarm]:
+    """Return the people and vehicles that are near robots, or will be soon, as alarms."""
+    return [
+        ReportedAlarm(
+            AlarmKind.COMES_NEAR if one.seconds else AlarmKind.NEAR_ROBOT,
+            one.seen,
+            _nearness_text(one),
+            (one.x, one.y),
+            one.robot,
+            began=one.since,
+        )
+        for one in alarms
+    ]
+
+
+def _nearness_text(one: NearnessAlarm) -> str:
+    names = {"seen": one.seen, "robot": one.robot, "metres": one.metres}
+    if one.seconds:
+        return tr(
+            "{seen} comes within {metres:.1f} m of {robot} in {seconds:.0f} s", seconds=one.seconds, **names
+        )
+    return tr("{seen} is {metres:.1f} m from {robot}", **names)
+
+
+def _passing_alarm(one: ConflictReport) -> ReportedAlarm:
+    # The gateway tells first who drives: when one of them has stopped it is the same alarm.
+    robot, other = sorted((one.robot, one.other))
+    return ReportedAlarm(AlarmKind.WILL_PASS, robot, _passing_text(one), (one.x, one.y), other)
+
+
+def _fence_text(alarm: FenceAlarm) -> str:
+    if alarm.kind == "keepout":
+        where = tr("{robot} is in the keepout {name}", robot=alarm.robot, name=alarm.name)
+    else:
+        where = tr("{robot} is at the obstacle {name}", robot=alarm.robot, name=alarm.name)
+    done = _outcome(alarm)
+    text = f"{where}: {done}" if done else where
+    return text if alarm.current else tr("{text} (it is not heard now)", text=text)
+
+
+def _outcome(alarm: FenceAlarm) -> str:
+    if alarm.outcome == "asked":
+        return tr("it is being paused") if alarm.action == "pause" else tr("it is being aborted")
+    if alarm.outcome == "failed":
+        return tr("it could NOT be stopped yet: {why}", why=alarm.reason or "")
+    return {
+        "paused": tr("the gateway has paused it"),
+        "aborted": tr("the gateway has aborted its task"),
+        "stopped": tr("the emergency stop holds it"),
+    }.get(alarm.outcome, "")
+
+
+def _passing_text(one: ConflictReport) -> str:
+    where = tr(" at {x:.1f}, {y:.1f} m", x=one.x, y=one.y)
+    names = {"robot": one.robot, "other": one.other, "metres": one.metres, "where": where}
+    if one.clearance is None:
+        return tr("{robot} will pass {other} at {metres:.1f} m{where}", **names)
+    return tr(
+        "{robot} will pass {other} at {metres:.1f} m (clearance {clearance:.1f} m){where}",
+        clearance=one.clearance,
+        **names,
+    )
+
+
+# --- The alarms that there are, and the log of those that there were ---
+
+MOST_EVENTS = 5000
+MOST_ALARMS = 1000
+ON_AFTER = 1.0
+"""Seconds for which a rule holds before it is an alarm; a robot that stands has longer."""
+OFF_AFTER = 1.0
+GONE_AFTER = 2.0
+"""Seconds without a report after which a reported alarm is over: a conflict at its limit comes and goes."""
+URGENCY = {kind: number for number, kind in enumerate(AlarmKind)}
+
+
+class AlarmBoard:
+    """Looks at one situation after the other. ``moment`` is on the monotonic clock, ``at`` since 1970."""
+
+    def __init__(self, limits: Thresholds | None = None) -> None:
+        self._limits = limits or Thresholds()
+        self._rows = {kind: RowHysteresis() for kind in RULES}
+        self._pairs = PairHysteresis()
+        self._reported: dict[Key, float] = {}
+        """The alarms that the gateway judges, with when each was reported last."""
+        self._alarms: dict[Key, Alarm] = {}
+        self._ordered: list[Alarm] | None = []
+        self.log: deque[AlarmEvent] = deque(maxlen=MOST_EVENTS)
+
+    @property
+    def limits(self) -> Thresholds:
+        """The settings."""
+        return self._limits
+
+    def alarms(self) -> list[Alarm]:
+        """Return those to be shown: new ones first, what holds before what is over, pressing ones first."""
+        if self._ordered is None:
+            # Bar, panel, table and details ask at each change: with a thousand alarms that is to be felt.
+            self._ordered = sorted(self._alarms.values(), key=_order)
+        return self._ordered.copy()
+
+    def of(self, robot: str) -> list[Alarm]:
+        """Return the alarms that a robot is part of, pressing ones first."""
+        return [alarm for alarm in self.alarms() if robot in (alarm.robot, alarm.other)]
+
+    def look(self, now: AlarmSnapshot, moment: float, at: float) -> list[AlarmEvent]:
+        """Judge a situation and return what changed by it."""
+        events = []
+        for kind, rule in RULES.items():
+            holds, over = rule(now, self._limits)
+            if kind not in self._limits.kinds:
+                holds, over = np.zeros_like(holds), np.ones_like(over)
+            wait = self._limits.stopped_after if kind is AlarmKind.STOPPED else ON_AFTER
+            rises, falls = self._rows[kind].update(holds, over, moment, wait, OFF_AFTER)
+            events += [self._begin(kind, now, row, at) for row in rises.tolist()]
+            events += self._end([(kind, now.names[row], "") for row in falls.tolist()], at)
+        events += self._look_at_pairs(now, at)
+        self.log.extend(events)
+        self._let_go()
+        if events:
+            self._ordered = None
+        return events
+
+    def report(
+        self, reported: Iterable[ReportedAlarm], moment: float, at: float
+    ) -> tuple[list[AlarmEvent], bool]:
+        """Take in what the gateway reports now; return what changed by it, and whether a text did."""
+        events, renewed = [], False
+        for one in reported:
+            if one.kind not in self._limits.kinds:
+                continue
+            if one.key not in self._reported:
+                began = at if one.began is None else one.began
+                alarm = Alarm(one.kind, one.robot, one.text, began, one.other, one.xy, area=one.area)
+                events.append(self._put_up(alarm, at))
+            self._reported[one.key] = moment
+            renewed |= self._renew_text(one)
+        gone = [key for key, seen in self._reported.items() if moment - seen >= GONE_AFTER]
+        for key in gone:
+            del self._reported[key]
+        events += self._end(gone, at)
+        self.log.extend(events)
+        if events or renewed:
+            self._ordered = None
+        return events, renewed
+
+    def set_limits(self, limits: Thresholds) -> None:
+        """Judge by other settings from the next look on."""
+        self._limits = limits
+
+    def acknowledge(self, keys: Iterable[Key], by: str, at: float) -> list[AlarmEvent]:
+        """Note that somebody has seen these alarms; those that are over go."""
+        events = []
+        for key in keys:
+            alarm = self._alarms.get(key)
+            if alarm is None or not alarm.is_new:
+                continue
+            seen = alarm._replace(acknowledged=at, by=by)
+            events.append(AlarmEvent(at, AlarmChange.ACKNOWLEDGED, seen, by))
+            if alarm.ended is None:
+                self._alarms[key] = seen
+            else:
+                del self._alarms[key]
+        self.log.extend(events)
+        self._ordered = None
+        return events
+
+    def clear(self) -> None:
+        """Forget the robots and their alarms: they are another site's. The log stays."""
+        self._rows = {kind: RowHysteresis() for kind in RULES}
+        self._pairs = PairHysteresis()
+        self._reported.clear()
+        self._alarms.clear()
+        self._ordered = None
+
+    def drop(self, gone: RemovedRobots) -> None:
+        """Forget robots that are there no more, with their alarms. The log stays."""
+        for latch in (*self._rows.values(), self._pairs):
+            latch.drop(gone.rows)
+        for key, alarm in list(self._alarms.items()):
+            if {alarm.robot, alarm.other} & gone.names:
+                del self._alarms[key]
+                self._reported.pop(key, None)
+        self._ordered = None
+
+    def _let_go(self) -> None:
+        """Leave what is over to the log where nobody has acknowledged anything for a long time."""
+        too_many = len(self._alarms) - MOST_ALARMS
+        if too_many > 0:
+            over = (alarm for alarm in self._alarms.values() if alarm.ended is not None)
+            for alarm in sorted(over, key=lambda alarm: alarm.began)[:too_many]:
+                del self._alarms[alarm.key]
+
+    def _look_at_pairs(self, now: AlarmSnapshot, at: float) -> list[AlarmEvent]:
+        one, other, apart = too_close(now, self._limits)
+        if AlarmKind.TOO_CLOSE not in self._limits.kinds:
+            one, other, apart = one[:0], other[:0], apart[:0]
+        rises, falls = self._pairs.update(one, other, apart, self._limits.too_close)
+        kind = AlarmKind.TOO_CLOSE
+        events = [self._begin(kind, now, i, at, j) for i, j in rises]
+        return events + self._end([(kind, now.names[i], now.names[j]) for i, j in falls], at)
+
+    def _begin(
+        self, kind: AlarmKind, now: AlarmSnapshot, row: int, at: float, other: int | None = None
+    ) -> AlarmEvent:
+        x, y = now.xy[row].tolist()
+        alarm = Alarm(
+            kind,
+            now.names[row],
+            alarm_text(kind, now, row, other),
+            at,
+            "" if other is None else now.names[other],
+            (x, y) if np.isfinite(x) and np.isfinite(y) else None,
+        )
+        return self._put_up(alarm, at)
+
+    def _renew_text(self, one: ReportedAlarm) -> bool:
+        """Let an alarm say what the gateway says of it now, and return whether that is something else.
+
+        How near two robots pass changes all the time: that stays as it was when the alarm began.
+        """
+        alarm = self._alarms.get(one.key)
+        if alarm is None or alarm.text == one.text or not one.area:
+            return False
+        self._alarms[one.key] = alarm._replace(text=one.text)
+        return True
+
+    def _put_up(self, alarm: Alarm, at: float) -> AlarmEvent:
+        before = self._alarms.get(alarm.key)
+        if before is not None and before.is_new:
+            alarm = alarm._replace(times=before.times + 1)
+        self._alarms[alarm.key] = alarm
+        return AlarmEvent(at, AlarmChange.BEGAN, alarm)
+
+    def _end(self, keys: list[Key], at: float) -> list[AlarmEvent]:
+        events = []
+        for key in keys:
+            alarm = self._alarms.get(key)
+            if alarm is None:
+                continue
+            over = alarm._replace(ended=at)
+            events.append(AlarmEvent(at, AlarmChange.ENDED, over))
+            if alarm.is_new:
+                self._alarms[key] = over
+            else:
+                del self._alarms[key]
+        return events
+
+
+def _order(alarm: Alarm) -> tuple[bool, bool, int, float]:
+    return not alarm.is_new, alarm.ended is not None, URGENCY[alarm.kind], -alarm.began

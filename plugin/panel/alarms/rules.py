@@ -1,0 +1,358 @@
+"""Rules of alarms on columns, their kinds, thresholds and hysteresis."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, fields
+from enum import Enum
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+from qgis.core import QgsSettings
+
+from ....robot_bridge.core.messages import RobotState
+from ...control.robot_checks import Ints, close_pairs
+from ...gateway_client.robot_table import STATES
+
+# --- From where on something is an alarm, and from where on no longer ---
+
+
+class AlarmKind(str, Enum):
+    """What an alarm is about; the most pressing first."""
+
+    LOST = "lost"
+    UNSURE = "unsure of its place"
+    IN_KEEPOUT = "in a keepout"
+    AT_OBSTACLE = "at an obstacle"
+    NEAR_ROBOT = "near a robot"
+    COMES_NEAR = "will come near a robot"
+    TOO_CLOSE = "too close"
+    WILL_PASS = "will pass too near"
+    OUTSIDE_SITE = "outside the site"
+    OFF_ROAD = "off the road"
+    STOPPED = "stopped unasked"
+    LOW_BATTERY = "low battery"
+
+
+@dataclass(frozen=True)
+class Thresholds:
+    """The operator's settings. Each alarm begins beyond one value and ends only well within another.
+
+    ``low_battery`` and ``battery_margin`` are parts of a full one: an alarm ends at the sum of both.
+    ``too_close`` is in metres between the places of two robots; an alarm ends ``close_margin`` further
+    apart. ``unsure`` is the standard deviation of a position in metres from which an alarm begins; it ends
+    ``unsure_margin`` below. ``outside_margin`` and ``road_margin`` are metres beyond the site's bounds or
+    beside the road from which an alarm begins; it ends on the site or road. ``stopped_after`` is seconds for
+    which a robot with a task stands; ``pass_within`` is seconds before two robots pass one another too near.
+    ``kinds`` are the alarms that are watched for.
+    """
+
+    low_battery: float = 0.20
+    battery_margin: float = 0.05
+    too_close: float = 1.0
+    close_margin: float = 0.3
+    unsure: float = 2.0
+    unsure_margin: float = 0.5
+    outside_margin: float = 0.5
+    road_margin: float = 0.5
+    stopped_after: float = 10.0
+    pass_within: float = 30.0
+    kinds: frozenset[AlarmKind] = frozenset(AlarmKind)
+
+    def __post_init__(self) -> None:
+        for name, (least, most) in RANGES.items():
+            value = getattr(self, name)
+            if not least <= value <= most:
+                raise ValueError(f"{name} is {value:g}; give {least:g} to {most:g}")
+
+
+RANGES = {
+    "low_battery": (0.0, 1.0),
+    "battery_margin": (0.0, 0.5),
+    "too_close": (0.0, 1000.0),
+    "close_margin": (0.0, 1000.0),
+    "unsure": (0.1, 1000.0),
+    "unsure_margin": (0.0, 1000.0),
+    "outside_margin": (0.0, 1000.0),
+    "road_margin": (0.0, 100.0),
+    "stopped_after": (1.0, 3600.0),
+    "pass_within": (1.0, 3600.0),
+}
+"""What each number may be."""
+NUMBERS = tuple(field.name for field in fields(Thresholds) if field.name != "kinds")
+
+
+# --- The thresholds as QGIS keeps them between sessions ---
+
+GROUP = "fleet_supervisor/alarms"
+
+
+def read_thresholds() -> Thresholds:
+    """Return what the operator set; a value that is none, or out of its range, counts as never set."""
+    settings = QgsSettings()
+    numbers = {name: _number(settings.value(f"{GROUP}/{name}"), name) for name in NUMBERS}
+    off = str(settings.value(f"{GROUP}/off") or "").split(",")
+    return Thresholds(
+        **{name: value for name, value in numbers.items() if value is not None},
+        kinds=frozenset(kind for kind in AlarmKind if kind.value not in off),
+    )
+
+
+def write_thresholds(limits: Thresholds) -> None:
+    """Keep the settings."""
+    settings = QgsSettings()
+    for name in NUMBERS:
+        settings.setValue(f"{GROUP}/{name}", getattr(limits, name))
+    off = [kind.value for kind in AlarmKind if kind not in limits.kinds]
+    settings.setValue(f"{GROUP}/off", ",".join(off))
+
+
+def _number(value: object, name: str) -> float | None:
+    try:
+        number = float(str(value))
+    except ValueError:
+        return None
+    least, most = RANGES[name]
+    return number if least <= number <= most else None
+
+
+# --- One alarm, and what happened to it ---
+
+Key = tuple[AlarmKind, str, str]
+"""Kind, robot, and the other robot or the area where there is one."""
+
+
+class Alarm(NamedTuple):
+    """Something that holds since ``began``, or held until ``ended``; times are seconds since 1970.
+
+    It stays until it is over and somebody has seen it. ``times`` counts how often it began since it was
+    last acknowledged. ``area`` is the keepout or obstacle that it is about. ``xy`` is where the robot was
+    when it began, metres in the site frame.
+    """
+
+    kind: AlarmKind
+    robot: str
+    text: str
+    began: float
+    other: str = ""
+    xy: tuple[float, float] | None = None
+    ended: float | None = None
+    acknowledged: float | None = None
+    by: str = ""
+    times: int = 1
+    area: str = ""
+
+    @property
+    def key(self) -> Key:
+        """What makes it the same alarm when it comes again."""
+        return self.kind, self.robot, self.other or self.area
+
+    @property
+    def is_new(self) -> bool:
+        """Whether nobody has acknowledged it."""
+        return self.acknowledged is None
+
+
+class AlarmChange(str, Enum):
+    """What happened to an alarm."""
+
+    BEGAN = "began"
+    ENDED = "ended"
+    ACKNOWLEDGED = "acknowledged"
+
+
+@dataclass(frozen=True)
+class AlarmEvent:
+    """A line of the log: at ``at`` an alarm changed; ``by`` is who acknowledged it."""
+
+    at: float
+    change: AlarmChange
+    alarm: Alarm
+    by: str = ""
+
+
+# --- When something is an alarm and when it is none any more: rules on columns, one row for each robot
+# Each rule answers twice: of whom it is true beyond doubt, and of whom it is over beyond doubt. Between the
+# two nothing changes, so that a value that trembles about its threshold makes one alarm and not hundreds.
+
+Floats = npt.NDArray[np.float64]
+Bools = npt.NDArray[np.bool_]
+Verdict = tuple[Bools, Bools]
+"""(n,) true: begins; (n,) true: ends."""
+
+FRESH = STATES.index(RobotState.FRESH)
+LOST = STATES.index(RobotState.LOST)
+OFFLINE = STATES.index(RobotState.OFFLINE)
+STANDS = 0.05
+"""m/s below which a robot stands."""
+DRIVES = 0.2
+"""m/s above which it drives."""
+
+
+@dataclass(frozen=True)
+class AlarmSnapshot:
+    """All robots at one moment, n rows that keep their places.
+
+    ``xy`` (n, 2) metres in the site frame, ``v`` (n,) metres a second, ``battery`` (n,) part of a full one,
+    ``accuracy`` (n,) metres, each NaN where not known; ``state`` (n,) index into :data:`STATES`;
+    ``stopped`` (n,) whether it said that it stops; ``driving`` (n,) whether it accepted a task that is not
+    finished and nobody has it wait; ``only_seen`` (n,) whether it takes no commands, as phones do;
+    ``off_road`` (n,) whether it is further than the margin from every road surface, and ``on_road`` whether
+    it is on one, both None where no surfaces are known. ``bounds`` is x_min, y_min, x_max, y_max.
+    """
+
+    names: list[str]
+    xy: Floats
+    v: Floats
+    battery: Floats
+    accuracy: Floats
+    state: npt.NDArray[np.intp]
+    stopped: Bools
+    driving: Bools
+    only_seen: Bools
+    bounds: tuple[float, float, float, float]
+    off_road: Bools | None = None
+    on_road: Bools | None = None
+
+
+def lost(now: AlarmSnapshot, limits: Thresholds) -> Verdict:
+    """Nothing is heard of a robot any more; over when it speaks again or went offline in good order."""
+    return now.state == LOST, (now.state == FRESH) | (now.state == OFFLINE)
+
+
+def unsure(now: AlarmSnapshot, limits: Thresholds) -> Verdict:
+    """A robot says that it does not know its place; over when it does, or says no more of it, or is offline.
+
+    A margin as large as the limit would never end: then half the limit is well enough.
+    """
+    surely = max(limits.unsure - limits.unsure_margin, limits.unsure / 2)
+    fresh = now.state == FRESH
+    known = (now.accuracy < surely) | np.isnan(now.accuracy)
+    return fresh & (now.accuracy >= limits.unsure), (fresh & known) | (now.state == OFFLINE)
+
+
+def low_battery(now: AlarmSnapshot, limits: Thresholds) -> Verdict:
+    """A battery is low; over when it has clearly been charged."""
+    charged = min(1.0, limits.low_battery + limits.battery_margin)
+    return now.battery < limits.low_battery, now.battery >= charged
+
+
+def stopped(now: AlarmSnapshot, limits: Thresholds) -> Verdict:
+    """A robot stands although it accepted a task; over when it drives, or has nothing to do any more."""
+    stands = now.stopped | (now.v < STANDS)
+    return now.driving & (now.state == FRESH) & stands, ~now.driving | (~now.stopped & (now.v > DRIVES))
+
+
+def outside_site(now: AlarmSnapshot, limits: Thresholds) -> Verdict:
+    """A robot has left the site's bounds; over when it is within them."""
+    x_min, y_min, x_max, y_max = now.bounds
+    x, y = now.xy.T
+    # Negative inside, positive outside; a robot without a place is neither.
+    beyond = np.maximum.reduce([x_min - x, x - x_max, y_min - y, y - y_max])
+    return beyond > limits.outside_margin, beyond <= 0.0
+
+
+def off_road(now: AlarmSnapshot, limits: Thresholds) -> Verdict:
+    """A robot has left every road surface; over when it is on one."""
+    if now.off_road is None or now.on_road is None:
+        nobody = np.zeros(len(now.names), dtype=bool)
+        return nobody, ~nobody
+    return now.off_road, now.on_road
+
+
+RULES: dict[AlarmKind, Callable[[AlarmSnapshot, Thresholds], Verdict]] = {
+    AlarmKind.LOST: lost,
+    AlarmKind.UNSURE: unsure,
+    AlarmKind.LOW_BATTERY: low_battery,
+    AlarmKind.STOPPED: stopped,
+    AlarmKind.OUTSIDE_SITE: outside_site,
+    AlarmKind.OFF_ROAD: off_road,
+}
+"""The rules about one robot; :func:`too_close` is about two."""
+
+
+def too_close(now: AlarmSnapshot, limits: Thresholds) -> tuple[Ints, Ints, Floats]:
+    """Return pairs i < j of robots that are near, and how far apart they are.
+
+    That is all pairs nearer than an alarm takes to end; two that are both offline are parked, not near. The
+    gateway tells who is near of what is only seen.
+    """
+    placed = np.flatnonzero(np.isfinite(now.xy).all(axis=1) & ~now.only_seen)
+    one, other, apart = close_pairs(now.xy[placed], limits.too_close + limits.close_margin)
+    one, other = placed[one], placed[other]
+    counts = (now.state[one] != OFFLINE) | (now.state[other] != OFFLINE)
+    return one[counts], other[counts], apart[counts]
+
+
+# --- What is on and what is off, for each robot and each pair, and what has just changed ---
+
+PAIR_SHIFT = np.int64(32)
+MOST_AT_ONCE = 200
+"""Changes of one look; others come with the next: a whole fleet that is lost does not hold up the window."""
+
+
+class RowHysteresis:
+    """One rule for all robots: goes on where it holds for a while, off where it is over for a while."""
+
+    def __init__(self) -> None:
+        self.on = np.zeros(0, dtype=bool)
+        self._holds_since = np.full(0, np.inf)
+        self._over_since = np.full(0, np.inf)
+
+    def update(
+        self, holds: Bools, over: Bools, now: float, on_after: float, off_after: float
+    ) -> tuple[npt.NDArray[np.intp], npt.NDArray[np.intp]]:
+        """Take in at time ``now`` where the rule (n,) holds and is over; return the rows gone on, and off."""
+        self._grow(len(holds))
+        self._holds_since = np.where(holds, np.minimum(self._holds_since, now), np.inf)
+        self._over_since = np.where(over, np.minimum(self._over_since, now), np.inf)
+        rises = np.flatnonzero(~self.on & (now - self._holds_since >= on_after))[:MOST_AT_ONCE]
+        falls = np.flatnonzero(self.on & ~holds & (now - self._over_since >= off_after))[:MOST_AT_ONCE]
+        self.on[rises], self.on[falls] = True, False
+        return rises, falls
+
+    def drop(self, rows: Ints) -> None:
+        """Forget robots that are there no more; those below them move up."""
+        rows = rows[rows < len(self.on)]
+        self.on = np.delete(self.on, rows)
+        self._holds_since = np.delete(self._holds_since, rows)
+        self._over_since = np.delete(self._over_since, rows)
+
+    def _grow(self, count: int) -> None:
+        more = count - len(self.on)
+        if more > 0:
+            self.on = np.concatenate([self.on, np.zeros(more, dtype=bool)])
+            self._holds_since = np.concatenate([self._holds_since, np.full(more, np.inf)])
+            self._over_since = np.concatenate([self._over_since, np.full(more, np.inf)])
+
+
+class PairHysteresis:
+    """Pairs of robots: on when nearer than one distance, off when further apart than another."""
+
+    def __init__(self) -> None:
+        self._on = np.empty(0, np.int64)
+
+    def update(
+        self, one: Ints, other: Ints, apart: Floats, distance: float
+    ) -> tuple[list[tuple[int, int]], list[tuple[int, int]]]:
+        """Take in all pairs that are not yet far enough apart; return the pairs gone on, and off."""
+        key = (one << PAIR_SHIFT) + other
+        begins = key[apart < distance]
+        on = np.union1d(np.intersect1d(self._on, key), begins)
+        rises = np.setdiff1d(on, self._on)[:MOST_AT_ONCE]
+        falls = np.setdiff1d(self._on, on)[:MOST_AT_ONCE]
+        self._on = np.setdiff1d(np.union1d(self._on, rises), falls)
+        return _pairs(rises), _pairs(falls)
+
+    def drop(self, rows: Ints) -> None:
+        """Forget the pairs of robots that are there no more; those below them move up."""
+        pairs = np.array(_pairs(self._on), dtype=np.int64).reshape(-1, 2)
+        pairs = pairs[~np.isin(pairs, rows).any(axis=1)]
+        pairs -= np.searchsorted(np.sort(rows), pairs)
+        self._on = np.sort((pairs[:, 0] << PAIR_SHIFT) + pairs[:, 1])
+
+
+def _pairs(keys: Ints) -> list[tuple[int, int]]:
+    low = (np.int64(1) << PAIR_SHIFT) - 1
+    return list(zip((keys >> PAIR_SHIFT).tolist(), (keys & low).tolist(), strict=True))

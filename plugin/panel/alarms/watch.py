@@ -1,0 +1,378 @@
+"""Watch that runs the alarm rules: snapshot, road surfaces, message log."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable, Iterable, Sequence
+
+import numpy as np
+from qgis.core import Qgis, QgsApplication, QgsMessageLog
+from qgis.PyQt.QtCore import QObject, pyqtSignal
+
+from ....robot_bridge.core.messages import CommandState
+from ....robot_bridge.core.roads.surface_index import NOWHERE
+from ...control.fleet_controller import FleetController
+from ...control.messages import TITLE
+from ...gateway_client.link import ConnectionPhase
+from ...gateway_client.robot_states import RemovedRobots, RobotArrays
+from ...layers.crs import transform_points_or_nan
+from ...layers.road_surfaces import SurfaceMap, SurfaceStore, SurfaceTask
+from ...layers.site_transform import SiteToMapTransform
+from ...ui.errors import FleetError, MapTransformError
+from ...ui.language import tr, tr_count
+from ...ui.scheduling import ONE_STEP, CooperativeTask, Steps
+from .board import ALARM_KINDS, AlarmBoard, fence_alarms, nearness_alarms, passing_alarms
+from .rules import (
+    Alarm,
+    AlarmChange,
+    AlarmEvent,
+    AlarmKind,
+    AlarmSnapshot,
+    Bools,
+    Floats,
+    Key,
+    Thresholds,
+    read_thresholds,
+    write_thresholds,
+)
+
+# --- Whether robots are on the road, by the project's layers of road surfaces ---
+
+AROUND = np.array([(np.cos(turn), np.sin(turn)) for turn in np.arange(8) * np.pi / 4])
+"""Directions in which the margin is looked for."""
+
+
+class RoadGround(QObject):
+    """Asks ``store``; surfaces that are not read yet are read beside the window."""
+
+    def __init__(self, store: SurfaceStore, parent: QObject | None = None):
+        super().__init__(parent)
+        self._store = store
+        self._task: SurfaceTask | None = None
+        self._failed_once = False
+        self.why_not = ""
+        """Why nobody can tell who is on the road; empty where that is known."""
+        store.forgotten.connect(self._forgotten)
+
+    def judge(self, xy: Floats, placement: SiteToMapTransform, margin: float) -> tuple[Bools, Bools] | None:
+        """Return of (n, 2) metres in the site frame which are off the road by ``margin``, and which on it.
+
+        None where no surfaces are known (see :attr:`why_not`). A robot without a place is neither.
+        """
+        surfaces = self._surfaces()
+        if surfaces is None:
+            return None
+        there = np.isfinite(xy).all(axis=1)
+        on = np.zeros(len(xy), dtype=bool)
+        on[there] = _on_a_surface(xy[there], placement, surfaces)
+        off = np.zeros(len(xy), dtype=bool)
+        beside = np.flatnonzero(there & ~on)
+        rim = (xy[beside, None, :] + AROUND * margin).reshape(-1, 2)
+        off[beside] = ~_on_a_surface(rim, placement, surfaces).reshape(-1, len(AROUND)).any(axis=1)
+        return off, on
+
+    def remove(self) -> None:
+        """Let go of what is being read."""
+        self._store.forgotten.disconnect(self._forgotten)
+        self._drop()
+
+    def _surfaces(self) -> SurfaceMap | None:
+        layers = self._store.layers()
+        if not layers:
+            self.why_not = tr("no layer of the project has the role road surface")
+            return None
+        found = self._store.kept(layers)
+        if found is not None and not found.index.surfaces:
+            # Every robot would be off the road.
+            names = ", ".join(layer.name() for layer in layers)
+            self.why_not = tr("layers of road surfaces hold no areas ({names})", names=names)
+            return None
+        if found is not None:
+            self.why_not = ""
+        elif self._task is None and not self._failed_once:
+            self.why_not = tr("the road surfaces are being read")
+            try:
+                self._task = self._store.task(layers)
+            except FleetError as error:
+                self._give_up(str(error))
+                return None
+            self._task.taskCompleted.connect(self._read)
+            self._task.taskTerminated.connect(self._failed)
+            QgsApplication.taskManager().addTask(self._task)
+        return found
+
+    def _read(self) -> None:
+        self._task = None
+
+    def _failed(self) -> None:
+        why, self._task = (self._task.why if self._task else ""), None
+        self._give_up(why or tr("reading was cancelled"))
+
+    def _give_up(self, why: str) -> None:
+        # Not tried again before a layer changes.
+        self._failed_once = True
+        self.why_not = tr("layers of road surfaces cannot be read: {why}", why=why)
+
+    def _forgotten(self) -> None:
+        self._failed_once = False
+        self.why_not = ""
+
+    def _drop(self) -> None:
+        if self._task is not None:
+            self._task.taskCompleted.disconnect(self._read)
+            self._task.taskTerminated.disconnect(self._failed)
+            self._task.cancel()
+            self._task = None
+
+
+def _on_a_surface(xy: Floats, placement: SiteToMapTransform, surfaces: SurfaceMap) -> Bools:
+    if len(xy) == 0:
+        return np.zeros(0, dtype=bool)
+    way = surfaces.way_from(placement.site_crs)
+    return surfaces.index.at_many(transform_points_or_nan(placement.frame.to_crs(xy), way)) != NOWHERE
+
+
+# --- The desk's knowledge at one moment, as the rules look at it ---
+
+
+class SnapshotBuilder:
+    """Makes one situation after the other; between two it sees how fast those move who do not say it."""
+
+    def __init__(self, desk: FleetController, ground: RoadGround):
+        self._desk = desk
+        self._ground = ground
+        self._before: tuple[float, Floats] = (0.0, np.empty((0, 2)))
+        self._arrangement = desk.picture.arrangement
+
+    def at(self, moment: float, limits: Thresholds) -> AlarmSnapshot:
+        """Return how things are at ``moment`` of the desk's clock; the site has to be known."""
+        robots = self._desk.picture.arrays(moment)
+        off, on = self._roads(robots.xy, limits)
+        only_seen = self._desk.picture.only_seen()
+        return AlarmSnapshot(
+            names=robots.names,
+            xy=robots.xy,
+            v=self._speeds(robots, moment),
+            battery=self._desk.picture.column("battery"),
+            # Nobody drives by the accuracy of what is only seen: a phone's is some metres all day.
+            accuracy=np.where(only_seen, np.nan, robots.accuracy),
+            state=robots.state,
+            stopped=self._desk.picture.column("stopped") == 1.0,
+            driving=self._driving(len(robots.names)),
+            only_seen=only_seen,
+            bounds=self._desk.site.bounds,
+            off_road=off,
+            on_road=on,
+        )
+
+    def _speeds(self, robots: RobotArrays, moment: float) -> Floats:
+        then, places = self._before
+        if self._arrangement != self._desk.picture.arrangement:
+            # Where other robots were.
+            self._arrangement, places = self._desk.picture.arrangement, places[:0]
+        self._before = moment, robots.xy
+        seen = np.full(len(robots.v), np.nan)
+        if moment > then and 0 < len(places) <= len(robots.xy):
+            seen[: len(places)] = np.hypot(*(robots.xy[: len(places)] - places).T) / (moment - then)
+        return np.where(np.isnan(robots.v), seen, np.abs(robots.v))
+
+    def _driving(self, count: int) -> Bools:
+        driving = np.zeros(count, dtype=bool)
+        if self._desk.emergency is not None and self._desk.emergency.in_force:
+            return driving
+        waits = {hold.robot for hold in self._desk.roads.conflicts.waiting}
+        for task in self._desk.book.under_way():
+            row = self._desk.picture.row(task.robot)
+            if row is not None and task.state is CommandState.ACKNOWLEDGED and task.robot not in waits:
+                driving[row] = True
+        return driving
+
+    def _roads(self, xy: Floats, limits: Thresholds) -> tuple[Bools | None, Bools | None]:
+        if AlarmKind.OFF_ROAD not in limits.kinds:
+            return None, None
+        try:
+            judged = self._ground.judge(xy, self._desk.placement(), limits.road_margin)
+        except MapTransformError as error:
+            self._ground.why_not = str(error)
+            return None, None
+        return (None, None) if judged is None else judged
+
+
+# --- Alarms in QGIS's message log: only some of them, since QGIS keeps each line for as long as it is open
+
+MOST_LINES = 20
+"""Alarms that are written within :data:`WITHIN`: a fleet that loses its radio again and again would otherwise
+take megabytes an hour. The log of alarms has all of them."""
+WITHIN = 600.0
+"""Seconds."""
+
+
+class AlarmMessages:
+    """Writes what began. ``clock`` returns seconds that only ever go on."""
+
+    def __init__(self, clock: Callable[[], float]):
+        self._clock = clock
+        self._until = -math.inf
+        self._left = 0
+        self._counted = 0
+
+    def write(self, began: Sequence[Alarm]) -> None:
+        """Write these as far as there is room; of others at once how many, and the rest when there is room.
+
+        To be called with nothing as well, again and again.
+        """
+        if self._clock() >= self._until:
+            self._begin_anew()
+        for alarm in began[: self._left]:
+            _write(alarm.text)
+        more = max(0, len(began) - self._left)
+        if more and self._left:
+            _count(more)
+        else:
+            self._counted += more
+        self._left = max(0, self._left - len(began))
+
+    def _begin_anew(self) -> None:
+        if self._counted:
+            _count(self._counted)
+        self._until, self._left, self._counted = self._clock() + WITHIN, MOST_LINES, 0
+
+
+def _count(more: int) -> None:
+    _write(
+        tr_count(
+            more,
+            "and 1 more alarm: see the log of alarms in the Fleet panel",
+            "and %n more alarms: see the log of alarms in the Fleet panel",
+        )
+    )
+
+
+def _write(text: str) -> None:
+    QgsMessageLog.logMessage(text, TITLE, Qgis.MessageLevel.Warning, False)
+
+
+# --- Looks at the robots again and again, and tells of alarms ---
+
+FENCED = frozenset({AlarmKind.IN_KEEPOUT, AlarmKind.AT_OBSTACLE})
+NEARNESS = frozenset({AlarmKind.NEAR_ROBOT, AlarmKind.COMES_NEAR})
+MANY = 500
+"""With more robots it looks half as often."""
+
+
+class AlarmWatch(QObject):
+    """Watches as long as the link is up: what the gateway does not tell, nobody can judge."""
+
+    changed = pyqtSignal()
+    """Alarms came, ended or were acknowledged, or whether somebody watches; soon after it was so."""
+    happened = pyqtSignal(list)
+    """The AlarmEvents since this was told last; soon after they were."""
+
+    def __init__(self, desk: FleetController, surfaces: SurfaceStore, parent: QObject | None = None):
+        super().__init__(parent)
+        self._desk = desk
+        self._ground = RoadGround(surfaces, self)
+        self._situations = SnapshotBuilder(desk, self._ground)
+        self._messages = AlarmMessages(desk.clock)
+        self._turn = desk.beat.turn()
+        self._generation = desk.picture.generation
+        self._told = ""
+        self._untold: list[AlarmEvent] = []
+        self._unseen: set[Key] = set()
+        """Alarms that have begun and that nobody was told of yet."""
+        self._telling = CooperativeTask(self, ONE_STEP)
+        self.board = AlarmBoard(read_thresholds())
+        desk.pulled.connect(self._pulled)
+        desk.robots_removed.connect(self._drop)
+
+    def remove(self) -> None:
+        """Look no more."""
+        self._desk.pulled.disconnect(self._pulled)
+        self._desk.robots_removed.disconnect(self._drop)
+        self._telling.stop()
+        self._ground.remove()
+
+    def why_not(self) -> str:
+        """Return what is not watched and why, empty when everything is."""
+        if self._desk.link.phase is not ConnectionPhase.CONNECTED:
+            return tr("Nothing is watched: the desk is not connected.")
+        off = [ALARM_KINDS[kind] for kind in AlarmKind if kind not in self.board.limits.kinds]
+        texts = [tr("Switched off: {kinds}.", kinds=", ".join(off))] if off else []
+        if (unfenced := self._desk.geofence.why_not()) and FENCED & self.board.limits.kinds:
+            texts.append(unfenced)
+        if (unwatched := self._desk.nearness.why_not()) and NEARNESS & self.board.limits.kinds:
+            texts.append(unwatched)
+        if self._ground.why_not and AlarmKind.OFF_ROAD in self.board.limits.kinds:
+            why = self._ground.why_not.rstrip(".")
+            texts.append(tr("Off the road is not watched: {why}.", why=why))
+        return " ".join(texts)
+
+    def look(self) -> None:
+        """Judge what is known now."""
+        if self._desk.link.phase is ConnectionPhase.CONNECTED and self._desk.site is not None:
+            moment = self._desk.clock()
+            situation = self._situations.at(moment, self.board.limits)
+            self._tell(self.board.look(situation, moment, time.time()))
+            self._take_reported(moment)
+        self._tell_of_watching()
+
+    def acknowledge(self, keys: Iterable[Key]) -> None:
+        """Note that the operator has seen these alarms."""
+        link = self._desk.link
+        operator = (link.who if link.phase is ConnectionPhase.CONNECTED else "") or tr("this desk")
+        self._tell(self.board.acknowledge(keys, operator, time.time()))
+        self._telling.finish()
+
+    def acknowledge_all(self) -> None:
+        """Note that the operator has seen every alarm that was told of."""
+        self.acknowledge([alarm.key for alarm in self.board.alarms() if alarm.key not in self._unseen])
+
+    def set_limits(self, limits: Thresholds) -> None:
+        """Judge by these settings from now on, in later sessions as well."""
+        write_thresholds(limits)
+        self.board.set_limits(limits)
+        self.changed.emit()
+
+    def _take_reported(self, moment: float) -> None:
+        reported = fence_alarms(self._desk.geofence.alarms)
+        reported += nearness_alarms(self._desk.nearness.alarms)
+        reported += passing_alarms(self._desk.roads.conflicts, self.board.limits)
+        events, renewed = self.board.report(reported, moment, time.time())
+        self._tell(events)
+        if renewed and not events:
+            self.changed.emit()
+
+    def _pulled(self) -> None:
+        if self._generation != self._desk.picture.generation:
+            self._generation = self._desk.picture.generation
+            self.board.clear()
+            self.changed.emit()
+        if self._turn.has_come(1 if len(self._desk.picture) <= MANY else 2):
+            self.look()
+
+    def _drop(self, gone: RemovedRobots) -> None:
+        self.board.drop(gone)
+        self.changed.emit()
+
+    def _tell(self, events: list[AlarmEvent]) -> None:
+        self._messages.write([event.alarm for event in events if event.change is AlarmChange.BEGAN])
+        if events:
+            self._untold += events
+            self._unseen.update(event.alarm.key for event in events if event.change is AlarmChange.BEGAN)
+            self._telling.begin_soon(self._parts())
+
+    def _parts(self) -> Steps[None]:
+        """Tell of events part by part: to judge hundreds and to show it is too much for one piece."""
+        events, self._untold = self._untold, []
+        self.happened.emit(events)
+        # The message bar counts them and says what the most pressing ones are.
+        self._unseen.clear()
+        yield 0.5
+        self.changed.emit()
+
+    def _tell_of_watching(self) -> None:
+        told = self.why_not()
+        if told != self._told:
+            self._told = told
+            self.changed.emit()

@@ -1,0 +1,375 @@
+"""Command log: filter, tree, older commands fetched from the gateway."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from qgis.PyQt.QtCore import QModelIndex, QObject, Qt, pyqtSignal
+from qgis.PyQt.QtWidgets import (
+    QAbstractItemView,
+    QComboBox,
+    QHBoxLayout,
+    QHeaderView,
+    QToolButton,
+    QTreeView,
+    QVBoxLayout,
+    QWidget,
+)
+
+from ...robot_bridge.core.messages import CommandReport, GetCommands
+from ..control.fleet_controller import FleetController
+from ..control.messages import file_topic
+from ..control.request_tracker import SLOW_AFTER
+from ..gateway_client import command_cache
+from ..gateway_client.buffers import RequestResult
+from ..gateway_client.command_cache import asked_at, command_in_words, place_of
+from ..gateway_client.robot_states import name_order
+from ..gateway_client.state_texts import COMMAND_STATES, longest_word
+from ..settings.preferences import export_path
+from ..ui.dialogs import file_to_write
+from ..ui.errors import FleetError
+from ..ui.language import tr, tr_count
+from ..ui.steady_widgets import ElidedText
+from ..ui.tables import TimeColumn, ZoomMenu, shrink_view, write_csv
+from .command_log_model import CSV_HEAD, PAGE, CommandChoice, CommandFilter, LogModel, csv_rows, summary
+
+# --- Commands of before this desk came: asked of the gateway, and what came of it told ---
+
+OLDER = 1000
+"""Commands that are asked for at once."""
+MOST_ASKED = 20
+"""Robots that are asked for one by one; of more of them the commands of all are."""
+
+
+@dataclass
+class HistoryRequest:
+    """One press of the button: the commands ``known`` by then, and what its ``waiting`` answers told."""
+
+    known: frozenset[str]
+    asked_at: float
+    """Monotonic seconds."""
+    waiting: int = 0
+    came: int = 0
+    """Commands that were not known and are in the book now."""
+    ends_here: bool = False
+    """Whether there may be older ones that the log does not reach."""
+    is_refused: bool = False
+    is_overdue: bool = False
+    """Whether it was told that the gateway does not answer."""
+
+
+class OlderCommands(QObject):
+    """Asks for the newest commands of robots, among which are older ones than the desk was told by itself."""
+
+    def __init__(self, desk: FleetController, parent: QObject | None = None):
+        super().__init__(parent)
+        self._desk = desk
+        self._wishes: dict[str, HistoryRequest] = {}
+        """By the keys of the questions that are not answered yet."""
+        desk.answered.connect(self._answered)
+        desk.pulled.connect(self._watch)
+        desk.site_changed.connect(self._site_changed)
+
+    def ask(self, robots: frozenset[str] | None) -> None:
+        """Ask for the commands of ``robots``, None for all."""
+        wish = HistoryRequest(frozenset(report.command for report in self._desk.book), self._desk.clock())
+        try:
+            # Of very many robots the newest commands of all will do: the log holds no more.
+            for robot in sorted(robots) if robots and len(robots) <= MOST_ASKED else [None]:
+                self._wishes[self._desk.inquire(GetCommands(robot, OLDER), lasting=True)] = wish
+                wish.waiting += 1
+        except FleetError as error:
+            wish.is_refused = True
+            self._desk.complained.emit(str(error))
+            return
+        # What is asked once more need not be told of twice, should the gateway answer after all.
+        self._wishes = {key: one for key, one in self._wishes.items() if not one.is_overdue}
+
+    def _answered(self, answer: RequestResult) -> None:
+        wish = self._wishes.pop(answer.order.key, None)
+        if wish is None:
+            return
+        wish.waiting -= 1
+        if answer.error is not None:
+            if not wish.is_refused:
+                self._desk.complained.emit(tr("Older commands: {why}", why=answer.error))
+            wish.is_refused = True
+        else:
+            self._look_at(_commands_in(answer), wish)
+        if wish.waiting == 0 and not wish.is_refused:
+            self._desk.noted.emit(_in_words(wish))
+
+    def _watch(self) -> None:
+        """Say so of a wish that waits for its answers too long, be it that the link is lost."""
+        now = self._desk.clock()
+        late = {
+            id(wish): wish
+            for wish in self._wishes.values()
+            if not wish.is_overdue and now - wish.asked_at > SLOW_AFTER
+        }
+        for wish in late.values():
+            wish.is_overdue = True
+            self._desk.complained.emit(
+                tr(
+                    "Older commands: the gateway has not answered for {seconds:g} s. Press Older to ask once "
+                    "more.",
+                    seconds=SLOW_AFTER,
+                )
+            )
+
+    def _site_changed(self) -> None:
+        if len(self._desk.book) == 0:
+            # Another gateway's robots are here now: what was asked of the one before is nobody's wish.
+            self._wishes.clear()
+
+    def _look_at(self, told: list[str], wish: HistoryRequest) -> None:
+        # The book has taken them in by now, and let go of the oldest where it was full.
+        kept = [command for command in told if command in self._desk.book]
+        wish.came += sum(command not in wish.known for command in kept)
+        wish.ends_here = wish.ends_here or len(told) >= OLDER or len(kept) < len(told)
+
+
+def _commands_in(answer: RequestResult) -> list[str]:
+    """Return the ids in an answer; the wire has read its commands before."""
+    return [values["command"] for values in (answer.result or {}).get("commands", ())]
+
+
+def _in_words(wish: HistoryRequest) -> str:
+    came = (
+        tr_count(wish.came, "1 older command came.", "%n older commands came.")
+        if wish.came
+        else tr("No older commands came.")
+    )
+    if wish.ends_here:
+        end = tr(
+            "The log reaches no further back: the newest {asked} of each chosen robot, or of all, are asked "
+            "for, and {kept} kept. Older ones are in the gateway's database.",
+            asked=OLDER,
+            kept=command_cache.MOST_COMMANDS,
+        )
+    else:
+        end = tr("The gateway knows no others.")
+    return f"{came} {end}"
+
+
+# --- The log of commands with what is above it: whose, which, how many are open, and what to do with it
+
+EVERY_ROBOT, SELECTED = tr("All robots"), tr("Selected robots")
+COMMAND_CHOICES = {
+    CommandChoice.ALL: tr("All commands"),
+    CommandChoice.OPEN: tr("Open"),
+    CommandChoice.FAILED: tr("Failed, aborted, expired"),
+}
+FILE = file_topic("command_log")
+MERGED = 500
+"""New commands that are sorted in one by one; of more of them all are listed anew."""
+
+
+class CommandLog(QWidget):
+    """Newest command on top; the newest one lies open until the next comes."""
+
+    place_wanted = pyqtSignal(float, float)
+    """Where a command leads to, metres in the site frame."""
+
+    def __init__(self, desk: FleetController, parent: QWidget | None = None):
+        super().__init__(parent)
+        self._desk = desk
+        self._model = LogModel(self)
+        self._opened: str | None = None
+        self._older = OlderCommands(desk, self)
+        self._listed: set[str] = set()
+        """The robots that can be chosen."""
+        self.view = _tree(self._model)
+        self._times = TimeColumn(self.view, beside=2 * self.view.indentation() + 12)
+        self._robots = _choices("fleet_log_robot", tr("Whose commands are listed"))
+        self._robots.addItems([EVERY_ROBOT, SELECTED])
+        self._which = _choices("fleet_log_filter", tr("Which commands are listed"))
+        self._which.addItems([COMMAND_CHOICES[which] for which in CommandChoice])
+        self._summary = ElidedText("fleet_log_summary", tr("None open"))
+        self._lay_out()
+        self._robots.currentIndexChanged.connect(self.refresh)
+        self._which.currentIndexChanged.connect(self.refresh)
+        ZoomMenu(self.view, self._go)
+        self.view.selectionModel().selectionChanged.connect(self._allow)
+        desk.commands_changed.connect(self.show_reports)
+        desk.site_changed.connect(self._site_changed)
+        desk.selection_changed.connect(self._selection_changed)
+        self._allow()
+
+    def show_reports(self, reports: list[CommandReport]) -> None:
+        """Add what is new, and bring what is known up to date."""
+        self._list_robots({report.robot for report in reports})
+        if len(reports) > MERGED:
+            self.refresh()
+            return
+        if self._model.merge(reports):
+            self._model.keep(self._desk.book)
+            self._let_go_of_old()
+            self._open(self._model.index(0, 0))
+        self._show_what_is_open()
+
+    def refresh(self, *_what: object) -> None:
+        """List anew what the filters keep."""
+        self._model.show_all(self._desk.book, self.filter())
+        self._opened = None
+        self._open(self._model.index(0, 0))
+        self._show_what_is_open()
+        self._allow()
+
+    def filter(self) -> CommandFilter:
+        """Return what the fields above the log say."""
+        whose = self._robots.currentIndex()
+        robots = None if whose == 0 else frozenset({self._robots.currentText()})
+        if whose == 1:
+            robots = frozenset(self._desk.selection)
+        return CommandFilter(robots, list(CommandChoice)[self._which.currentIndex()])
+
+    def export(self, path: str) -> None:
+        """Write what is listed, every step of it, to ``path`` and say so."""
+        self._desk.messages.end(FILE)
+        try:
+            count = write_csv(path, CSV_HEAD, csv_rows(self._model.shown))
+        except FleetError as error:
+            self._desk.report_failure(str(error), FILE)
+            return
+        self._desk.noted.emit(
+            tr(
+                "{commands} and {steps} written to {path}",
+                commands=tr_count(len(self._model.shown), "1 command", "%n commands"),
+                steps=tr_count(count, "1 step", "%n steps"),
+                path=path,
+            )
+        )
+
+    def ask_for_older(self) -> None:
+        """Ask the gateway for what was asked for before this desk came."""
+        self._older.ask(self.filter().robots)
+
+    def _lay_out(self) -> None:
+        tip = tr("Show where the chosen command leads to (double click)")
+        go = _tool("fleet_log_go", tr("Go there"), tip)
+        go.clicked.connect(lambda: self._go(self.view.currentIndex()))
+        older = _tool("fleet_log_older", tr("Older"), tr("Ask the gateway for older commands"))
+        older.clicked.connect(self.ask_for_older)
+        tip = tr("Write what is listed, every step of it, as CSV")
+        export = _tool("fleet_log_export", tr("Export…"), tip)
+        export.clicked.connect(self._ask_where)
+        self._go_button = go
+        head = QHBoxLayout()
+        head.setSpacing(4)
+        head.addWidget(self._robots, 1)
+        head.addWidget(self._which, 1)
+        beneath = QHBoxLayout()
+        beneath.setSpacing(4)
+        beneath.addWidget(self._summary, 1)
+        for button in (go, older, export):
+            beneath.addWidget(button)
+        rows = QVBoxLayout(self)
+        rows.setContentsMargins(0, 2, 0, 0)
+        rows.setSpacing(3)
+        rows.addLayout(head)
+        rows.addLayout(beneath)
+        rows.addWidget(self.view, 1)
+
+    def _list_robots(self, robots: set[str]) -> None:
+        if robots <= self._listed:
+            return
+        self._listed |= robots
+        chosen = self._robots.currentText()
+        self._robots.blockSignals(True)
+        while self._robots.count() > 2:
+            self._robots.removeItem(2)
+        self._robots.addItems(sorted(self._listed, key=name_order))
+        self._robots.setCurrentText(chosen)
+        self._robots.blockSignals(False)
+
+    def _show_what_is_open(self) -> None:
+        self._summary.setText(summary(self._desk.book))
+        shown = self._model.shown
+        self._times.make_room((asked_at(shown[-1]) if shown else None) or None)
+
+    def _let_go_of_old(self) -> None:
+        """Keep the view short while nobody looks at older commands: it lays out each row at each new one."""
+        current = self.view.currentIndex()
+        chosen = current.parent() if current.parent().isValid() else current
+        if self.view.verticalScrollBar().value() == 0 and chosen.row() < PAGE:
+            self._model.shorten()
+
+    def _open(self, index: QModelIndex) -> None:
+        report = self._model.report_at(index)
+        if report is None or report.command == self._opened:
+            return
+        before = None if self._opened is None else self._model.row_of(self._opened)
+        if before is not None:
+            self.view.collapse(self._model.index(before, 0))
+        self._opened = report.command
+        self.view.expand(index)
+
+    def _go(self, index: QModelIndex) -> None:
+        report = self._model.report_at(index)
+        if report is None:
+            return
+        place = place_of(report)
+        if place is None:
+            self._desk.complained.emit(
+                tr("{what} of {robot} leads to no place.", what=command_in_words(report), robot=report.robot)
+            )
+            return
+        self.place_wanted.emit(*place)
+
+    def _allow(self, *_what: object) -> None:
+        report = self._model.report_at(self.view.currentIndex())
+        self._go_button.setEnabled(report is not None and place_of(report) is not None)
+
+    def _selection_changed(self) -> None:
+        if self._robots.currentText() == SELECTED:
+            self.refresh()
+
+    def _site_changed(self) -> None:
+        if len(self._desk.book) == 0:
+            self._listed.clear()
+            self._robots.blockSignals(True)
+            while self._robots.count() > 2:
+                self._robots.removeItem(2)
+            self._robots.blockSignals(False)
+            self.refresh()
+
+    def _ask_where(self) -> None:
+        path = file_to_write(self, tr("Export commands"), export_path("commands.csv"), tr("CSV (*.csv)"))
+        if path:
+            self.export(path)
+
+
+def _tree(model: LogModel) -> QTreeView:
+    view = QTreeView()
+    view.setObjectName("fleet_command_log")
+    view.setModel(model)
+    view.setEditTriggers(QAbstractItemView.EditTrigger.NoEditTriggers)
+    view.setAlternatingRowColors(True)
+    view.setUniformRowHeights(True)
+    view.setExpandsOnDoubleClick(False)
+    view.setIndentation(14)
+    shrink_view(view)
+    for column, widest in ((2, longest_word(COMMAND_STATES)), (3, tr("{metres:.2f} m off", metres=0.0))):
+        view.setColumnWidth(column, view.fontMetrics().horizontalAdvance(widest) + 12)
+    view.header().setStretchLastSection(False)
+    view.header().setSectionResizeMode(1, QHeaderView.ResizeMode.Stretch)
+    return view
+
+
+def _choices(name: str, tip: str) -> QComboBox:
+    box = QComboBox()
+    box.setObjectName(name)
+    box.setToolTip(tip)
+    box.setSizeAdjustPolicy(QComboBox.SizeAdjustPolicy.AdjustToMinimumContentsLengthWithIcon)
+    box.setMinimumContentsLength(8)
+    return box
+
+
+def _tool(name: str, text: str, tip: str) -> QToolButton:
+    button = QToolButton()
+    button.setObjectName(name)
+    button.setText(text)
+    button.setToolTip(tip)
+    button.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
+    return button

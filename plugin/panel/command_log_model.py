@@ -1,0 +1,357 @@
+"""Model of the command log: rows and steps as text, filter, export."""
+
+from __future__ import annotations
+
+import bisect
+from collections.abc import Container, Iterable, Iterator
+from dataclasses import dataclass
+from enum import Enum
+from itertools import count, groupby
+
+from qgis.PyQt.QtCore import QAbstractItemModel, QModelIndex, QObject, Qt
+from qgis.PyQt.QtGui import QFont
+
+from ...robot_bridge.core.messages import Abort, CommandReport, CommandState, CommandStep
+from ..gateway_client.command_cache import UNDER_WAY, asked_at, command_in_words, place_of, state_word
+from ..gateway_client.state_texts import COMMAND_STATES
+from ..ui.glyphs import COMMAND_COLOURS, for_letters
+from ..ui.language import tr
+from ..ui.tables import iso_time
+from ..ui.times import date_and_time, short_time
+
+# --- Commands as rows of the log: in words, chosen by a filter, and as a table for a file ---
+
+FAILED = (CommandState.ABORTED, CommandState.FAILED, CommandState.EXPIRED)
+CSV_HEAD = (
+    "command",
+    "robot",
+    "operation",
+    "what",
+    "asked_by",
+    "step",
+    "state",
+    "time",
+    "by",
+    "reason",
+    "deviation_m",
+    "target_x",
+    "target_y",
+)
+
+
+class CommandChoice(str, Enum):
+    """Which commands are listed."""
+
+    ALL = "all"
+    OPEN = "open"
+    FAILED = "failed"
+
+
+@dataclass(frozen=True)
+class CommandFilter:
+    """Commands of these ``robots`` (None: of all) that are as ``which`` says."""
+
+    robots: frozenset[str] | None = None
+    which: CommandChoice = CommandChoice.ALL
+
+    def keeps(self, report: CommandReport) -> bool:
+        """Tell whether a command is listed."""
+        if self.robots is not None and report.robot not in self.robots:
+            return False
+        if self.which is CommandChoice.OPEN:
+            return report.state in UNDER_WAY
+        return self.which is CommandChoice.ALL or report.state in FAILED
+
+
+def cells(report: CommandReport) -> tuple[str, str, str, str]:
+    """Return a command's row: time, what, state, and how far off or why or by whom."""
+    first = report.steps[0].at if report.steps else None
+    return (
+        short_time(first),
+        f"{report.robot} · {command_in_words(report)}",
+        state_word(report.op, report.state),
+        _details(report),
+    )
+
+
+def step_cells(step: CommandStep, report: CommandReport) -> tuple[str, str, str, str]:
+    """Return a step's row: time, by whom and why, state, and how far off."""
+    off = _off(report) if step.state is CommandState.REACHED else ""
+    because = f": {step.reason}" if step.reason else ""
+    return short_time(step.at), tr("by {by}", by=step.by) + because, state_word(report.op, step.state), off
+
+
+def summary(reports: Iterable[CommandReport]) -> str:
+    """Return how many commands are open, as in ``3 open: 1 queued, 2 acknowledged``."""
+    states = [report.state for report in reports if report.state in UNDER_WAY]
+    if not states:
+        return tr("None open")
+    counts = [f"{states.count(state)} {COMMAND_STATES[state]}" for state in UNDER_WAY if state in states]
+    return tr("{number} open: {counts}", number=len(states), counts=", ".join(counts))
+
+
+def csv_rows(reports: Iterable[CommandReport]) -> Iterator[tuple[object, ...]]:
+    """Return a row for every step of every command; places in metres of the site frame."""
+    for report in reports:
+        x, y = place_of(report) or (None, None)
+        what = command_in_words(report)
+        for number, step in enumerate(report.steps, 1):
+            deviation = report.deviation if step.state is CommandState.REACHED else None
+            yield (
+                report.command,
+                report.robot,
+                report.op,
+                what,
+                report.operator,
+                number,
+                step.state.value,
+                iso_time(step.at),
+                step.by,
+                step.reason,
+                deviation,
+                x,
+                y,
+            )
+
+
+def _details(report: CommandReport) -> str:
+    reason = report.steps[-1].reason if report.steps else None
+    return _off(report) or reason or tr("by {by}", by=report.operator)
+
+
+def _off(report: CommandReport) -> str:
+    """Return how far from its target a robot stands; an abort has no target."""
+    if report.deviation is None or report.op == Abort.__name__:
+        return ""
+    return tr("{metres:.2f} m off", metres=report.deviation)
+
+
+# --- The log as a tree: a row for each command, newest on top, and beneath it a row for each step ---
+
+COLUMNS = (tr("Time"), tr("Command"), tr("State"), tr("Details"))
+TIME, STATE = 0, 2
+COMMAND_ROLE = Qt.ItemDataRole.UserRole
+ANSWERED_ROLES = frozenset(
+    {
+        COMMAND_ROLE,
+        Qt.ItemDataRole.DisplayRole,
+        Qt.ItemDataRole.ToolTipRole,
+        Qt.ItemDataRole.ForegroundRole,
+        Qt.ItemDataRole.FontRole,
+    }
+)
+"""The item roles that this model answers; a view asks for as many others of each cell that it paints."""
+PAGE = 200
+"""Commands that a view is told of at first, and each time that it comes to the end of those."""
+
+
+class LogModel(QAbstractItemModel):
+    """Lists what ``filter`` keeps. Of a step, the index holds the number of its command.
+
+    A view lays out every row that it is told of, whenever one is added: it is told of the newest, and of
+    older ones when it asks for more.
+    """
+
+    def __init__(self, parent: QObject | None = None):
+        super().__init__(parent)
+        self._filter = CommandFilter()
+        self._shown: list[CommandReport] = []
+        self._told = 0
+        """How many of those a view is told of."""
+        self._rows: dict[str, int] | None = {}
+        """The row of each command; None where it has to be counted anew."""
+        self._next_number = count(1)
+        self._numbers: dict[str, int] = {}
+        self._by_number: dict[int, str] = {}
+        self._bold = QFont()
+        self._bold.setPointSizeF(max(7.0, self._bold.pointSizeF() - 1.0))
+        self._bold.setBold(True)
+
+    # --- what Qt asks ---
+
+    def index(self, row: int, column: int, parent: QModelIndex | None = None) -> QModelIndex:
+        if not self.hasIndex(row, column, parent or QModelIndex()):
+            return QModelIndex()
+        if parent is None or not parent.isValid():
+            return self.createIndex(row, column, 0)
+        return self.createIndex(row, column, self._number(self._shown[parent.row()].command))
+
+    def parent(self, index: QModelIndex | None = None) -> QModelIndex:
+        if index is None or not index.isValid() or index.internalId() == 0:
+            return QModelIndex()
+        row = self.row_of(self._by_number.get(int(index.internalId()), ""))
+        return QModelIndex() if row is None else self.createIndex(row, 0, 0)
+
+    def rowCount(self, parent: QModelIndex | None = None) -> int:
+        if parent is None or not parent.isValid():
+            return self._told
+        is_command = parent.internalId() == 0 and parent.column() == 0
+        return len(self._shown[parent.row()].steps) if is_command else 0
+
+    def canFetchMore(self, parent: QModelIndex) -> bool:
+        return not parent.isValid() and self._told < len(self._shown)
+
+    def fetchMore(self, parent: QModelIndex) -> None:
+        if not self.canFetchMore(parent):
+            return
+        last = min(self._told + PAGE, len(self._shown)) - 1
+        self.beginInsertRows(parent, self._told, last)
+        self._told = last + 1
+        self.endInsertRows()
+
+    def columnCount(self, parent: QModelIndex | None = None) -> int:
+        return len(COLUMNS)
+
+    def headerData(self, section: int, orientation: Qt.Orientation, role: int = 0) -> object:
+        if orientation == Qt.Orientation.Horizontal and role == Qt.ItemDataRole.DisplayRole:
+            return COLUMNS[section]
+        return None
+
+    def data(self, index: QModelIndex, role: int = 0) -> object:
+        if role not in ANSWERED_ROLES:
+            return None
+        report = self.report_at(index)
+        if report is None:
+            return None
+        if role == Qt.ItemDataRole.ToolTipRole and index.column() == TIME:
+            return date_and_time(
+                asked_at(report) if index.internalId() == 0 else report.steps[index.row()].at
+            )
+        if role in (Qt.ItemDataRole.DisplayRole, Qt.ItemDataRole.ToolTipRole):
+            return self._cells(index, report)[index.column()]
+        if role == COMMAND_ROLE:
+            return report.command
+        if index.column() == STATE and role in (Qt.ItemDataRole.ForegroundRole, Qt.ItemDataRole.FontRole):
+            state = report.state if index.internalId() == 0 else report.steps[index.row()].state
+            if state not in COMMAND_COLOURS:
+                return None
+            return self._bold if role == Qt.ItemDataRole.FontRole else for_letters(COMMAND_COLOURS[state])
+        return None
+
+    # --- what it shows ---
+
+    @property
+    def filter(self) -> CommandFilter:
+        """What is listed."""
+        return self._filter
+
+    @property
+    def shown(self) -> list[CommandReport]:
+        """The commands that are listed, newest first."""
+        return self._shown
+
+    def show_all(self, reports: Iterable[CommandReport], filter: CommandFilter) -> None:
+        """Show those of ``reports`` that the filter keeps, and no others."""
+        self.beginResetModel()
+        self._filter = filter
+        kept = [report for report in reports if filter.keeps(report)]
+        # Of one time those that were told last come first.
+        kept.sort(key=asked_at)
+        self._shown = kept[::-1]
+        self._told = min(PAGE, len(kept))
+        self._rows = None
+        # No index outlives this, so no number is needed any more: they would add up over a shift.
+        self._numbers.clear()
+        self._by_number.clear()
+        self.endResetModel()
+
+    def merge(self, reports: Iterable[CommandReport]) -> list[str]:
+        """Take in new reports and return the commands that were not listed before."""
+        new, gone = [], []
+        for report in reports:
+            row = self.row_of(report.command)
+            if self._filter.keeps(report):
+                new.append(report) if row is None else self._renew(row, report)
+            elif row is not None:
+                gone.append(row)
+        for row in sorted(gone, reverse=True):
+            self._remove(row)
+        self._insert(new)
+        return [report.command for report in new]
+
+    def keep(self, commands: Container[str]) -> None:
+        """List none that is not among ``commands`` any more."""
+        for row in reversed(range(len(self._shown))):
+            if self._shown[row].command not in commands:
+                self._remove(row)
+
+    def shorten(self) -> None:
+        """Tell a view of the first page only, as long as it has not asked for more than comes in a while."""
+        if self._told > 2 * PAGE:
+            self.beginRemoveRows(QModelIndex(), PAGE, self._told - 1)
+            self._told = PAGE
+            self.endRemoveRows()
+
+    def report_at(self, index: QModelIndex) -> CommandReport | None:
+        """Return the command of a row, be it its own or that of a step."""
+        if not index.isValid():
+            return None
+        row = index.row() if index.internalId() == 0 else self.parent(index).row()
+        return self._shown[row] if 0 <= row < self._told else None
+
+    def row_of(self, command: str) -> int | None:
+        """Return the row of a command, None where it is not listed."""
+        if self._rows is None:
+            self._rows = {report.command: row for row, report in enumerate(self._shown)}
+        return self._rows.get(command)
+
+    def _insert(self, reports: list[CommandReport]) -> None:
+        # Newest first, and of one time those that were told last.
+        newest_first = sorted(reports, key=asked_at)[::-1]
+        places = [
+            bisect.bisect_left(self._shown, -asked_at(report), key=lambda known: -asked_at(known))
+            for report in newest_first
+        ]
+        end = len(newest_first)
+        # From the oldest on, so that the places of the others stay theirs.
+        for place, run in groupby(reversed(places)):
+            begin = end - len(list(run))
+            self._insert_at(place, newest_first[begin:end])
+            end = begin
+
+    def _insert_at(self, row: int, reports: list[CommandReport]) -> None:
+        is_told = row < self._told or self._told == len(self._shown)
+        if is_told:
+            self.beginInsertRows(QModelIndex(), row, row + len(reports) - 1)
+            self._told += len(reports)
+        self._shown[row:row] = reports
+        self._rows = None
+        if is_told:
+            self.endInsertRows()
+
+    def _renew(self, row: int, report: CommandReport) -> None:
+        before = len(self._shown[row].steps)
+        more = len(report.steps) - before
+        if row >= self._told:
+            self._shown[row] = report
+            return
+        top = self.index(row, 0)
+        if more > 0:
+            self.beginInsertRows(top, before, before + more - 1)
+        self._shown[row] = report
+        if more > 0:
+            self.endInsertRows()
+        self.dataChanged.emit(top, self.index(row, len(COLUMNS) - 1))
+
+    def _remove(self, row: int) -> None:
+        is_told = row < self._told
+        if is_told:
+            self.beginRemoveRows(QModelIndex(), row, row)
+            self._told -= 1
+        command = self._shown.pop(row).command
+        self._rows = None
+        if is_told:
+            self.endRemoveRows()
+        number = self._numbers.pop(command, None)
+        if number is not None:
+            del self._by_number[number]
+
+    def _number(self, command: str) -> int:
+        number = self._numbers.get(command)
+        if number is None:
+            number = self._numbers[command] = next(self._next_number)
+            self._by_number[number] = command
+        return number
+
+    def _cells(self, index: QModelIndex, report: CommandReport) -> tuple[str, str, str, str]:
+        return cells(report) if index.internalId() == 0 else step_cells(report.steps[index.row()], report)

@@ -1,0 +1,425 @@
+"""Connection panel: gateway, operator, token and CA file, status, menu of kept connections."""
+
+from __future__ import annotations
+
+import getpass
+from collections.abc import Callable
+
+from qgis.core import QgsSettings
+from qgis.PyQt.QtCore import QObject, Qt, pyqtSignal
+from qgis.PyQt.QtGui import QIcon
+from qgis.PyQt.QtWidgets import (
+    QAction,
+    QApplication,
+    QCheckBox,
+    QGridLayout,
+    QHBoxLayout,
+    QLabel,
+    QLineEdit,
+    QMenu,
+    QSizePolicy,
+    QToolButton,
+    QVBoxLayout,
+    QWidget,
+)
+
+from ...robot_bridge.core.messages import SiteReport
+from ..gateway_client.link import DEFAULT_URL, ConnectionPhase, ConnectionStatus, OperatorCredentials
+from ..settings.connections import Connections, GatewayConnection, TokenStore
+from ..settings.connections_widget import ConnectionDialog, ConnectionsDialog
+from ..ui.actions import ICONS
+from ..ui.dialogs import file_field
+from ..ui.language import tr
+from ..ui.steady_widgets import ScrollingText, SteadyButton
+
+# --- The operator's token and the CA file, for gateways that have accounts and TLS ---
+
+CA_KEY = "fleet_supervisor/ca_file"
+NONE_KEPT = tr("fleet_op_…, as it was printed when the account was made")
+KEPT = tr("kept by QGIS; enter another one to replace it")
+BY_CONNECTION = tr("of the connection's authentication; enter another one for this time")
+
+
+class AccessFields(QWidget):
+    """Token, whether QGIS keeps it, and CA file. The token itself goes into no settings file."""
+
+    def __init__(self, parent: QWidget | None = None):
+        super().__init__(parent)
+        self.setVisible(False)
+        self._store = TokenStore()
+        self._auth = ""
+        self._token = QLineEdit()
+        self._token.setObjectName("fleet_token")
+        self._token.setEchoMode(QLineEdit.EchoMode.Password)
+        self._keep = QCheckBox(tr("Keep in QGIS"))
+        self._keep.setObjectName("fleet_keep_token")
+        self._keep.setToolTip(tr("Encrypted, under the master password of the QGIS authentication manager"))
+        self._keep.setEnabled(self._store.is_there)
+        self._ca = file_field()
+        self._ca.setObjectName("fleet_ca_file")
+        self._ca.setFilter(tr("Certificates (*.pem *.crt *.cer);;All files (*)"))
+        self._ca.setDialogTitle(tr("The site's ca.pem"))
+        self._ca.setFilePath(QgsSettings().value(CA_KEY, "") or "")
+        hint = tr("the site's ca.pem; empty for public authorities")
+        self._ca.lineEdit().setPlaceholderText(hint)
+        self._ca.lineEdit().setToolTip(hint)
+        self._lay_out()
+
+    def show_kept(self, url: str) -> None:
+        """Show whether QGIS keeps a token for the gateway at ``url``."""
+        kept = self._store.has(url)
+        hint = BY_CONNECTION if self._auth else KEPT if kept else NONE_KEPT
+        self._token.setPlaceholderText(hint)
+        self._token.setToolTip(hint)
+        self._keep.setChecked(kept or (self._keep.isChecked() and bool(self._token.text())))
+
+    def use(self, auth: str, ca_file: str | None = None) -> None:
+        """Take the token out of the authentication configuration ``auth``; ``ca_file`` where one is given."""
+        self._auth = auth
+        self._token.clear()
+        if ca_file is not None:
+            self._ca.setFilePath(ca_file)
+
+    def ca_file(self) -> str:
+        """Return the CA file's name as it stands in the field."""
+        return self._ca.filePath().strip()
+
+    def credentials(self, url: str) -> OperatorCredentials:
+        """Return what stands in the fields; where no token does, the one that QGIS keeps.
+
+        :raises TokenStoreError: when QGIS does not give it.
+        """
+        token = self._token.text().strip()
+        if not token and self._auth:
+            token = self._store.token_in(self._auth)
+        elif not token and self._keep.isChecked():
+            token = self._store.read(url)
+        return OperatorCredentials(token, self.ca_file())
+
+    def remember(self, url: str, operator: str = "") -> None:
+        """Keep the CA file's name, and the token where that is wanted; forget it where it is not.
+
+        :raises TokenStoreError: when QGIS does not keep it.
+        """
+        QgsSettings().setValue(CA_KEY, self.ca_file())
+        token = self._token.text().strip()
+        if self._auth:
+            # The connection's own; another token typed over it is for this time.
+            return
+        if not self._keep.isChecked():
+            self._store.forget(url)
+        elif token:
+            self._store.keep(url, token, operator)
+            self._token.clear()
+        self.show_kept(url)
+
+    def _lay_out(self) -> None:
+        grid = QGridLayout(self)
+        grid.setContentsMargins(0, 0, 0, 0)
+        grid.setHorizontalSpacing(6)
+        grid.setVerticalSpacing(4)
+        for row, (text, field) in enumerate(((tr("Token"), self._token), (tr("CA file"), self._ca))):
+            label = QLabel(text)
+            label.setBuddy(field)
+            grid.addWidget(label, row, 0)
+        grid.addWidget(self._token, 0, 1)
+        grid.addWidget(self._keep, 0, 2)
+        grid.addWidget(self._ca, 1, 1, 1, 2)
+
+
+# --- The menu beside the button that connects: the connections that are kept, and what can be done with them
+
+NONE_CHOSEN = tr("Connections that are kept under a name")
+
+
+class ConnectionMenu(QObject):
+    """Owns the button; ``chosen`` tells the connection that the operator picked."""
+
+    chosen = pyqtSignal(object)
+
+    def __init__(
+        self, connections: Connections, as_it_stands: Callable[[], GatewayConnection], parent: QWidget
+    ):
+        super().__init__(parent)
+        self._connections, self._as_it_stands = connections, as_it_stands
+        self._window, self._marked, self._is_held = parent, "", False
+        self._more: list[QAction] = []
+        self.button = QToolButton()
+        self.button.setObjectName("fleet_connections_button")
+        self.button.setIcon(QIcon(str(ICONS / "connections.svg")))
+        self.button.setPopupMode(QToolButton.ToolButtonPopupMode.InstantPopup)
+        self.button.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
+        self.menu = QMenu(self.button)
+        self.menu.setObjectName("fleet_connections_menu")
+        self.menu.aboutToShow.connect(self.fill)
+        self.button.setMenu(self.menu)
+        self.mark("")
+
+    def mark(self, name: str) -> None:
+        """Show which connection the fields are filled with, empty for none."""
+        self._marked = name
+        self.button.setToolTip(tr("Connection: {name}", name=name) if name else NONE_CHOSEN)
+
+    def hold(self, held: bool) -> None:
+        """Let no other connection be picked, as while one is open."""
+        self._is_held = held
+
+    def offer(self, action: QAction) -> None:
+        """List an action of the gateway's beneath the connections."""
+        self._more.append(action)
+
+    def withdraw(self, action: QAction) -> None:
+        """List an action no longer."""
+        self._more.remove(action)
+        self.menu.removeAction(action)
+
+    def fill(self) -> None:
+        """List the connections as they are kept now."""
+        self.menu.clear()
+        for one in self._connections.all():
+            entry = self.menu.addAction(one.name.replace("&", "&&"))
+            entry.setObjectName(f"fleet_connection_{one.name}")
+            entry.setCheckable(True)
+            entry.setChecked(one.name == self._marked)
+            entry.setToolTip(one.url)
+            entry.setEnabled(not self._is_held)
+            entry.triggered.connect(lambda _=False, one=one: self.chosen.emit(one))
+        self.menu.addSeparator()
+        keep = self.menu.addAction(tr("&Keep under a name…"))
+        keep.setObjectName("fleet_keep_connection")
+        keep.setEnabled(not self._is_held)
+        keep.triggered.connect(self._keep)
+        manage = self.menu.addAction(tr("&Manage connections…"))
+        manage.setObjectName("fleet_manage_connections")
+        manage.triggered.connect(lambda: ConnectionsDialog(self._window.window()).open())
+        self.menu.addSeparator()
+        self.menu.addActions(self._more)
+
+    def _keep(self) -> None:
+        dialog = ConnectionDialog(self._as_it_stands(), self._connections, self._window.window())
+        dialog.kept.connect(self.chosen)
+        dialog.open()
+
+
+# --- Where the operator says which gateway and who, and sees how the link stands ---
+
+URL_KEY = "fleet_supervisor/url"
+OPERATOR_KEY = "fleet_supervisor/operator"
+GAP = 4
+"""Pixels between two lines."""
+
+MARKS = {
+    ConnectionPhase.CLOSED: ("#757575", tr("Not connected")),
+    ConnectionPhase.CONNECTING: ("#E69F00", tr("Connecting")),
+    ConnectionPhase.CONNECTED: ("#00795C", tr("Connected")),
+    ConnectionPhase.RETRYING: ("#E69F00", tr("Retrying")),
+    ConnectionPhase.FAILED: ("#C62828", tr("Failed")),
+}
+
+
+class ConnectionPanel(QWidget):
+    """A line that tells the link's state with its reason, with the button; URL and operator beneath it.
+
+    While there is a link the fields are folded away: nothing can be changed in them, and the robots need the
+    room. A link that broke leaves them so, until the operator disconnects or the gateway refuses. The line is
+    as high whatever it says, and the fields are at the panel's end: no button moves.
+    """
+
+    def __init__(self, connect: QAction, parent: QWidget | None = None):
+        super().__init__(parent)
+        self.setObjectName("fleet_connection_panel")
+        self._shown: ConnectionStatus | None = None
+        self._connections = Connections()
+        self._chosen: GatewayConnection | None = None
+        settings = QgsSettings()
+        self._url = QLineEdit(settings.value(URL_KEY, DEFAULT_URL) or DEFAULT_URL)
+        self._url.setObjectName("fleet_url")
+        self._url.setPlaceholderText(DEFAULT_URL)
+        self._url.returnPressed.connect(lambda: connect.isChecked() or connect.trigger())
+        self._operator = QLineEdit(settings.value(OPERATOR_KEY, "") or _user())
+        self._operator.setObjectName("fleet_operator")
+        self._operator.setToolTip(tr("Who you are: it stands beside every command in every log"))
+        self.menu = ConnectionMenu(self._connections, self._as_it_stands, self)
+        self.menu.chosen.connect(self.use)
+        self._access = AccessFields()
+        self._more = _more_button()
+        self._more.toggled.connect(self._access.setVisible)
+        self._state = _state_text()
+        self._line, self._fields, self._gateway = QWidget(), QWidget(), QWidget()
+        self._lay_out(_connect_button(connect))
+        self._url.textChanged.connect(self._url_changed)
+        last = self._connections.get(self._connections.last)
+        if last is not None and last.url == self.url():
+            self.use(last)
+        self._show_access()
+
+    def url(self) -> str:
+        """Return the URL as it stands in the field."""
+        return self._url.text().strip()
+
+    def operator(self) -> str:
+        """Return the operator's name as it stands in the field."""
+        return self._operator.text().strip()
+
+    def credentials(self) -> OperatorCredentials:
+        """Return token and CA file; QGIS may ask for its master password to give the token that it keeps.
+
+        :raises FleetError: when it does not give it.
+        """
+        return self._access.credentials(self.url())
+
+    def use(self, connection: GatewayConnection) -> None:
+        """Write a named connection into the fields; nothing is opened."""
+        self._url.setText(connection.url)
+        if connection.operator:
+            self._operator.setText(connection.operator)
+        self._chosen = connection
+        self._access.use(connection.auth, connection.ca_file)
+        self.menu.mark(connection.name)
+        self._show_access()
+
+    def remember(self) -> None:
+        """Keep URL, operator and CA file for the next session, and the token where that is wanted.
+
+        :raises FleetError: when QGIS does not keep the token.
+        """
+        settings = QgsSettings()
+        settings.setValue(URL_KEY, self.url())
+        settings.setValue(OPERATOR_KEY, self.operator())
+        self._connections.last = self._chosen.name if self._chosen is not None else ""
+        self._access.remember(self.url(), self.operator())
+
+    def show_link(self, link: ConnectionStatus, site: SiteReport | None, now: float) -> None:
+        """Show how the link stands at ``now`` (monotonic clock)."""
+        text = _in_words(link, site, now)
+        if text != self._state.text():
+            self._state.setText(text)
+            self._state.setToolTip(self._which(link, site))
+        wanted = link.phase not in (ConnectionPhase.CLOSED, ConnectionPhase.FAILED)
+        self._fold(link.phase is ConnectionPhase.CONNECTED or (wanted and self._fields.isHidden()))
+        for field in (self._url, self._operator):
+            if field.isReadOnly() != wanted:
+                field.setReadOnly(wanted)
+        self._access.setEnabled(not wanted)
+        self.menu.hold(wanted)
+        if link.wants_token and link != self._shown:
+            self._more.setChecked(True)
+        self._shown = link
+
+    def height_with_fields(self) -> int:
+        """Return the pixels of height that all of it takes, folded or not."""
+        parts = (self._line.sizeHint(), self._gateway.sizeHint(), self._access.sizeHint())
+        return sum(part.height() for part in parts) + (len(parts) - 1) * GAP
+
+    def height_without_fields(self) -> int:
+        """Return the pixels of height that it takes while there is a link."""
+        return self._line.sizeHint().height()
+
+    def _fold(self, folded: bool) -> None:
+        if folded == self._fields.isHidden():
+            return
+        held = QApplication.focusWidget()
+        if folded and held is not None and self._fields.isAncestorOf(held):
+            # Else the next in line would have the keyboard, which is the button that ends the link.
+            self._state.label.setFocus()
+        self._fields.setHidden(folded)
+
+    def _which(self, link: ConnectionStatus, site: SiteReport | None) -> str:
+        which = [self.url(), *([] if site is None else [site.name, site.crs])]
+        return "\n".join([*which, *([link.reason] if link.reason else [])])
+
+    def _as_it_stands(self) -> GatewayConnection:
+        """What the fields say, as a connection that has no name yet."""
+        return GatewayConnection("", self.url(), self.operator(), self._access.ca_file())
+
+    def _url_changed(self) -> None:
+        if self._chosen is not None and self._chosen.url != self.url():
+            # Its token is for the other gateway.
+            self._chosen = None
+            self._access.use("")
+            self.menu.mark("")
+        self._show_access()
+
+    def _show_access(self) -> None:
+        self._access.show_kept(self.url())
+        if self.url().startswith("wss:"):
+            self._more.setChecked(True)
+
+    def _lay_out(self, connect: QToolButton) -> None:
+        grid = QGridLayout(self._gateway)
+        grid.setContentsMargins(0, 0, 0, 0)
+        grid.setHorizontalSpacing(6)
+        grid.setVerticalSpacing(GAP)
+        # The one letter leads into the panel; the others would be those of QGIS's menus in some language.
+        for row, (text, field) in enumerate(((tr("&Gateway"), self._url), (tr("Operator"), self._operator))):
+            label = QLabel(text)
+            label.setBuddy(field)
+            grid.addWidget(label, row, 0)
+        grid.addWidget(self._url, 0, 1)
+        grid.addWidget(self._more, 0, 2)
+        grid.addWidget(self._operator, 1, 1, 1, 2)
+        fields = QVBoxLayout(self._fields)
+        fields.setContentsMargins(0, 0, 0, 0)
+        fields.setSpacing(GAP)
+        fields.addWidget(self._gateway)
+        fields.addWidget(self._access)
+        line = QHBoxLayout(self._line)
+        line.setContentsMargins(0, 0, 0, 0)
+        line.setSpacing(4)
+        line.addWidget(self._state, 1)
+        for button in (connect, self.menu.button):
+            line.addWidget(button, 0, Qt.AlignmentFlag.AlignVCenter)
+        rows = QVBoxLayout(self)
+        rows.setContentsMargins(0, 0, 0, 0)
+        rows.setSpacing(GAP)
+        # In this order the keyboard goes through them; the line comes first on screen.
+        rows.addWidget(self._fields)
+        rows.insertWidget(0, self._line)
+
+
+def _connect_button(connect: QAction) -> QToolButton:
+    button = SteadyButton("fleet_connect_button", (tr("Connect"), tr("Disconnect")))
+    button.setDefaultAction(connect)
+    button.setToolButtonStyle(Qt.ToolButtonStyle.ToolButtonTextBesideIcon)
+    button.setSizePolicy(QSizePolicy.Policy.Minimum, QSizePolicy.Policy.Preferred)
+    button.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
+    return button
+
+
+def _more_button() -> QToolButton:
+    button = QToolButton()
+    button.setObjectName("fleet_access_button")
+    button.setText(tr("Access…"))
+    button.setToolTip(tr("Token and CA file, for a gateway with accounts and TLS"))
+    button.setCheckable(True)
+    button.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
+    return button
+
+
+def _state_text() -> ScrollingText:
+    state = ScrollingText("fleet_link_state", lines=2)
+    state.label.setTextFormat(Qt.TextFormat.RichText)
+    state.label.setAlignment(Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter)
+    return state
+
+
+def _in_words(link: ConnectionStatus, site: SiteReport | None, now: float) -> str:
+    colour, word = MARKS[link.phase]
+    detail = _escaped(link.reason)
+    if link.phase is ConnectionPhase.CONNECTED and site is not None:
+        detail = " · ".join(_escaped(text) for text in (site.name, link.who) if text)
+    if link.phase is ConnectionPhase.RETRYING:
+        word = tr("Retrying in {wait:.0f} s", wait=link.wait(now))
+    dot = f'<span style="color:{colour}">⬤</span>'
+    return f"{dot} <b>{word}</b>{' · ' if detail else ''}{detail}"
+
+
+def _escaped(text: str) -> str:
+    return text.replace("&", "&amp;").replace("<", "&lt;").replace(">", "&gt;")
+
+
+def _user() -> str:
+    try:
+        return getpass.getuser()
+    except (OSError, KeyError):
+        return ""

@@ -1,0 +1,190 @@
+"""Emergency stop: banner, key, and the dialog that clears it."""
+
+from __future__ import annotations
+
+from qgis.core import QgsApplication
+from qgis.PyQt.QtCore import QObject, Qt, pyqtSignal
+from qgis.PyQt.QtWidgets import QAction, QApplication, QFrame, QHBoxLayout, QToolButton, QWidget
+
+from ...robot_bridge.core.messages import EmergencyReport
+from ..control.fleet_controller import FleetController
+from ..gateway_client.link import ConnectionPhase
+from ..ui.dialogs import QuestionDialog
+from ..ui.language import first_of, tr, tr_count
+from ..ui.steady_widgets import ScrollingText
+from ..ui.times import time_of_day
+
+# --- The key of the emergency stop over dialogs that block their window, QGIS's own among them ---
+
+
+class EmergencyKey(QObject):
+    """Lends ``action`` to every dialog that blocks its window: Qt gives a blocked window's keys to nobody."""
+
+    def __init__(self, action: QAction, parent: QObject):
+        super().__init__(parent)
+        self._action = action
+        QgsApplication.instance().focusWindowChanged.connect(self._lend)
+
+    def remove(self) -> None:
+        """Lend the key to no more dialogs."""
+        QgsApplication.instance().focusWindowChanged.disconnect(self._lend)
+
+    def _lend(self) -> None:
+        dialog = QApplication.activeModalWidget()
+        if dialog is not None and self._action not in dialog.actions():
+            dialog.addAction(self._action)
+
+
+# --- The red banner of an emergency stop: asked for, in force, and who has stopped ---
+
+STYLE = (
+    "QFrame#fleet_emergency_banner { background: #B00020; border: 2px solid #FFC400; border-radius: 4px; }"
+    "QLabel { color: white; background: transparent; }"
+    # QGIS's dark themes give every widget a ground of its own.
+    "QScrollArea, QScrollArea > QWidget { background: transparent; }"
+)
+MOST_NAMES = 6
+LINES = 3
+"""Lines that are seen at once."""
+
+
+class EmergencyBanner(QFrame):
+    """Hidden as long as all is well. What stands in it is what the gateway said, never what is hoped for.
+
+    It is as high whatever it says.
+    """
+
+    toggled = pyqtSignal()
+    """It came or went."""
+
+    def __init__(self, desk: FleetController, clear: QAction, parent: QWidget | None = None):
+        super().__init__(parent)
+        self.setObjectName("fleet_emergency_banner")
+        self.setStyleSheet(STYLE)
+        self._desk = desk
+        self._text = ScrollingText("fleet_emergency_text", LINES)
+        self._clear = QToolButton()
+        self._clear.setObjectName("fleet_clear_emergency_button")
+        self._clear.setText(tr("Clear…"))
+        self._clear.setAccessibleName(clear.text())
+        self._clear.setToolTip(f"{clear.text()}\n{clear.toolTip()}")
+        self._clear.clicked.connect(lambda _=False: clear.trigger())
+        columns = QHBoxLayout(self)
+        columns.setContentsMargins(6, 3, 4, 3)
+        columns.addWidget(self._text, 1)
+        columns.addWidget(self._clear, 0, Qt.AlignmentFlag.AlignVCenter)
+        self.hide()
+        desk.emergency_changed.connect(self.refresh)
+        desk.link_changed.connect(self.refresh)
+        self.refresh()
+
+    def text(self) -> str:
+        """Return what stands in it."""
+        return self._text.text()
+
+    def refresh(self) -> None:
+        """Show how things stand."""
+        report = self._desk.emergency
+        in_force = report is not None and report.in_force
+        asked = self._desk.orders.awaits_stop
+        self._clear.setEnabled(in_force)
+        connected = self._desk.link.phase is ConnectionPhase.CONNECTED
+        text = in_words(report, asked, connected)
+        self._text.setText(text)
+        if self.isHidden() is (in_force or asked):
+            self.setVisible(in_force or asked)
+            self.toggled.emit()
+
+
+def in_words(report: EmergencyReport | None, asked: bool, connected: bool) -> str:
+    """Return what is to be known of a stop: asked for and not confirmed, or in force, and by whom."""
+    lines = []
+    if asked:
+        lines.append(
+            tr(
+                "EMERGENCY STOP asked for. The gateway has not confirmed it yet: watch the robots, and use "
+                "their own emergency stops."
+            )
+        )
+    if report is not None and report.in_force:
+        since = (
+            tr(
+                " since {time}",
+                time=time_of_day(report.at),
+            )
+            if report.at
+            else ""
+        )
+        reason = f" ({report.reason})" if report.reason else ""
+        lines.append(
+            tr(
+                "EMERGENCY STOP in force{since}, by {by}{reason}",
+                since=since,
+                by=report.by,
+                reason=reason,
+            )
+        )
+        lines += _counts(report)
+        if not connected:
+            lines.append(tr("The link to the gateway is down: this is what it said last."))
+    return "\n".join(lines)
+
+
+def _counts(report: EmergencyReport) -> list[str]:
+    lines = [
+        tr_count(
+            report.robots,
+            "{acknowledged} of 1 robot acknowledged, {standing} seen to stand",
+            "{acknowledged} of %n robots acknowledged, {standing} seen to stand",
+            acknowledged=report.acknowledged,
+            standing=report.standing,
+        )
+    ]
+    if report.waiting:
+        # The gateway names some fifty at most, and counts all of them.
+        silent = report.robots - report.acknowledged - len(report.refused)
+        names = ", ".join(first_of(report.waiting, MOST_NAMES, silent))
+        lines.append(tr("No answer from {names}", names=names))
+    if report.refused:
+        refusing = report.robots - report.acknowledged if not report.waiting else 0
+        names = ", ".join(first_of(report.refused, MOST_NAMES, refusing))
+        lines.append(tr("REFUSED by {names}", names=names))
+    if not report.stored:
+        lines.append(
+            tr("Not stored yet: the gateway cannot write its database, so robots on SQL are not told.")
+        )
+    return lines
+
+
+# --- Asks whether an emergency stop is really to be cleared ---
+
+LONGEST_REASON = 500
+
+
+class ClearDialog(QuestionDialog):
+    """Shows how the stop stands and asks for a reason; ``confirmed`` tells the stop's id and the reason."""
+
+    confirmed = pyqtSignal(str, str)
+
+    def __init__(self, report: EmergencyReport, parent: QWidget):
+        super().__init__(
+            "fleet_clear_dialog",
+            tr("Clear the emergency stop?"),
+            ("fleet_clear_confirm", tr("Clear emergency stop")),
+            ("fleet_clear_keep", tr("Keep it in force")),
+            is_safe=True,
+            parent=parent,
+        )
+        self.add_text(in_words(report, asked=False, connected=True))
+        self.add_text(
+            tr(
+                "Cleared, robots can be sent again. None sets off by itself: what they were doing was "
+                "aborted."
+            )
+        )
+        reason = self.add_reason(
+            tr("Why robots may drive again, for the log"), LONGEST_REASON, "fleet_clear_reason"
+        )
+        self.lay_out()
+        stop = report.stop or ""
+        self.accepted.connect(lambda: self.confirmed.emit(stop, reason.text().strip()))

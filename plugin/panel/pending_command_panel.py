@@ -1,0 +1,394 @@
+"""Panel and actions of the pending command, and the dialog that overrides findings."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+
+import numpy as np
+from qgis.core import Qgis, QgsMessageLog, QgsPointXY
+from qgis.PyQt.QtCore import QObject, QPointF, Qt, QTimer, pyqtSignal
+from qgis.PyQt.QtWidgets import QAction, QHBoxLayout, QSizePolicy, QToolButton, QVBoxLayout, QWidget
+
+from ...robot_bridge.core.messages import CommandReport, CommandState, SendMap
+from ..control.fleet_controller import FleetController
+from ..control.messages import TITLE
+from ..control.pending_command import ROUTE, TARGETS, PendingCommand, in_brief, queue_tasks, turned_round
+from ..gateway_client.command_cache import command_state_in_words
+from ..gateway_client.state_texts import COMMAND_STATES
+from ..map.tools.drawing_tool import DrawingTool
+from ..ui.actions import Actions
+from ..ui.dialogs import QuestionDialog
+from ..ui.errors import FleetError, NotSentError
+from ..ui.glyphs import WRONG_STYLE
+from ..ui.language import tr
+from ..ui.steady_widgets import ScrollingText
+from .command_sources import CoordinatesDialog, command_from_layer
+from .queue import QueueEdits
+
+# --- What is drawn on the map and would be sent, with the buttons that change it, send it or take it away
+
+NOTHING = tr("Select a robot, choose Cone target or Draw route, and click on the map.")
+
+LINES = 3
+"""Lines of the draft in words that are seen at once."""
+REMARK_MS = 60_000
+"""How long a remark stands there: of a command, its newest state stands there longer."""
+GAP = 4
+"""Pixels between two parts."""
+
+
+class PendingCommandPanel(QWidget):
+    """The draft in words; the last thing that happened when there is no draft. Its buttons never move."""
+
+    def __init__(self, desk: FleetController, actions: Actions, parent: QWidget | None = None):
+        super().__init__(parent)
+        self._desk = desk
+        self._remark = ""
+        self._old = QTimer(self)
+        self._old.setSingleShot(True)
+        self._old.timeout.connect(lambda: self._show_remark("", None))
+        self._kept: tuple[str, str] | None = None
+        """The command that the remark is about, and what it is in words."""
+        self._text = ScrollingText("fleet_draft_text", LINES, NOTHING, framed=True)
+        self._lay_out(actions)
+        desk.drafts.changed.connect(self._show)
+        desk.checks.progressed.connect(self._show)
+        desk.sending.outgoing.changed.connect(self._show)
+        desk.sending.waiting_changed.connect(self._show)
+        desk.remarked.connect(self._remarked)
+        desk.orders.kept.connect(self._follow)
+        desk.commands_changed.connect(self._take_steps)
+        desk.site_changed.connect(lambda: self._remarked(""))
+
+    def _lay_out(self, actions: Actions) -> None:
+        # The arrows are known from every program; with words they made the panel too broad.
+        changes = [_button(one, words=False) for one in (actions.undo, actions.redo, actions.reverse)]
+        beside = QVBoxLayout()
+        beside.setSpacing(GAP)
+        beside.addLayout(_row(changes))
+        beside.addWidget(_button(actions.override))
+        beside.addStretch(1)
+        above = QHBoxLayout()
+        above.setSpacing(GAP)
+        above.addWidget(self._text, 1)
+        above.addLayout(beside)
+        rows = QVBoxLayout(self)
+        rows.setContentsMargins(0, 0, 0, 0)
+        rows.setSpacing(GAP)
+        rows.addLayout(above)
+        rows.addLayout(_row([_button(one) for one in (actions.send, actions.enqueue, actions.cancel)]))
+
+    def _remarked(self, text: str) -> None:
+        """Show a text for a while; QGIS's log of messages keeps it."""
+        if text:
+            QgsMessageLog.logMessage(text, TITLE, Qgis.MessageLevel.Info, False)
+        self._show_remark(text, None)
+        self._old.start(REMARK_MS)
+
+    def _show_remark(self, text: str, kept: tuple[str, str] | None) -> None:
+        self._old.stop()
+        self._remark, self._kept = text, kept
+        self._show()
+
+    def _follow(self, command: str, words: str) -> None:
+        """Say how a command stands, from now on at each of its steps until something else happens."""
+        known = self._desk.book.get(command)
+        stands = COMMAND_STATES[CommandState.QUEUED] if known is None else command_state_in_words(known)
+        # First of all: what follows may be longer than the lines that are seen.
+        self._show_remark(f"{stands[0].upper()}{stands[1:]}. {words}.", (command, words))
+
+    def _take_steps(self, reports: Sequence[CommandReport]) -> None:
+        if self._kept is not None and any(report.command == self._kept[0] for report in reports):
+            self._follow(*self._kept)
+
+    def _show(self) -> None:
+        draft = self._desk.drafts.draft
+        told = self._told(draft) if draft is not None else self._remark or NOTHING
+        self._text.setText("\n".join([*self._going_out(), told]))
+        is_wrong = draft is not None and draft.findings.faults
+        self._text.set_text_style(WRONG_STYLE if is_wrong else "")
+
+    def _going_out(self) -> list[str]:
+        """Return a line about what was sent before the draft on the map was begun."""
+        outgoing = self._desk.sending.outgoing
+        if outgoing.first is None:
+            return []
+        return [
+            tr(
+                "{in_words} is being checked: {share:.0%}. It goes out when nothing speaks against it.",
+                in_words=outgoing.first.in_words(),
+                share=outgoing.share,
+            )
+        ]
+
+    def _told(self, draft: PendingCommand) -> str:
+        checks = self._desk.checks
+        if self._desk.sending.awaits_way:
+            return tr(
+                "{in_words}. It goes out when that is found and nothing speaks against it; Esc keeps it "
+                "back.",
+                in_words=draft.in_words(),
+            )
+        if not checks.is_under_way:
+            return _in_words(draft)
+        if not checks.has_order:
+            return tr(
+                "{in_words}. Being checked: {share:.0%}.", in_words=draft.in_words(), share=checks.share
+            )
+        return tr(
+            "{in_words}. Being checked: {share:.0%}. It goes out when nothing speaks against it; Esc keeps "
+            "it back.",
+            in_words=draft.in_words(),
+            share=checks.share,
+        )
+
+
+def _button(action: QAction, *, words: bool = True) -> QToolButton:
+    button = QToolButton()
+    button.setObjectName(f"{action.objectName()}_button")
+    button.setDefaultAction(action)
+    style, policy = Qt.ToolButtonStyle, QSizePolicy.Policy
+    button.setToolButtonStyle(style.ToolButtonTextBesideIcon if words else style.ToolButtonIconOnly)
+    button.setSizePolicy(policy.Expanding, policy.Fixed)
+    return button
+
+
+def _row(buttons: Sequence[QToolButton]) -> QHBoxLayout:
+    row = QHBoxLayout()
+    row.setContentsMargins(0, 0, 0, 0)
+    row.setSpacing(GAP)
+    for button in buttons:
+        row.addWidget(button)
+    return row
+
+
+def _in_words(draft: PendingCommand) -> str:
+    if draft.override:
+        return tr(
+            "{in_words}. OVERRIDDEN: {override}. Enter or Send sends it.",
+            in_words=draft.in_words(),
+            override=draft.override,
+        )
+    if draft.findings.faults:
+        found = in_brief(draft.findings.faults)
+        hint = tr(" Override… sends it all the same, where your role may.") if draft.can_be_overridden else ""
+        return tr(
+            "{in_words}. Not to be sent: {found}{hint}",
+            in_words=draft.in_words(),
+            found=found,
+            hint=hint,
+        )
+    if draft.fault:
+        return f"{draft.in_words()}: {draft.fault}."
+    warnings = f" {in_brief(draft.findings.warnings)}" if draft.findings.warnings else ""
+    if draft.kind == TARGETS:
+        return tr(
+            "{in_words}.{warnings} Add to queue lets them be placed one after the other.",
+            in_words=draft.in_words(),
+            warnings=warnings,
+        )
+    return tr("{in_words}.{warnings} Enter or Send sends it.", in_words=draft.in_words(), warnings=warnings)
+
+
+# --- Asks why something is to be sent in spite of what the checks found ---
+
+LONGEST_WHY = 300
+"""characters."""
+LONGEST = 1000
+"""characters of what goes to the gateway."""
+MOST_SHOWN = 6
+
+
+class OverrideDialog(QuestionDialog):
+    """Shows what was found of ``what``, and what is done ``then``; nothing is before a reason is given.
+
+    ``is_safe`` as with the dialog itself: where robots set off by it, Enter does not override.
+    """
+
+    confirmed = pyqtSignal(str)
+    """What is overridden and why."""
+
+    def __init__(self, what: str, found: Sequence[str], then: str, parent: QWidget, *, is_safe: bool):
+        super().__init__(
+            "fleet_override",
+            tr("Override the checks"),
+            ("fleet_override_confirm", tr("Override")),
+            is_safe=is_safe,
+            parent=parent,
+        )
+        self._found = in_brief(found, MOST_SHOWN)
+        self.add_text(f"{what}. {self._found}")
+        self._why = self.add_reason(tr("Why it is right all the same"), LONGEST_WHY, "fleet_override_why")
+        log = tr("Your name, what was found and why go into the gateway's log.")
+        self.add_text(f"{log} {then}")
+        self.lay_out()
+        self.confirm.setEnabled(False)
+        self._why.textChanged.connect(lambda text: self.confirm.setEnabled(bool(text.strip())))
+        self.accepted.connect(self._confirm)
+
+    def _confirm(self) -> None:
+        why = tr("because: {reason}", reason=self._why.text().strip())
+        found = self._found[: LONGEST - len(why) - 1]
+        text = "".join(c if c.isprintable() else " " for c in f"{found} {why}")
+        self.confirmed.emit(text)
+
+
+# --- What can be done with the draft by buttons, and where it can come from besides clicks ---
+
+
+class PendingCommandActions(QObject):
+    """Wires the actions of drafts. None of them sends a draft but ``enqueue``, to its robot's queue."""
+
+    def __init__(self, desk: FleetController, edits: QueueEdits, actions: Actions, window: QWidget):
+        super().__init__(window)
+        self._desk = desk
+        self._edits = edits
+        self._actions = actions
+        self._window = window
+        self._coordinates: CoordinatesDialog | None = None
+        actions.undo.triggered.connect(lambda: desk.drafts.undo())
+        actions.redo.triggered.connect(lambda: desk.drafts.redo())
+        actions.reverse.triggered.connect(lambda: self._try(self._reverse))
+        actions.enqueue.triggered.connect(lambda: self._try(self._enqueue))
+        actions.override.triggered.connect(lambda: self._try(self._override))
+        actions.from_layer.triggered.connect(lambda: self._try(self._take_from_layer))
+        actions.coordinates.triggered.connect(self._ask_for_coordinates)
+        actions.send_map.triggered.connect(lambda: self._try(self._send_maps))
+        desk.drafts.changed.connect(self._enable)
+        self._enable()
+
+    def remove(self) -> None:
+        """Close what is open and let the window go."""
+        if self._coordinates is not None:
+            self._coordinates.close()
+            self._coordinates.deleteLater()
+        self.deleteLater()
+
+    def _enable(self) -> None:
+        drafts, actions = self._desk.drafts, self._actions
+        draft = drafts.draft
+        actions.undo.setEnabled(drafts.can_undo)
+        actions.redo.setEnabled(drafts.can_redo)
+        actions.reverse.setEnabled(draft is not None and draft.kind == ROUTE and len(draft.points) > 1)
+        actions.override.setEnabled(draft is not None and draft.override is None and draft.can_be_overridden)
+
+    def _reverse(self) -> None:
+        self._desk.put_draft(turned_round(self._draft()))
+
+    def _enqueue(self) -> None:
+        """Put the draft at the end of its robot's queue.
+
+        :raises FleetError: when it must not or cannot be; it stays on the map then.
+        """
+        if self._desk.sending.is_second_press():
+            return
+        self._draft()
+        self._desk.sending.order(lambda draft: self._try(lambda: self._add(draft)))
+
+    def _add(self, draft: PendingCommand) -> None:
+        draft = draft.as_task()
+        if draft.fault:
+            raise NotSentError(
+                tr(
+                    "{in_words} was not put into the queue: {fault}",
+                    in_words=draft.in_words(),
+                    fault=draft.fault,
+                )
+            )
+        if self._edits.is_asked(draft.robot):
+            raise NotSentError(
+                tr(
+                    "The gateway has not answered yet what was asked of the queue of {robot} before. Try "
+                    "again in a moment.",
+                    robot=draft.robot,
+                )
+            )
+        words = tr("{in_words}, into the queue", in_words=draft.in_words())
+        if self._edits.add(draft.robot, queue_tasks(draft), words, draft.override, draft) is not None:
+            self._desk.sending.clear(draft)
+
+    def _override(self) -> None:
+        draft = self._draft()
+        if not draft.can_be_overridden:
+            raise NotSentError(
+                tr(
+                    "{in_words}: there is nothing here that an override would help.",
+                    in_words=draft.in_words(),
+                )
+            )
+        then = tr("Nothing is sent yet.")
+        found = draft.findings.overridable
+        dialog = OverrideDialog(draft.in_words(), found, then, self._window, is_safe=False)
+        dialog.confirmed.connect(lambda why: self._overridden(draft, why))
+        dialog.open()
+
+    def _overridden(self, draft: PendingCommand, text: str) -> None:
+        if self._desk.drafts.draft is not draft:
+            self._desk.complained.emit(
+                tr(
+                    "The draft has changed since it was looked at, so nothing was overridden. Press "
+                    "Override again."
+                )
+            )
+            return
+        self._desk.drafts.renew(replace(draft, override=text))
+
+    def _take_from_layer(self) -> None:
+        self._check_free()
+        draft = command_from_layer(self._desk.canvas.currentLayer(), self._desk)
+        self._desk.put_draft(draft)
+        self._show(draft.points)
+
+    def _ask_for_coordinates(self) -> None:
+        if self._coordinates is None:
+            self._coordinates = CoordinatesDialog(self._desk, self._window)
+            self._coordinates.chosen.connect(self._chosen)
+        self._coordinates.ask()
+
+    def _chosen(self, x: float, y: float) -> None:
+        if not isinstance(self._desk.canvas.mapTool(), DrawingTool):
+            self._actions.cone.trigger()
+        tool: DrawingTool = self._desk.canvas.mapTool()
+        tool.take((x, y))
+        self._try(lambda: self._show(((x, y),)))
+
+    def _send_maps(self) -> None:
+        if not self._desk.selection:
+            raise NotSentError(tr("No robot is selected, so none was sent the map. Select it first."))
+        for robot in self._desk.selection:
+            self._desk.ask(SendMap(robot), tr("Map for {robot}", robot=robot))
+
+    def _draft(self) -> PendingCommand:
+        draft = self._desk.drafts.draft
+        if draft is None:
+            raise NotSentError(
+                tr("There is no draft on the map. Select a robot, then set a cone target or draw a route.")
+            )
+        return draft
+
+    def _check_free(self) -> None:
+        draft = self._desk.drafts.draft
+        if draft is not None and not self._desk.checks.has_order:
+            raise NotSentError(
+                tr(
+                    "{in_words} is still on the map. Send it (Enter) or cancel it (Esc) first.",
+                    in_words=draft.in_words(),
+                )
+            )
+
+    def _show(self, points: tuple[tuple[float, float], ...]) -> None:
+        """Move the map where none of ``points`` is on it."""
+        canvas = self._desk.canvas
+        places = self._desk.placement().to_map(np.array(points))
+        # Of a rotated map the extent also has corners that are not on the screen.
+        seen, rule = canvas.mapSettings().visiblePolygon(), Qt.FillRule.OddEvenFill
+        if not any(seen.containsPoint(QPointF(x, y), rule) for x, y in places.tolist()):
+            canvas.setCenter(QgsPointXY(*places[0]))
+            canvas.refresh()
+
+    def _try(self, action: Callable[[], object]) -> None:
+        try:
+            action()
+        except FleetError as error:
+            self._desk.failed.emit(str(error))

@@ -1,0 +1,538 @@
+"""Queue of the selected robot: tasks in their order, edits, pause and continue."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+from qgis.core import QgsPointXY
+from qgis.PyQt.QtCore import QMimeData, QModelIndex, QObject, Qt, pyqtSignal
+from qgis.PyQt.QtGui import QFont, QKeyEvent
+from qgis.PyQt.QtWidgets import (
+    QAbstractItemView,
+    QHBoxLayout,
+    QHeaderView,
+    QSizePolicy,
+    QStackedWidget,
+    QToolButton,
+    QTreeView,
+    QVBoxLayout,
+    QWidget,
+)
+
+from ...robot_bridge.core.messages import (
+    AddTasks,
+    MakeCurrent,
+    MoveTask,
+    PauseQueue,
+    PauseRobot,
+    QueueReport,
+    QueueState,
+    QueueTask,
+    RemoveTask,
+    ResumeQueue,
+    TaskReport,
+    TaskState,
+)
+from ..control.fleet_controller import FleetController
+from ..control.messages import QueueStand, Topic, draft_topic, queue_topic
+from ..control.pending_command import PendingCommand
+from ..gateway_client.buffers import RequestResult
+from ..gateway_client.state_texts import (
+    last_ended_in_words,
+    queue_in_words,
+    task_in_words,
+    task_state_in_words,
+)
+from ..ui.actions import Actions
+from ..ui.errors import FleetError
+from ..ui.glyphs import WRONG, WRONG_STYLE, for_letters
+from ..ui.language import tr
+from ..ui.steady_widgets import ElidedText, SteadyButton
+from ..ui.tables import RowModel, ZoomMenu, shrink_view
+
+# --- What the operator changes in the robots' queues, from the press of a button to the gateway's answer
+
+QueueRequest = AddTasks | MoveTask | RemoveTask | MakeCurrent | PauseQueue | PauseRobot | ResumeQueue
+
+CHANGED_MEANWHILE = tr("Not done: the queue has changed since you saw it. This is how it stands now.")
+
+
+class QueueEdits(QObject):
+    """Asks for changes at the revision that is shown, so that none of another operator's is undone unseen.
+
+    Each method returns the order's key, None when it could not be sent: then the desk has said why.
+    """
+
+    changed = pyqtSignal()
+    """Something was asked for, or the gateway answered."""
+
+    def __init__(self, desk: FleetController, parent: QObject | None = None):
+        super().__init__(parent)
+        self._desk = desk
+        self._asked: dict[str, str] = {}
+        self._conflicts: dict[str, str] = {}
+        desk.answered.connect(self._answered)
+        desk.site_changed.connect(self._clear)
+
+    def is_asked(self, robot: str) -> bool:
+        """Tell whether the gateway has not answered yet what was asked of this queue."""
+        return robot in self._asked.values()
+
+    def conflict(self, robot: str) -> str:
+        """Return what became of a change that came too late; empty after the next one."""
+        return self._conflicts.get(robot, "")
+
+    def add(
+        self,
+        robot: str,
+        tasks: Sequence[QueueTask],
+        words: str,
+        override: str | None = None,
+        draft: PendingCommand | None = None,
+    ) -> str | None:
+        """Put tasks at the end of a robot's queue; ``words`` say what they are, ``override`` as AddTasks.
+
+        The ``draft`` that they were made of comes back with a refusal.
+        """
+        request = AddTasks(robot, self._revision(robot), list(tasks), override=override)
+        return self._change(request, words, draft=draft)
+
+    def move(self, robot: str, task: str, before: str | None) -> str | None:
+        """Move a task in front of task ``before``, or to the end."""
+        request = MoveTask(robot, self._revision(robot), task, before)
+        return self._change(request, tr("Moving a task of {robot}", robot=robot), self._waiting(robot, task))
+
+    def remove(self, robot: str, task: str) -> str | None:
+        """Take a task out of a queue."""
+        request = RemoveTask(robot, self._revision(robot), task)
+        words = tr("Removing a task of {robot}", robot=robot)
+        return self._change(request, words, self._waiting(robot, task))
+
+    def make_current(self, robot: str, task: str) -> str | None:
+        """Let a task be done first, at once unless the queue is paused."""
+        request = MakeCurrent(robot, self._revision(robot), task)
+        return self._change(request, tr("A task of {robot} first", robot=robot), self._waiting(robot, task))
+
+    def pause(self, robot: str) -> str | None:
+        """Send a robot no further task."""
+        words = tr("Pausing the queue of {robot}", robot=robot)
+        return self._change(PauseQueue(robot), words, self._state(robot))
+
+    def pause_robot(self, robot: str) -> str | None:
+        """Let a robot stand, and keep what it is doing."""
+        return self._change(PauseRobot(robot), tr("Pause of {robot}", robot=robot), self._state(robot))
+
+    def go_on(self, queue: QueueReport) -> str | None:
+        """Let a robot go on with what is at the head of its queue, which is told."""
+        words = tr("{robot} continues", robot=queue.robot)
+        if queue.tasks:
+            words = tr("{robot} continues with {task}", robot=queue.robot, task=task_in_words(queue.tasks[0]))
+        return self._change(ResumeQueue(queue.robot, queue.revision), words, self._state(queue.robot))
+
+    def resume(self, robot: str) -> str | None:
+        """Let a queue that is paused go on."""
+        words = tr("Resuming the queue of {robot}", robot=robot)
+        return self._change(ResumeQueue(robot, self._revision(robot)), words, self._state(robot))
+
+    def _revision(self, robot: str) -> int:
+        return self._desk.queues.revision(robot)
+
+    def _state(self, robot: str) -> Topic:
+        queue = self._desk.queues.get(robot)
+        return queue_topic(QueueStand(robot, state="" if queue is None else queue.state.value))
+
+    def _waiting(self, robot: str, task: str) -> Topic:
+        return queue_topic(QueueStand(robot, task=task))
+
+    def _change(
+        self, request: QueueRequest, words: str, *topics: Topic, draft: PendingCommand | None = None
+    ) -> str | None:
+        try:
+            key = self._desk.ask(request, words, *topics, draft=draft)
+        except FleetError as error:
+            about = () if draft is None else (draft_topic(draft.place),)
+            self._desk.report_failure(str(error), *error.topics, *about)
+            return None
+        self._asked[key] = request.robot
+        self._conflicts.pop(request.robot, None)
+        self.changed.emit()
+        return key
+
+    def _answered(self, answer: RequestResult) -> None:
+        robot = self._asked.pop(answer.order.key, None)
+        if robot is None:
+            return
+        if answer.outdated:
+            self._conflicts[robot] = CHANGED_MEANWHILE
+        self.changed.emit()
+
+    def _clear(self) -> None:
+        self._asked.clear()
+        self._conflicts.clear()
+        self.changed.emit()
+
+
+# --- Robots that stand for a while and then go on: the actions *Pause robot* and *Continue* ---
+
+
+class PauseActions(QObject):
+    """Wires both actions to the selected robots.
+
+    *Pause robot* is never greyed out, as nothing is that stops robots; *Continue* is where none of them has a
+    queue that is paused.
+    """
+
+    def __init__(self, desk: FleetController, edits: QueueEdits, actions: Actions, parent: QObject):
+        super().__init__(parent)
+        self._desk = desk
+        self._edits = edits
+        self._go_on = actions.go_on
+        actions.pause.triggered.connect(self._pause)
+        actions.go_on.triggered.connect(self._continue)
+        desk.selection_changed.connect(self._enable)
+        desk.queues_changed.connect(self._enable)
+        desk.site_changed.connect(self._enable)
+        self._enable()
+
+    def _pause(self) -> None:
+        if not self._desk.selection:
+            self._desk.complained.emit(
+                tr("No robot is selected, so none was paused. Select it in the table or on the map.")
+            )
+        for robot in self._desk.selection:
+            self._edits.pause_robot(robot)
+        self._desk.sending.withdraw()
+
+    def _continue(self) -> None:
+        for queue in self._paused():
+            self._edits.go_on(queue)
+
+    def _paused(self) -> list[QueueReport]:
+        queues = (self._desk.queues.get(robot) for robot in self._desk.selection)
+        return [queue for queue in queues if queue is not None and queue.state is QueueState.PAUSED]
+
+    def _enable(self, *_: object) -> None:
+        self._go_on.setEnabled(bool(self._paused()))
+
+
+# --- The tasks of one queue in their order, to be dragged into another ---
+
+COLUMNS = ("", tr("Task"), tr("State"))
+MIME = "application/x-fleet-task"
+NUMBER, TASK, STATE = range(3)
+
+
+class TaskModel(RowModel):
+    """One row for each task. A drop changes nothing here: it is asked for, and told by the gateway."""
+
+    move_wanted = pyqtSignal(str, object)
+    """A task, and the one that it shall stand before or None for the end."""
+
+    def __init__(self, parent: QWidget | None = None):
+        super().__init__(COLUMNS, parent)
+
+    @property
+    def tasks(self) -> list[TaskReport]:
+        """The tasks, first to last."""
+        return self.rows
+
+    def show_tasks(self, tasks: list[TaskReport]) -> None:
+        """Show these tasks."""
+        self.show_rows(tasks, lambda task: task.task)
+
+    def data(self, index: QModelIndex, role: int = 0) -> object:
+        task, column = self.rows[index.row()], index.column()
+        if role == Qt.ItemDataRole.DisplayRole:
+            return (str(index.row() + 1), task_in_words(task), task_state_in_words(task))[column]
+        if role == Qt.ItemDataRole.ToolTipRole:
+            added = tr("added by {by}", by=task.added_by)
+            return f"{task_in_words(task)}\n{task_state_in_words(task)}\n{added}"
+        if role == Qt.ItemDataRole.FontRole and task.state is TaskState.CURRENT:
+            bold = QFont()
+            bold.setBold(True)
+            return bold
+        if role == Qt.ItemDataRole.ForegroundRole and task.state is TaskState.FAILED and column == STATE:
+            return for_letters(WRONG)
+        return None
+
+    def flags(self, index: QModelIndex) -> Qt.ItemFlag:
+        if not index.isValid():
+            return Qt.ItemFlag.ItemIsDropEnabled
+        flags = Qt.ItemFlag.ItemIsEnabled | Qt.ItemFlag.ItemIsSelectable
+        if self.rows[index.row()].state is not TaskState.CURRENT:
+            flags |= Qt.ItemFlag.ItemIsDragEnabled
+        return flags
+
+    def supportedDropActions(self) -> Qt.DropAction:
+        return Qt.DropAction.MoveAction
+
+    def mimeTypes(self) -> list[str]:
+        return [MIME]
+
+    def mimeData(self, indexes: list[QModelIndex]) -> QMimeData:
+        mime = QMimeData()
+        mime.setData(MIME, self.rows[indexes[0].row()].task.encode())
+        return mime
+
+    def dropMimeData(
+        self, data: QMimeData, action: Qt.DropAction, row: int, column: int, parent: QModelIndex
+    ) -> bool:
+        task = bytes(data.data(MIME)).decode()
+        if task not in [one.task for one in self.rows]:
+            # Dragged from before the robot was another, or the task was done.
+            return False
+        at = parent.row() if row < 0 and parent.isValid() else row
+        self.want_at(task, len(self.rows) if at < 0 else at)
+        # Not True: the view would take out the row that it takes for moved.
+        return False
+
+    def want_at(self, task: str, row: int) -> None:
+        """Ask for a task to stand in front of what is in ``row`` now; nothing where it stands there."""
+        first = 1 if self.rows and self.rows[0].state is TaskState.CURRENT else 0
+        row = max(first, row)
+        here = next(k for k, one in enumerate(self.rows) if one.task == task)
+        if here < first or row in (here, here + 1):
+            return
+        before = self.rows[row].task if row < len(self.rows) else None
+        self.move_wanted.emit(task, before)
+
+
+class TaskList(QTreeView):
+    """The list: drag a task to where it shall come, or move the selected one with Alt and the arrow keys."""
+
+    remove_wanted = pyqtSignal(str)
+    first_wanted = pyqtSignal(str)
+
+    def __init__(self, parent: QWidget | None = None):
+        super().__init__(parent)
+        self.setObjectName("fleet_queue_tasks")
+        self.tasks = TaskModel(self)
+        self.setModel(self.tasks)
+        self.setRootIsDecorated(False)
+        self.setUniformRowHeights(True)
+        self.setAlternatingRowColors(True)
+        self.setSelectionMode(QAbstractItemView.SelectionMode.SingleSelection)
+        self.setDragDropMode(QAbstractItemView.DragDropMode.DragDrop)
+        self.setDefaultDropAction(Qt.DropAction.MoveAction)
+        self.setDropIndicatorShown(True)
+        shrink_view(self)
+        header = self.header()
+        header.setStretchLastSection(False)
+        header.setSectionResizeMode(TASK, QHeaderView.ResizeMode.Stretch)
+        for column, widest in ((NUMBER, "000"), (STATE, tr("waiting: robot"))):
+            self.setColumnWidth(column, self.fontMetrics().horizontalAdvance(widest) + 14)
+
+    def show_tasks(self, tasks: list[TaskReport]) -> None:
+        """Show these tasks; the one that is selected stays so."""
+        chosen = self.chosen
+        self.tasks.show_tasks(tasks)
+        row = next((k for k, task in enumerate(tasks) if task.task == chosen), None)
+        if row is not None:
+            self.setCurrentIndex(self.tasks.index(row, 0))
+
+    @property
+    def chosen(self) -> str | None:
+        """The task that is selected."""
+        rows = self.selectionModel().selectedRows()
+        return self.tasks.tasks[rows[0].row()].task if rows else None
+
+    def keyPressEvent(self, event: QKeyEvent) -> None:
+        task = self.chosen
+        keys = Qt.Key
+        if task is None:
+            super().keyPressEvent(event)
+        elif event.modifiers() & Qt.KeyboardModifier.AltModifier and event.key() in (
+            keys.Key_Up,
+            keys.Key_Down,
+            keys.Key_Home,
+            keys.Key_End,
+        ):
+            self._move(task, event.key())
+        elif event.key() == keys.Key_Delete:
+            self.remove_wanted.emit(task)
+        elif event.key() in (keys.Key_Return, keys.Key_Enter):
+            # Alone it goes to the place: it must not let a robot drive off by a slip of the hand.
+            if event.modifiers() & Qt.KeyboardModifier.ControlModifier:
+                self.first_wanted.emit(task)
+        else:
+            super().keyPressEvent(event)
+
+    def _move(self, task: str, key: int) -> None:
+        count = len(self.tasks.tasks)
+        here = next(k for k, one in enumerate(self.tasks.tasks) if one.task == task)
+        rows = {
+            Qt.Key.Key_Up: here - 1,
+            Qt.Key.Key_Down: here + 2,
+            Qt.Key.Key_Home: 0,
+            Qt.Key.Key_End: count,
+        }
+        self.tasks.want_at(task, min(max(0, rows[key]), count))
+
+
+# --- The queue of the selected robot: what it is to do one after the other ---
+
+
+class QueuePanel(QWidget):
+    """Shows one queue and asks for its changes; nothing is moved here before the gateway says so.
+
+    A double click on a task shows its place on the map.
+    """
+
+    def __init__(self, desk: FleetController, edits: QueueEdits, parent: QWidget | None = None):
+        super().__init__(parent)
+        self.setObjectName("fleet_queue")
+        self._desk = desk
+        self._edits = edits
+        self._head = ElidedText("fleet_queue_head")
+        self._conflict = ElidedText("fleet_queue_conflict")
+        self._conflict.setStyleSheet(WRONG_STYLE)
+        self._last = ElidedText("fleet_queue_last")
+        self._foot = QStackedWidget()
+        """The conflict while there is one; else the task that ended last."""
+        self.list = TaskList()
+        self._buttons(
+            tr("Move the selected task one up (Alt+Up)"),
+            tr("Move the selected task one down (Alt+Down)"),
+        )
+        rows = QVBoxLayout(self)
+        rows.setContentsMargins(0, 2, 0, 0)
+        rows.setSpacing(3)
+        # At the top: what takes room from the panel takes it from the end of the list.
+        rows.addLayout(self._row)
+        rows.addWidget(self._head)
+        rows.addWidget(self.list, 1)
+        for line in (self._last, self._conflict):
+            self._foot.addWidget(line)
+        self._foot.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Fixed)
+        rows.addWidget(self._foot)
+        self._listen()
+        self._show()
+
+    def _buttons(self, up: str, down: str) -> None:
+        self._up = _button("fleet_queue_up", "▲", up)
+        self._down = _button("fleet_queue_down", "▼", down)
+        self._remove = _button("fleet_queue_remove", tr("Remove"), tr("Take the selected task out (Delete)"))
+        self._first = _button(
+            "fleet_queue_first",
+            tr("Do now"),
+            tr("Let the robot do the selected task at once; what it is doing comes next (Ctrl+Enter)"),
+        )
+        self._hold = _button("fleet_queue_hold", tr("Pause"), "", (tr("Resume"),))
+        self._row = QHBoxLayout()
+        self._row.setSpacing(4)
+        for button in (self._up, self._down, self._remove, self._first, self._hold):
+            self._row.addWidget(button, 1)
+
+    def _listen(self) -> None:
+        tasks = self.list
+        tasks.tasks.move_wanted.connect(self._move)
+        tasks.remove_wanted.connect(lambda task: self._ask(self._edits.remove, task))
+        tasks.first_wanted.connect(lambda task: self._ask(self._edits.make_current, task))
+        tasks.selectionModel().selectionChanged.connect(self._show_buttons)
+        ZoomMenu(tasks, lambda index: self._go(index.row()))
+        self._up.clicked.connect(lambda: self._step(-1))
+        self._down.clicked.connect(lambda: self._step(2))
+        self._remove.clicked.connect(lambda: self._chosen(self._edits.remove))
+        self._first.clicked.connect(lambda: self._chosen(self._edits.make_current))
+        self._hold.clicked.connect(self._hold_or_resume)
+        self._desk.queues_changed.connect(self._show)
+        self._edits.changed.connect(self._show)
+        self._desk.selection_changed.connect(self._show)
+
+    def _show(self, *_: object) -> None:
+        queue = self._queue()
+        self._head.setText(self._in_words(queue))
+        conflict = self._edits.conflict(self._desk.selected or "")
+        self._conflict.setText(conflict)
+        self._foot.setCurrentWidget(self._conflict if conflict else self._last)
+        self._last.setText(last_ended_in_words(queue) if queue else "")
+        self.list.show_tasks(list(queue.tasks) if queue else [])
+        self._show_buttons()
+
+    def _show_buttons(self, *_: object) -> None:
+        queue, waits = self._queue(), self._is_free()
+        chosen = self.list.chosen
+        task = next((one for one in queue.tasks if one.task == chosen), None) if queue else None
+        movable = waits and task is not None and task.state is not TaskState.CURRENT
+        for button in (self._up, self._down, self._remove, self._first):
+            button.setEnabled(movable)
+        paused = queue is not None and queue.state is QueueState.PAUSED
+        self._hold.setText(tr("Resume") if paused else tr("Pause"))
+        self._hold.setToolTip(
+            tr("Let the robot go on with the task at the head of its queue")
+            if paused
+            else tr("Send the robot no further task; what it is doing it finishes (Pause robot stops it)")
+        )
+        # To hold is never in the way of anything: it waits for no answer.
+        self._hold.setEnabled(self._desk.selected is not None and (waits or not paused))
+
+    def _queue(self) -> QueueReport | None:
+        robot = self._desk.selected
+        return self._desk.queues.get(robot) if robot is not None else None
+
+    def _is_free(self) -> bool:
+        """Tell whether what is shown is what the gateway has: nothing asked for is without an answer."""
+        return not self._edits.is_asked(self._desk.selected or "")
+
+    def _in_words(self, queue: QueueReport | None) -> str:
+        if queue is not None:
+            return queue_in_words(queue)
+        if self._desk.selected is not None:
+            return tr(
+                "{selected} has no queue. Add a target or a route with Add to queue.",
+                selected=self._desk.selected,
+            )
+        queues = list(self._desk.queues)
+        paused = sum(one.state is QueueState.PAUSED for one in queues)
+        if not queues:
+            return tr("Select a robot to see its queue. None has one yet.")
+        return tr(
+            "Select a robot to see its queue. {queues} have one, {paused} of them paused.",
+            queues=len(queues),
+            paused=paused,
+        )
+
+    def _chosen(self, edit: Callable[..., object]) -> None:
+        task = self.list.chosen
+        if task is not None:
+            self._ask(edit, task)
+
+    def _step(self, by: int) -> None:
+        task = self.list.chosen
+        if task is not None:
+            tasks = self.list.tasks
+            here = next(k for k, one in enumerate(tasks.tasks) if one.task == task)
+            tasks.want_at(task, min(max(0, here + by), len(tasks.tasks)))
+
+    def _move(self, task: str, before: str | None) -> None:
+        self._ask(self._edits.move, task, before)
+
+    def _ask(self, edit: Callable[..., object], *how: str | None) -> None:
+        robot = self._desk.selected
+        if robot is not None and self._is_free():
+            edit(robot, *how)
+
+    def _hold_or_resume(self) -> None:
+        queue, robot = self._queue(), self._desk.selected
+        if robot is not None:
+            resumes = queue is not None and queue.state is QueueState.PAUSED
+            (self._edits.resume if resumes else self._edits.pause)(robot)
+
+    def _go(self, row: int) -> None:
+        task = self.list.tasks.tasks[row]
+        try:
+            ((x, y),) = self._desk.placement().to_map(np.array([(task.x, task.y)]))
+        except FleetError as error:
+            self._desk.complained.emit(str(error))
+            return
+        self._desk.canvas.setCenter(QgsPointXY(x, y))
+        self._desk.canvas.refresh()
+
+
+def _button(name: str, text: str, tip: str, others: tuple[str, ...] = ()) -> QToolButton:
+    button = SteadyButton(name, (text, *others))
+    button.setText(text)
+    button.setToolTip(tip)
+    button.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
+    return button

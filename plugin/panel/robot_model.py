@@ -1,0 +1,478 @@
+"""Model of the robot table: columns, rows as arrays, sorting and filtering."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from enum import Enum
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+from qgis.PyQt.QtCore import QAbstractTableModel, QModelIndex, QObject, Qt
+
+from ...robot_bridge.core.messages import (
+    CommandReport,
+    CommandState,
+    QueueState,
+    RobotState,
+    SetPath,
+    SetPosEnd,
+)
+from ..gateway_client.command_cache import CommandCache, PathDeviations, command_in_words
+from ..gateway_client.report_caches import QueueCache
+from ..gateway_client.robot_states import RobotStates
+from ..gateway_client.robot_table import STATES
+from ..gateway_client.state_texts import COMMAND_STATES, ROBOT_STATES, longest_word
+from ..ui.glyphs import STATE_COLOURS, for_letters, state_icon
+from ..ui.language import tr
+from ..ui.tables import TO_THE_RIGHT
+from ..ui.times import age_in_words, heard_in_words
+
+# --- The columns of the robot table: what stands in them, and what they are sorted by ---
+
+
+@dataclass(frozen=True)
+class Column:
+    """One column, by its ``title`` in the code and its ``head`` for the operator.
+
+    ``widest`` is the longest text it has room for, ``first`` whether it is shown at first.
+    """
+
+    title: str
+    head: str
+    widest: str
+    tip: str
+    is_number: bool = False
+    first: bool = True
+
+
+COLUMNS = (
+    Column("Robot", tr("Robot"), "robot-00", tr("The robot's name")),
+    Column(
+        "State",
+        tr("State"),
+        longest_word(ROBOT_STATES),
+        tr("How far what is known of it can be trusted"),
+    ),
+    Column("Task", tr("Task"), "", tr("What it is doing, or what it says")),
+    Column("Speed", tr("Speed"), "0.0 m/s", tr("Its speed, as it says"), True, False),
+    Column("Batt.", tr("Batt."), "100%", tr("How full its battery is"), True),
+    Column("Age", tr("Age"), "00 min", tr("How long ago anything was heard of it"), True),
+    Column("Ping", tr("Ping"), "000 ms", tr("How long its link takes there and back"), True),
+    Column(
+        "Off",
+        tr("Off"),
+        "00.0 m",
+        tr("How far it is beside its path, or from the target that it reached last"),
+        True,
+    ),
+    Column("Link", tr("Link"), "ws", tr("How it is connected")),
+    Column(
+        "Position",
+        tr("Position"),
+        "500000.00, 5200000.00",
+        tr("Where it is, in the CRS chosen under Columns"),
+        True,
+        False,
+    ),
+)
+TITLES = tuple(column.title for column in COLUMNS)
+TASK = TITLES.index("Task")
+POSITION = TITLES.index("Position")
+SHORT = {"websocket": "ws"}
+"""Links whose names do not fit into a column."""
+
+
+def short_link(told: dict) -> str:
+    """Return how a robot is connected, short."""
+    link = str(told.get("link", ""))
+    return SHORT.get(link, link)
+
+
+def idle_in_words(*, stopped: bool, paused: bool) -> str:
+    """Return how a robot without a task stands: who was paused goes on when it is told so."""
+    return tr("paused") if paused else tr("stopped") if stopped else ""
+
+
+def task_in_words(task: CommandReport | None, told: dict, *, paused: bool = False) -> str:
+    """Return what a robot is doing, else what it says of itself, else whether it was ``paused``."""
+    if task is None:
+        idle = idle_in_words(stopped=bool(told.get("stopped")), paused=paused)
+        return str(told.get("status") or idle)
+    if task.state is CommandState.ACKNOWLEDGED:
+        if task.params.get("cone"):
+            return tr("to cone")
+        return tr("on route") if task.op == SetPath.__name__ else tr("to target")
+    if task.params.get("cone"):
+        return f"{tr('cone')} {COMMAND_STATES[task.state]}"
+    target = tr("target")
+    name = {SetPosEnd.__name__: target, SetPath.__name__: tr("route")}.get(task.op, task.op)
+    return f"{name} {COMMAND_STATES[task.state]}"
+
+
+def number_in_words(title: str, value: float) -> str:
+    """Return a number of a column as text that fits into it, nothing for one that is not known."""
+    if np.isnan(value):
+        return ""
+    if title == "Speed":
+        return f"{value:.1f} m/s"
+    if title == "Batt.":
+        return f"{value:.0%}"
+    if title == "Ping":
+        return f"{value * 1000:.0f} ms" if value < 0.9995 else f"{value:.1f} s"
+    if title == "Off":
+        return f"{value:.2f} m" if value < 10 else f"{value:.1f} m"
+    return age_in_words(value)
+
+
+# --- All robots at one moment, as the table shows, sorts and filters them: columns, not objects ---
+
+Floats = npt.NDArray[np.float64]
+Rows = npt.NDArray[np.intp]
+Bools = npt.NDArray[np.bool_]
+FRESH = STATES.index(RobotState.FRESH)
+
+
+class RobotChoice(str, Enum):
+    """Which robots are listed."""
+
+    ALL = "all"
+    TROUBLED = "troubled"
+    BUSY = "busy"
+    IDLE = "idle"
+
+
+@dataclass
+class FleetRows:
+    """Row k is the robot in row k of the picture. ``numbers`` has (n,) by column title, NaN where unknown."""
+
+    picture: RobotStates
+    book: CommandCache
+    deviations: PathDeviations
+    names: list[str]
+    state: npt.NDArray[np.intp]
+    xy: Floats
+    numbers: dict[str, Floats]
+    paused: frozenset[str]
+    """Robots with a queue that is paused."""
+    _off: dict[int, float] = field(default_factory=dict)
+    _texts: dict[str, list[str]] = field(default_factory=dict)
+
+    def __len__(self) -> int:
+        return len(self.names)
+
+    def told(self, row: int) -> dict[str, Any]:
+        """Return what was told last of a robot."""
+        return self.picture.told(row)
+
+    def task(self, row: int) -> str:
+        """Return what a robot is doing, in words."""
+        name = self.names[row]
+        return task_in_words(self.book.task_of(name), self.told(row), paused=name in self.paused)
+
+    def off(self, row: int) -> float:
+        """Return how far a robot is from where it was told to be, NaN where nobody can tell."""
+        known = self._off.get(row)
+        if known is None:
+            x, y = self.xy[row].tolist()
+            at = (x, y) if np.isfinite(x) and np.isfinite(y) else None
+            found = self.deviations.of(self.names[row], at)
+            known = self._off[row] = np.nan if found is None else found
+        return known
+
+    def shown(self, which: RobotChoice, text: str, troubled: set[str]) -> Rows:
+        """Return the rows that are listed, by name: each word of ``text`` is in name, state, task or link."""
+        rows = np.array(self.picture.by_name(), dtype=np.intp)
+        if which is RobotChoice.TROUBLED:
+            bad = self.state != FRESH
+            bad[[row for name in troubled if (row := self.picture.row(name)) is not None]] = True
+            rows = rows[bad[rows]]
+        elif which is not RobotChoice.ALL:
+            busy = np.zeros(len(self), dtype=bool)
+            for task in self.book.under_way():
+                row = self.picture.row(task.robot)
+                if row is not None:
+                    busy[row] = True
+            rows = rows[busy[rows] == (which is RobotChoice.BUSY)]
+        words = text.casefold().split()
+        if not words:
+            return rows
+        names = [name.casefold() for name in self.names]
+        has = np.logical_and.reduce([self._has(word, names) for word in words])
+        return rows[has[rows]]
+
+    def sorted(self, rows: Rows, title: str, descending: bool) -> Rows:
+        """Return ``rows``, which come by name, sorted by a column; what is not known comes last."""
+        if title == "Robot":
+            return rows[::-1] if descending else rows
+        keys = self._keys(rows, title)
+        # NaN comes last either way.
+        return rows[np.argsort(-keys if descending else keys, kind="stable")]
+
+    def _keys(self, rows: Rows, title: str) -> Floats:
+        if title == "State":
+            return self.state[rows].astype(np.float64)
+        if title == "Off":
+            return self._offs()[rows]
+        if title == "Position":
+            return self.xy[rows, 0]
+        if title in self.numbers:
+            return self.numbers[title][rows]
+        words = self._text(title)
+        rank = {word: float(place) for place, word in enumerate(sorted(set(words) - {""}, key=str.casefold))}
+        return np.array([rank.get(word, np.nan) for word in words], dtype=np.float64)[rows]
+
+    def _offs(self) -> Floats:
+        """Return what :meth:`off` says of everybody; only who was told to be somewhere can be off."""
+        told = {report.robot for report in self.book}
+        offs = np.full(len(self), np.nan)
+        for robot in told:
+            row = self.picture.row(robot)
+            if row is not None:
+                offs[row] = self.off(row)
+        return offs
+
+    def _text(self, title: str) -> list[str]:
+        """Return the texts of Task or Link of every robot."""
+        known = self._texts.get(title)
+        if known is None:
+            known = self._texts[title] = self._links() if title == "Link" else self._tasks()
+        return known
+
+    def _links(self) -> list[str]:
+        links = self.picture.texts("link")
+        return [SHORT.get(link, link) for link in links]
+
+    def _tasks(self) -> list[str]:
+        stopped = self.picture.column("stopped").tolist()
+        says = self.picture.texts("status")
+        silent = ("", tr("stopped"))
+        texts = [text or silent[bool(stands)] for text, stands in zip(says, stopped, strict=True)]
+        for row in self._paused_rows():
+            texts[row] = says[row] or idle_in_words(stopped=True, paused=True)
+        for task in self.book.under_way():
+            row = self.picture.row(task.robot)
+            if row is not None:
+                texts[row] = task_in_words(task, {})
+        return texts
+
+    def _has(self, word: str, names: list[str]) -> Bools:
+        """Tell which robots have ``word`` in their name, state, task or link; each text is looked at once,
+        however many robots say it."""
+        has = np.fromiter((word in name for name in names), dtype=bool, count=len(names))
+        has |= np.array([word in ROBOT_STATES[state].casefold() for state in STATES])[self.state]
+        return has | self.picture.says("link", word) | self._has_task(word)
+
+    def _has_task(self, word: str) -> Bools:
+        has = self.picture.says("status", word)
+        if word in tr("stopped").casefold():
+            has |= (self.picture.column("stopped") == 1.0) & ~self.picture.says("status", "")
+        told = ~self.picture.says("status", "")
+        for row in self._paused_rows():
+            has[row] |= bool(told[row]) and word in tr("paused").casefold()
+        for task in self.book.under_way():
+            row = self.picture.row(task.robot)
+            if row is not None:
+                has[row] = word in task_in_words(task, {}).casefold()
+        return has
+
+    def _paused_rows(self) -> list[int]:
+        return [row for robot in self.paused if (row := self.picture.row(robot)) is not None]
+
+
+def fleet_rows(
+    picture: RobotStates, book: CommandCache, queues: QueueCache, deviations: PathDeviations, moment: float
+) -> FleetRows:
+    """Return all robots at ``moment`` of the desk's clock."""
+    robots = picture.arrays(moment)
+    numbers = {
+        "Speed": robots.v,
+        "Batt.": picture.column("battery"),
+        "Age": robots.age,
+        "Ping": picture.column("latency"),
+    }
+    paused = frozenset(queue.robot for queue in queues if queue.state is QueueState.PAUSED)
+    return FleetRows(picture, book, deviations, robots.names, robots.state, robots.xy, numbers, paused)
+
+
+# --- The robots as a table model that sorts and filters by itself, on columns ---
+# Qt's own proxy asks for every cell of ten thousand robots whenever one has changed; this one asks numpy.
+
+ANSWERED_ROLES = frozenset(
+    {
+        Qt.ItemDataRole.DisplayRole,
+        Qt.ItemDataRole.DecorationRole,
+        Qt.ItemDataRole.ForegroundRole,
+        Qt.ItemDataRole.ToolTipRole,
+        Qt.ItemDataRole.TextAlignmentRole,
+    }
+)
+"""The item roles that this model answers; a view asks for as many others of each cell that it paints."""
+
+
+class RobotModel(QAbstractTableModel):
+    """One row for each robot that is listed. ``rows`` are looked at afresh by :meth:`show`."""
+
+    def __init__(
+        self, picture: RobotStates, book: CommandCache, queues: QueueCache, parent: QObject | None = None
+    ):
+        super().__init__(parent)
+        self.deviations = PathDeviations(book)
+        self._queues = queues
+        self._fleet: FleetRows = fleet_rows(picture, book, queues, self.deviations, 0.0)
+        self._arrangement = picture.arrangement
+        self._order: Rows = np.empty(0, dtype=np.intp)
+        self._row_at: Rows = np.empty(0, dtype=np.intp)
+        self._sorted_by = (TITLES.index("Robot"), Qt.SortOrder.AscendingOrder)
+        self.which = RobotChoice.ALL
+        self.text = ""
+        self.troubled: set[str] = set()
+        self.place_in_words = lambda x, y: f"{x:.2f}, {y:.2f}" if np.isfinite(x) else ""
+        """Takes metres in the site frame and returns the text of a position."""
+        self._icons = {state: state_icon(state) for state in STATES}
+
+    def rowCount(self, parent: QModelIndex | None = None) -> int:
+        return 0 if parent is not None and parent.isValid() else len(self._order)
+
+    def columnCount(self, parent: QModelIndex | None = None) -> int:
+        return 0 if parent is not None and parent.isValid() else len(COLUMNS)
+
+    def headerData(self, section: int, orientation: Qt.Orientation, role: int = 0) -> object:
+        if orientation != Qt.Orientation.Horizontal:
+            return None
+        if role == Qt.ItemDataRole.DisplayRole:
+            return COLUMNS[section].head
+        return COLUMNS[section].tip if role == Qt.ItemDataRole.ToolTipRole else None
+
+    def data(self, index: QModelIndex, role: int = 0) -> object:
+        if role not in ANSWERED_ROLES:
+            return None
+        row = int(self._order[index.row()])
+        column = COLUMNS[index.column()]
+        if role == Qt.ItemDataRole.DisplayRole:
+            return self._text(row, column.title)
+        if role == Qt.ItemDataRole.DecorationRole and column.title == "Robot":
+            return self._icons[self._state(row)]
+        if role == Qt.ItemDataRole.ForegroundRole and column.title == "State":
+            return for_letters(STATE_COLOURS[self._state(row)])
+        if role == Qt.ItemDataRole.ToolTipRole:
+            return self._tip(row)
+        if role == Qt.ItemDataRole.TextAlignmentRole and column.is_number:
+            return TO_THE_RIGHT
+        return None
+
+    def sort(self, column: int, order: Qt.SortOrder = Qt.SortOrder.AscendingOrder) -> None:
+        self._sorted_by = (column, order)
+        self._put(self._wanted())
+
+    def show(self, moment: float) -> None:
+        """Show what is known at ``moment`` of the desk's clock."""
+        picture = self._fleet.picture
+        fleet = fleet_rows(picture, self._fleet.book, self._queues, self.deviations, moment)
+        if picture.arrangement != self._arrangement:
+            # Rows of another arrangement are other robots.
+            self._arrangement = picture.arrangement
+            self.beginResetModel()
+            self._fleet = fleet
+            self._take(self._wanted())
+            self.endResetModel()
+            return
+        self._fleet = fleet
+        self._put(self._wanted())
+
+    def count(self) -> int:
+        """Return how many robots there are, listed or not."""
+        return len(self._fleet)
+
+    def names(self) -> list[str]:
+        """Return the names of all robots, listed or not."""
+        return self._fleet.names
+
+    def name_at(self, row: int) -> str:
+        """Return the name of the robot in ``row``."""
+        return self._fleet.names[self._order[row]]
+
+    def rows_of(self, names: Iterable[str]) -> list[int]:
+        """Return the rows of the robots that are listed."""
+        known = (self._fleet.picture.row(name) for name in names)
+        found = (int(self._row_at[row]) for row in known if row is not None and row < len(self._row_at))
+        return [row for row in found if row >= 0]
+
+    def _wanted(self) -> Rows:
+        rows = self._fleet.shown(self.which, self.text, self.troubled)
+        column, order = self._sorted_by
+        return self._fleet.sorted(rows, TITLES[max(0, column)], order == Qt.SortOrder.DescendingOrder)
+
+    def _put(self, order: Rows) -> None:
+        if np.array_equal(order, self._order):
+            self._row_at = _inverse(order, len(self._fleet))
+            if len(order):
+                self.dataChanged.emit(self.index(0, 0), self.index(len(order) - 1, len(COLUMNS) - 1))
+        elif len(order) == len(self._order) and np.array_equal(np.sort(order), np.sort(self._order)):
+            self._reorder(order)
+        else:
+            self.beginResetModel()
+            self._take(order)
+            self.endResetModel()
+
+    def _reorder(self, order: Rows) -> None:
+        self.layoutAboutToBeChanged.emit()
+        before = self.persistentIndexList()
+        robots = [int(self._order[index.row()]) for index in before]
+        self._take(order)
+        after = [
+            self.index(int(self._row_at[robot]), index.column())
+            for robot, index in zip(robots, before, strict=True)
+        ]
+        self.changePersistentIndexList(before, after)
+        self.layoutChanged.emit()
+
+    def _take(self, order: Rows) -> None:
+        self._order = order
+        self._row_at = _inverse(order, len(self._fleet))
+
+    def _state(self, row: int) -> RobotState:
+        return STATES[int(self._fleet.state[row])]
+
+    def _text(self, row: int, title: str) -> str:
+        fleet = self._fleet
+        if title == "Robot":
+            return fleet.names[row]
+        if title == "State":
+            return ROBOT_STATES[self._state(row)]
+        if title == "Task":
+            return fleet.task(row)
+        if title == "Link":
+            return short_link(fleet.told(row))
+        if title == TITLES[POSITION]:
+            return self.place_in_words(*fleet.xy[row].tolist())
+        value = fleet.off(row) if title == "Off" else float(fleet.numbers[title][row])
+        return number_in_words(title, value)
+
+    def _tip(self, row: int) -> str:
+        fleet, told = self._fleet, self._fleet.told(row)
+        name, age = fleet.names[row], fleet.numbers["Age"][row]
+        heard = heard_in_words(ROBOT_STATES[self._state(row)], age, told.get("link"))
+        lines = [f"{name}: {heard}"]
+        ping = fleet.numbers["Ping"][row]
+        if np.isfinite(ping):
+            lines.append(tr("its link takes {ms:.1f} ms there and back", ms=ping * 1000))
+        x, y = fleet.xy[row].tolist()
+        if np.isfinite(x) and np.isfinite(y):
+            lines.append(tr("at {x:.2f}, {y:.2f} m in the site frame", x=x, y=y))
+        task = fleet.book.task_of(name)
+        if task is not None:
+            lines.append(f"{command_in_words(task)}: {COMMAND_STATES[task.state]}")
+        elif fleet.task(row) and not told.get("status"):
+            lines.append(fleet.task(row))
+        if told.get("status"):
+            lines.append(tr("it says: {text}", text=told["status"]))
+        return "\n".join(lines)
+
+
+def _inverse(order: Rows, count: int) -> Rows:
+    """Return the row in the table of each robot, -1 for those that are not listed."""
+    rows = np.full(count, -1, dtype=np.intp)
+    rows[order] = np.arange(len(order))
+    return rows

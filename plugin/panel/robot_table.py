@@ -1,0 +1,357 @@
+"""Table of robots with its search, choice of robots and columns."""
+
+from __future__ import annotations
+
+import heapq
+
+from qgis.core import QgsCoordinateReferenceSystem, QgsSettings
+from qgis.gui import QgsFilterLineEdit, QgsProjectionSelectionDialog
+from qgis.PyQt.QtCore import (
+    QItemSelection,
+    QItemSelectionModel,
+    QItemSelectionRange,
+    QModelIndex,
+    Qt,
+    pyqtSignal,
+)
+from qgis.PyQt.QtWidgets import (
+    QAbstractItemView,
+    QApplication,
+    QComboBox,
+    QHBoxLayout,
+    QHeaderView,
+    QMenu,
+    QSizePolicy,
+    QTableView,
+    QToolButton,
+    QWidget,
+)
+
+from ..control.fleet_controller import FleetController
+from ..gateway_client.robot_states import RemovedRobots
+from ..layers.site_transform import PositionCrs
+from ..ui.errors import MapTransformError
+from ..ui.language import tr
+from ..ui.steady_widgets import ElidedText
+from ..ui.tables import ZoomMenu, fit_headers, shrink_view
+from .robot_model import COLUMNS, TASK, TITLES, RobotChoice, RobotModel
+
+# --- The table of robots ---
+
+MANY = 500
+"""With more robots the table is renewed half as often, with ten times as many four times as seldom."""
+HIDDEN_KEY = "fleet_supervisor/robot_table/hidden"
+TASK_WIDTH = 70
+NAME = TITLES.index("Robot")
+BESIDE_NAME = 32
+"""Pixels of the icon beside a name, of what Qt leaves free, and two more: Qt cuts by half a pixel."""
+WIDEST_NAME = 300
+"""Pixels that names get at most; longer ones are cut in their middle, since they differ at their ends."""
+LONGEST_NAMES = 20
+"""Names of which the widest is looked for: those of the most characters."""
+ROWS_AT_LEAST = 4
+"""Robots that are seen at once however low the panel is."""
+OF_THEMES = 2
+"""Pixels that QGIS's themes draw around heads and rows, and that stand in no size hint."""
+
+
+class RobotTableView(QTableView):
+    """Shows the desk's robots; its selection and the desk's are one."""
+
+    zoom_wanted = pyqtSignal(str)
+    refreshed = pyqtSignal()
+    """The rows are those of this moment."""
+
+    def __init__(self, desk: FleetController, parent: QWidget | None = None):
+        super().__init__(parent)
+        self.setObjectName("fleet_robot_table")
+        self._desk = desk
+        self._turn = desk.beat.turn()
+        self._marking = self._is_reset = False
+        self._is_fitting = self._is_fitted_by_hand = False
+        self._fitted: tuple[int, int] = (0, 0)
+        self.positions = PositionCrs(desk.project, self)
+        self._model = RobotModel(desk.picture, desk.book, desk.queues, self)
+        self._model.place_in_words = self._place
+        self.setModel(self._model)
+        self._model.modelReset.connect(self._reset)
+        self._set_up()
+        self.selectionModel().selectionChanged.connect(self._selected_here)
+        ZoomMenu(self, lambda index: self.zoom_wanted.emit(self._name(index)))
+        self.positions.changed.connect(self.refresh)
+        desk.selection_changed.connect(self._selected_elsewhere)
+        desk.pulled.connect(self._pulled)
+        # The robots known so far may be gone, or be others by the same names.
+        desk.site_changed.connect(self.refresh)
+        desk.robots_removed.connect(self._removed)
+
+    @property
+    def robots(self) -> RobotModel:
+        """What it shows: which robots are listed is set there."""
+        return self._model
+
+    def refresh(self) -> None:
+        """Show what the desk knows at this moment."""
+        # Rows that come and go with a filter take their selection with them; the desk's stays.
+        self._marking = True
+        self._model.show(self._desk.clock())
+        self._marking = False
+        self._fit_names()
+        if self._is_reset:
+            # Rows that only changed places took their selection along.
+            self._is_reset = False
+            self._mark()
+        self.refreshed.emit()
+
+    def show_column(self, column: int, shown: bool) -> None:
+        """Show or hide a column, in later sessions as well."""
+        self.setColumnHidden(column, not shown)
+        hidden = [COLUMNS[c].title for c in range(len(COLUMNS)) if self.isColumnHidden(c)]
+        QgsSettings().setValue(HIDDEN_KEY, ",".join(hidden))
+
+    def _removed(self, gone: RemovedRobots) -> None:
+        self._model.deviations.forget(gone.names)
+        self.refresh()
+
+    def _fit_names(self) -> None:
+        """Give the names the room that they take, whatever the other columns have left, until a hand does."""
+        picture = self._desk.picture
+        known = picture.arrangement, len(picture)
+        if self._is_fitted_by_hand or known == self._fitted:
+            return
+        self._fitted = known
+        longest = heapq.nlargest(LONGEST_NAMES, self._model.names(), key=len)
+        widest = max(map(self.fontMetrics().horizontalAdvance, longest), default=0) + BESIDE_NAME
+        self._is_fitting = True
+        # Wider only: a column that becomes narrower moves those beside it under the mouse.
+        self.setColumnWidth(NAME, max(self.columnWidth(NAME), min(widest, WIDEST_NAME)))
+        self._is_fitting = False
+
+    def _resized(self, column: int, _before: int, _now: int) -> None:
+        # A click on the head makes room for the mark of sorting, which is nobody's wish for a width.
+        is_dragged = bool(QApplication.mouseButtons() & Qt.MouseButton.LeftButton)
+        self._is_fitted_by_hand |= column == NAME and is_dragged and not self._is_fitting
+
+    def _set_up(self) -> None:
+        self.setSelectionBehavior(QAbstractItemView.SelectionBehavior.SelectRows)
+        self.setSelectionMode(QAbstractItemView.SelectionMode.ExtendedSelection)
+        self.setEditTriggers(QAbstractItemView.EditTrigger.NoEditTriggers)
+        self.setAlternatingRowColors(True)
+        self.setShowGrid(False)
+        self.setWordWrap(False)
+        self.setTextElideMode(Qt.TextElideMode.ElideMiddle)
+        self.setSortingEnabled(True)
+        self.sortByColumn(0, Qt.SortOrder.AscendingOrder)
+        self.verticalHeader().hide()
+        shrink_view(self)
+        metrics = self.fontMetrics()
+        self.verticalHeader().setDefaultSectionSize(metrics.height() + 8)
+        header = self.horizontalHeader()
+        header.setHighlightSections(False)
+        header.setMinimumSectionSize(24)
+        hidden = QgsSettings().value(HIDDEN_KEY)
+        for number, column in enumerate(COLUMNS):
+            # Qt leaves three pixels free at either side of a text; beside a name there is an icon.
+            extra = BESIDE_NAME if number == NAME else 7
+            widest = max(map(metrics.horizontalAdvance, (column.head, column.widest)))
+            self.setColumnWidth(number, max(widest + extra, TASK_WIDTH if number == TASK else 0))
+            by_choice = column.first if hidden is None else column.title not in str(hidden).split(",")
+            self.setColumnHidden(number, not by_choice)
+        fit_headers(self)
+        # The column that takes what is left keeps room for its head.
+        header.setMinimumSectionSize(max(24, metrics.horizontalAdvance(COLUMNS[TASK].head) + 9))
+        header.setSectionResizeMode(TASK, QHeaderView.ResizeMode.Stretch)
+        header.sectionResized.connect(self._resized)
+
+    def least_height(self) -> int:
+        """Return the pixels of height that :data:`ROWS_AT_LEAST` rows take."""
+        rows = ROWS_AT_LEAST * self.verticalHeader().defaultSectionSize()
+        beside = self.horizontalScrollBar().sizeHint().height() + 2 * self.frameWidth()
+        return self.horizontalHeader().sizeHint().height() + rows + beside + OF_THEMES
+
+    def _pulled(self) -> None:
+        count = len(self._desk.picture)
+        half_seconds = 1 if count <= MANY else 2 if count <= 10 * MANY else 4
+        if self._turn.has_come(half_seconds) or count != self._model.count():
+            self.refresh()
+
+    def _name(self, index: QModelIndex) -> str:
+        return self._model.name_at(index.row())
+
+    def _place(self, x: float, y: float) -> str:
+        try:
+            return self.positions.place_in_words(x, y, self._desk.placement())
+        except MapTransformError:
+            return tr("no such place")
+
+    def _selected_here(self) -> None:
+        rows = self.selectionModel().selectedRows()
+        if self._marking or not rows:
+            return
+        names = [self._name(index) for index in rows]
+        # Drafts are made for the one that was clicked last.
+        current = self.currentIndex()
+        last = self._name(current) if current.isValid() else ""
+        names.sort(key=lambda name: name == last)
+        self._desk.select_all(names)
+
+    def _selected_elsewhere(self) -> None:
+        self._mark()
+        rows = self._model.rows_of(self._desk.selection)
+        if len(rows) == 1:
+            self.scrollTo(self._model.index(rows[0], 0))
+
+    def _reset(self) -> None:
+        self._is_reset = True
+
+    def _mark(self) -> None:
+        rows = self._model.rows_of(self._desk.selection)
+        if set(rows) == {i.row() for i in self.selectionModel().selectedRows()}:
+            return
+        wanted = QItemSelection()
+        for row in rows:
+            index = self._model.index(row, 0)
+            wanted.append(QItemSelectionRange(index))
+        flags = QItemSelectionModel.SelectionFlag
+        self._marking = True
+        if rows:
+            # Keys go on from the robot that drafts are made for.
+            self.selectionModel().setCurrentIndex(self._model.index(rows[-1], 0), flags.NoUpdate)
+        self.selectionModel().select(wanted, flags.ClearAndSelect | flags.Rows)
+        self._marking = False
+
+
+# --- The table of robots, and what narrows it: a search, which robots are listed, and which columns ---
+
+WGS84 = "EPSG:4326"
+AROUND_SEARCH = 40
+"""Pixels of the magnifying glass and of the field's margins."""
+ROBOT_CHOICES = {
+    RobotChoice.ALL: tr("All robots"),
+    RobotChoice.TROUBLED: tr("With alarms, or not fresh"),
+    RobotChoice.BUSY: tr("With a task"),
+    RobotChoice.IDLE: tr("Without a task"),
+}
+
+
+class RobotPanel(QWidget):
+    """The line of filters: what is typed narrows the table at once; it says how many of how many are listed.
+
+    The table itself stands apart, above it: as the part of the panel that gives way to others it must move no
+    button.
+    """
+
+    def __init__(self, desk: FleetController, parent: QWidget | None = None):
+        super().__init__(parent)
+        self._desk = desk
+        self.table = RobotTableView(desk)
+        self._search = _search_field()
+        self._which = _choice_of_robots()
+        self._count = _counter()
+        self._columns = self._columns_button()
+        self._lay_out()
+        self._search.textChanged.connect(self._narrow)
+        self._which.currentIndexChanged.connect(self._narrow)
+        self.table.refreshed.connect(self._show_count)
+
+    def mark_troubled(self, robots: set[str]) -> None:
+        """Say which robots have alarms."""
+        self.table.robots.troubled = robots
+
+    def _columns_button(self) -> QToolButton:
+        button = QToolButton()
+        button.setObjectName("fleet_robot_columns")
+        button.setText(tr("Columns"))
+        button.setToolTip(tr("Which columns are shown, and in which CRS positions are"))
+        button.setPopupMode(QToolButton.ToolButtonPopupMode.InstantPopup)
+        button.setMenu(QMenu(button))
+        button.menu().aboutToShow.connect(self._fill_menu)
+        return button
+
+    def _lay_out(self) -> None:
+        head = QHBoxLayout(self)
+        head.setContentsMargins(0, 0, 0, 0)
+        head.setSpacing(4)
+        head.addWidget(self._search, 1)
+        head.addWidget(self._which)
+        head.addWidget(self._count)
+        head.addWidget(self._columns)
+
+    def _narrow(self, *_what: object) -> None:
+        self.table.robots.text = self._search.text()
+        self.table.robots.which = list(RobotChoice)[self._which.currentIndex()]
+        self.table.refresh()
+
+    def _show_count(self) -> None:
+        listed, all_ = self.table.robots.rowCount(), self.table.robots.count()
+        part = tr("{listed} of {all}", listed=listed, all=all_)
+        self._count.setText(f"{listed}" if listed == all_ else part)
+
+    def _fill_menu(self) -> None:
+        menu = self._columns.menu()
+        menu.clear()
+        for number, column in enumerate(COLUMNS):
+            if number == 0:
+                continue
+            action = menu.addAction(f"{column.head}: {column.tip[0].lower()}{column.tip[1:]}")
+            action.setCheckable(True)
+            action.setChecked(not self.table.isColumnHidden(number))
+            action.toggled.connect(lambda on, number=number: self.table.show_column(number, on))
+        menu.addSeparator()
+        positions = self.table.positions
+        inside = menu.addSection(tr("Positions in: {crs}", crs=positions.name))
+        inside.setObjectName("fleet_position_crs")
+        self._add_crs(menu, tr("Site frame (metres)"), QgsCoordinateReferenceSystem())
+        project = self._desk.project.crs()
+        if project.isValid():
+            self._add_crs(menu, tr("CRS of the project ({crs})", crs=project.authid()), project)
+        self._add_crs(menu, tr("Latitude, longitude (WGS 84)"), QgsCoordinateReferenceSystem(WGS84))
+        menu.addAction(tr("Another CRS…")).triggered.connect(self._ask_for_crs)
+
+    def _add_crs(self, menu: QMenu, text: str, crs: QgsCoordinateReferenceSystem) -> None:
+        chosen = self.table.positions.crs
+        action = menu.addAction(text)
+        action.setCheckable(True)
+        action.setChecked(crs == chosen if crs.isValid() else not chosen.isValid())
+        action.triggered.connect(lambda: self._choose(crs))
+
+    def _choose(self, crs: QgsCoordinateReferenceSystem) -> None:
+        self.table.positions.choose(crs)
+        self.table.show_column(len(COLUMNS) - 1, True)
+
+    def _ask_for_crs(self) -> None:
+        dialog = QgsProjectionSelectionDialog(self)
+        dialog.setCrs(self.table.positions.crs)
+        if dialog.exec():
+            self._choose(dialog.crs())
+
+
+def _search_field() -> QgsFilterLineEdit:
+    field = QgsFilterLineEdit()
+    field.setObjectName("fleet_robot_search")
+    field.setShowSearchIcon(True)
+    field.setPlaceholderText(tr("Search"))
+    field.setAccessibleName(tr("Search robots"))
+    field.setToolTip(tr("Name, state, task or link; several words have to be there all"))
+    # In a narrow panel it is the first to give way.
+    field.setMinimumWidth(field.fontMetrics().horizontalAdvance(field.placeholderText()) + AROUND_SEARCH)
+    return field
+
+
+def _choice_of_robots() -> QComboBox:
+    box = QComboBox()
+    box.setObjectName("fleet_robot_filter")
+    box.addItems([ROBOT_CHOICES[which] for which in RobotChoice])
+    box.setSizeAdjustPolicy(QComboBox.SizeAdjustPolicy.AdjustToMinimumContentsLengthWithIcon)
+    box.setMinimumContentsLength(11)
+    return box
+
+
+def _counter() -> ElidedText:
+    label = ElidedText("fleet_robot_count")
+    # One that grew with each digit would move what is beside it.
+    widest = tr("{listed} of {all}", listed=100, all=1000)
+    label.setSizePolicy(QSizePolicy.Policy.Fixed, QSizePolicy.Policy.Fixed)
+    label.setFixedWidth(label.fontMetrics().horizontalAdvance(widest))
+    label.setAlignment(Qt.AlignmentFlag.AlignCenter)
+    return label

@@ -1,0 +1,269 @@
+"""The plugin's parts in the QGIS window: actions, tools, dock, alarms, project check."""
+
+from __future__ import annotations
+
+from qgis.core import QgsProject
+from qgis.gui import QgisInterface, QgsMapTool
+from qgis.PyQt.QtCore import QObject, Qt
+from qgis.PyQt.QtWidgets import QAction, QMainWindow, QMenu, QToolBar
+
+from ..control.fleet_controller import FleetController
+from ..control.messages import OUTAGE, Level, MessageBar, request_topic
+from ..control.roads import RoutePreferencesDialog
+from ..gateway_client.link import ConnectionPhase
+from ..layers.road_surfaces import SurfaceStore
+from ..map.layers import RoadLayers, StandingCones
+from ..map.live_view import LiveView
+from ..map.overlay.screen import FollowMode
+from ..map.overlay.task_painter import QueueMarks
+from ..map.site_project import ProjectMatch
+from ..map.tools.closure_tool import ClosureTool
+from ..map.tools.road_route_tool import RoadRouteTool
+from ..map.tools.route_tool import RouteTool
+from ..map.tools.select_tool import SelectTool
+from ..map.tools.target_tools import ConeTool, StartTool
+from ..ui.actions import Actions
+from ..ui.errors import FleetError
+from ..ui.language import tr
+from .alarms.alarm_bar import AlarmBar
+from .alarms.alarm_panel import AlarmPanel
+from .alarms.board import alarm_colour
+from .alarms.watch import AlarmWatch
+from .dock import FleetDock
+from .emergency import ClearDialog, EmergencyKey
+from .pending_command_panel import PendingCommandActions
+from .queue import PauseActions, QueueEdits
+
+# --- Puts the desk into the QGIS window, and takes it out again without a trace ---
+
+MENU = "Fleet Supervisor"
+CONNECTING = request_topic("hello", "")
+"""What was asked for with Connect."""
+
+
+class FleetWindow(QObject):
+    """Everything of the desk that hangs in the QGIS window. :meth:`remove` undoes the constructor."""
+
+    def __init__(self, iface: QgisInterface):
+        # A child of the main window, so that scripts find its actions there by their object names.
+        super().__init__(iface.mainWindow())
+        self._iface = iface
+        self._told = ""
+        canvas = iface.mapCanvas()
+        self.desk = FleetController(canvas, QgsProject.instance(), self)
+        self.actions = Actions(self)
+        self._key = EmergencyKey(self.actions.emergency, self)
+        self.notices = MessageBar(iface.messageBar(), self)
+        self._project_match = ProjectMatch(self.desk, self)
+        self.view = LiveView(self.desk, self)
+        self.queue_edits = QueueEdits(self.desk, self)
+        self.queue_marks = QueueMarks(self.desk)
+        self.dock = FleetDock(self.desk, self.actions, self.queue_edits, iface.mainWindow())
+        self.road_layers = RoadLayers(self.desk, self)
+        self.standing_cones = StandingCones(self.desk, self)
+        self.toolbar: QToolBar = iface.addToolBar("Fleet Supervisor")
+        self.toolbar.setObjectName("fleet_toolbar")
+        self._road_route = RoadRouteTool(self.desk)
+        self._tools = {
+            self.actions.select: SelectTool(self.desk, self.view),
+            self.actions.cone: ConeTool(self.desk),
+            self.actions.road_route: self._road_route,
+            self.actions.route: RouteTool(self.desk),
+            self.actions.start: StartTool(self.desk),
+            self.actions.closures: ClosureTool(self.desk, iface.mainWindow()),
+        }
+        self._draft_menu = QMenu(tr("Targets and routes"), iface.mainWindow())
+        self._draft_menu.setObjectName("fleet_draft_menu")
+        self._draft_menu.setIcon(self.actions.cone.icon())
+        self.draft_commands = PendingCommandActions(
+            self.desk, self.queue_edits, self.actions, iface.mainWindow()
+        )
+        self.robot_pauses = PauseActions(self.desk, self.queue_edits, self.actions, self)
+        self._wire_actions()
+        self._place()
+
+    def remove(self) -> None:
+        """Take every part out of the window and wait for the connection's threads."""
+        self.desk.shut_down()
+        for tool in self._tools.values():
+            self._put_away(tool)
+            tool.deleteLater()
+        self._tools.clear()
+        self.draft_commands.remove()
+        self.queue_marks.remove()
+        self.road_layers.remove()
+        self.standing_cones.remove()
+        self.view.remove()
+        self._project_match.remove()
+        self._key.remove()
+        self.notices.withdraw()
+        for action in self.menu_entries():
+            self._iface.removePluginMenu(MENU, action)
+        self._draft_menu.deleteLater()
+        window: QMainWindow = self._iface.mainWindow()
+        window.removeToolBar(self.toolbar)
+        self.toolbar.deleteLater()
+        self._iface.removeDockWidget(self.dock)
+        self.dock.deleteLater()
+        self.deleteLater()
+
+    def menu_entries(self) -> list[QAction]:
+        """Return what stands in the plugin's menu itself; one entry opens the menu of drafts."""
+        drafts = self.actions.for_drafts
+        entries = [self._draft_menu.menuAction() if one in drafts else one for one in self.actions.all()]
+        return list(dict.fromkeys(entries))
+
+    def go_to(self, robot: str) -> None:
+        """Select a robot alone and show where it is."""
+        self.desk.select(robot)
+        self.view.zoom_to(robot)
+
+    def _place(self) -> None:
+        self._draft_menu.addActions(self.actions.for_drafts)
+        for action in self.menu_entries():
+            self._iface.addPluginToMenu(MENU, action)
+        for action in self.actions.all():
+            if action not in self.actions.off_toolbar:
+                self.toolbar.addAction(action)
+            if action in (self.actions.connect, self.actions.cancel, self.actions.follow_all):
+                self.toolbar.addSeparator()
+        self._iface.addDockWidget(Qt.DockWidgetArea.RightDockWidgetArea, self.dock)
+
+    def _wire_actions(self) -> None:
+        actions, desk = self.actions, self.desk
+        for action, tool in self._tools.items():
+            tool.setAction(action)
+            action.triggered.connect(lambda _, tool=tool: self._iface.mapCanvas().setMapTool(tool))
+            # A click on the button of the tool in hand keeps it, as QGIS's own do.
+            action.triggered.connect(lambda _, tool=tool: tool.action().setChecked(True))
+        actions.connect.triggered.connect(self._connect_or_not)
+        actions.send.triggered.connect(desk.sending.send)
+        actions.cancel.triggered.connect(lambda: desk.drafts.put(None))
+        actions.follow.toggled.connect(lambda on: self._follow(FollowMode.SELECTED, on))
+        actions.follow_all.toggled.connect(lambda on: self._follow(FollowMode.ALL, on))
+        actions.abort.triggered.connect(desk.abort_selected)
+        actions.abort_all.triggered.connect(desk.abort_all)
+        actions.emergency.triggered.connect(desk.emergency_stop)
+        actions.clear_emergency.triggered.connect(self._ask_to_clear)
+        actions.way_wishes.triggered.connect(self._ask_for_ways)
+        desk.emergency_changed.connect(self._show_emergency)
+        self.dock.table.zoom_wanted.connect(self.view.zoom_to)
+        self.dock.log.place_wanted.connect(self.view.show_place)
+        desk.messages.posted.connect(self.notices.show_message)
+        desk.messages.withdrawn.connect(self.notices.take_down)
+        self.notices.closed.connect(desk.messages.forget)
+        self._project_match.differs.connect(self.notices.error)
+        self._project_match.over.connect(self.notices.take_down)
+        desk.link_changed.connect(self._show_link)
+
+    def _follow(self, whom: FollowMode, on: bool) -> None:
+        if on:
+            other = self.actions.follow_all if whom is FollowMode.SELECTED else self.actions.follow
+            other.setChecked(False)
+            self.view.follow(whom)
+        elif self.view.following is whom:
+            self.view.follow(FollowMode.NOBODY)
+
+    def _put_away(self, tool: QgsMapTool) -> None:
+        canvas = self._iface.mapCanvas()
+        if canvas.mapTool() is tool:
+            canvas.unsetMapTool(tool)
+            # A QGIS without any map tool would not answer to clicks.
+            self._iface.actionPan().trigger()
+
+    def _connect_or_not(self, wanted: bool) -> None:
+        self.desk.messages.end(CONNECTING)
+        if not wanted:
+            self.desk.close_link()
+            return
+        panel = self.dock.connection_panel
+        try:
+            self.desk.open_link(panel.url(), panel.operator(), panel.credentials())
+        except FleetError as error:
+            self.desk.messages.post(str(error), Level.ERROR, CONNECTING)
+            self._show_link()
+            return
+        try:
+            panel.remember()
+        except FleetError as error:
+            self.notices.warning(str(error))
+
+    def _show_link(self) -> None:
+        link = self.desk.link
+        wanted = link.phase not in (ConnectionPhase.CLOSED, ConnectionPhase.FAILED)
+        self.actions.connect.setChecked(wanted)
+        self.actions.connect.setText(tr("Disconnect") if wanted else tr("Connect"))
+        if link.phase is ConnectionPhase.FAILED:
+            self.desk.messages.post(link.reason, Level.ERROR, OUTAGE)
+        elif link.phase is ConnectionPhase.RETRYING and link.reason != self._told:
+            # The panel goes on showing it; the message bar says it once for each outage.
+            self.desk.messages.post(link.reason, Level.WARNING, OUTAGE)
+        self._told = "" if link.phase in (ConnectionPhase.CONNECTED, ConnectionPhase.CLOSED) else link.reason
+        if not self._told:
+            self.desk.messages.end(OUTAGE)
+
+    def _show_emergency(self) -> None:
+        if not self.dock.banner.isHidden() and not self.dock.isUserVisible():
+            self.dock.setUserVisible(True)
+
+    def _ask_for_ways(self) -> None:
+        dialog = RoutePreferencesDialog(self._road_route.wishes, self._iface.mainWindow())
+        dialog.confirmed.connect(self._road_route.lead_so)
+        dialog.open()
+
+    def _ask_to_clear(self) -> None:
+        report = self.desk.emergency
+        if report is None or not report.in_force:
+            self.desk.complained.emit(tr("No emergency stop is in force."))
+        else:
+            dialog = ClearDialog(report, self._iface.mainWindow())
+            dialog.confirmed.connect(self.desk.clear_emergency)
+            dialog.open()
+
+
+# --- The alarms in the QGIS window: watched, listed in the Fleet panel, counted in the message bar ---
+
+
+class WindowAlarms(QObject):
+    """Puts the alarms beside the other lists of the Fleet panel. :meth:`remove` undoes the constructor."""
+
+    def __init__(self, iface: QgisInterface, window: FleetWindow, surfaces: SurfaceStore):
+        super().__init__(window)
+        self._window = window
+        self.watch = AlarmWatch(window.desk, surfaces, self)
+        self.panel = AlarmPanel(self.watch)
+        self.bar = AlarmBar(iface.messageBar(), self.watch, self)
+        self._tabs = window.dock.tabs
+        self._tabs.add_page(self.panel, tr("Alarms"), counts=True)
+        window.dock.details.alarms_of = self.watch.board.of
+        self.watch.changed.connect(self._changed)
+        self.panel.robots_wanted.connect(self._go)
+        self.panel.counted.connect(self._count)
+        self.bar.wanted.connect(self._show)
+
+    def remove(self) -> None:
+        """Watch no more and take panel and message away."""
+        self.bar.remove()
+        self.watch.remove()
+        self.panel.remove()
+        self._window.dock.details.alarms_of = lambda robot: []
+        self._tabs.removeTab(self._tabs.indexOf(self.panel))
+        self.panel.deleteLater()
+        self.deleteLater()
+
+    def _changed(self) -> None:
+        alarms = self.watch.board.alarms()
+        robots = {name for alarm in alarms for name in (alarm.robot, alarm.other) if name}
+        self._window.dock.robots.mark_troubled(robots)
+
+    def _count(self, new: int) -> None:
+        self._tabs.show_count(self.panel, tr("Alarms"), new)
+        self._tabs.show_colour(self.panel, alarm_colour(True) if new else None)
+
+    def _go(self, robots: list[str]) -> None:
+        self._window.desk.select_all(robots)
+        self._window.view.zoom_to(*robots)
+
+    def _show(self) -> None:
+        self._window.dock.setUserVisible(True)
+        self._tabs.setCurrentWidget(self.panel)

@@ -1,0 +1,1 @@
+"""Cone plans: settings, proposal, editing, execution, and the as-placed report."""

@@ -1,0 +1,301 @@
+"""The as-placed report: figures, table, CSV file, and the dialog that makes its PDF."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from datetime import datetime, timezone
+
+from qgis.core import QgsProject
+from qgis.PyQt.QtCore import Qt, pyqtSignal
+from qgis.PyQt.QtWidgets import (
+    QAbstractItemView,
+    QComboBox,
+    QHBoxLayout,
+    QTableWidget,
+    QTableWidgetItem,
+    QVBoxLayout,
+    QWidget,
+)
+
+from ...robot_bridge.core.messages import PlacementReport
+from ..control.fleet_controller import FleetController
+from ..control.messages import file_topic
+from ..layers.live_layers import MARK, live_layers
+from ..settings.preferences import export_path
+from ..ui.dialogs import file_to_write, push_button
+from ..ui.errors import FleetError
+from ..ui.language import tr, tr_count
+from ..ui.steady_widgets import ScrollingText
+from ..ui.tables import fit_headers, write_csv
+from ..ui.times import time_of_day
+
+# --- The as-placed report: each cone with where it was to stand, where it stands, how far off, by whom, when
+
+COLUMNS = (
+    "cone", "layout", "planned_x", "planned_y", "x", "y", "deviation", "robot", "placed_at", "collected_at",
+)  # fmt: skip
+
+
+@dataclass(frozen=True)
+class DeviationSummary:
+    """What the report comes to; metres."""
+
+    cones: int
+    collected: int
+    largest: float
+    mean: float
+
+    def in_words(self, expected: int | None = None) -> str:
+        """Return the figures, with how many cones the plan has if that is known."""
+        if not self.cones:
+            return tr("No cone was put down yet.")
+        placed = (
+            tr_count(expected, "{cones} of 1 cone placed", "{cones} of %n cones placed", cones=self.cones)
+            if expected
+            else tr_count(self.cones, "1 cone placed", "%n cones placed")
+        )
+        gone = tr(", {collected} collected again", collected=self.collected) if self.collected else ""
+        off = tr(
+            "off by {mean:.3f} m on average, at most {largest:.3f} m",
+            mean=self.mean,
+            largest=self.largest,
+        )
+        return tr("{placed}{gone}; {off}", placed=placed, gone=gone, off=off)
+
+
+def select_placed_cones(
+    placements: Iterable[PlacementReport], *, plan: str | None = None, layout: str | None = None
+) -> list[PlacementReport]:
+    """Return the placed cones of a plan, of a layout, or of all, in the order of placing."""
+    found = [
+        one
+        for one in placements
+        if (plan is None or one.plan == plan) and (layout is None or one.layout == layout)
+    ]
+    return sorted(found, key=lambda one: (one.placed_at, one.placement))
+
+
+def deviation_summary(placements: list[PlacementReport]) -> DeviationSummary:
+    """Return what the report comes to."""
+    off = [one.deviation for one in placements]
+    collected = sum(one.collected_at is not None for one in placements)
+    return DeviationSummary(len(off), collected, max(off, default=0.0), sum(off) / len(off) if off else 0.0)
+
+
+def csv_row(one: PlacementReport) -> list[object]:
+    """Return the values of ``COLUMNS``; metres in the site frame, times in UTC."""
+    return [
+        one.cone or one.label or "",
+        one.layout or "",
+        *(round(value, 3) for value in (one.planned_x, one.planned_y, one.x, one.y, one.deviation)),
+        one.robot,
+        utc_in_words(one.placed_at),
+        utc_in_words(one.collected_at),
+    ]
+
+
+def utc_in_words(at: float | None) -> str:
+    """Return seconds since 1970 as ISO 8601 in UTC, nothing for None."""
+    if at is None:
+        return ""
+    return datetime.fromtimestamp(at, timezone.utc).isoformat(timespec="seconds").replace("+00:00", "Z")
+
+
+# --- The way from the cones that the desk knows to the report of them: QGIS's dialog of the algorithm ---
+
+PLACED = "cones_as_placed"
+"""The mark of the layer that the cones are on."""
+
+
+class AsPlacedReportError(FleetError):
+    """The report cannot be asked for: says what to do."""
+
+
+def open_report_dialog(project: QgsProject) -> None:
+    """Open the dialog of ``fleet:asplacedreport`` on the layer of placed cones, which is in ``project``.
+
+    :raises ReportError: when QGIS's Processing is switched off.
+    """
+    try:
+        from processing import createAlgorithmDialog
+    except ImportError as error:
+        raise AsPlacedReportError(
+            tr(
+                "The report is made by QGIS's Processing: switch that on in Plugins > Manage and Install "
+                "Plugins."
+            )
+        ) from error
+    layer = next(one for one in live_layers(project) if one.customProperty(MARK) == PLACED)
+    dialog = createAlgorithmDialog("fleet:asplacedreport", {"INPUT": layer.id()})
+    dialog.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
+    dialog.show()
+
+
+# --- The page of the as-placed report: table, figures, layer, CSV, PDF; and collecting a layout again ---
+
+HEADS = (
+    tr("Cone"),
+    tr("Off [m]"),
+    tr("Robot"),
+    tr("Placed"),
+    tr("Planned x, y"),
+    tr("Stands at x, y"),
+    tr("Collected"),
+)
+THIS_PLAN, EVERYTHING = "plan", "all"
+FILE, REPORT = file_topic("placed_cones"), file_topic("cone_report")
+MANY = 2000
+"""Rows that the table shows at most, the newest; the CSV file has all."""
+
+
+class AsPlacedPage(QWidget):
+    """Shows what was put down of a plan, a layout or all, as the desk knows it."""
+
+    refresh_wanted = pyqtSignal()
+    collect_wanted = pyqtSignal(object)
+    """Ask for a plan that collects a layout (its name), or all that stands (None)."""
+    shown = pyqtSignal()
+    layer_wanted = pyqtSignal()
+    """Somebody is about to take the layer of what is shown, and needs it whole."""
+    place_wanted = pyqtSignal(float, float)
+
+    def __init__(self, desk: FleetController, parent: QWidget | None = None):
+        super().__init__(parent)
+        self._desk = desk
+        self._plan: str | None = None
+        self._expected: int | None = None
+        self.which = QComboBox()
+        self.which.setObjectName("fleet_placed_which")
+        self.which.setSizeAdjustPolicy(QComboBox.SizeAdjustPolicy.AdjustToMinimumContentsLengthWithIcon)
+        self.which.setMinimumContentsLength(8)
+        self.figures = ScrollingText("fleet_placed_figures", lines=3)
+        self.table = QTableWidget(0, len(HEADS))
+        self.table.setObjectName("fleet_placed_table")
+        self.table.setHorizontalHeaderLabels(HEADS)
+        self.table.verticalHeader().hide()
+        self.table.verticalHeader().setDefaultSectionSize(20)
+        self.table.setEditTriggers(QAbstractItemView.EditTrigger.NoEditTriggers)
+        self.table.setSelectionBehavior(QAbstractItemView.SelectionBehavior.SelectRows)
+        fit_headers(self.table)
+        self.table.cellDoubleClicked.connect(self._go_there)
+        self.report = push_button(
+            "fleet_placed_report",
+            tr("Report…"),
+            tr("Figures, histogram, map and table of these cones as a PDF"),
+            self._open_report,
+        )
+        self.placements: list[PlacementReport] = []
+        self._lay_out()
+        self._fill_choices()
+        self.which.currentIndexChanged.connect(self.show_placed)
+
+    def show_plan(self, plan: str | None, expected: int | None) -> None:
+        """Take the plan that is driven, of which so many cones are to be placed."""
+        if (plan, expected) != (self._plan, self._expected):
+            self._plan, self._expected = plan, expected
+            self.show_placed()
+
+    def show_placed(self, *_: object) -> None:
+        """Show what is known now."""
+        self._fill_choices()
+        self.placements = self._chosen()
+        expected = self._expected if self.which.currentData() == THIS_PLAN else None
+        self.figures.setText(deviation_summary(self.placements).in_words(expected))
+        rows = self.placements[-MANY:]
+        self.table.setRowCount(len(rows))
+        for k, one in enumerate(rows):
+            for column, text in enumerate(_texts(one)):
+                self.table.setItem(k, column, QTableWidgetItem(text))
+        self.table.resizeColumnsToContents()
+        self.report.setEnabled(bool(rows))
+        self.shown.emit()
+
+    def save(self, path: str) -> None:
+        """Write the report to ``path`` as CSV and say so."""
+        self._desk.messages.end(FILE)
+        try:
+            count = write_csv(path, COLUMNS, map(csv_row, self.placements))
+        except FleetError as error:
+            self._desk.report_failure(str(error), FILE)
+            return
+        cones = tr_count(count, "1 cone", "%n cones")
+        self._desk.noted.emit(tr("{cones} written to {path}", cones=cones, path=path))
+
+    def _chosen(self) -> list[PlacementReport]:
+        what = self.which.currentData()
+        if what == THIS_PLAN:
+            return select_placed_cones(self._desk.placements, plan=self._plan or "")
+        return select_placed_cones(self._desk.placements, layout=None if what == EVERYTHING else what[1])
+
+    def _fill_choices(self) -> None:
+        layouts = sorted({one.layout for one in self._desk.placements if one.layout})
+        wanted = [(tr("the plan that is driven"), THIS_PLAN), (tr("everything"), EVERYTHING)]
+        wanted += [(tr("layout {name}", name=name), ("layout", name)) for name in layouts]
+        if [self.which.itemData(k) for k in range(self.which.count())] == [data for _, data in wanted]:
+            return
+        now = self.which.currentData()
+        self.which.blockSignals(True)
+        self.which.clear()
+        for text, data in wanted:
+            self.which.addItem(text, data)
+        names = [data for _, data in wanted]
+        self.which.setCurrentIndex(names.index(now) if now in names else 0)
+        self.which.blockSignals(False)
+
+    def _collect(self) -> None:
+        what = self.which.currentData()
+        layouts = {one.layout for one in self.placements if one.layout}
+        if what == THIS_PLAN and len(layouts) == 1:
+            self.collect_wanted.emit(layouts.pop())
+        else:
+            self.collect_wanted.emit(what[1] if isinstance(what, tuple) else None)
+
+    def _save_as(self) -> None:
+        path = file_to_write(self, tr("As-placed report"), export_path("as-placed.csv"), tr("CSV (*.csv)"))
+        if path:
+            self.save(path)
+
+    def _open_report(self) -> None:
+        # The user may have taken the layer out of the project.
+        self.show_placed()
+        self.layer_wanted.emit()
+        self._desk.messages.end(REPORT)
+        try:
+            open_report_dialog(self._desk.project)
+        except AsPlacedReportError as error:
+            self._desk.report_failure(str(error), REPORT)
+
+    def _go_there(self, row: int, _: int) -> None:
+        one = self.placements[-MANY:][row]
+        self.place_wanted.emit(one.x, one.y)
+
+    def _lay_out(self) -> None:
+        rows = QVBoxLayout(self)
+        rows.setContentsMargins(0, 4, 0, 0)
+        files, foot = QHBoxLayout(), QHBoxLayout()
+        self.report.setEnabled(False)
+        files.addWidget(self.report)
+        for row, text, name, action in (
+            (foot, tr("Refresh"), "fleet_placed_refresh", self.refresh_wanted.emit),
+            (files, tr("Save as CSV…"), "fleet_placed_save", self._save_as),
+            (foot, tr("Plan collecting"), "fleet_placed_collect", self._collect),
+        ):
+            row.addWidget(push_button(name, text, pressed=action))
+        rows.addWidget(self.which)
+        rows.addWidget(self.figures)
+        rows.addWidget(self.table, 1)
+        rows.addLayout(files)
+        rows.addLayout(foot)
+
+
+def _texts(one: PlacementReport) -> list[str]:
+    return [
+        one.cone or one.label or "",
+        f"{one.deviation:.3f}",
+        one.robot,
+        time_of_day(one.placed_at),
+        f"{one.planned_x:.2f}, {one.planned_y:.2f}",
+        f"{one.x:.2f}, {one.y:.2f}",
+        time_of_day(one.collected_at),
+    ]

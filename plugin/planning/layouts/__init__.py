@@ -1,0 +1,1 @@
+"""Cone layouts: the map tool that places them, their dimensions, checks and layer."""

@@ -1,0 +1,382 @@
+"""Layer of cone layouts, the GeoPackage that keeps it, and checks of a layout against the ground."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Collection, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+
+import numpy as np
+import numpy.typing as npt
+from qgis.core import (
+    QgsApplication,
+    QgsCoordinateReferenceSystem,
+    QgsExpressionContext,
+    QgsExpressionContextUtils,
+    QgsFeature,
+    QgsGeometry,
+    QgsPointXY,
+    QgsProcessingFeedback,
+    QgsProject,
+    QgsTask,
+    QgsVectorFileWriter,
+    QgsVectorLayer,
+)
+from qgis.PyQt.QtCore import QObject, pyqtSignal
+
+from ....robot_bridge.core.layouts.layout import Cone, ConeFinding, NamedGeometry, find_misplaced_cones
+from ...control.messages import MessageBar
+from ...layers.crs import check_site_crs
+from ...layers.layer_source import LayerWatch, ObstacleSource, obstacle_sources
+from ...layers.road_layers import read_areas
+from ...layers.roles import OBSTACLE_ROLES, ROAD_SURFACE, LayerExpressions, layers_with_role, setup_of
+from ...layers.site_transform import SiteGeoreference
+from ...processing.common.algorithm import RESOURCES
+from ...processing.common.cone_layers import CONE_FIELDS, cone_values, read_obstacles
+from ...ui.errors import FleetError, MapTransformError
+from ...ui.language import tr
+
+# --- The layer that the operator's cone layouts go into, and what they are checked against ---
+
+MARK = "fleet/cones"
+"""The custom property of the layer."""
+
+OBSTACLE_DISTANCE_M = CONE_DISTANCE_M = 0.5
+
+
+class LayoutLayer:
+    """Finds or makes the layer of cones in a project."""
+
+    def __init__(self, project: QgsProject):
+        self._project = project
+
+    def layer(self) -> QgsVectorLayer | None:
+        """Return the layer of cones, None before there is one."""
+        marked = (one for one in self._project.mapLayers().values() if one.customProperty(MARK))
+        return next((one for one in marked if one.isValid()), None)
+
+    def crs(self, canvas: QgsCoordinateReferenceSystem) -> QgsCoordinateReferenceSystem:
+        """Return the CRS of the cones: their layer's, else the canvas's.
+
+        :raises SiteCrsError: when the canvas's CRS has no true metres.
+        :raises MapTransformError: when there is none.
+        """
+        layer = self.layer()
+        if layer is not None:
+            return layer.crs()
+        if not canvas.isValid():
+            raise MapTransformError(
+                tr("The project has no CRS: choose one in metres, at the bottom right in QGIS.")
+            )
+        check_site_crs(canvas)
+        return canvas
+
+    def prefix(self, name: str) -> str:
+        """Return what the ids of one more layout ``name`` begin with: no other's do."""
+        layer = self.layer()
+        ids = {str(f["id"]).rpartition("-")[0] for f in layer.getFeatures()} if layer is not None else set()
+        taken = (f"{name}-{number}" for number in range(2, len(ids) + 3))
+        return name if name not in ids else next(prefix for prefix in taken if prefix not in ids)
+
+    def add(self, cones: Sequence[Cone], name: str, crs: QgsCoordinateReferenceSystem) -> QgsVectorLayer:
+        """Add ``cones``, which are in ``crs``, to the layer; make it where there is none."""
+        layer = self.layer() or self._made(crs)
+        features = []
+        for cone in cones:
+            feature = QgsFeature(layer.fields())
+            feature.setGeometry(QgsGeometry.fromPointXY(QgsPointXY(cone.x, cone.y)))
+            values = dict(zip(CONE_FIELDS, cone_values(cone, name), strict=True))
+            for field, value in values.items():
+                feature.setAttribute(field, value)
+            features.append(feature)
+        added, _ = layer.dataProvider().addFeatures(features)
+        if not added:
+            raise MapTransformError(
+                tr(
+                    "The layer {layer} takes no cones: make it writable, or remove it.",
+                    layer=layer.name(),
+                )
+            )
+        layer.updateExtents()
+        layer.triggerRepaint()
+        return layer
+
+    def take_out(self, layer_id: str, ids: Collection[str]) -> bool:
+        """Remove the cones ``ids`` from the layer ``layer_id``; false where none is there any more."""
+        layer = self.layer()
+        if layer is None or layer.id() != layer_id:
+            return False
+        found = [feature.id() for feature in layer.getFeatures() if feature["id"] in ids]
+        if not found or not layer.dataProvider().deleteFeatures(found):
+            return False
+        layer.updateExtents()
+        layer.triggerRepaint()
+        return True
+
+    def places(self) -> np.ndarray:
+        """Return where cones stand already, (n, 2) in the CRS of their layer."""
+        return np.array([(cone.x, cone.y) for cone in self._standing()], dtype=np.float64).reshape(-1, 2)
+
+    def check(self, cones: Sequence[Cone], crs: QgsCoordinateReferenceSystem) -> list[ConeFinding]:
+        """Return what is wrong with ``cones`` by the project's layers and the cones that stand already.
+
+        :raises FleetError: when a layer has no known place in ``crs``.
+        """
+        site = SiteGeoreference.in_crs(crs, self._project.transformContext())
+        context = QgsExpressionContext(QgsExpressionContextUtils.globalProjectLayerScopes(None))
+        feedback = QgsProcessingFeedback(False)
+
+        def sources(*roles):
+            return obstacle_sources(layers_with_role(self._project, *roles), LayerExpressions(), context)
+
+        roads = sources(ROAD_SURFACE)
+        areas = read_areas(roads, site, ROAD_SURFACE, feedback).items
+        surfaces = [NamedGeometry(area.rings, area.label) for area in areas] if roads else None
+        obstacles = read_obstacles(sources(*OBSTACLE_ROLES), site, feedback)
+        found = find_misplaced_cones(
+            [*self._standing(), *cones], surfaces, obstacles, OBSTACLE_DISTANCE_M, CONE_DISTANCE_M
+        )
+        new = {cone.id for cone in cones}
+        return [finding for finding in found if finding.cone in new]
+
+    def _standing(self) -> list[Cone]:
+        layer = self.layer()
+        return [
+            Cone(str(f["id"]), 0, f.geometry().asPoint().x(), f.geometry().asPoint().y(), 0.0, "", "")
+            for f in (layer.getFeatures() if layer is not None else ())
+        ]
+
+    def _made(self, crs: QgsCoordinateReferenceSystem) -> QgsVectorLayer:
+        fields = "".join(f"&field={name}:{kind}" for name, kind in CONE_FIELDS.items())
+        layer = QgsVectorLayer(f"Point?crs={crs.authid() or crs.toWkt()}{fields}", tr("Cones"), "memory")
+        layer.loadNamedStyle(str(RESOURCES / "styles" / "cones.qml"))
+        layer.setCustomProperty(MARK, "1")
+        self._project.addMapLayer(layer)
+        return layer
+
+
+# --- The GeoPackage beside the project that keeps the operator's cones when the project is saved ---
+
+TABLE = "cones"
+IN_MEMORY = "memory"
+"""The name of the provider whose features are gone when the project is closed."""
+
+
+class LayoutFile(QObject):
+    """Moves the layer of cones from memory into a file when its project is saved.
+
+    A layer that is in a file, here or wherever the user keeps it, is left alone. :meth:`remove` undoes the
+    constructor.
+    """
+
+    def __init__(self, project: QgsProject, notices: MessageBar, parent: QObject | None = None):
+        super().__init__(parent)
+        self._project, self._notices = project, notices
+        self._store = LayoutLayer(project)
+        # Comes before the layers are written, with the source that they have then.
+        project.writeProject.connect(self._keep_cones)
+
+    def remove(self) -> None:
+        """Let projects be saved without it."""
+        self._project.writeProject.disconnect(self._keep_cones)
+
+    def _keep_cones(self, *_document: object) -> None:
+        layer = self._store.layer()
+        if layer is None or layer.providerType() != IN_MEMORY:
+            return
+        path = _free_path(self._project)
+        problem = tr("the project is not a file") if path is None else self._move(layer, path)
+        if problem:
+            self._notices.warning(
+                tr(
+                    "The cones of the layer {layer} are not saved with the project: {problem}. Export the "
+                    "layer to a file before you close QGIS.",
+                    layer=layer.name(),
+                    problem=problem,
+                )
+            )
+
+    def _move(self, layer: QgsVectorLayer, path: Path) -> str:
+        """Write ``layer`` to ``path`` and let it be that file's; return what went wrong, if something did."""
+        options = QgsVectorFileWriter.SaveVectorOptions()
+        options.driverName, options.layerName = "GPKG", TABLE
+        # Of the format's versions the one that GDAL 3.6 and older read.
+        options.datasourceOptions = ["VERSION=1.3"]
+        context = self._project.transformContext()
+        error, words, *_ = QgsVectorFileWriter.writeAsVectorFormatV3(layer, str(path), context, options)
+        if error != QgsVectorFileWriter.WriterError.NoError:
+            return tr("{path} cannot be written ({words})", path=path, words=words)
+        source = f"{path}|layername={TABLE}"
+        # Before the layer in use lets go of the cones in memory.
+        if not QgsVectorLayer(source, TABLE, "ogr").isValid():
+            return tr("{path} cannot be read again", path=path)
+        layer.setDataSource(source, layer.name(), "ogr", False)
+        return ""
+
+
+def _free_path(project: QgsProject) -> Path | None:
+    """Return a file beside the project that is not there yet; None for a project that is no file."""
+    if project.projectStorage() is not None or not project.absoluteFilePath():
+        return None
+    file = Path(project.absoluteFilePath())
+    names = [f"{file.stem}_cones{number}.gpkg" for number in ("", *(f"_{k}" for k in range(2, 1000)))]
+    return next((path for name in names if not (path := file.with_name(name)).exists()), None)
+
+
+# --- What is wrong with a cone layout while it is still under the cursor, without the window waiting for it
+
+GIVE_UP_S = 5.0
+"""Seconds that the end of a reading is waited for when the plugin is unloaded."""
+
+Floats = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class LayoutGround:
+    """Surfaces that cones stand on, None where no layer has any, and obstacles; metres in one CRS."""
+
+    surfaces: tuple[NamedGeometry, ...] | None
+    obstacles: tuple[NamedGeometry, ...]
+
+    def bad_cones(self, cones: Sequence[Cone], standing: Floats) -> Floats:
+        """Return where those of ``cones`` are that should not stand there, (n, 2); ``standing`` is (m, 2)."""
+        xy = np.array([(cone.x, cone.y) for cone in cones], dtype=np.float64).reshape(-1, 2)
+        if not len(xy):
+            return xy
+        low, high = xy.min(axis=0) - OBSTACLE_DISTANCE_M, xy.max(axis=0) + OBSTACLE_DISTANCE_M
+        surfaces = None if self.surfaces is None else _meeting(self.surfaces, self._surface_boxes, low, high)
+        obstacles = _meeting(self.obstacles, self._obstacle_boxes, low, high)
+        wrong = {
+            one.cone
+            for one in find_misplaced_cones(cones, surfaces, obstacles, OBSTACLE_DISTANCE_M, CONE_DISTANCE_M)
+        }
+        near = standing[((standing >= low) & (standing <= high)).all(axis=1)]
+        apart = np.hypot(*(xy[:, None, :] - near[None, :, :]).transpose(2, 0, 1))
+        bad = np.array([cone.id in wrong for cone in cones]) | (apart < CONE_DISTANCE_M - 1e-9).any(axis=1)
+        return xy[bad]
+
+    @cached_property
+    def _surface_boxes(self) -> Floats:
+        return _boxes(self.surfaces or ())
+
+    @cached_property
+    def _obstacle_boxes(self) -> Floats:
+        return _boxes(self.obstacles)
+
+
+def _boxes(shapes: Sequence[NamedGeometry]) -> Floats:
+    """Return x_min, y_min, x_max, y_max of each of ``shapes``, (n, 4)."""
+    boxes = [(*shape.rings[0].min(axis=0), *shape.rings[0].max(axis=0)) for shape in shapes]
+    return np.array(boxes, dtype=np.float64).reshape(-1, 4)
+
+
+def _meeting(
+    shapes: Sequence[NamedGeometry], boxes: Floats, low: Floats, high: Floats
+) -> list[NamedGeometry]:
+    """Return the shapes whose box meets the one from ``low`` to ``high``."""
+    meets = ((boxes[:, :2] <= high) & (boxes[:, 2:] >= low)).all(axis=1)
+    return [shapes[k] for k in np.flatnonzero(meets).tolist()]
+
+
+class LayoutGroundReader(QObject):
+    """Reads the project's surfaces and obstacles beside the GUI thread, and again when a layer changed."""
+
+    ready = pyqtSignal()
+    """What was asked for last has been read."""
+
+    def __init__(self, project: QgsProject, parent: QObject | None = None):
+        super().__init__(parent)
+        self._project = project
+        self._watch = LayerWatch(self)
+        self._watch.changed.connect(self.forget)
+        self._ground: LayoutGround | None = None
+        self._of: tuple[object, ...] = ()
+        """What the ground, or the reading that is under way, is of."""
+        self._task: LayoutGroundTask | None = None
+
+    def ground(self, crs: QgsCoordinateReferenceSystem) -> LayoutGround | None:
+        """Return the ground in ``crs``; None while it is being read, or cannot be."""
+        roads = layers_with_role(self._project, ROAD_SURFACE)
+        obstacles = layers_with_role(self._project, *OBSTACLE_ROLES)
+        wanted = (crs.toWkt(), *((layer.id(), setup_of(layer)) for layer in (*roads, *obstacles)))
+        if wanted != self._of:
+            self._begin(wanted, roads, obstacles, crs)
+        return self._ground
+
+    def forget(self) -> None:
+        """Have the ground read again when it is asked for next."""
+        self._of, self._ground = (), None
+        self._cancel()
+
+    def remove(self) -> None:
+        """Watch no layer any longer, and wait until no thread reads one."""
+        task = self._task
+        self._watch.changed.disconnect(self.forget)
+        self._watch.remove()
+        self.forget()
+        if task is not None and task.began.is_set():
+            task.left.wait(GIVE_UP_S)
+
+    def _begin(
+        self, wanted: tuple[object, ...], roads: list, obstacles: list, crs: QgsCoordinateReferenceSystem
+    ) -> None:
+        self.forget()
+        self._of = wanted
+        self._watch.watch([*roads, *obstacles])
+        context = QgsExpressionContext(QgsExpressionContextUtils.globalProjectLayerScopes(None))
+        try:
+            sources = [obstacle_sources(layers, LayerExpressions(), context) for layers in (roads, obstacles)]
+        except FleetError:
+            # A click says what is wrong with the layer.
+            return
+        site = SiteGeoreference.in_crs(crs, self._project.transformContext())
+        self._task = LayoutGroundTask(*sources, site)
+        self._task.taskCompleted.connect(self._completed)
+        QgsApplication.taskManager().addTask(self._task)
+
+    def _cancel(self) -> None:
+        task, self._task = self._task, None
+        if task is not None:
+            task.taskCompleted.disconnect(self._completed)
+            task.cancel()
+
+    def _completed(self) -> None:
+        task, self._task = self._task, None
+        if task is not None:
+            self._ground = task.ground
+            self.ready.emit()
+
+
+class LayoutGroundTask(QgsTask):
+    """Reads ``roads`` and ``obstacles`` in the CRS of ``site``; what cannot be read leaves no ground."""
+
+    def __init__(
+        self, roads: Sequence[ObstacleSource], obstacles: Sequence[ObstacleSource], site: SiteGeoreference
+    ):
+        super().__init__(tr("Reading what cones must keep clear of"), QgsTask.Flag.CanCancel)
+        self._roads, self._obstacles, self._site = list(roads), list(obstacles), site
+        self._feedback = QgsProcessingFeedback(False)
+        self.ground: LayoutGround | None = None
+        self.began, self.left = threading.Event(), threading.Event()
+        """Set once the worker has come into :meth:`run`, and left it."""
+
+    def run(self) -> bool:
+        self.began.set()
+        try:
+            areas = read_areas(self._roads, self._site, ROAD_SURFACE, self._feedback).items
+            obstacles = read_obstacles(self._obstacles, self._site, self._feedback)
+        except FleetError:
+            return True
+        finally:
+            self.left.set()
+        if self._feedback.isCanceled():
+            return False
+        surfaces = tuple(NamedGeometry(area.rings, area.label) for area in areas) if self._roads else None
+        self.ground = LayoutGround(surfaces, tuple(obstacles))
+        return True
+
+    def cancel(self) -> None:
+        self._feedback.cancel()
+        super().cancel()

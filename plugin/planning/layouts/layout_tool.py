@@ -1,0 +1,384 @@
+"""Map tool that places a cone layout, and its menu entries."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+from qgis.core import (
+    QgsCoordinateReferenceSystem,
+    QgsCoordinateTransform,
+    QgsPointXY,
+    QgsProject,
+    QgsWkbTypes,
+)
+from qgis.gui import QgisInterface, QgsMapCanvas, QgsMapMouseEvent, QgsMapTool, QgsRubberBand
+from qgis.PyQt.QtCore import QEvent, QObject, QPoint, Qt, QTimer, pyqtSignal
+from qgis.PyQt.QtGui import QColor, QIcon, QKeyEvent, QKeySequence, QWheelEvent
+from qgis.PyQt.QtWidgets import QAction, QApplication, QMenu
+
+from ....robot_bridge.core.geometry import theta_of
+from ....robot_bridge.core.layouts.catalogue import LAYOUTS
+from ....robot_bridge.core.layouts.layout import Cone, Layout, cones_at_pose
+from ...cone_texts import layout_in_words
+from ...control.messages import MessageBar
+from ...layers.site_transform import transform_or_raise
+from ...ui.actions import ICONS
+from ...ui.errors import FleetError, MapTransformError
+from ...ui.language import tr, tr_count
+from .dimensions import LayoutDimensions, remembered
+from .layout_layer import LayoutFile, LayoutGroundReader, LayoutLayer
+
+# --- The map tool that places a cone layout: under the cursor, turned with the wheel, placed with a click
+
+STEP, FINE_STEP = 15.0, 1.0
+"""Degrees for one notch of the wheel, and with Shift held."""
+
+NOTCH = 120.0
+
+_TURNS = {
+    Qt.Key.Key_PageUp: -1.0,
+    Qt.Key.Key_PageDown: 1.0,
+}
+
+
+GOOD, BAD = QColor("#f26a1b"), QColor("#b00020")
+"""Of cones that may stand where they are shown, and of those that should not."""
+CHECK_MS = 60
+"""Milliseconds that the mouse rests before the cones under it are checked."""
+UNDO, REDO = QKeySequence.StandardKey.Undo, QKeySequence.StandardKey.Redo
+
+
+class PlacedLayout(NamedTuple):
+    """Cones that were placed at once."""
+
+    cones: list[Cone]
+    name: str
+    crs: QgsCoordinateReferenceSystem
+    layer: str
+    """The id of the layer that they are in: another project has cones of the same names."""
+
+
+class LayoutTool(QgsMapTool):
+    """Places ``layout`` and says in ``notices`` what came of it. Nothing is sent by it.
+
+    Cones that should not stand where they are shown are marked in red once the mouse rests.
+    """
+
+    turned = pyqtSignal(float)
+    """The wheel or a key has turned the layout; degrees as :attr:`heading`."""
+    undo_changed = pyqtSignal(bool)
+    """Whether there is a layout to take back."""
+    dimensions_wanted = pyqtSignal()
+    """F2: the operator wants to type dimensions."""
+
+    def __init__(self, canvas: QgsMapCanvas, project: QgsProject, notices: MessageBar):
+        super().__init__(canvas)
+        self._project = project
+        self._notices = notices
+        self._store = LayoutLayer(project)
+        self._pressed_at: QPoint | None = None
+        self._cursor: QgsPointXY | None = None
+        self._band: QgsRubberBand | None = None
+        self._bad: QgsRubberBand | None = None
+        self._placed: list[PlacedLayout] = []
+        self._taken_back: list[PlacedLayout] = []
+        self._ground = LayoutGroundReader(project, self)
+        self._ground.ready.connect(self._mark_bad)
+        self._rest = QTimer(self)
+        self._rest.setSingleShot(True)
+        self._rest.setInterval(CHECK_MS)
+        self._rest.timeout.connect(self._mark_bad)
+        self.layout: Layout | None = None
+        self.heading = 90.0
+        """Degrees clockwise from the north of the cones' CRS."""
+        self.setCursor(Qt.CursorShape.CrossCursor)
+
+    def show_layout(self, layout: Layout) -> None:
+        """Place ``layout`` from now on; where the mouse is not over the map it is shown in its middle."""
+        self.layout = layout
+        self._show()
+
+    def turn_to(self, heading: float) -> None:
+        """Let the layout point that many degrees clockwise from north."""
+        self.heading = heading % 360.0
+        self._show()
+
+    def preview(self) -> np.ndarray:
+        """Return where the cones are shown, (n, 2) in the canvas's CRS."""
+        return _points_of(self._band)
+
+    def bad_preview(self) -> np.ndarray:
+        """Return which of :meth:`preview` should not stand where they are shown, (n, 2)."""
+        return _points_of(self._bad)
+
+    def undo(self) -> None:
+        """Take the layout that was placed last back out of its layer."""
+        while self._placed:
+            last = self._placed.pop()
+            if self._store.take_out(last.layer, {cone.id for cone in last.cones}):
+                self._taken_back.append(last)
+                break
+        else:
+            self._notices.info(tr("There is nothing to take back."))
+        self._changed()
+
+    def redo(self) -> None:
+        """Place again what was taken back last, where the cones' layer is in the same CRS still."""
+        if not self._taken_back:
+            self._notices.info(tr("There is nothing to do again."))
+            return
+        last = self._taken_back.pop()
+        if self._store.crs(last.crs) != last.crs:
+            self._taken_back.clear()
+            raise MapTransformError(tr("The layer of cones is another one now: place the layout again."))
+        layer = self._store.add(last.cones, last.name, last.crs)
+        self._placed.append(last._replace(layer=layer.id()))
+        self._changed()
+
+    def activate(self) -> None:
+        super().activate()
+        self.canvas().installEventFilter(self)
+
+    def eventFilter(self, watched: QObject, event: QEvent) -> bool:
+        # QGIS's own Undo is about layers; over the map the tool in hand comes first.
+        is_ours = event.type() == QEvent.Type.ShortcutOverride
+        if is_ours and any(event.matches(key) for key in (UNDO, REDO)):
+            event.accept()
+        return False
+
+    def deactivate(self) -> None:
+        self.canvas().removeEventFilter(self)
+        self._pressed_at = self._cursor = None
+        self._clear()
+        super().deactivate()
+
+    def canvasMoveEvent(self, event: QgsMapMouseEvent) -> None:
+        self._cursor = event.mapPoint()
+        self._show()
+
+    def canvasPressEvent(self, event: QgsMapMouseEvent) -> None:
+        self._pressed_at = event.pos()
+
+    def canvasReleaseEvent(self, event: QgsMapMouseEvent) -> None:
+        # The second click of a double click comes without a press and so is no click of its own.
+        pressed, self._pressed_at = self._pressed_at, None
+        if pressed is None or event.button() != Qt.MouseButton.LeftButton:
+            return
+        if (event.pos() - pressed).manhattanLength() <= QApplication.startDragDistance():
+            self._cursor = event.mapPoint()
+            self._try(self._place)
+
+    def wheelEvent(self, event: QWheelEvent) -> None:
+        if event.modifiers() & Qt.KeyboardModifier.ControlModifier:
+            # Ctrl and the wheel zoom, as with every tool.
+            event.ignore()
+            return
+        step = FINE_STEP if event.modifiers() & Qt.KeyboardModifier.ShiftModifier else STEP
+        turned = event.angleDelta().y() or event.angleDelta().x()
+        self._turn(step * turned / NOTCH)
+        event.accept()
+
+    def keyPressEvent(self, event: QKeyEvent) -> None:
+        """Do by keys what the mouse does: QGIS's own arrow keys move the map below the layout."""
+        fine = bool(event.modifiers() & Qt.KeyboardModifier.ShiftModifier)
+        if event.key() == Qt.Key.Key_Escape:
+            self.canvas().unsetMapTool(self)
+        elif event.key() in (Qt.Key.Key_Return, Qt.Key.Key_Enter):
+            self._try(self._place)
+        elif event.key() in _TURNS:
+            self._turn(_TURNS[event.key()] * (FINE_STEP if fine else STEP))
+        elif event.matches(UNDO):
+            self._try(self.undo)
+        elif event.matches(REDO):
+            self._try(self.redo)
+        elif event.key() == Qt.Key.Key_F2:
+            self.dimensions_wanted.emit()
+        else:
+            super().keyPressEvent(event)
+            return
+        event.accept()
+
+    def remove(self) -> None:
+        """Take the preview off the canvas, and read no layers any more."""
+        self._ground.remove()
+        self._clear()
+
+    def _cones(self) -> tuple[list[Cone], QgsCoordinateTransform]:
+        """Return the cones at the cursor in their own CRS, and the way to the canvas's.
+
+        :raises FleetError: when there is no CRS in metres.
+        """
+        canvas_crs = self.canvas().mapSettings().destinationCrs()
+        crs = self._store.crs(canvas_crs)
+        forward = QgsCoordinateTransform(crs, canvas_crs, self._project.transformContext())
+        back = QgsCoordinateTransform(canvas_crs, crs, self._project.transformContext())
+        place = self._cursor or self.canvas().center()
+        ((x, y),) = transform_or_raise(np.array([[place.x(), place.y()]]), back)
+        cones = self.layout.cones(self._store.prefix(self.layout.NAME))
+        return cones_at_pose(cones, float(x), float(y), theta_of(self.heading)), forward
+
+    def _turn(self, degrees: float) -> None:
+        self.turn_to(self.heading + degrees)
+        self.turned.emit(self.heading)
+
+    def _show(self) -> None:
+        """Draw the layout at the cursor; where that cannot be, nothing: a click there says why."""
+        self._clear()
+        if self.layout is None or self.canvas().mapTool() is not self:
+            return
+        try:
+            cones, forward = self._cones()
+            points = transform_or_raise(np.array([(cone.x, cone.y) for cone in cones]), forward)
+        except FleetError:
+            return
+        self._band = self._drawn(points, GOOD, 8)
+        self._rest.start()
+
+    def _mark_bad(self) -> None:
+        """Mark the cones that should not stand where they are shown now, as far as the layers are read."""
+        self._remove_bad()
+        if self._band is None:
+            return
+        try:
+            cones, forward = self._cones()
+            ground = self._ground.ground(forward.sourceCrs())
+            if ground is None:
+                return
+            bad = ground.bad_cones(cones, self._store.places())
+            points = transform_or_raise(bad, forward) if len(bad) else bad
+        except FleetError:
+            return
+        if len(points):
+            self._bad = self._drawn(points, BAD, 14)
+
+    def _drawn(self, points: np.ndarray, colour: QColor, size: int) -> QgsRubberBand:
+        """Return circles at ``points``, (n, 2) in the canvas's CRS, that are on the map."""
+        band = QgsRubberBand(self.canvas(), QgsWkbTypes.GeometryType.PointGeometry)
+        band.setIcon(QgsRubberBand.IconType.ICON_CIRCLE)
+        band.setColor(colour)
+        band.setIconSize(size)
+        band.setWidth(2 if size < 10 else 3)
+        for number, (x, y) in enumerate(points.tolist(), 1):
+            band.addPoint(QgsPointXY(x, y), number == len(points))
+        return band
+
+    def _place(self) -> None:
+        if self.layout is None:
+            return
+        cones, _ = self._cones()
+        crs = self._store.crs(self.canvas().mapSettings().destinationCrs())
+        findings = self._store.check(cones, crs)
+        layer = self._store.add(cones, self.layout.NAME, crs)
+        self._placed.append(PlacedLayout(cones, self.layout.NAME, crs, layer.id()))
+        self._taken_back.clear()
+        self._changed()
+        if findings:
+            wrong = len({finding.cone for finding in findings})
+            self._notices.warning(
+                tr_count(
+                    len(cones),
+                    "The cone should not stand there: {text} It is in the layer {layer}.",
+                    "{wrong} of %n cones should not stand there: {text} All are in the layer {layer}.",
+                    wrong=wrong,
+                    text=findings[0].text,
+                    layer=layer.name(),
+                )
+            )
+        else:
+            self._notices.info(
+                tr_count(
+                    len(cones),
+                    "1 cone is in the layer {layer}.",
+                    "%n cones are in the layer {layer}.",
+                    layer=layer.name(),
+                )
+            )
+
+    def _try(self, action: Callable[[], None]) -> None:
+        try:
+            action()
+        except FleetError as error:
+            self._notices.warning(error)
+
+    def _changed(self) -> None:
+        """Show what the cones that stand now leave room for, and whether there is a layout to take back."""
+        self.undo_changed.emit(bool(self._placed))
+        self._rest.start()
+
+    def _remove_bad(self) -> None:
+        if self._bad is not None:
+            self.canvas().scene().removeItem(self._bad)
+            self._bad = None
+
+    def _clear(self) -> None:
+        self._rest.stop()
+        self._remove_bad()
+        if self._band is not None:
+            self.canvas().scene().removeItem(self._band)
+            self._band = None
+
+
+def _points_of(band: QgsRubberBand | None) -> np.ndarray:
+    """Return the points of ``band``, (n, 2); none where it is not there."""
+    if band is None:
+        return np.empty((0, 2))
+    points = [band.getPoint(0, k) for k in range(band.numberOfVertices())]
+    return np.array([(point.x(), point.y()) for point in points]).reshape(-1, 2)
+
+
+# --- The menu entries that put the cone layout tool into the operator's hand, one for each layout ---
+
+
+class LayoutAction:
+    """An entry of ``menu`` with a menu of layouts. :meth:`remove` undoes the constructor."""
+
+    def __init__(self, iface: QgisInterface, menu: str, notices: MessageBar):
+        self._iface, self._menu = iface, menu
+        window = iface.mainWindow()
+        self.action = QAction(QIcon(str(ICONS / "cone_layout.svg")), tr("Place cone layout"), window)
+        self.action.setObjectName("fleet_cone_layout")
+        self.action.setToolTip(
+            tr(
+                "Place a cone layout: it is shown under the cursor, the wheel turns it (Shift: finely), a "
+                "click places it, Ctrl+Z takes it back, Esc ends; by keys PgUp and PgDown turn it, Enter "
+                "places it, F2 leads to its dimensions. Nothing is sent to robots"
+            )
+        )
+        self.tool = LayoutTool(iface.mapCanvas(), QgsProject.instance(), notices)
+        self.dimensions = LayoutDimensions(window)
+        self.dimensions.changed.connect(self.tool.show_layout)
+        self.dimensions.turned.connect(self.tool.turn_to)
+        self.dimensions.left.connect(iface.mapCanvas().setFocus)
+        self.tool.turned.connect(self.dimensions.show_heading)
+        self.tool.dimensions_wanted.connect(self.dimensions.take_keys)
+        self.dimensions.undo_wanted.connect(self.tool.undo)
+        self.tool.undo_changed.connect(self.dimensions.undo.setEnabled)
+        self._file = LayoutFile(QgsProject.instance(), notices)
+        self.tool.deactivated.connect(self.dimensions.hide)
+        self._layouts = QMenu(window)
+        for kind in LAYOUTS.values():
+            entry = self._layouts.addAction(layout_in_words(kind))
+            entry.setObjectName(f"fleet_cone_layout_{kind.NAME}")
+            entry.triggered.connect(lambda _=False, kind=kind: self.take(remembered(kind)))
+        self.action.setMenu(self._layouts)
+        iface.addPluginToMenu(menu, self.action)
+
+    def take(self, layout: Layout) -> None:
+        """Put the tool into the operator's hand, with ``layout`` and its dimensions to be changed."""
+        self._iface.mapCanvas().setMapTool(self.tool)
+        self.tool.show_layout(layout)
+        self.dimensions.show_layout(layout, self.tool.heading)
+        self._iface.mapCanvas().setFocus()
+
+    def remove(self) -> None:
+        """Put the tool away and take the entries out of the menu."""
+        self._iface.mapCanvas().unsetMapTool(self.tool)
+        self._file.remove()
+        self.tool.remove()
+        self.tool.deleteLater()
+        self.dimensions.deleteLater()
+        self._iface.removePluginMenu(self._menu, self.action)
+        self._layouts.deleteLater()
+        self.action.deleteLater()

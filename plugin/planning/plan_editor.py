@@ -1,0 +1,309 @@
+"""The plan being edited by the operator, unknown to any robot; plans for collecting a layout, too."""
+
+from __future__ import annotations
+
+import uuid
+from collections.abc import Callable, Sequence
+from dataclasses import fields
+from typing import Any
+
+import numpy as np
+from qgis.core import QgsApplication
+from qgis.PyQt import sip
+from qgis.PyQt.QtCore import QObject, pyqtSignal
+
+from ...robot_bridge.core.assignment import plan_changes
+from ...robot_bridge.core.assignment.job import COLLECT, AssignmentJob, ConeTarget, PlanRobot
+from ...robot_bridge.core.assignment.plan import ConePlan
+from ...robot_bridge.core.assignment.solver import AUTOMATIC, PREVIEW, Objective, assign
+from ...robot_bridge.core.errors import AssignmentError, MissingStoreError
+from ...robot_bridge.core.messages import ClosureReport, CollectLayout, MessageError, QueueTask, TaskKind
+from ...robot_bridge.core.sites.frame import SiteFrame
+from ..control.fleet_controller import FleetController
+from ..gateway_client.buffers import RequestResult
+from ..ui.errors import FleetError, MapTransformError
+from ..ui.language import tr
+from .plan_settings import (
+    ConeFacts,
+    PlanSettings,
+    have_position,
+    participating_robots,
+    read_cones,
+    read_settings,
+    read_stores,
+)
+from .proposal import ClosureCheck, PlanProposal, PlanTask
+from .travel import PlanTravel
+
+# --- The plan as it is planned and edited at the desk; nothing of it is known to any robot ---
+
+
+class PlanningError(FleetError):
+    """What cannot be planned as things are: names what is missing, and what to do."""
+
+
+class PlanEditor(QObject):
+    """Makes and changes the plan by one :class:`PlanTask` at a time."""
+
+    changed = pyqtSignal()
+    """There is another plan, or none, or one is being made."""
+    refused = pyqtSignal(str)
+
+    def __init__(self, desk: FleetController, parent: QObject | None = None):
+        super().__init__(parent)
+        self._desk = desk
+        self.settings: PlanSettings = read_settings(desk.project)
+        self.draft: PlanProposal | None = None
+        self.task: PlanTask | None = None
+        self._look, self._look_at_made = ClosureCheck(self), ClosureCheck(self)
+        desk.roads.closures_changed.connect(self.look_at_closures)
+
+    @property
+    def busy(self) -> bool:
+        """Whether a plan is being made."""
+        return self.task is not None
+
+    def make(self, *, preview: bool) -> None:
+        """Plan the chosen layer's cones, quickly or well.
+
+        :raises FleetError: naming what is missing.
+        """
+        frame = self._frame()
+        targets, facts = read_cones(self._desk.project, self.settings, frame)
+        self._make(targets, facts, frame, preview)
+
+    def make_collecting(self, tasks: Sequence[QueueTask], *, preview: bool) -> None:
+        """Plan who collects placed cones, given as the gateway's tasks; raises FleetError."""
+        frame = self._frame()
+        targets, facts = [], {}
+        for task in tasks:
+            name = f"{task.cone or task.label or 'cone'} #{task.placement}"
+            targets.append(ConeTarget(name, task.x, task.y, 0.0, 0, COLLECT, 1, self.settings.service_s))
+            facts[name] = ConeFacts(task.cone or name, task.layout or "", task.placement, task.theta)
+        self._make(tuple(targets), facts, frame, preview)
+
+    def move(self, target: str, robot: str, trip: int, place: int) -> None:
+        """Let ``robot`` serve ``target`` as number ``place``, from 0, of its trip ``trip``."""
+        self._edit(
+            lambda plan, travel_of: plan_changes.move_target(plan, travel_of, target, robot, trip, place)
+        )
+
+    def remove(self, target: str) -> None:
+        """Let nobody serve ``target``."""
+        self._edit(lambda plan, travel_of: plan_changes.remove_target(plan, travel_of, target))
+
+    def put(self, draft: PlanProposal | None) -> None:
+        """Show another plan, None for none."""
+        self.cancel()
+        self.draft = draft
+        self.changed.emit()
+
+    def run(
+        self,
+        title: str,
+        ground: PlanProposal,
+        work: Callable[[PlanTask], ConePlan],
+        then: Callable[[PlanProposal], None],
+    ) -> None:
+        """Make a plan on the ground of another, beside the window's thread; ``then`` gets it."""
+        if self.task is not None:
+            raise PlanningError(tr("A plan is being made. Wait for it, or press Cancel."))
+        apart_m, closures = self.settings.apart_m, self._desk.roads.closures
+        task = PlanTask(title, lambda task: ground.with_plan(work(task), apart_m, closures))
+        task.made.connect(lambda draft: self._made(task, draft, closures, then))
+        task.refused.connect(lambda why: self._refused(task, why))
+        task.taskTerminated.connect(lambda: self._ended(task))
+        self.task = task
+        QgsApplication.taskManager().addTask(task)
+        self.changed.emit()
+
+    def cancel(self) -> None:
+        """Give up what is being made; the plan of before stays."""
+        task, self.task = self.task, None
+        if task is None:
+            return
+        # QGIS deletes a task that is done; what it made may still be held against roads closed meanwhile.
+        if not sip.isdeleted(task):
+            task.cancel()
+        self.changed.emit()
+
+    def shut_down(self) -> None:
+        """Give up what is being made and wait until its thread has left it."""
+        task = self.task
+        self._look.stop()
+        self._look_at_made.stop()
+        self.cancel()
+        if task is not None and not sip.isdeleted(task) and task.isActive():
+            task.left.wait(10.0)
+
+    def look_at_closures(self) -> None:
+        """Find out anew what of the plan leads along closed roads."""
+        draft = self.draft
+        if draft is None:
+            return
+
+        def found(drafts: list[PlanProposal]) -> None:
+            # Another plan was judged when it was made.
+            if self.draft is draft and drafts[0] is not draft:
+                self.draft = drafts[0]
+                self.changed.emit()
+
+        self._look.begin([draft], self._desk.roads.closures, found)
+
+    def _make(
+        self, targets: tuple[ConeTarget, ...], facts: dict[str, ConeFacts], frame: SiteFrame, preview: bool
+    ) -> None:
+        stores = read_stores(self._desk.project, self.settings, frame)
+        try:
+            job = AssignmentJob(targets, self._robots(), stores, self.settings.finish)
+            wanted = Objective(
+                self.settings.objective, PREVIEW if preview else AUTOMATIC, self.settings.seconds
+            )
+        except MissingStoreError as error:
+            raise PlanningError(
+                tr(
+                    "There is no store where robots load or unload cones: choose a layer of points under "
+                    "Stores, or write under Aboard how many cones each robot has to place."
+                )
+            ) from error
+        except AssignmentError as error:
+            raise PlanningError(str(error)) from error
+        ways = PlanTravel(self._desk.project, frame, self.settings)
+        ways.cones = self._cones_of_before({one.placement for one in facts.values()})
+        ways.standing = self._standing_robots()
+        blank = PlanProposal(ConePlan((), (), (), "", "", "", ""), ways, facts, uuid.uuid4().hex)
+        ways.closures = self._desk.roads.closures
+        self.run(
+            tr("Preview of the cone plan") if preview else tr("Cone plan"),
+            blank,
+            lambda task: assign(job, ways.travel_of(job, task.goes_on), wanted, task.told),
+            self._put,
+        )
+
+    def _edit(self, change: Callable[[ConePlan, plan_changes.TravelOf], ConePlan]) -> None:
+        draft = self.draft
+        if draft is not None:
+            title = tr("Change of the cone plan")
+            draft.ways.closures = self._desk.roads.closures
+            self.run(
+                title,
+                draft,
+                lambda task: change(draft.plan, lambda job: draft.ways.travel_of(job, task.goes_on)),
+                self._put,
+            )
+
+    def _put(self, draft: PlanProposal) -> None:
+        self.draft = draft
+
+    def _made(
+        self,
+        task: PlanTask,
+        draft: PlanProposal,
+        closures: Sequence[ClosureReport],
+        then: Callable[[PlanProposal], None],
+    ) -> None:
+        if task is not self.task:
+            return
+        now = self._desk.roads.closures
+        if now != closures:
+            # Meanwhile a road was closed or opened.
+            self._look_at_made.begin([draft], now, lambda found: self._made(task, found[0], now, then))
+            return
+        self.task = None
+        then(draft)
+        self.changed.emit()
+
+    def _refused(self, task: PlanTask, why: str) -> None:
+        if task is self.task:
+            self.task = None
+            self.changed.emit()
+            self.refused.emit(why)
+
+    def _ended(self, task: PlanTask) -> None:
+        if task is self.task and task.isCanceled():
+            # Cancelled in QGIS's own list of tasks.
+            self.task = None
+            self.changed.emit()
+
+    def _frame(self) -> SiteFrame:
+        if self._desk.site is None:
+            raise MapTransformError(tr("The site is not known yet. Connect to a gateway first."))
+        return self._desk.placement().frame
+
+    def _robots(self) -> tuple[PlanRobot, ...]:
+        robots = self._desk.picture.arrays(self._desk.clock())
+        used = participating_robots(robots, self.settings)
+        if not used.any():
+            raise PlanningError(
+                tr("No robot that is there is chosen: tick robots in the table, or connect some.")
+            )
+        return tuple(
+            self.settings.of_robot(robots.names[row]).robot(robots.names[row], *robots.xy[row].tolist())
+            for row in self._desk.picture.by_name()
+            if used[row]
+        )
+
+    def _cones_of_before(self, collected: set[int | None]) -> np.ndarray:
+        """Return where cones stand that the plan does not collect, (n, 2)."""
+        cones = [
+            (one.x, one.y)
+            for one in self._desk.placements
+            if one.collected_at is None and one.placement not in collected
+        ]
+        return np.array(cones, dtype=float).reshape(-1, 2)
+
+    def _standing_robots(self) -> dict[str, tuple[float, float]]:
+        """Return where robots are that do not take part."""
+        robots = self._desk.picture.arrays(self._desk.clock())
+        stand = have_position(robots) & ~participating_robots(robots, self.settings)
+        return {robots.names[row]: tuple(robots.xy[row].tolist()) for row in np.flatnonzero(stand)}
+
+
+# --- Asks the gateway what stands of a layout, and plans who collects it ---
+
+
+class CollectionPlanner(QObject):
+    """Makes a draft of the answer. Nothing is sent to robots."""
+
+    refused = pyqtSignal(str)
+
+    def __init__(self, desk: FleetController, drafts: PlanEditor, parent: QObject | None = None):
+        super().__init__(parent)
+        self._desk, self._drafts = desk, drafts
+        self._key: str | None = None
+        desk.answered.connect(self._answered)
+
+    def ask(self, request: CollectLayout) -> None:
+        """Ask what is to be collected; raises NotSentError when that cannot be asked."""
+        self._key = self._desk.ask(request, tr("What is to be collected"))
+
+    def _answered(self, answer: RequestResult) -> None:
+        if answer.order.key != self._key:
+            return
+        self._key = None
+        if answer.error is not None or answer.result is None:
+            return
+        queued = int(answer.result.get("in_queues") or 0)
+        try:
+            tasks = [_task(values) for values in answer.result.get("tasks", [])]
+            if not tasks:
+                self.refused.emit(_nothing(answer.order.params.get("layout"), queued))
+                return
+            self._drafts.make_collecting(tasks, preview=False)
+        except (FleetError, MessageError, KeyError, TypeError, ValueError) as error:
+            self.refused.emit(tr("Collecting cannot be planned: {error}", error=error))
+
+
+def _nothing(layout: str | None, queued: int) -> str:
+    also = tr("; {queued} are in queues already", queued=queued) if queued else ""
+    if layout:
+        return tr(
+            "No cone of layout {layout} stands that could be collected{also}.", layout=layout, also=also
+        )
+    return tr("No cone stands that could be collected{also}.", also=also)
+
+
+def _task(values: dict[str, Any]) -> QueueTask:
+    known = {field.name for field in fields(QueueTask)}
+    given = {name: value for name, value in values.items() if name in known}
+    return QueueTask(**{**given, "kind": TaskKind(given["kind"])})

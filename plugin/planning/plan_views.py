@@ -1,0 +1,560 @@
+"""Cone plans as shown: texts, rows, layer."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from qgis.core import (
+    QgsLineSymbol,
+    QgsMarkerSymbol,
+    QgsPalLayerSettings,
+    QgsProperty,
+    QgsSimpleLineSymbolLayer,
+    QgsSimpleMarkerSymbolLayer,
+    QgsSingleSymbolRenderer,
+    QgsSymbolLayer,
+    QgsVectorLayer,
+)
+from qgis.PyQt.QtCore import QPoint, Qt, pyqtSignal
+from qgis.PyQt.QtGui import QColor, QDropEvent, QIcon, QKeyEvent, QPixmap
+from qgis.PyQt.QtWidgets import QAbstractItemView, QMenu, QTreeWidget, QTreeWidgetItem, QWidget
+
+from ...robot_bridge.core.assignment.job import STRAIGHT, PlanRobot
+from ...robot_bridge.core.assignment.plan import ConePlan, PlanStop, RobotPlan
+from ...robot_bridge.core.assignment.plan_changes import trips_of
+from ...robot_bridge.core.messages import PlacementReport, QueueReport, QueueState, RobotState, TaskState
+from ...robot_bridge.core.sites.frame import SiteFrame
+from ..cone_texts import RESULT_QUALITY
+from ..control.fleet_controller import FleetController
+from ..gateway_client.state_texts import ROBOT_STATES
+from ..layers.live_layers import Row, RowLayer, label
+from ..layers.site_transform import frame_of
+from ..ui.glyphs import WRONG, for_letters
+from ..ui.language import first_of, tr, tr_count
+from ..ui.tables import fit_headers
+from .as_placed import PLACED, utc_in_words
+from .progress import PlanProgress
+from .proposal import PlanProposal
+
+# --- A plan in words and numbers: what table, map and message say of it ---
+
+COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#8C510A", "#6A3D9A")
+"""Of Okabe and Ito's palette and two more; with more robots they repeat, and the numbers tell them apart."""
+
+_WORDS = {
+    TaskState.WAITING: tr("in the queue"),
+    TaskState.CURRENT: tr("under way"),
+    TaskState.FAILED: tr("FAILED"),
+    TaskState.DONE: tr("done"),
+    TaskState.SKIPPED: tr("skipped"),
+    TaskState.REMOVED: tr("taken out"),
+}
+NOT_DONE = (TaskState.FAILED, TaskState.SKIPPED)
+
+
+@dataclass(frozen=True)
+class PlanStopRow:
+    """One stop as it is shown. ``number`` counts the stops of its robot, from 1, those behind it first.
+
+    ``state`` is what became of a cone that was sent, ``why`` what is said of it; ``deviation`` is metres.
+    """
+
+    robot: str
+    number: int
+    trip: int
+    stop: PlanStop
+    arrives: str
+    state: TaskState | None = None
+    why: str = ""
+    deviation: float | None = None
+
+    def in_words(self) -> str:
+        """Return state and reason for the operator, nothing for what was not sent."""
+        words = "" if self.state is None else _WORDS[self.state]
+        return f"{words}: {self.why}" if self.why else words
+
+
+def colour_of(plan: ConePlan, robot: str) -> str:
+    """Return a robot's colour in the plan, as ``#rrggbb``."""
+    names = [one.robot.id for one in plan.robots]
+    return COLOURS[names.index(robot) % len(COLOURS)]
+
+
+def stop_rows(draft: PlanProposal, progress: PlanProgress | None) -> dict[str, list[PlanStopRow]]:
+    """Return the stops of each robot, those behind it first."""
+    began = None if progress is None else progress.began_at
+    rows: dict[str, list[PlanStopRow]] = {}
+    for one in draft.plan.robots:
+        behind = [(0, stop) for stop in one.done]
+        to_come = [(trip.number, stop) for trip in one.trips for stop in trip.stops]
+        rows[one.robot.id] = [
+            _row(one.robot.id, number, trip, stop, began, progress)
+            for number, (trip, stop) in enumerate([*behind, *to_come], 1)
+        ]
+    return rows
+
+
+def plan_summary(draft: PlanProposal) -> str:
+    """Return how good a plan is and what it leaves out."""
+    plan = draft.plan
+    cones = sum(stop.is_target for _, stop in plan.all_stops())
+    robots = sum(bool(one.stops) for one in plan.robots)
+    text = tr(
+        "{cones}, {robots}, {metres:.0f} m, done after {span} ({method}, along {travel})",
+        cones=tr_count(cones, "1 cone", "%n cones"),
+        robots=tr_count(robots, "1 robot", "%n robots"),
+        metres=plan.metres,
+        span=_span(plan.end_s),
+        method=RESULT_QUALITY[plan.method],
+        travel=tr("straight lines") if plan.travel == STRAIGHT else tr("the roads"),
+    )
+    out = plan.left_out
+    return (
+        tr(
+            "{text}. Left out: {names}",
+            text=text,
+            names=", ".join(first_of([f"{one.target.id} ({one.reason})" for one in out])),
+        )
+        if out
+        else text
+    )
+
+
+def method_text(draft: PlanProposal) -> str:
+    """Return by which parts a plan was made, for those who want to know."""
+    return tr("Found by: {method}. Ways along: {travel}.", method=draft.plan.method, travel=draft.plan.travel)
+
+
+def time_text(seconds: float, began_at: float | None) -> str:
+    """Return when that is: the time of day once the plan was begun, before as time after its begin."""
+    if began_at is None:
+        return f"+{_span(seconds)}"
+    return time.strftime("%H:%M:%S", time.localtime(began_at + seconds))
+
+
+def position_beside(plan: ConePlan, target: str, onto: str, *, after: bool) -> tuple[str, int, int] | None:
+    """Return robot, trip and place of ``target`` when it is dropped before or ``after`` cone ``onto``.
+
+    Trip and place are as :func:`~.editing.moved` takes them. None when ``onto`` is nobody's.
+    """
+    names = [one.robot.id for one in plan.robots if not one.lost]
+    for robot, day in zip(names, trips_of(plan), strict=True):
+        for trip, cones in enumerate(day):
+            left = [cone for cone in cones if cone != target]
+            if onto in left:
+                return robot, trip, left.index(onto) + after
+    return None
+
+
+def position_at_end(plan: ConePlan, target: str, robot: str) -> tuple[str, int, int] | None:
+    """Return robot, trip and place of ``target`` when it is given to ``robot`` as its last cone."""
+    names = [one.robot.id for one in plan.robots if not one.lost]
+    if robot not in names:
+        return None
+    day = trips_of(plan)[names.index(robot)]
+    trip = max((k for k, cones in enumerate(day) if any(cone != target for cone in cones)), default=0)
+    room = plan.robot(robot)
+    kept = len([cone for cone in day[trip] if cone != target])
+    full = room is not None and kept >= (room.robot.aboard if trip == 0 else room.robot.capacity)
+    if full and plan.stores:
+        return robot, len(day), 0
+    return robot, trip, kept
+
+
+def _row(
+    robot: str, number: int, trip: int, stop: PlanStop, began: float | None, progress: PlanProgress | None
+) -> PlanStopRow:
+    row = PlanStopRow(robot, number, trip, stop, time_text(stop.arrival_s, began))
+    if progress is None or not stop.is_target:
+        return row
+    placed = progress.placed.get(stop.id)
+    return replace(
+        row,
+        state=progress.state_of(stop.id),
+        why=progress.remark_on(stop.id),
+        deviation=None if placed is None else placed.deviation,
+    )
+
+
+def _span(seconds: float) -> str:
+    minutes, rest = divmod(round(seconds), 60)
+    hours, minutes = divmod(minutes, 60)
+    return f"{hours}:{minutes:02d}:{rest:02d}" if hours else f"{minutes}:{rest:02d}"
+
+
+# --- What the operator is told before a plan is sent, and after ---
+
+MOVED = 1.0
+"""Metres that a robot may have moved since the plan was made."""
+
+LISTED = 5
+"""Robots, doubts, closed ways and meetings that the question names: it has to fit on a screen."""
+
+
+def before_sending(desk: FleetController, draft: PlanProposal) -> str:
+    """Return what sending will do, and what speaks against it."""
+    driving = [one for one in draft.plan.robots if one.stops and not one.lost]
+    lines = [plan_summary(draft) + ".", ""]
+    lines += first_of([f"{one.robot.id}: {_cones(one)}" for one in driving], LISTED)
+    doubts = [doubt for one in driving for doubt in _doubts(desk, one.robot)]
+    closed = [one.in_words() for one in draft.closed]
+    meetings = [meeting.in_words() for meeting in draft.meetings]
+    minded = [text for texts in (doubts, closed, meetings) for text in first_of(texts, LISTED)]
+    if minded:
+        lines += ["", tr("Mind:"), *(f"• {text}" for text in minded)]
+    return "\n".join([*lines, "", tr("The robots set off at once.")])
+
+
+def after_sending(desk: FleetController, plan: ConePlan) -> list[str]:
+    """Return which robots do not set off, since somebody holds them."""
+    texts = []
+    for one in plan.robots:
+        report = desk.queues.get(one.robot.id)
+        if one.stops and not one.lost and report is not None and report.state is QueueState.PAUSED:
+            texts.append(
+                tr(
+                    "The queue of {robot} stays paused ({reason}): its cones wait until it is resumed.",
+                    robot=report.robot,
+                    reason=report.reason or "",
+                )
+            )
+    return texts
+
+
+def _cones(one: RobotPlan) -> str:
+    return tr_count(sum(stop.is_target for stop in one.stops), "1 cone", "%n cones")
+
+
+def _doubts(desk: FleetController, robot: PlanRobot) -> list[str]:
+    queue = desk.queues.get(robot.id)
+    return [*_doubts_of_place(desk, robot), *(_doubts_of_queue(queue) if queue is not None else ())]
+
+
+def _doubts_of_place(desk: FleetController, robot: PlanRobot) -> Iterator[str]:
+    """Yield whether the robot is elsewhere than where the plan begins, or away."""
+    view = desk.picture.view(robot.id, desk.clock())
+    if view is None or not view.has_pose:
+        yield tr("it is not known where {id} is", id=robot.id)
+        return
+    away = math.hypot(view.report.x - robot.x, view.report.y - robot.y)
+    if away > MOVED:
+        yield tr("{id} is {away:.1f} m from where the plan begins: better plan anew", id=robot.id, away=away)
+    if view.state not in (RobotState.FRESH, RobotState.STALE):
+        yield tr(
+            "{id} is {state}: it gets its queue when it is heard of again",
+            id=robot.id,
+            state=ROBOT_STATES[view.state],
+        )
+
+
+def _doubts_of_queue(queue: QueueReport) -> Iterator[str]:
+    """Yield what becomes of the tasks that are in the robot's queue already."""
+    waiting = sum(task.state is not TaskState.CURRENT for task in queue.tasks)
+    if waiting:
+        yield tr_count(
+            waiting,
+            "1 task that waits in the queue of {id} is replaced",
+            "%n tasks that wait in the queue of {id} are replaced",
+            id=queue.robot,
+        )
+    if waiting < len(queue.tasks):
+        yield tr("{id} finishes first what it is doing", id=queue.robot)
+    if queue.state is QueueState.PAUSED:
+        yield tr(
+            "the queue of {id} is paused ({reason}): it is resumed",
+            id=queue.robot,
+            reason=queue.reason or tr("no reason"),
+        )
+
+
+# --- The plan as a table of robots with their stops: dragged, moved by keys, taken out ---
+
+HEADS = (tr("Robot, stop"), tr("Arrives"), tr("State"), tr("Off [m]"))
+_NAME = Qt.ItemDataRole.UserRole
+_KINDS = {"place": "", "collect": tr("collect "), "store": tr("store "), "home": tr("end at ")}
+
+
+class PlanTree(QTreeWidget):
+    """Shows a draft or the plan that is driven. Changes are asked for, and shown when they are made."""
+
+    move_wanted = pyqtSignal(str, str, int, int)
+    """A target to another robot, trip and place."""
+    remove_wanted = pyqtSignal(str)
+    place_wanted = pyqtSignal(float, float)
+    """A stop was double clicked: where it is, in the site frame."""
+
+    def __init__(self, parent: QWidget | None = None):
+        super().__init__(parent)
+        self.setObjectName("fleet_plan_tree")
+        self.setHeaderLabels(HEADS)
+        self.setDragDropMode(QAbstractItemView.DragDropMode.InternalMove)
+        self.setContextMenuPolicy(Qt.ContextMenuPolicy.CustomContextMenu)
+        self.customContextMenuRequested.connect(self._offer)
+        self.itemDoubleClicked.connect(self._go_there)
+        self.setToolTip(
+            tr("Drag a cone to another place or robot; Alt+Up and Alt+Down move it, Del takes it out")
+        )
+        for column, width in enumerate((142, 66, 84, 44)):
+            self.setColumnWidth(column, width)
+        fit_headers(self)
+        self.setIndentation(12)
+        self._plan: ConePlan | None = None
+        self._editable = False
+
+    def show_plan(
+        self,
+        draft: PlanProposal | None,
+        rows: Mapping[str, Sequence[PlanStopRow]],
+        began_at: float | None = None,
+        *,
+        editable: bool,
+    ) -> None:
+        """Show a plan by the rows of each robot; it was begun at ``began_at``, if it is driven."""
+        self._editable = editable
+        if draft is None:
+            self._plan = None
+            self.clear()
+            return
+        if draft.plan is not self._plan:
+            self._plan = draft.plan
+            self._build(draft, rows)
+        for k, one in enumerate(draft.plan.robots):
+            top = self.topLevelItem(k)
+            top.setText(1, time_text(one.end_s, began_at) if one.stops or one.done else "")
+            top.setText(2, _robot_in_words(rows[one.robot.id], one.lost))
+            for child, row in enumerate(rows[one.robot.id]):
+                _fill(top.child(child), row)
+
+    def keyPressEvent(self, event: QKeyEvent) -> None:
+        target = self._target()
+        moves = {Qt.Key.Key_Up: -1, Qt.Key.Key_Down: 1}
+        if target and event.key() == Qt.Key.Key_Delete:
+            self.remove_wanted.emit(target)
+        elif target and event.key() in moves and event.modifiers() & Qt.KeyboardModifier.AltModifier:
+            self._move_by(target, moves[event.key()])
+        else:
+            super().keyPressEvent(event)
+
+    def dropEvent(self, event: QDropEvent) -> None:
+        """Ask for the cone that is dragged to be where it is dropped; nothing is moved here."""
+        onto = self.itemAt(_place(event))
+        below = self.dropIndicatorPosition() != QAbstractItemView.DropIndicatorPosition.AboveItem
+        target = self._target()
+        event.setDropAction(Qt.DropAction.IgnoreAction)
+        event.accept()
+        if target and onto is not None:
+            self._want(target, onto, after=below)
+
+    def give_to(self, robot: str) -> None:
+        """Ask for the selected cone to be the last one of ``robot``."""
+        target = self._target()
+        if target and self._plan is not None:
+            self._emit(target, position_at_end(self._plan, target, robot))
+
+    def _want(self, target: str, onto: QTreeWidgetItem, *, after: bool) -> None:
+        name = onto.data(0, _NAME)
+        if onto.parent() is None:
+            self._emit(target, position_at_end(self._plan, target, name))
+        elif name:
+            self._emit(target, position_beside(self._plan, target, name, after=after))
+
+    def _move_by(self, target: str, step: int) -> None:
+        item = self.currentItem()
+        other = item.parent().child(item.parent().indexOfChild(item) + step)
+        while other is not None and not other.data(0, _NAME):
+            other = item.parent().child(item.parent().indexOfChild(other) + step)
+        if other is not None:
+            self._want(target, other, after=step > 0)
+
+    def _emit(self, target: str, place: tuple[str, int, int] | None) -> None:
+        if place is not None:
+            self.move_wanted.emit(target, *place)
+
+    def _target(self) -> str:
+        """Return the cone that is selected and may be changed, else nothing."""
+        item = self.currentItem()
+        if not self._editable or item is None or item.parent() is None:
+            return ""
+        return item.data(0, _NAME) or ""
+
+    def _offer(self, at: QPoint) -> None:
+        target = self._target()
+        if not target or self._plan is None:
+            return
+        menu = QMenu(self)
+        for one in self._plan.robots:
+            if not one.lost:
+                name = one.robot.id
+                menu.addAction(tr("Give to {name}", name=name), lambda name=name: self.give_to(name))
+        menu.addAction(tr("Take out"), lambda: self.remove_wanted.emit(target))
+        menu.exec(self.viewport().mapToGlobal(at))
+
+    def _go_there(self, item: QTreeWidgetItem) -> None:
+        place = item.data(0, _NAME + 1)
+        if place is not None:
+            self.place_wanted.emit(*place)
+
+    def _build(self, draft: PlanProposal, rows: Mapping[str, Sequence[PlanStopRow]]) -> None:
+        chosen = self._target()
+        self.clear()
+        for one in draft.plan.robots:
+            top = QTreeWidgetItem([one.robot.id])
+            top.setData(0, _NAME, one.robot.id)
+            top.setIcon(0, _swatch(colour_of(draft.plan, one.robot.id)))
+            top.setFlags(top.flags() & ~Qt.ItemFlag.ItemIsDragEnabled)
+            self.addTopLevelItem(top)
+            for row in rows[one.robot.id]:
+                child = QTreeWidgetItem()
+                child.setData(0, _NAME, row.stop.id if row.stop.is_target else "")
+                child.setData(0, _NAME + 1, (row.stop.x, row.stop.y))
+                if not row.stop.is_target:
+                    child.setFlags(child.flags() & ~Qt.ItemFlag.ItemIsDragEnabled)
+                top.addChild(child)
+                if chosen and row.stop.id == chosen:
+                    self.setCurrentItem(child)
+            top.setExpanded(True)
+
+
+def _fill(item: QTreeWidgetItem, row: PlanStopRow) -> None:
+    off = "" if row.deviation is None else f"{row.deviation:.2f}"
+    name = f"{row.number}  {_KINDS[row.stop.kind]}{row.stop.id}"
+    for column, text in enumerate((name, row.arrives, row.in_words(), off)):
+        if item.text(column) != text:
+            item.setText(column, text)
+    if row.state in NOT_DONE:
+        item.setForeground(2, for_letters(WRONG))
+
+
+def _robot_in_words(rows: Sequence[PlanStopRow], lost: bool) -> str:
+    cones = [row for row in rows if row.stop.is_target]
+    done = sum(row.state is TaskState.DONE for row in cones)
+    text = (
+        tr_count(len(cones), "{done} of 1 cone", "{done} of %n cones", done=done)
+        if done
+        else tr_count(len(cones), "1 cone", "%n cones")
+    )
+    return tr("LOST, {text}", text=text) if lost else text
+
+
+def _place(event: QDropEvent) -> QPoint:
+    """Return where in the view ``event`` happens; Qt 6 has no pos(), and Qt 5 no position()."""
+    if hasattr(event, "position"):
+        return event.position().toPoint()
+    return event.pos()  # type: ignore[attr-defined]
+
+
+def _swatch(colour: str) -> QIcon:
+    pixmap = QPixmap(12, 12)
+    pixmap.fill(QColor(colour))
+    return QIcon(pixmap)
+
+
+# --- The plan and the placed cones on the map, as layers of the group Fleet ---
+
+STOP_FIELDS = (
+    "robot:string,number:integer,trip:integer,kind:string,id:string,arrives:string,state:string,why:string,"
+    "colour:string"
+)
+WAY_FIELDS = "robot:string,number:integer,to_stop:string,metres:double,arrives:string,colour:string"
+PLACED_FIELDS = (
+    "cone:string,layout:string,robot:string,placed_at:string,deviation:double,planned_x:double,"
+    "planned_y:double,x:double,y:double,theta:double,collected:boolean,planned_easting:double,"
+    "planned_northing:double,easting:double,northing:double"
+)
+"""As in what ``robot-bridge placements export`` writes, so that the as-placed report takes it."""
+
+
+class PlanLayers:
+    """Made when there is something to show, and taken out with the plugin."""
+
+    def __init__(self, desk: FleetController):
+        self._desk = desk
+        project = desk.project
+        self.ways = RowLayer(
+            project, "cone_plan_ways", tr("Cone plan, ways"), "LineString", WAY_FIELDS, _style_ways
+        )
+        self.stops = RowLayer(
+            project, "cone_plan_stops", tr("Cone plan, stops"), "Point", STOP_FIELDS, _style_stops
+        )
+        self.placed = RowLayer(project, PLACED, tr("Cones as placed"), "Point", PLACED_FIELDS, _style_placed)
+
+    def show(self, draft: PlanProposal | None, rows: Mapping[str, Sequence[PlanStopRow]]) -> None:
+        """Show a plan by the rows of each robot; nothing for none."""
+        stops, ways = [], []
+        for robot, theirs in (rows if draft is not None else {}).items():
+            colour = colour_of(draft.plan, robot)
+            for row in theirs:
+                stop = row.stop
+                stops.append(([(stop.x, stop.y)], _stop_values(row, colour)))
+                if row.state is not TaskState.DONE:
+                    values = [robot, row.number, stop.id, round(stop.metres, 2), row.arrives, colour]
+                    ways.append((stop.path, values))
+        self.ways.show(ways, self._desk.site)
+        self.stops.show(stops, self._desk.site)
+
+    def show_placed(self, placements: list[PlacementReport]) -> None:
+        """Show where cones were put down."""
+        site = self._desk.site
+        if site is not None:
+            frame = frame_of(site)
+            self.placed.show(_placed_rows(placements, frame), site)
+
+    def remove(self) -> None:
+        """Take all of them out of the project."""
+        for layer in (self.ways, self.stops, self.placed):
+            layer.remove()
+
+
+def _stop_values(row: PlanStopRow, colour: str) -> list[Any]:
+    """Return the values of ``STOP_FIELDS``; the state as the protocol has it, whatever QGIS speaks."""
+    stop, state = row.stop, "" if row.state is None else row.state.value
+    return [row.robot, row.number, row.trip, stop.kind, stop.id, row.arrives, state, row.why, colour]
+
+
+def _placed_rows(placements: Sequence[PlacementReport], frame: SiteFrame) -> list[Row]:
+    """Return where cones were put down and the values of ``PLACED_FIELDS``, times in UTC."""
+    if not placements:
+        return []
+    places = [(one.planned_x, one.planned_y, one.x, one.y) for one in placements]
+    # Without the noise, below a millimetre, of the way from the site's frame.
+    in_crs = np.round(frame.to_crs(np.reshape(places, (-1, 2))), 3).reshape(-1, 4).tolist()
+    rows: list[Row] = []
+    for one, crs_metres in zip(placements, in_crs, strict=True):
+        values = [
+            one.cone or one.label, one.layout, one.robot, utc_in_words(one.placed_at),
+            round(one.deviation, 4), one.planned_x, one.planned_y, one.x, one.y, one.theta,
+            one.collected_at is not None, *crs_metres,
+        ]  # fmt: skip
+        rows.append(([(one.x, one.y)], values))
+    return rows
+
+
+def _style_ways(layer: QgsVectorLayer) -> None:
+    symbol = QgsLineSymbol.createSimple({"line_width": "0.7", "capstyle": "round"})
+    line = symbol.symbolLayer(0)
+    assert isinstance(line, QgsSimpleLineSymbolLayer)
+    line.setDataDefinedProperty(QgsSymbolLayer.Property.PropertyStrokeColor, QgsProperty.fromField("colour"))
+    layer.setRenderer(QgsSingleSymbolRenderer(symbol))
+
+
+def _style_stops(layer: QgsVectorLayer) -> None:
+    outline = {"outline_color": "255,255,255,255", "outline_width": "0.4", "size": "3.4"}
+    symbol = QgsMarkerSymbol.createSimple({"name": "circle", **outline})
+    mark = symbol.symbolLayer(0)
+    assert isinstance(mark, QgsSimpleMarkerSymbolLayer)
+    mark.setDataDefinedProperty(QgsSymbolLayer.Property.PropertyFillColor, QgsProperty.fromField("colour"))
+    shape = "if(kind = 'store', 'square', if(state = 'done', 'triangle', 'circle'))"
+    mark.setDataDefinedProperty(QgsSymbolLayer.Property.PropertyName, QgsProperty.fromExpression(shape))
+    layer.setRenderer(QgsSingleSymbolRenderer(symbol))
+    around = QgsPalLayerSettings.Placement.OrderedPositionsAroundPoint
+    label(layer, "number || if(state = 'done', ' ✓', '\n' || arrives)", around, 1.0)
+
+
+def _style_placed(layer: QgsVectorLayer) -> None:
+    mark = {"name": "cross", "color": "0,121,92,255", "outline_color": "0,121,92,255", "size": "2.6"}
+    layer.setRenderer(QgsSingleSymbolRenderer(QgsMarkerSymbol.createSimple(mark)))

@@ -1,0 +1,163 @@
+"""``fleet:buildroadnetwork``: road centrelines in, edges and nodes out."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from qgis.core import (
+    QgsGeometry,
+    QgsPointXY,
+    QgsProcessing,
+    QgsProcessingContext,
+    QgsProcessingFeedback,
+    QgsProcessingOutputNumber,
+    QgsProcessingParameterFeatureSink,
+    QgsWkbTypes,
+)
+
+from ....robot_bridge.core.roads.network import Network
+from ...ui.language import tr, tr_count, tr_page
+from ..common.algorithm import FleetAlgorithm, Parameters, fields_of, shown_by_processing
+from ..common.outputs import fill_sink, line
+from ..common.road_sources import (
+    WARNING_COUNT,
+    RoadReading,
+    RoadSource,
+    network_of_roads,
+    repair_parameter,
+    road_parameters,
+)
+
+EDGES, NODES = "EDGES", "NODES"
+_EDGE = {
+    "edge": "int8",
+    "feature": "int8",
+    "tail": "int8",
+    "head": "int8",
+    "length_m": "double",
+    "width_m": "double",
+    "surface": "string",
+    "direction": "int8",
+    "speed_ms": "double",
+    "closed": "int8",
+    "level": "int8",
+    "part": "int8",
+}
+_NODE = {"node": "int8", "ends": "int8", "part": "int8"}
+NUMBERS = {
+    "EDGE_COUNT": tr("Edges"),
+    "NODE_COUNT": tr("Nodes"),
+    "PART_COUNT": tr("Parts that are not connected"),
+    "REPAIR_COUNT": tr("Repairs"),
+    WARNING_COUNT: tr("Warnings"),
+}
+
+
+class BuildRoadNetwork(FleetAlgorithm):
+    """Makes edges and nodes of road centrelines."""
+
+    GROUP = ("roads", tr("Roads"))
+    NAME = "buildroadnetwork"
+    TITLE = tr("Build road network")
+    SUMMARY = tr(
+        "Splits road centrelines where they meet, passes over and under at bridges, and repairs on request."
+    )
+    ICON = "build_road_network.svg"
+    TAGS = ("road", "network", "graph", "topology", "noding", "snap", "repair")
+    HELP = tr_page("""
+    <p>Splits road centrelines where they cross or touch, and makes a layer of edges and one of nodes.</p>
+    <p>Roads of different <b>levels</b> meet only where one of them ends in a point of the other: a bridge is
+    reached at its ends and passes over what is between them. <b>Direction</b>, speed, width, surface and
+    whether a road is closed go over to its edges.</p>
+    <p><b>Repair</b> moves ends that stop within the tolerance of a road onto it, cuts off ends that reach
+    beyond a road by less, and leaves out what is drawn twice; the log names each repair.
+    <i>fleet:checkroadnetwork</i> shows what is broken without changing anything.</p>
+    <p>The fields of the edges are those that this algorithm and <i>fleet:route</i> read by themselves.
+    docs/roads.md says more.</p>
+    """)
+
+    def initAlgorithm(self, configuration: dict[str, Any] | None = None):
+        roads, tolerance, *others = road_parameters()
+        for parameter in (roads, repair_parameter(), tolerance, *others):
+            self.addParameter(parameter)
+        for name, title, kind in (
+            (EDGES, tr("Edges"), QgsProcessing.SourceType.TypeVectorLine),
+            (NODES, tr("Nodes"), QgsProcessing.SourceType.TypeVectorPoint),
+        ):
+            self.addParameter(QgsProcessingParameterFeatureSink(name, title, kind))
+        for name, title in NUMBERS.items():
+            self.addOutput(QgsProcessingOutputNumber(name, title))
+
+    def prepareAlgorithm(
+        self, parameters: Parameters, context: QgsProcessingContext, feedback: QgsProcessingFeedback
+    ):
+        self._fields = fields_of(_EDGE), fields_of(_NODE)
+        with shown_by_processing():
+            self._source = RoadSource(self, parameters, context)
+        return True
+
+    def processAlgorithm(
+        self, parameters: Parameters, context: QgsProcessingContext, feedback: QgsProcessingFeedback
+    ):
+        with shown_by_processing(feedback):
+            reading = self._source.read(feedback)
+            if reading is None:
+                return {}
+            built = network_of_roads(self, parameters, context, reading, feedback)
+            if built is None:
+                return {}
+            network, repairs = built
+            feedback.setProgress(80)
+            made = {}
+            tables = (
+                (EDGES, QgsWkbTypes.Type.LineString, _edge_rows(network, reading)),
+                (NODES, QgsWkbTypes.Type.Point, _node_rows(network)),
+            )
+            for (name, kind, rows), fields in zip(tables, self._fields, strict=True):
+                sink, made[name] = self.parameterAsSink(parameters, name, context, fields, kind, reading.crs)
+                if not fill_sink(sink, fields, rows, feedback):
+                    return {}
+        parts = len(set(network.parts.tolist()))
+        figures = (len(network), len(network.nodes), parts, len(repairs), len(reading.warnings))
+        feedback.pushInfo(
+            ", ".join(
+                (
+                    tr_count(len(network), "1 edge", "%n edges"),
+                    tr_count(len(network.nodes), "1 node", "%n nodes"),
+                    tr_count(parts, "1 part", "%n parts"),
+                    tr_count(len(repairs), "1 repair", "%n repairs"),
+                )
+            )
+        )
+        return {**made, **dict(zip(NUMBERS, figures, strict=True))}
+
+
+def _edge_rows(network: Network, reading: RoadReading):
+    edges = network.edges
+    return [
+        (
+            line(edges.line(k)),
+            [
+                k,
+                reading.features[edges.source[k]],
+                int(network.tail[k]),
+                int(network.head[k]),
+                float(network.lengths[k]),
+                float(edges.width[k]),
+                str(edges.surface[k]),
+                int(edges.direction[k]),
+                float(edges.speed[k]),
+                int(edges.closed[k]),
+                int(edges.level[k]),
+                int(network.parts[network.tail[k]]),
+            ],
+        )
+        for k in range(len(network))
+    ]
+
+
+def _node_rows(network: Network):
+    return [
+        (QgsGeometry.fromPointXY(QgsPointXY(x, y)), [k, int(network.degrees[k]), int(network.parts[k])])
+        for k, (x, y) in enumerate(network.nodes.tolist())
+    ]

@@ -1,0 +1,203 @@
+"""``fleet:loadrobotmap``: a robot map in, layers with all that it says out."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from qgis.core import (
+    QgsGeometry,
+    QgsProcessing,
+    QgsProcessingContext,
+    QgsProcessingFeedback,
+    QgsProcessingOutputNumber,
+    QgsProcessingParameterFeatureSink,
+    QgsWkbTypes,
+)
+
+from ....robot_bridge.core.robotmap.exporters.geometries import MapShape, obstacle_shapes, segment_shapes
+from ....robot_bridge.core.robotmap.model import Border, RobotMap
+from ...ui.language import tr, tr_page
+from ..common.algorithm import FleetAlgorithm, Parameters, fields_of, shown_by_processing
+from ..common.map_files import (
+    MAP,
+    MapPlace,
+    file_problem,
+    map_parameters,
+    map_place,
+    obstacles_in_words,
+    read_map_file,
+)
+from ..common.outputs import fill_sink, line, lines, polygon
+
+AREAS, LINES, SEGMENTS, BORDER = "AREAS", "LINES", "SEGMENTS", "BORDER"
+
+_OBSTACLE = {
+    "id": "int8",
+    "shape_type": "integer",
+    "shape": "string",
+    "semantics": "string",
+    "height_m": "double",
+    "outdoor": "bool",
+    "segments": "integer",
+    "courtyards": "string",
+    "courtyard": "bool",
+    "source": "string",
+    "ext": "string",
+}
+_SEGMENT = {
+    "obstacle": "int8",
+    "number": "integer",
+    "shape_type": "integer",
+    "height_m": "double",
+    "outdoor": "bool",
+    "semantics": "string",
+    "obstacle_semantics": "string",
+    "source": "string",
+    "ext": "string",
+}
+_BORDER = {"area_m2": "double", "obstacles": "integer", "segments": "integer", "meta": "string"}
+
+_LAYERS = {
+    AREAS: (tr("Obstacles that are areas"), QgsWkbTypes.Type.Polygon, _OBSTACLE),
+    LINES: (tr("Obstacles that are lines"), QgsWkbTypes.Type.MultiLineString, _OBSTACLE),
+    SEGMENTS: (tr("Segments"), QgsWkbTypes.Type.LineString, _SEGMENT),
+    BORDER: (tr("Border of the map"), QgsWkbTypes.Type.Polygon, _BORDER),
+}
+_KINDS = {
+    QgsWkbTypes.Type.Polygon: QgsProcessing.SourceType.TypeVectorPolygon,
+    QgsWkbTypes.Type.MultiLineString: QgsProcessing.SourceType.TypeVectorLine,
+    QgsWkbTypes.Type.LineString: QgsProcessing.SourceType.TypeVectorLine,
+}
+NUMBERS = {
+    "OBSTACLE_COUNT": tr("Obstacles"),
+    "SEGMENT_COUNT": tr("Segments"),
+    "WARNING_COUNT": tr("Warnings"),
+}
+
+Row = tuple[QgsGeometry, Sequence[Any]]
+
+
+class LoadRobotMap(FleetAlgorithm):
+    """Turns a robot map back into layers, with every attribute that it holds."""
+
+    NAME = "loadrobotmap"
+    TITLE = tr("Load robot map")
+    SUMMARY = tr("Turns a robot map, text or binary, into layers with all that the map says.")
+    ICON = "load_robot_map.svg"
+    TAGS = ("load", "import", "read", "obstacle", "segments")
+    STYLES = {  # noqa: RUF012
+        AREAS: "robot_map_areas.qml",
+        LINES: "robot_map_lines.qml",
+        SEGMENTS: "robot_map_segments.qml",
+        BORDER: "robot_map_border.qml",
+    }
+    ABOVE_AREAS = (SEGMENTS, LINES, AREAS, BORDER)
+    HELP = tr_page("""
+    <p>Reads a robot map, text or binary, and makes layers of it.</p>
+    <p><b>Obstacles that are areas</b>: outlines that close, courtyards as holes. <b>Obstacles that are
+    lines</b>: walls, stairs, and what the border of the map cuts. <b>Segments</b>: each from a to b, with
+    free space on its right; the style shows that side by ticks and the height by colour. Fields: id, shape,
+    labels, height, indoors or outdoors, extras (<i>ext</i>, as JSON).</p>
+    <p><b>Place</b>: a map may name its CRS, origin and rotation in its leading lines; parameters win over
+    them. Where neither does, the layers are in local metres, said in a warning.</p>
+    """)
+
+    def initAlgorithm(self, configuration: dict[str, Any] | None = None):
+        for parameter in map_parameters():
+            self.addParameter(parameter)
+        for name, (title, kind, _) in _LAYERS.items():
+            self.addParameter(
+                QgsProcessingParameterFeatureSink(
+                    name, title, _KINDS[kind], optional=True, createByDefault=name != BORDER
+                )
+            )
+        for name, title in NUMBERS.items():
+            self.addOutput(QgsProcessingOutputNumber(name, title))
+
+    def checkParameterValues(self, parameters: Parameters, context: QgsProcessingContext):
+        problem = file_problem(parameters)
+        return (False, problem) if problem else super().checkParameterValues(parameters, context)
+
+    def prepareAlgorithm(
+        self, parameters: Parameters, context: QgsProcessingContext, feedback: QgsProcessingFeedback
+    ):
+        self._fields = {name: fields_of(columns) for name, (_, _, columns) in _LAYERS.items()}
+        return True
+
+    def processAlgorithm(
+        self, parameters: Parameters, context: QgsProcessingContext, feedback: QgsProcessingFeedback
+    ):
+        with shown_by_processing(feedback):
+            robot_map = read_map_file(Path(self.parameterAsFile(parameters, MAP, context)))
+            feedback.setProgress(30)
+            place = map_place(self, parameters, context, robot_map.meta, feedback)
+            for warning in robot_map.warnings:
+                feedback.pushWarning(warning)
+            made = self._write(parameters, context, layer_rows(robot_map, place), place, feedback)
+            if feedback.isCanceled():
+                return {}
+        self.remember(made)
+        feedback.pushInfo(obstacles_in_words(len(robot_map.obstacles), robot_map.segment_count))
+        figures = (len(robot_map.obstacles), robot_map.segment_count, len(robot_map.warnings))
+        return {**made, **dict(zip(NUMBERS, figures, strict=True))}
+
+    def _write(
+        self,
+        parameters: Parameters,
+        context: QgsProcessingContext,
+        rows: dict[str, list[Row]],
+        place: MapPlace,
+        feedback: QgsProcessingFeedback,
+    ) -> dict[str, str]:
+        made = {}
+        for number, (name, (_, kind, _)) in enumerate(_LAYERS.items(), 1):
+            fields = self._fields[name]
+            sink, source = self.parameterAsSink(parameters, name, context, fields, kind, place.crs)
+            if sink is None:
+                continue
+            made[name] = source
+            if not fill_sink(sink, fields, rows[name], feedback):
+                break
+            feedback.setProgress(30 + 70 * number / len(_LAYERS))
+        return made
+
+
+def layer_rows(robot_map: RobotMap, place: MapPlace) -> dict[str, list[Row]]:
+    """Return geometry and values of every feature of each layer."""
+    shapes = obstacle_shapes(robot_map)
+    return {
+        AREAS: [_row(shape, place, _OBSTACLE) for shape in shapes if shape.kind == "Polygon"],
+        LINES: [_row(shape, place, _OBSTACLE) for shape in shapes if shape.kind != "Polygon"],
+        SEGMENTS: [_row(shape, place, _SEGMENT) for shape in segment_shapes(robot_map)],
+        BORDER: [(border_polygon(robot_map.border, place), _border_values(robot_map))],
+    }
+
+
+def border_polygon(border: Border, place: MapPlace) -> QgsGeometry:
+    """Return the rectangle of a map in the CRS of its place."""
+    x_min, y_min, x_max, y_max = border
+    ring = np.array([[x_min, y_min], [x_max, y_min], [x_max, y_max], [x_min, y_max], [x_min, y_min]])
+    return polygon([place.points(ring)])
+
+
+def _border_values(robot_map: RobotMap) -> list[Any]:
+    meta = json.dumps(robot_map.meta, ensure_ascii=False)
+    return [robot_map.border.area, len(robot_map.obstacles), robot_map.segment_count, meta]
+
+
+def _row(shape: MapShape, place: MapPlace, columns: dict[str, str]) -> Row:
+    parts = [place.points(part) for part in shape.parts]
+    make = {"Polygon": polygon, "MultiLineString": lines}.get(shape.kind)
+    geometry = make(parts) if make else line(parts[0])
+    return geometry, [_value(shape.attributes[name]) for name in columns]
+
+
+def _value(value: Any) -> Any:
+    """Return what a field can hold: mappings and lists as JSON, empty ones as an empty text."""
+    if isinstance(value, (dict, list)):
+        return json.dumps(value, ensure_ascii=False) if value else ""
+    return value

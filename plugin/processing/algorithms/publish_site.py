@@ -1,0 +1,500 @@
+"""``fleet:publishsite``: layers by their roles in, the folder that a gateway serves out."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+from qgis.core import (
+    QgsCoordinateReferenceSystem,
+    QgsMapLayer,
+    QgsProcessing,
+    QgsProcessingAlgorithm,
+    QgsProcessingContext,
+    QgsProcessingFeedback,
+    QgsProcessingOutputNumber,
+    QgsProcessingOutputString,
+    QgsProcessingParameterBoolean,
+    QgsProcessingParameterDefinition,
+    QgsProcessingParameterExtent,
+    QgsProcessingParameterFolderDestination,
+    QgsProcessingParameterMultipleLayers,
+    QgsProcessingParameterNumber,
+    QgsProcessingParameterString,
+    QgsVectorLayer,
+)
+
+from ....robot_bridge.core.sites.settings import SETTINGS_FILE, SiteBounds, SiteSettings, earlier_settings
+from ....robot_bridge.core.sites.settings_tables import LivenessLimits, value_text
+from ...layers.crs import crs_name, is_engineering
+from ...layers.errors import LayerTypeError
+from ...layers.layer_source import Setups, obstacle_sources
+from ...layers.publishing.publication import (
+    check_publication_values,
+    exclusive_publication,
+    new_publication,
+    next_version,
+)
+from ...layers.publishing.site_file import SiteContent, SiteSources, check_content_sources
+from ...layers.road_layers import DEFAULT_WIDTH_M
+from ...layers.roles import KEEPOUT, OBSTACLE_ROLES, ROAD_CENTRELINE, ROAD_SURFACE, LayerExpressions
+from ...layers.site_transform import SiteGeoreference
+from ...ui.errors import FleetError
+from ...ui.language import tr, tr_count, tr_page
+from ..common.algorithm import FleetAlgorithm, ParameterError, Parameters, shown_by_processing
+from ..common.export_parameters import DEFAULT_HEIGHT, default_height
+from ..common.map_parameters import LOCAL, frame_parameters, site_frame
+from ..common.parameters import (
+    check_vectors,
+    chosen_crs,
+    extent_in,
+    layers_of_project,
+    layers_problem,
+    profile_parameter,
+    setups_of,
+    warn_of_profile,
+)
+
+# --- What a publication will hold, settled and checked before it starts ---
+
+FOLDER, REPLACE = "FOLDER", "REPLACE"
+SITE_ID, SITE_NAME, BOUNDS = "SITE_ID", "SITE_NAME", "BOUNDS"
+DEFAULT_WIDTH = "DEFAULT_WIDTH"
+TOLERANCE, STALE_AFTER, LOST_AFTER = "REACHED_TOLERANCE", "STALE_AFTER", "LOST_AFTER"
+
+LIMITS = {
+    TOLERANCE: ("site", "reached_tolerance_m", SiteSettings.reached_tolerance_m),
+    STALE_AFTER: ("liveness", "stale_after_s", LivenessLimits().stale_after_s),
+    LOST_AFTER: ("liveness", "lost_after_s", LivenessLimits().lost_after_s),
+}
+"""Table, key and default of the parameters that, not given, stay as they are in ``site.toml``."""
+
+LAYERS = {
+    "OBSTACLES": OBSTACLE_ROLES,
+    "ROAD_CENTRELINES": (ROAD_CENTRELINE,),
+    "ROAD_SURFACES": (ROAD_SURFACE,),
+    "KEEPOUTS": (KEEPOUT,),
+}
+"""The roles of the layers that each parameter takes from the project when it is empty,
+in the order of SiteSources."""
+
+SITE_VARIABLE = "fleet_site"
+"""The project variable that holds the id of its site."""
+
+WHERE_NOT_KNOWN = SiteBounds(0.0, 0.0, 1.0, 1.0)
+
+
+@dataclass(frozen=True)
+class PublishParameters:
+    """Everything that is needed of the parameters and layers; usable from any thread.
+
+    The bounds of ``settings`` stand in where ``bounds_given`` is false, until the layers are read. Their
+    version is as the folder was when the plan was made; ``replace_other`` lets another site be replaced.
+    """
+
+    folder: Path
+    settings: SiteSettings
+    bounds_given: bool
+    replace_other: bool
+    sources: SiteSources
+    site: SiteGeoreference
+    default_height: float
+    default_width: float
+
+
+def read_publish_parameters(
+    algorithm: QgsProcessingAlgorithm, parameters: Parameters, context: QgsProcessingContext
+) -> PublishParameters:
+    """Return the plan for ``parameters``; to be called in the main thread.
+
+    :raises FleetError: when a parameter, a layer or what is in the folder stands in the way.
+    """
+    sources = _sources(algorithm, parameters, context)
+    if not sources.all():
+        raise ParameterError(
+            tr(
+                "There is nothing to publish: no layer is given and no layer of the project has a role. "
+                "Give roles (Fleet Supervisor > Layer roles), a PROFILE, or layers."
+            )
+        )
+    own = [source.crs for source in sources.all()]
+    crs = chosen_crs(algorithm, parameters, context, own)
+    _check_published_crs(crs)
+    frame = site_frame(algorithm, parameters, context, crs)
+    local = algorithm.parameterAsBool(parameters, LOCAL, context)
+    site = SiteGeoreference(crs, frame, context.transformContext(), local)
+    check_content_sources(sources, site)
+    folder = Path(algorithm.parameterAsFileOutput(parameters, FOLDER, context))
+    settings, given = _settings(algorithm, parameters, context, site)
+    check_publication_values(settings, folder)
+    replace_other = algorithm.parameterAsBool(parameters, REPLACE, context)
+    return PublishParameters(
+        folder=folder,
+        settings=next_version(settings, folder, replace_other=replace_other),
+        bounds_given=given,
+        replace_other=replace_other,
+        sources=sources,
+        site=site,
+        default_height=default_height(algorithm, parameters, context),
+        default_width=_above_zero(algorithm, parameters, context, DEFAULT_WIDTH),
+    )
+
+
+def layers_to_publish(
+    algorithm: QgsProcessingAlgorithm, parameters: Parameters, context: QgsProcessingContext
+) -> list[QgsMapLayer]:
+    """Return the layers that are given, and those of the project where some are not given."""
+    given = [name for name in LAYERS if parameters.get(name)]
+    layers = [layer for name in given for layer in algorithm.parameterAsLayerList(parameters, name, context)]
+    project = context.project()
+    if len(given) < len(LAYERS) and project is not None:
+        layers += project.mapLayers().values()
+    return layers
+
+
+def _sources(
+    algorithm: QgsProcessingAlgorithm, parameters: Parameters, context: QgsProcessingContext
+) -> SiteSources:
+    setups = setups_of(algorithm, parameters, context)
+    scopes = algorithm.createExpressionContext(parameters, context)
+    found = [_layers(algorithm, parameters, context, name, setups) for name in LAYERS]
+    return SiteSources(*(obstacle_sources(layers, LayerExpressions(), scopes, setups) for layers in found))
+
+
+def _layers(
+    algorithm: QgsProcessingAlgorithm,
+    parameters: Parameters,
+    context: QgsProcessingContext,
+    name: str,
+    setups: Setups,
+) -> list[QgsVectorLayer]:
+    if not parameters.get(name):
+        return layers_of_project(context.project(), LAYERS[name], setups)
+    problem = layers_problem(parameters, name, context)
+    if problem:
+        raise LayerTypeError(problem)
+    layers = algorithm.parameterAsLayerList(parameters, name, context)
+    check_vectors(layers)
+    return layers
+
+
+def _check_published_crs(crs: QgsCoordinateReferenceSystem) -> None:
+    if crs.isValid() and not is_engineering(crs) and crs.authid() and not crs.authid().startswith("USER:"):
+        return
+    named = (
+        tr("The site's CRS, {crs_name},", crs_name=crs_name(crs))
+        if crs.isValid()
+        else tr("The site's CRS is not known, and")
+    )
+    raise ParameterError(
+        tr(
+            "{named} has no code that a gateway knows it by: choose SITE_CRS such as EPSG:32633. Layers in "
+            "local metres can be published with ORIGIN and LOCAL=true.",
+            named=named,
+        )
+    )
+
+
+def _settings(
+    algorithm: QgsProcessingAlgorithm,
+    parameters: Parameters,
+    context: QgsProcessingContext,
+    site: SiteGeoreference,
+) -> tuple[SiteSettings, bool]:
+    name, title = _names(algorithm, parameters, context)
+    bounds = _bounds(algorithm, parameters, context, site)
+    limits = _limits(algorithm, parameters, context, name)
+    settings = SiteSettings(
+        id=name,
+        name=title,
+        version=1,
+        crs=site.crs.authid(),
+        origin=site.frame.origin,
+        bounds=bounds or WHERE_NOT_KNOWN,
+        rotation_deg=round(math.degrees(site.frame.rotation), 9),
+        reached_tolerance_m=limits[TOLERANCE],
+        liveness=LivenessLimits(limits[STALE_AFTER], limits[LOST_AFTER]),
+    )
+    return settings, bounds is not None
+
+
+def _limits(
+    algorithm: QgsProcessingAlgorithm, parameters: Parameters, context: QgsProcessingContext, site: str
+) -> dict[str, float]:
+    """Return the limits that are given; of the others what the site is published with, else the default."""
+    folder = Path(algorithm.parameterAsFileOutput(parameters, FOLDER, context))
+    earlier = earlier_settings(folder, site)
+    limits = {}
+    for name, (table, key, default) in LIMITS.items():
+        found = value_text(earlier, table, key)
+        if parameters.get(name) is not None:
+            limits[name] = algorithm.parameterAsDouble(parameters, name, context)
+        else:
+            limits[name] = _number(found, f"{folder / SETTINGS_FILE}: {table}.{key}") if found else default
+    return limits
+
+
+def _number(text: str, place: str) -> float:
+    try:
+        return float(text.replace("_", ""))
+    except ValueError:
+        raise ParameterError(
+            tr("{place} = {text} is no number: correct it there.", place=place, text=text)
+        ) from None
+
+
+def _names(
+    algorithm: QgsProcessingAlgorithm, parameters: Parameters, context: QgsProcessingContext
+) -> tuple[str, str]:
+    project = context.project()
+    variables = project.customVariables() if project is not None else {}
+    name = algorithm.parameterAsString(parameters, SITE_ID, context) or str(
+        variables.get(SITE_VARIABLE) or ""
+    )
+    if not name:
+        raise ParameterError(
+            tr(
+                "SITE_ID is empty and the project has no variable {site_variable}: give the site an id of "
+                "letters, digits, '_', '.' and '-', such as north_yard.",
+                site_variable=SITE_VARIABLE,
+            )
+        )
+    title = project.title() if project is not None else ""
+    return name, algorithm.parameterAsString(parameters, SITE_NAME, context) or title or name
+
+
+def _bounds(
+    algorithm: QgsProcessingAlgorithm,
+    parameters: Parameters,
+    context: QgsProcessingContext,
+    site: SiteGeoreference,
+) -> SiteBounds | None:
+    if not parameters.get(BOUNDS):
+        return None
+    corners = site.frame.to_site(extent_in(algorithm, parameters, BOUNDS, context, site.crs))
+    low, high = corners.min(axis=0).round(3), corners.max(axis=0).round(3)
+    return SiteBounds(float(low[0]), float(low[1]), float(high[0]), float(high[1]))
+
+
+def _above_zero(
+    algorithm: QgsProcessingAlgorithm, parameters: Parameters, context: QgsProcessingContext, name: str
+) -> float:
+    value = algorithm.parameterAsDouble(parameters, name, context)
+    if not 0 < value < math.inf:
+        raise ParameterError(
+            tr("{name} is {value}: give a number of metres above 0.", name=name, value=value)
+        )
+    return value
+
+
+# --- The help of ``fleet:publishsite`` ---
+
+HELP = tr_page("""
+<p>Writes the layers of a site into a folder with <i>site.toml</i> and <i>site.gpkg</i>, which
+<i>robot-bridge serve --site FOLDER</i> serves.</p>
+<p><b>Layers</b>: those of the project by their roles (menu Fleet Supervisor, Layer roles), or by a <b>map
+profile</b>, or the layers given here. Which features count, heights, where things begin above the ground,
+labels, road widths and shapes of furniture come from the expressions kept with the roles; heights, labels and
+widths else from the fields <i>height</i> or <i>height_m</i>, <i>surface</i>, <i>name</i>, <i>width_m</i> or
+<i>width</i>.</p>
+<p><b>Version</b>: 1 for a new folder, else one more than the version there. A folder that holds another site
+is refused unless <b>Replace</b> is ticked.</p>
+<p><b>Bounds</b>: the rectangle, along the axes of the site frame, that robots may be sent into. Obstacles are
+published up to 100 m beyond it, so that a robot at its edge is told what stands there.</p>
+<p><b>Site CRS, origin, rotation</b>: where the robots' (0, 0) is and how their x axis lies. Default: as the
+project has it.</p>
+<p>An earlier publication is replaced only after the new one is complete; a cancel leaves it as it was. Broken
+geometry is repaired where that is safe and left out where it is not, each time with a warning that names the
+layer and the feature. One publication into a folder runs at a time.</p>
+""")
+"""In one line, because QGIS takes every line break for the end of a paragraph."""
+
+
+# --- ``fleet:publishsite``: layers by their roles in, the folder that a gateway serves out ---
+
+LAYER_TITLES = {
+    "OBSTACLES": tr("Obstacle layers, stairs, ramps and furniture (default: the project's with such a role)"),
+    "ROAD_CENTRELINES": tr("Road centreline layers (default: the project's with that role)"),
+    "ROAD_SURFACES": tr("Road surface layers (default: the project's with that role)"),
+    "KEEPOUTS": tr("Keepout layers (default: the project's with that role)"),
+}
+FAR_ORIGIN_M = 50_000.0
+"""Metres from the origin of a site frame to its site above which somebody may have forgotten to give one."""
+NUMBERS = {
+    "VERSION": tr("Version of the site"),
+    "OBSTACLE_COUNT": tr("Obstacle outlines"),
+    "CENTRELINE_COUNT": tr("Road centrelines"),
+    "SURFACE_COUNT": tr("Road surfaces"),
+    "KEEPOUT_COUNT": tr("Keepouts"),
+    "WARNING_COUNT": tr("Warnings"),
+}
+ID = "ID"
+
+_REAL = QgsProcessingParameterNumber.Type.Double
+_LIMITS = LivenessLimits()
+
+
+class PublishSite(FleetAlgorithm):
+    """Publishes the project's layers as the site that a gateway serves (design, section 3)."""
+
+    GROUP = ("sites", tr("Sites"))
+    NAME = "publishsite"
+    TITLE = tr("Publish site")
+    SUMMARY = tr("Writes the layers of a site, by their roles, into the folder that a gateway serves.")
+    HELP = HELP
+    ICON = "publish_site.svg"
+    TAGS = ("gateway", "site", "publish", "obstacle", "road", "keepout", "qgis_process")
+
+    def initAlgorithm(self, configuration: dict[str, Any] | None = None):
+        site = [
+            QgsProcessingParameterString(SITE_ID, tr("Site id (default: the project's)"), optional=True),
+            QgsProcessingParameterString(
+                SITE_NAME, tr("Site name (default: the project's title)"), optional=True
+            ),
+            QgsProcessingParameterExtent(
+                BOUNDS, tr("Where robots may be sent (default: all that is published)"), optional=True
+            ),
+        ]
+        for parameter in (
+            *_layer_parameters(),
+            profile_parameter(),
+            *site,
+            *_value_parameters(),
+            *frame_parameters(),
+            QgsProcessingParameterFolderDestination(FOLDER, tr("Folder of the published site")),
+        ):
+            self.addParameter(parameter)
+        self.addOutput(QgsProcessingOutputString(ID, tr("Id of the site")))
+        for name, description in NUMBERS.items():
+            self.addOutput(QgsProcessingOutputNumber(name, description))
+
+    def checkParameterValues(self, parameters: Parameters, context: QgsProcessingContext):
+        # Before QGIS's own checks, which say that a value is wrong and not why.
+        try:
+            read_publish_parameters(self, parameters, context)
+        except FleetError as error:
+            return False, str(error)
+        return super().checkParameterValues(parameters, context)
+
+    def prepareAlgorithm(
+        self, parameters: Parameters, context: QgsProcessingContext, feedback: QgsProcessingFeedback
+    ):
+        with shown_by_processing():
+            self._plan = read_publish_parameters(self, parameters, context)
+            layers = layers_to_publish(self, parameters, context)
+            warn_of_profile(self, parameters, context, layers, feedback)
+        return True
+
+    def processAlgorithm(
+        self, parameters: Parameters, context: QgsProcessingContext, feedback: QgsProcessingFeedback
+    ):
+        plan = self._plan
+        with shown_by_processing(feedback), exclusive_publication(plan.folder):
+            # Anew: another publication may have ended since the plan was made.
+            settings = next_version(plan.settings, plan.folder, replace_other=plan.replace_other)
+            content = _content(plan)
+            with new_publication(plan.folder) as publication:
+                if not publication.write_layers(content, settings, feedback):
+                    return {}
+                if not plan.bounds_given:
+                    settings = replace(settings, bounds=_all_of(content))
+                warnings = [*content.warnings(), *_origin_warnings(plan.site, settings.bounds)]
+                for warning in warnings:
+                    feedback.pushWarning(warning)
+                if not publication.replace_earlier(settings, feedback):
+                    return {}
+        feedback.setProgress(100)
+        figures = (settings.version, *content.counts.values(), len(warnings))
+        feedback.pushInfo(
+            tr(
+                "Site {id} version {version} is published in {folder}: {outlines}, "
+                "{centrelines}, {surfaces}, {keepouts}; bounds {bounds} m",
+                id=settings.id,
+                version=settings.version,
+                folder=plan.folder,
+                outlines=tr_count(figures[1], "1 obstacle outline", "%n obstacle outlines"),
+                centrelines=tr_count(figures[2], "1 centreline", "%n centrelines"),
+                surfaces=tr_count(figures[3], "1 road surface", "%n road surfaces"),
+                keepouts=tr_count(figures[4], "1 keepout", "%n keepouts"),
+                bounds=", ".join(f"{edge:.10g}" for edge in settings.bounds),
+            )
+        )
+        return {FOLDER: str(plan.folder), ID: settings.id, **dict(zip(NUMBERS, figures, strict=True))}
+
+
+def _origin_warnings(site: SiteGeoreference, bounds: SiteBounds) -> list[str]:
+    """Warn of a site frame that begins where its CRS does, which may be thousands of kilometres away."""
+    away = math.hypot((bounds[0] + bounds[2]) / 2, (bounds[1] + bounds[3]) / 2)
+    if site.local or site.frame.origin != (0.0, 0.0) or away < FAR_ORIGIN_M:
+        return []
+    return [
+        tr(
+            "The origin of the site frame is 0,0 of {crs}, {away:.0f} km from the site: robots get positions "
+            "of seven digits. Give ORIGIN, a place of the site, unless that is meant.",
+            crs=site.crs.authid(),
+            away=away / 1000,
+        )
+    ]
+
+
+def _content(plan: PublishParameters) -> SiteContent:
+    bounds = plan.settings.bounds if plan.bounds_given else None
+    return SiteContent(plan.sources, plan.site, bounds, plan.default_height, plan.default_width)
+
+
+def _all_of(content: SiteContent) -> SiteBounds:
+    extent = content.extent
+    if extent is None:
+        raise ParameterError(
+            tr(
+                "There is nothing to publish: the layers hold nothing that can be read. See the warnings, "
+                "or give BOUNDS to publish an empty site."
+            )
+        )
+    x_min, y_min, x_max, y_max = extent
+    x_low, y_low = math.floor(x_min), math.floor(y_min)
+    # A single straight wall has no width; a site still needs an inside.
+    x_high, y_high = max(math.ceil(x_max), x_low + 1), max(math.ceil(y_max), y_low + 1)
+    return SiteBounds(float(x_low), float(y_low), float(x_high), float(y_high))
+
+
+def _layer_parameters() -> list[QgsProcessingParameterDefinition]:
+    kind = QgsProcessing.SourceType.TypeVectorAnyGeometry
+    return [
+        QgsProcessingParameterMultipleLayers(name, title, kind, optional=True)
+        for name, title in LAYER_TITLES.items()
+    ]
+
+
+def _value_parameters() -> list[QgsProcessingParameterDefinition]:
+    numbers = (
+        (DEFAULT_HEIGHT, tr("Height where none is known [m]"), 3.0),
+        (DEFAULT_WIDTH, tr("Width of a road where none is known [m]"), DEFAULT_WIDTH_M),
+    )
+    limits = (
+        (TOLERANCE, tr("A target is reached within [m]"), SiteSettings.reached_tolerance_m),
+        (STALE_AFTER, tr("A robot is stale without a message for [s]"), _LIMITS.stale_after_s),
+        (LOST_AFTER, tr("A robot is lost without a message for [s]"), _LIMITS.lost_after_s),
+    )
+    parameters: list[QgsProcessingParameterDefinition] = [
+        QgsProcessingParameterNumber(name, title, _REAL, default) for name, title, default in numbers
+    ]
+    parameters += [
+        QgsProcessingParameterNumber(
+            name,
+            tr("{title} (default: as published, at first {default:g})", title=title, default=default),
+            _REAL,
+            optional=True,
+        )
+        for name, title, default in limits
+    ]
+    parameters.append(
+        QgsProcessingParameterBoolean(
+            REPLACE, tr("Replace the publication of another site"), defaultValue=False
+        )
+    )
+    for parameter in parameters[2:]:
+        parameter.setFlags(parameter.flags() | QgsProcessingParameterDefinition.Flag.FlagAdvanced)
+    return parameters

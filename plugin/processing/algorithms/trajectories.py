@@ -1,0 +1,219 @@
+"""``fleet:trajectories``: stored positions in, lines with time, length and speed out."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from qgis.core import (
+    QgsCoordinateReferenceSystem,
+    QgsCoordinateTransformContext,
+    QgsDistanceArea,
+    QgsGeometry,
+    QgsLineString,
+    QgsPoint,
+    QgsPointXY,
+    QgsProcessing,
+    QgsProcessingContext,
+    QgsProcessingException,
+    QgsProcessingFeatureSource,
+    QgsProcessingFeedback,
+    QgsProcessingOutputNumber,
+    QgsProcessingParameterBoolean,
+    QgsProcessingParameterFeatureSink,
+    QgsProcessingParameterFeatureSource,
+    QgsProcessingParameterField,
+    QgsProcessingParameterNumber,
+    QgsUnitTypes,
+    QgsWkbTypes,
+)
+
+from ...layers.crs import is_mercator, stated_crs
+from ...ui.language import tr, tr_count, tr_page
+from ..common.algorithm import FleetAlgorithm, Parameters, fields_of, shown_by_processing
+from ..common.outputs import AT_ONCE, fill_sink
+from ..common.positions import PositionArrays, PositionSource, RobotDrive, drives, utc_datetime
+
+INPUT, OUTPUT = "INPUT", "OUTPUT"
+ROBOT_FIELD, TIME_FIELD, SPEED_FIELD, GAP, STEPS = "ROBOT_FIELD", "TIME_FIELD", "SPEED_FIELD", "GAP", "STEPS"
+NUMBERS = {
+    "LINE_COUNT": tr("Lines"),
+    "POSITION_COUNT": tr("Positions"),
+    "TOTAL_LENGTH": tr("Metres driven, all robots"),
+}
+_FIELDS = {
+    "robot": "string",
+    "begin": "datetime",
+    "end": "datetime",
+    "duration_s": "double",
+    "length_m": "double",
+    "mean_speed": "double",
+    "top_speed": "double",
+    "count": "integer",
+}
+
+
+class Trajectories(FleetAlgorithm):
+    """Makes lines of where robots have been."""
+
+    GROUP = ("records", tr("Records"))
+    NAME = "trajectories"
+    TITLE = tr("Trajectories")
+    SUMMARY = tr("Makes lines of stored positions, with their time, length and speed.")
+    ICON = "trajectories.svg"
+    TAGS = ("trajectory", "track", "path", "history", "temporal", "replay", "speed")
+    STYLES = {OUTPUT: "trajectories.qml"}  # noqa: RUF012
+    HELP = tr_page("""
+    <p>Makes of the positions that a gateway stored one line for each drive of each robot: a robot that
+    was not heard of for longer than the gap begins a new line. Or, with <b>a line for each step</b>, one
+    for each pair of positions, for colours by speed and for QGIS's temporal controller.</p>
+    <p>The positions are the layer <i>positions</i> of <i>robot-bridge trajectories export drives.gpkg
+    --site site</i>, or any points, in any CRS, with a field for the robot and one for the time (date and
+    time, seconds since 1970, or ISO 8601; without an offset UTC).</p>
+    <p>Fields: <b>begin</b> and <b>end</b> (UTC), <b>duration_s</b>, <b>length_m</b>, <b>mean_speed</b>
+    and <b>top_speed</b> in m/s (as the robot told it, else its fastest step), <b>count</b> of positions.
+    The measure M of each vertex is its time in seconds since 1970. Lengths are measured in the layer's
+    CRS if that is in true metres, as robots drive them, else on its ellipsoid.</p>
+    <p>The layer's times are set: open QGIS's temporal controller to play them.</p>
+    <pre>qgis_process run fleet:trajectories -- INPUT="drives.gpkg|layername=positions"
+    OUTPUT=lines.gpkg</pre>
+    """)
+
+    def initAlgorithm(self, configuration: dict[str, Any] | None = None):
+        points = QgsProcessing.SourceType.TypeVectorPoint
+        self.addParameter(QgsProcessingParameterFeatureSource(INPUT, tr("Positions"), [points]))
+        fields = (
+            (ROBOT_FIELD, tr("Field of the robot"), "robot"),
+            (TIME_FIELD, tr("Field of the time"), "time"),
+        )
+        for name, title, default in fields:
+            self.addParameter(QgsProcessingParameterField(name, title, default, INPUT, optional=True))
+        self.addParameter(
+            QgsProcessingParameterField(
+                SPEED_FIELD, tr("Field of the speed [m/s]"), "v", INPUT, optional=True
+            )
+        )
+        real = QgsProcessingParameterNumber.Type.Double
+        title = tr("Longest gap in a line [s]")
+        self.addParameter(QgsProcessingParameterNumber(GAP, title, real, 60.0, minValue=0.001))
+        self.addParameter(QgsProcessingParameterBoolean(STEPS, tr("A line for each step"), False))
+        lines = QgsProcessing.SourceType.TypeVectorLine
+        self.addParameter(QgsProcessingParameterFeatureSink(OUTPUT, tr("Trajectories"), lines))
+        for name, title in {**NUMBERS, "WARNING_COUNT": tr("Warnings")}.items():
+            self.addOutput(QgsProcessingOutputNumber(name, title))
+
+    def prepareAlgorithm(
+        self, parameters: Parameters, context: QgsProcessingContext, feedback: QgsProcessingFeedback
+    ):
+        self._fields = fields_of(_FIELDS)
+        return True
+
+    def processAlgorithm(
+        self, parameters: Parameters, context: QgsProcessingContext, feedback: QgsProcessingFeedback
+    ):
+        source = self.parameterAsSource(parameters, INPUT, context)
+        if source is None:
+            raise QgsProcessingException(self.invalidSourceError(parameters, INPUT))
+        with shown_by_processing(feedback):
+            names = [
+                self.parameterAsString(parameters, n, context) for n in (ROBOT_FIELD, TIME_FIELD, SPEED_FIELD)
+            ]
+            read = PositionSource(source, *names).read(feedback)
+            if read is None:
+                return {}
+            positions, odd = read
+            if odd:
+                feedback.pushWarning(
+                    tr_count(
+                        odd,
+                        "1 feature has no place, robot or time; it is left out.",
+                        "%n features have no place, robot or time; they are left out.",
+                    )
+                )
+            metres = Metres(source.sourceCrs(), context.transformContext())
+            made = self._write(parameters, context, feedback, source, positions, metres)
+        if made is None:
+            return {}
+        layer, lines, length = made
+        self.remember({OUTPUT: layer})
+        feedback.pushInfo(
+            tr(
+                "{lines} of {positions}, {length:.1f} m in all.",
+                lines=tr_count(lines, "1 line", "%n lines"),
+                positions=tr_count(len(positions), "1 position", "%n positions"),
+                length=length,
+            )
+        )
+        told = dict(zip(NUMBERS, (lines, len(positions), length), strict=True))
+        return {OUTPUT: layer, **told, "WARNING_COUNT": int(odd > 0)}
+
+    def _write(
+        self,
+        parameters: Parameters,
+        context: QgsProcessingContext,
+        feedback: QgsProcessingFeedback,
+        source: QgsProcessingFeatureSource,
+        positions: PositionArrays,
+        metres: Metres,
+    ):
+        """Return the layer, how many lines were written and their length; None when cancelled."""
+        kind = QgsWkbTypes.Type.LineStringM
+        sink, layer = self.parameterAsSink(
+            parameters, OUTPUT, context, self._fields, kind, source.sourceCrs()
+        )
+        gap = self.parameterAsDouble(parameters, GAP, context)
+        steps = self.parameterAsBoolean(parameters, STEPS, context)
+        lines, done, length, rows = 0, 0, 0.0, []
+        for drive in drives(positions, gap, steps=steps):
+            along = metres.of(drive.xy)
+            rows.append((_line(drive), _values(drive, along)))
+            length += float(along.sum())
+            lines += 1
+            done += len(drive.times)
+            if len(rows) == AT_ONCE:
+                if not fill_sink(sink, self._fields, rows, feedback):
+                    return None
+                rows = []
+                feedback.setProgress(min(99.0, 60.0 + 40.0 * done / max(len(positions), 1)))
+        return (layer, lines, length) if fill_sink(sink, self._fields, rows, feedback) else None
+
+
+class Metres:
+    """Measures steps: in the CRS where its units are metres on the ground, else on its ellipsoid."""
+
+    def __init__(self, crs: QgsCoordinateReferenceSystem, transforms: QgsCoordinateTransformContext) -> None:
+        # Without a CRS places are the site's metres, and a GeoPackage would have them in degrees.
+        crs = stated_crs(crs)
+        true = crs.mapUnits() == QgsUnitTypes.DistanceUnit.DistanceMeters and not crs.isGeographic()
+        self._measure = None
+        if crs.isValid() and (not true or is_mercator(crs)):
+            self._measure = QgsDistanceArea()
+            self._measure.setSourceCrs(crs, transforms)
+            self._measure.setEllipsoid(crs.ellipsoidAcronym() or "WGS84")
+
+    def of(self, xy: np.ndarray) -> np.ndarray:
+        """Return the (n - 1,) metres from each of (n, 2) ``xy`` to the next."""
+        if self._measure is None:
+            return np.hypot(*np.diff(xy, axis=0).T)
+        points = [QgsPointXY(x, y) for x, y in xy.tolist()]
+        pairs = zip(points, points[1:])  # noqa: B905, RUF007
+        return np.array([self._measure.measureLine(a, b) for a, b in pairs])
+
+
+def _line(drive: RobotDrive) -> QgsGeometry:
+    rows = np.column_stack([drive.xy, drive.times]).tolist()
+    return QgsGeometry(QgsLineString([QgsPoint(x, y, m=at) for x, y, at in rows]))
+
+
+def _values(drive: RobotDrive, steps: np.ndarray) -> list:
+    length = float(steps.sum())
+    return [
+        drive.robot,
+        utc_datetime(drive.times[0]),
+        utc_datetime(drive.times[-1]),
+        drive.seconds,
+        length,
+        length / drive.seconds,
+        drive.top_speed(steps),
+        len(drive.times),
+    ]

@@ -1,0 +1,1 @@
+"""Parameters, sources and outputs that algorithms share."""

@@ -1,0 +1,287 @@
+"""Outputs: features in sinks, files and folders written whole or not at all."""
+
+from __future__ import annotations
+
+import os
+import shutil
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager, suppress
+from pathlib import Path
+from typing import Any
+from uuid import uuid4
+
+import numpy as np
+from qgis.core import (
+    QgsFeature,
+    QgsFeatureSink,
+    QgsFields,
+    QgsGeometry,
+    QgsLineString,
+    QgsMultiLineString,
+    QgsPolygon,
+    QgsProcessingFeedback,
+)
+
+from ...ui.errors import FleetError
+from ...ui.language import tr
+
+# --- Files that are there whole or not at all ---
+
+
+class OutputError(FleetError):
+    """The output file cannot be written."""
+
+
+def check_target(target: Path, what: str) -> None:
+    """Raise :class:`OutputError` unless ``what`` can be written to ``target``, as far as can be told before.
+
+    What is no file, such as a pipe or /dev/null, is refused: it would be replaced by one.
+    """
+    try:
+        hindrance = _hindrance(Path(os.path.realpath(target)))
+    except OSError as error:
+        hindrance = error.strerror or str(error)
+    if hindrance:
+        raise _not_written(what, target, hindrance)
+
+
+def write_whole(target: Path, content: bytes, what: str = tr("The robot map")) -> None:
+    """Write ``content`` to ``target`` by way of a file beside it: what stood there stays until the end.
+
+    ``what`` it is, is said when it cannot be written. Of a link the file behind it is replaced.
+
+    :raises OutputError: naming the file and what to do; nothing is left behind.
+    """
+    check_target(target, what)
+    file = Path(os.path.realpath(target))
+    # Not from the file's own name, which may be as long as names may be.
+    part = file.with_name(f".{uuid4().hex}.part")
+    try:
+        part.write_bytes(content)
+        part.replace(file)
+    except OSError as error:
+        with suppress(OSError):
+            part.unlink()
+        raise _not_written(what, target, error.strerror or str(error)) from error
+
+
+@contextmanager
+def replaced_whole(target: Path | None, what: str) -> Iterator[None]:
+    """Let the block write the layer file ``target`` whole or not at all: if it fails all is as it was before.
+
+    With None the block writes no file. ``what`` it is, is said when what stood there is in the way.
+
+    :raises OutputError: naming the file and what to do.
+    """
+    file = None if target is None else Path(os.path.realpath(target))
+    aside: dict[Path, Path] = {}
+    try:
+        for part in _parts_of(file):
+            if part.exists():
+                part.replace(aside.setdefault(part, part.with_name(f".{uuid4().hex}.part")))
+    except OSError as error:
+        _put_back(aside)
+        raise _not_written(what, file, error.strerror or str(error)) from error
+    try:
+        yield
+    except BaseException:
+        for part in _parts_of(file):
+            part.unlink(missing_ok=True)
+        _put_back(aside)
+        raise
+    for kept in aside.values():
+        kept.unlink(missing_ok=True)
+
+
+def _parts_of(file: Path | None) -> list[Path]:
+    """Return the files that a layer in ``file`` consists of, or that are beside it while it is written."""
+    if file is None:
+        return []
+    beside = [Path(f"{file}{ending}") for ending in ("-journal", "-wal", "-shm")]
+    if file.suffix.lower() == ".shp":
+        beside = [file.with_suffix(suffix) for suffix in (".dbf", ".shx", ".prj", ".cpg")]
+    return [file, *beside]
+
+
+def _put_back(aside: Mapping[Path, Path]) -> None:
+    for part, kept in aside.items():
+        if kept.exists():
+            kept.replace(part)
+
+
+def _hindrance(file: Path) -> str:
+    """Return why ``file`` cannot be written, nothing where nothing is known to be in the way."""
+    folder = file.parent
+    if file.exists() and not file.is_file():
+        return tr("it is there and is no file")
+    if not folder.is_dir():
+        return tr("there is no folder {folder}", folder=folder)
+    return (
+        "" if os.access(folder, os.W_OK) else tr("the folder {folder} may not be written to", folder=folder)
+    )
+
+
+def _not_written(what: str, target: Path, reason: str) -> OutputError:
+    return OutputError(
+        tr(
+            "{what} cannot be written to {target}: {reason}. Choose a file in a folder that exists, may be "
+            "written to, and has space.",
+            what=what,
+            target=target,
+            reason=reason,
+        )
+    )
+
+
+# --- A folder of files that appear all together or not at all ---
+
+
+class WholeFolder:
+    """Collects files beside ``target``'s own and moves them there at the end.
+
+    To be used in a ``with`` block. What was not published when it ends is removed, and so is a folder that
+    was made for it; what was published when it ends by an exception is taken back, and what was there before
+    put in its place. Files of other names in ``target`` are left alone.
+
+    :raises OutputError: when the folder or a file in it cannot be written.
+    """
+
+    def __init__(self, target: Path, what: str):
+        """Collect files for the folder ``target``; ``what`` they are is said when they cannot be written."""
+        self.target, self._what = target, what
+        self._stage = target / f".fleet.{os.getpid()}.part"
+        self._new, self._earlier = self._stage / "new", self._stage / "earlier"
+        self._made: list[Path] = []
+        self._published: list[str] = []
+
+    def __enter__(self) -> WholeFolder:
+        self._made = [path for path in (self.target, *self.target.parents) if not path.exists()]
+        try:
+            self._new.mkdir(parents=True)
+            self._earlier.mkdir()
+        except OSError as error:
+            self._clear()
+            raise self._failed(error) from error
+        return self
+
+    def add(self, name: str, content: bytes) -> None:
+        """Keep ``content`` to become the file ``name``."""
+        if (self.target / name).is_dir():
+            raise OutputError(
+                tr(
+                    "{path} is a folder, where a file is to be written: choose another OUTPUT.",
+                    path=self.target / name,
+                )
+            )
+        try:
+            (self._new / name).write_bytes(content)
+        except OSError as error:
+            raise self._failed(error) from error
+
+    def publish(self) -> None:
+        """Put every file into its place."""
+        try:
+            for file in sorted(self._new.iterdir()):
+                place = self.target / file.name
+                if place.exists():
+                    place.replace(self._earlier / file.name)
+                self._published.append(file.name)
+                file.replace(place)
+        except OSError as error:
+            raise self._failed(error) from error
+
+    def __exit__(self, kind: type[BaseException] | None, *_: object) -> None:
+        if kind is not None:
+            self._take_back()
+        self._clear()
+
+    def _take_back(self) -> None:
+        for name in self._published:
+            with suppress(OSError):
+                (self.target / name).unlink()
+        self._published = []
+        for file in self._earlier.glob("*"):
+            with suppress(OSError):
+                file.replace(self.target / file.name)
+
+    def _clear(self) -> None:
+        shutil.rmtree(self._stage, ignore_errors=True)
+        if self._published:
+            return
+        for folder in self._made:
+            with suppress(OSError):
+                folder.rmdir()
+
+    def _failed(self, error: OSError) -> OutputError:
+        return OutputError(
+            tr(
+                "{what} cannot be written to {folder}: {reason}. Choose a folder that may be written to, and "
+                "check the free space.",
+                what=self._what,
+                folder=self.target,
+                reason=error.strerror or error,
+            )
+        )
+
+
+# --- Shapes written to the layers that an algorithm makes ---
+
+AT_ONCE = 1000
+"""How many features go into a layer together; a cancel is seen between them."""
+
+
+def polygon(rings: Sequence[np.ndarray]) -> QgsGeometry:
+    """Return the polygon of ``rings``, (n, 2) each and closed, the outer one first."""
+    area = QgsPolygon(_line(rings[0]))
+    for ring in rings[1:]:
+        area.addInteriorRing(_line(ring))
+    return QgsGeometry(area)
+
+
+def lines(parts: Iterable[np.ndarray]) -> QgsGeometry:
+    """Return one geometry of several lines, (n, 2) each."""
+    several = QgsMultiLineString()
+    for part in parts:
+        several.addGeometry(_line(part))
+    return QgsGeometry(several)
+
+
+def line(points: np.ndarray) -> QgsGeometry:
+    """Return the line along ``points``, (n, 2)."""
+    return QgsGeometry(_line(points))
+
+
+def fill_sink(
+    sink: QgsFeatureSink,
+    fields: QgsFields,
+    rows: Sequence[tuple[QgsGeometry, Sequence[Any]]],
+    feedback: QgsProcessingFeedback,
+) -> bool:
+    """Add a feature for each (geometry, values) to ``sink``; return False when cancelled on the way.
+
+    :raises OutputError: when the layer does not take them.
+    """
+    for start in range(0, len(rows), AT_ONCE):
+        if feedback.isCanceled():
+            return False
+        features = [_feature(fields, *row) for row in rows[start : start + AT_ONCE]]
+        if not sink.addFeatures(features, QgsFeatureSink.Flag.FastInsert):
+            raise OutputError(
+                tr(
+                    "A layer cannot be written ({reason}): choose another place or format for it, and check "
+                    "the free space.",
+                    reason=sink.lastError() or tr("no reason is given"),
+                )
+            )
+    return True
+
+
+def _feature(fields: QgsFields, geometry: QgsGeometry, values: Sequence[Any]) -> QgsFeature:
+    feature = QgsFeature(fields)
+    feature.setGeometry(geometry)
+    feature.setAttributes(list(values))
+    return feature
+
+
+def _line(points: np.ndarray) -> QgsLineString:
+    return QgsLineString(points[:, 0].tolist(), points[:, 1].tolist())

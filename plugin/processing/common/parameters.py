@@ -1,0 +1,353 @@
+"""Parameters that algorithms share: named values, points and extents, site CRS, input layers, profile."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+from qgis.core import (
+    QgsCoordinateReferenceSystem,
+    QgsCoordinateTransform,
+    QgsCsException,
+    QgsMapLayer,
+    QgsProcessingAlgorithm,
+    QgsProcessingContext,
+    QgsProcessingFeatureSourceDefinition,
+    QgsProcessingFeedback,
+    QgsProcessingParameterDefinition,
+    QgsProcessingParameterEnum,
+    QgsProcessingParameterFile,
+    QgsProcessingUtils,
+    QgsProject,
+    QgsProviderRegistry,
+    QgsVectorLayer,
+    QgsWkbTypes,
+)
+
+from ...layers.crs import check_transform, crs_name, site_crs_for, stated_crs
+from ...layers.errors import LayerTypeError
+from ...layers.layer_expressions import FeatureFilter
+from ...layers.layer_source import Setups
+from ...layers.profiles import SUFFIXES, find_profile, read_profile
+from ...layers.roles import setup_of
+from ...ui.language import tr
+from .algorithm import ParameterError, Parameters
+
+# --- Choices among fixed values: scripts give a value, dialogs show its name ---
+
+
+def enum_parameter(
+    name: str, title: str, names: Mapping[str, str], default: str | Sequence[str], *, several: bool = False
+) -> QgsProcessingParameterEnum:
+    """Return the parameter ``name`` with the values that are the keys of ``names``, shown as these.
+
+    QGIS stores the value, in its history and in models, too: it is the same in every language.
+    """
+    choice = QgsProcessingParameterEnum(
+        name,
+        title,
+        options=list(names),
+        allowMultiple=several,
+        defaultValue=default,
+        usesStaticStrings=True,
+    )
+    # By its path: only a dialog loads what needs widgets.
+    widget = f"{__package__}.choice_widget.ChoiceWidget"
+    choice.setMetadata({"widget_wrapper": {"class": widget, "names": dict(names)}})
+    return choice
+
+
+# --- Points and extents that parameters give, brought into one CRS ---
+
+
+def point_in(
+    algorithm: QgsProcessingAlgorithm,
+    parameters: Parameters,
+    name: str,
+    context: QgsProcessingContext,
+    crs: QgsCoordinateReferenceSystem,
+) -> tuple[float, float]:
+    """Return the point of the parameter ``name`` in ``crs``; one that names no CRS is in it already.
+
+    :raises ParameterError: when it has no place there: QGIS itself would take degrees for metres.
+    """
+    point = algorithm.parameterAsPoint(parameters, name, context)
+    # A context without a project, or a point that names no CRS would be in the project's.
+    own = algorithm.parameterAsPointCrs(parameters, name, QgsProcessingContext())
+    if own.isValid() and own != crs:
+        way = _way(name, parameters.get(name), own, crs, context)
+        try:
+            point = way.transform(point)
+        except QgsCsException as error:
+            raise _no_place(name, parameters.get(name), crs) from error
+    if not (math.isfinite(point.x()) and math.isfinite(point.y())):
+        raise _no_place(name, parameters.get(name), crs)
+    return point.x(), point.y()
+
+
+def extent_in(
+    algorithm: QgsProcessingAlgorithm,
+    parameters: Parameters,
+    name: str,
+    context: QgsProcessingContext,
+    crs: QgsCoordinateReferenceSystem,
+) -> np.ndarray:
+    """Return the outline, (n, 2) in ``crs``, of the extent of the parameter ``name``.
+
+    :raises ParameterError: when it is none, or has no place there.
+    """
+    own = algorithm.parameterAsExtentCrs(parameters, name, QgsProcessingContext())
+    if own.isValid():
+        _way(name, parameters.get(name), own, crs, context)
+    outline = algorithm.parameterAsExtentGeometry(parameters, name, context, crs)
+    corners = np.array([(vertex.x(), vertex.y()) for vertex in outline.vertices()])
+    if not len(corners):
+        raise ParameterError(
+            tr(
+                "{name} {extent} is no extent: write 'xmin,xmax,ymin,ymax'.",
+                name=name,
+                extent=parameters.get(name),
+            )
+        )
+    if not np.isfinite(corners).all():
+        raise _no_place(name, parameters.get(name), crs)
+    return corners
+
+
+def _way(
+    name: str,
+    value: Any,
+    own: QgsCoordinateReferenceSystem,
+    crs: QgsCoordinateReferenceSystem,
+    context: QgsProcessingContext,
+) -> QgsCoordinateTransform:
+    way = QgsCoordinateTransform(own, crs, context.transformContext())
+    try:
+        check_transform(way)
+    except QgsCsException as error:
+        raise ParameterError(
+            tr(
+                "{name} {value} is in the CRS {own}, which has no known relation to the CRS {crs}: give it "
+                "in that one.",
+                name=name,
+                value=value,
+                own=crs_name(own),
+                crs=crs_name(crs),
+            )
+        ) from error
+    return way
+
+
+def _no_place(name: str, value: Any, crs: QgsCoordinateReferenceSystem) -> ParameterError:
+    return ParameterError(
+        tr(
+            "{name} {value} has no place in the CRS {crs}: give finite numbers, x or longitude first, and "
+            "the CRS that they are in.",
+            name=name,
+            value=value,
+            crs=crs_name(crs),
+        )
+    )
+
+
+# --- The CRS of the site, as an algorithm's parameters, its layers and the project say it ---
+
+SITE_CRS = "SITE_CRS"
+
+
+def given_crs(
+    algorithm: QgsProcessingAlgorithm, parameters: Parameters, context: QgsProcessingContext
+) -> QgsCoordinateReferenceSystem:
+    """Return SITE_CRS, invalid where it is not given.
+
+    :raises ParameterError: when QGIS does not know it.
+    """
+    crs = algorithm.parameterAsCrs(parameters, SITE_CRS, context)
+    if parameters.get(SITE_CRS) and not crs.isValid():
+        raise ParameterError(
+            tr(
+                "SITE_CRS {crs} is no CRS that QGIS knows: write a code such as EPSG:32633.",
+                crs=parameters[SITE_CRS],
+            )
+        )
+    return crs
+
+
+def chosen_crs(
+    algorithm: QgsProcessingAlgorithm,
+    parameters: Parameters,
+    context: QgsProcessingContext,
+    layers: Sequence[QgsCoordinateReferenceSystem],
+    *,
+    layer_first: bool = False,
+) -> QgsCoordinateReferenceSystem:
+    """Return the CRS of the site: SITE_CRS, else the project's or the layers' own.
+
+    With ``layer_first`` that of the first layer comes before the project's, unless it is in degrees. The
+    result is invalid when no CRS is known at all.
+
+    :raises FleetError: when SITE_CRS is no CRS, or what is chosen cannot carry a site.
+    """
+    chosen, own = given_crs(algorithm, parameters, context), [stated_crs(crs) for crs in layers]
+    if layer_first and not chosen.isValid() and own and own[0].isValid() and not own[0].isGeographic():
+        chosen = own[0]
+    project = context.project()
+    return site_crs_for(chosen, QgsCoordinateReferenceSystem() if project is None else project.crs(), own)
+
+
+# --- Layers that a parameter names, before they are read ---
+
+SHOWN = 6
+"""So many layers of a file are named."""
+
+
+def layer_in(
+    algorithm: QgsProcessingAlgorithm, parameters: Parameters, name: str, context: QgsProcessingContext
+) -> QgsVectorLayer | None:
+    """Return the layer that the parameter ``name`` takes its features from, None where that is none."""
+    value = parameters.get(name)
+    # What is given with "selected features only" is no layer to parameterAsVectorLayer.
+    chosen = value.source.staticValue() if isinstance(value, QgsProcessingFeatureSourceDefinition) else value
+    return algorithm.parameterAsVectorLayer({**parameters, name: chosen}, name, context)
+
+
+def layers_problem(parameters: Parameters, name: str, context: QgsProcessingContext) -> str:
+    """Return what is wrong with the first layer in the parameter ``name`` that cannot be read, or nothing.
+
+    Where there are others, Processing itself passes over such a layer in silence; and of a file with several
+    it takes the first.
+    """
+    values = parameters.get(name)
+    for value in values if isinstance(values, (list, tuple)) else [values]:
+        problem = _problem(name, value, context) if isinstance(value, str) and value else ""
+        if problem:
+            return problem
+    return ""
+
+
+def _problem(name: str, value: str, context: QgsProcessingContext) -> str:
+    layer = QgsProcessingUtils.mapLayerFromString(value, context)
+    if layer is None:
+        return tr(
+            "{name}: the layer {layer} cannot be opened: check the file, and the layer's name after "
+            "'|layername='.",
+            name=name,
+            layer=value,
+        )
+    project = context.project()
+    of_project = project is not None and project.mapLayer(layer.id()) is not None
+    inside = [] if of_project else _layers_beside(layer)
+    if not inside:
+        return ""
+    return tr(
+        "{name}: the file {file} holds {count} layers ({layers}): say which, as in {file}|layername={first}.",
+        name=name,
+        file=value,
+        count=len(inside),
+        layers=", ".join(inside[:SHOWN]) + (", …" if len(inside) > SHOWN else ""),
+        first=inside[0],
+    )
+
+
+def _layers_beside(layer: QgsMapLayer) -> list[str]:
+    """Return the layers with geometry in the file of ``layer``, none where it is the one or was named."""
+    registry = QgsProviderRegistry.instance()
+    parts = registry.decodeUri(layer.providerType(), layer.source())
+    if layer.providerType() != "ogr" or parts.get("layerName") or parts.get("layerId") is not None:
+        return []
+    found = registry.providerMetadata("ogr").querySublayers(str(parts.get("path")))
+    bare = QgsWkbTypes.Type.NoGeometry
+    names = list(dict.fromkeys(sublayer.name() for sublayer in found if sublayer.wkbType() != bare))
+    return names if len(names) > 1 else []
+
+
+# --- The parameter PROFILE: what layers are, from a file instead of from the project ---
+
+PROFILE = "PROFILE"
+
+
+def profile_parameter() -> QgsProcessingParameterDefinition:
+    """Return the parameter; its value is a path or the name of a profile that comes with the plugin."""
+    kinds = " ".join(f"*{suffix}" for suffix in SUFFIXES)
+    return QgsProcessingParameterFile(
+        PROFILE,
+        tr("Map profile: what the layers are, by their names (default: as each layer keeps it)"),
+        optional=True,
+        # "All files" also lets the name of a shipped profile pass QGIS's check of the value.
+        fileFilter=tr("Map profile ({kinds});;All files (*)", kinds=kinds),
+    )
+
+
+def setups_of(
+    algorithm: QgsProcessingAlgorithm, parameters: Parameters, context: QgsProcessingContext
+) -> Setups:
+    """Return what tells the role and the expressions of a layer.
+
+    :raises ProfileError: when the profile cannot be read.
+    """
+    chosen = algorithm.parameterAsFile(parameters, PROFILE, context)
+    return read_profile(find_profile(chosen)).setup_over if chosen else setup_of
+
+
+def warn_of_profile(
+    algorithm: QgsProcessingAlgorithm,
+    parameters: Parameters,
+    context: QgsProcessingContext,
+    layers: Iterable[QgsMapLayer],
+    feedback: QgsProcessingFeedback,
+) -> None:
+    """Say which names the profile looks for, if there is one and it knows none of ``layers``.
+
+    :raises ProfileError: when the profile cannot be read.
+    """
+    chosen = algorithm.parameterAsFile(parameters, PROFILE, context)
+    profile = read_profile(find_profile(chosen)) if chosen else None
+    if profile is None or any(profile.setup_for(layer) is not None for layer in layers):
+        return
+    feedback.pushWarning(
+        tr(
+            "{name} knows none of these layers. It looks for layers that are named, in their source or "
+            "in the project: {sought}.",
+            name=profile.name,
+            sought=profile.sought(),
+        )
+    )
+
+
+def layers_of_project(
+    project: QgsProject | None, roles: Sequence[str], setups: Setups
+) -> list[QgsVectorLayer]:
+    """Return the layers of ``project`` that ``setups`` gives one of ``roles``, sorted by name and id.
+
+    :raises LayerTypeError: naming the first that is no vector layer.
+    """
+    layers = project.mapLayers().values() if project is not None else ()
+    found = [layer for layer in layers if setups(layer).role in roles]
+    check_vectors(found)
+    return sorted(found, key=lambda layer: (layer.name(), layer.id()))
+
+
+def check_vectors(layers: Sequence[QgsMapLayer]) -> None:
+    """Raise LayerTypeError for the first of ``layers`` that is no vector layer."""
+    for layer in layers:
+        if not isinstance(layer, QgsVectorLayer):
+            raise LayerTypeError(
+                tr("The layer {layer} is no vector layer: take its role away.", layer=layer.name())
+            )
+
+
+def filter_in(
+    algorithm: QgsProcessingAlgorithm, parameters: Parameters, name: str, context: QgsProcessingContext
+) -> FeatureFilter | None:
+    """Return which features count of the layer that the parameter ``name`` takes its features from.
+
+    None where that is no layer.
+
+    :raises ExpressionError: when the layer's filter is no expression.
+    """
+    layer = layer_in(algorithm, parameters, name, context)
+    if layer is None:
+        return None
+    return FeatureFilter.of_layer(layer, algorithm.createExpressionContext(parameters, context))

@@ -1,0 +1,418 @@
+"""Pages of the as-placed report: print layout, table, PDF."""
+
+from __future__ import annotations
+
+import re
+import tempfile
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from datetime import datetime, timezone
+from pathlib import Path
+
+from qgis.core import (
+    Qgis,
+    QgsCoordinateReferenceSystem,
+    QgsCoordinateTransformContext,
+    QgsLayoutExporter,
+    QgsLayoutFrame,
+    QgsLayoutItem,
+    QgsLayoutItemLabel,
+    QgsLayoutItemMap,
+    QgsLayoutItemPage,
+    QgsLayoutItemPicture,
+    QgsLayoutItemScaleBar,
+    QgsLayoutItemTextTable,
+    QgsLayoutMultiFrame,
+    QgsLayoutPoint,
+    QgsLayoutSize,
+    QgsLayoutTable,
+    QgsLayoutTableColumn,
+    QgsLayoutUtils,
+    QgsMapLayer,
+    QgsPrintLayout,
+    QgsProcessingFeedback,
+    QgsProject,
+    QgsTextFormat,
+    QgsTextRenderer,
+    QgsUnitTypes,
+)
+from qgis.PyQt.QtCore import Qt
+from qgis.PyQt.QtGui import QColor
+
+from ...ui.language import tr, tr_count
+from .outputs import OutputError, check_target, write_whole
+from .placed_cones import (
+    HEIGHT,
+    WIDTH,
+    ConeDeviations,
+    PlacedCone,
+    deviation_values,
+    extent_of,
+    factor_of,
+    histogram,
+    map_layers,
+)
+
+# --- Room for texts in the columns of a table: shared out, and kept to by leaving out the middle of a text
+
+
+def shared_widths(room: float, needs: Sequence[float]) -> list[float]:
+    """Return ``room`` dealt out: each gets what it needs or an equal share, and the neediest what is left."""
+    given = [0.0] * len(needs)
+    order = sorted(range(len(needs)), key=needs.__getitem__)
+    for done, each in enumerate(order):
+        given[each] = min(needs[each], room / (len(needs) - done))
+        room -= given[each]
+    given[order[-1]] += room
+    return given
+
+
+def shortened(text: str, room: float, width_of: Callable[[str], float]) -> str:
+    """Return ``text`` as it fits into ``room``, by ``width_of``: its end, often a number, tells it apart."""
+    if width_of(text) <= room:
+        return text
+    for kept in range(len(text) - 1, 1, -1):
+        end = text[len(text) - kept // 2 :]
+        short = f"{text[: kept - len(end)]}…{end}"
+        if width_of(short) <= room:
+            return short
+    return "…"
+
+
+# --- Texts, places and pages of a report, in millimetres ---
+
+PAGE = (210.0, 297.0)
+"""Millimetres, as everything here."""
+MARGIN = 15.0
+TEXT_WIDTH = PAGE[0] - 2 * MARGIN
+
+
+def a4_page(layout: QgsPrintLayout) -> QgsLayoutItemPage:
+    """Return a page for ``layout``, upright."""
+    page = QgsLayoutItemPage(layout)
+    page.setPageSize("A4", QgsLayoutItemPage.Orientation.Portrait)
+    return page
+
+
+def add_text(
+    layout: QgsPrintLayout,
+    text: str,
+    area: tuple[float, float, float, float],
+    size: float,
+    *,
+    bold: bool = False,
+    page: int = 0,
+) -> QgsLayoutItemLabel:
+    """Add ``text`` in letters of ``size`` points, return its label; ``area`` is as for :func:`place_item`."""
+    label = QgsLayoutItemLabel(layout)
+    label.setText(text)
+    letters = text_format(size, bold=bold)
+    if hasattr(label, "setTextFormat"):
+        label.setTextFormat(letters)
+    else:
+        # QGIS 3.22.
+        label.setFont(letters.toQFont())
+    place_item(label, area, page)
+    layout.addLayoutItem(label)
+    return label
+
+
+def text_format(size: float, *, bold: bool) -> QgsTextFormat:
+    """Return letters of ``size`` points."""
+    letters = QgsTextFormat()
+    font = letters.font()
+    font.setFamily("Sans Serif")
+    font.setBold(bold)
+    letters.setFont(font)
+    letters.setSize(size)
+    letters.setSizeUnit(QgsUnitTypes.RenderUnit.RenderPoints)
+    return letters
+
+
+def widths_of(layout: QgsPrintLayout, letters: QgsTextFormat) -> Callable[[str], float]:
+    """Return what tells how wide a text is in ``letters``, in millimetres."""
+    context = QgsLayoutUtils.createRenderContextForLayout(layout, None)
+    millimetre = context.convertToPainterUnits(1.0, QgsUnitTypes.RenderUnit.RenderMillimeters)
+    return lambda text: QgsTextRenderer.textWidth(context, letters, [text]) / millimetre
+
+
+def place_item(item: QgsLayoutItem, area: tuple[float, float, float, float], page: int = 0) -> None:
+    """Put ``item`` into ``area`` of a page: left, top, width, height."""
+    left, top, width, height = area
+    item.attemptResize(QgsLayoutSize(width, height, QgsUnitTypes.LayoutUnit.LayoutMillimeters))
+    item.attemptMove(corner(left, top), page=page)
+
+
+def corner(left: float, top: float) -> QgsLayoutPoint:
+    """Return a place on a page."""
+    return QgsLayoutPoint(left, top, QgsUnitTypes.LayoutUnit.LayoutMillimeters)
+
+
+# --- The table of placed cones in a report ---
+
+COLUMNS = (
+    (tr("Cone"), 22, False),
+    (tr("Layout"), 20, False),
+    (tr("Robot"), 16, False),
+    (tr("Placed (UTC)"), 31, False),
+    (tr("Planned E"), 20, True),
+    (tr("Planned N"), 21, True),
+    (tr("ΔE cm"), 10, True),
+    (tr("ΔN cm"), 10, True),
+    (tr("Off cm"), 11, True),
+    ("", 3, False),
+)
+"""Of each its head, its width in millimetres without the margins of its cells, and whether it has numbers."""
+NAMES = 3
+"""Columns of names, the first ones: they share their room as their names are long."""
+LETTERS = 7.5
+"""Points."""
+BEYOND = "!"
+"""Stands beside a cone that is beyond the tolerance."""
+
+
+def add_table(layout: QgsPrintLayout, cones: Sequence[PlacedCone], tolerance: float) -> None:
+    """Put the table on the second page, and on as many more as it takes, each with its heads."""
+    table = QgsLayoutItemTextTable(layout)
+    layout.addMultiFrame(table)
+    head = text_format(LETTERS, bold=True)
+    table.setHeaderTextFormat(head)
+    table.setContentTextFormat(text_format(LETTERS, bold=False))
+    # Bold letters are the wider ones: what fits in them fits.
+    _fill(table, [_row(cone, tolerance) for cone in cones], widths_of(layout, head))
+    table.setHeaderMode(QgsLayoutTable.HeaderMode.AllFrames)
+    table.setCellMargin(0.7)
+    table.setGridStrokeWidth(0.1)
+    table.setGridColor(QColor(173, 181, 189))
+    layout.pageCollection().addPage(a4_page(layout))
+    frame = QgsLayoutFrame(layout, table)
+    place_item(frame, (MARGIN, MARGIN, TEXT_WIDTH, 264), page=1)
+    table.addFrame(frame)
+    table.setResizeMode(QgsLayoutMultiFrame.ResizeMode.RepeatUntilFinished)
+    table.recalculateFrameSizes()
+
+
+def _fill(table: QgsLayoutItemTextTable, rows: Sequence[list[str]], width_of: Callable[[str], float]) -> None:
+    """Give the table its rows, and columns in which the names fit as far as there is room."""
+    heads, widths, numbers = zip(*COLUMNS, strict=True)
+    texts = [{head, *(row[k] for row in rows)} for k, head in enumerate(heads[:NAMES])]
+    room = shared_widths(sum(widths[:NAMES]), [max(map(width_of, column)) for column in texts])
+    fitting = [
+        {text: shortened(text, width, width_of) for text in column}
+        for column, width in zip(texts, room, strict=True)
+    ]
+    for row in rows:
+        row[:NAMES] = [short[text] for short, text in zip(fitting, row[:NAMES], strict=True)]
+    columns = zip(heads, [*room, *widths[NAMES:]], numbers, strict=True)
+    table.setColumns([_column(*column) for column in columns])
+    table.setContents(rows)
+
+
+def _column(head: str, width: float, numbers: bool) -> QgsLayoutTableColumn:
+    column = QgsLayoutTableColumn()
+    column.setHeading(head)
+    column.setWidth(width)
+    column.setHAlignment(Qt.AlignmentFlag.AlignRight if numbers else Qt.AlignmentFlag.AlignLeft)
+    return column
+
+
+def _row(cone: PlacedCone, tolerance: float) -> list[str]:
+    (east, north), (x, y) = cone.off, cone.planned
+    return [
+        cone.name,
+        cone.layout,
+        cone.robot,
+        "" if cone.at is None else time_in_words(cone.at),
+        f"{x:.2f}",
+        f"{y:.2f}",
+        f"{east * 100:+.1f}",
+        f"{north * 100:+.1f}",
+        f"{cone.deviation * 100:.1f}",
+        BEYOND if cone.deviation > tolerance else "",
+    ]
+
+
+def time_in_words(at: float) -> str:
+    """Return seconds since 1970 as a time in UTC."""
+    return datetime.fromtimestamp(at, timezone.utc).strftime("%Y-%m-%d %H:%M:%S")
+
+
+# --- The as-placed report as a print layout of A4 pages, and as PDF ---
+
+
+@dataclass(frozen=True)
+class ReportContent:
+    """What is to be told: ``cones`` in the table's order, ``background`` from the top."""
+
+    title: str
+    cones: Sequence[PlacedCone]
+    figures: ConeDeviations
+    tolerance: float
+    crs: QgsCoordinateReferenceSystem
+    background: Sequence[QgsMapLayer] = field(default_factory=tuple)
+
+
+def write_pdf(
+    report: ReportContent,
+    file: Path,
+    transforms: QgsCoordinateTransformContext,
+    feedback: QgsProcessingFeedback,
+) -> int | None:
+    """Write ``file``, whole or not at all, and return its number of pages; None when cancelled.
+
+    :raises OutputError: when it cannot be written.
+    """
+    check_target(file, tr("The report"))
+    # A project of its own, so that nothing is left in the user's.
+    project = QgsProject()
+    project.setCrs(report.crs)
+    project.setTransformContext(transforms)
+    with tempfile.TemporaryDirectory(prefix="fleet-report-") as folder:
+        layout = build_layout(report, project, Path(folder))
+        feedback.setProgress(40)
+        if feedback.isCanceled():
+            return None
+        part = Path(folder) / "report.pdf"
+        settings = QgsLayoutExporter.PdfExportSettings()
+        # As text and not as drawings of letters: a report is searched and copied from.
+        settings.textRenderFormat = Qgis.TextRenderFormat.AlwaysText
+        done = QgsLayoutExporter(layout).exportToPdf(str(part), settings)
+        if done != QgsLayoutExporter.ExportResult.Success:
+            raise OutputError(
+                tr(
+                    "QGIS cannot make the report (layout export {number}): check the free space, and the "
+                    "background layers by leaving them out.",
+                    number=int(done),
+                )
+            )
+        pages = layout.pageCollection().pageCount()
+        write_whole(file, part.read_bytes(), tr("The report"))
+    return pages
+
+
+def build_layout(report: ReportContent, project: QgsProject, folder: Path) -> QgsPrintLayout:
+    """Return the layout in ``project``; its pictures are in ``folder`` until it is exported."""
+    layout = QgsPrintLayout(project)
+    layout.initializeDefaults()
+    layout.pageCollection().page(0).setPageSize("A4", QgsLayoutItemPage.Orientation.Portrait)
+    add_text(layout, report.title, (MARGIN, 12, TEXT_WIDTH, 10), 17, bold=True)
+    add_text(layout, _summary(report), (MARGIN, 22, TEXT_WIDTH, 20), 9.5)
+    _picture(layout, report, folder)
+    _map(layout, report, project)
+    add_table(layout, report.cones, report.tolerance)
+    _feet(layout, report)
+    return layout
+
+
+def _feet(layout: QgsPrintLayout, report: ReportContent) -> None:
+    """Number the pages, and say on those of the table what its columns are."""
+    key = tr(
+        "E and N in metres of {crs}; {mark} beyond the tolerance of {tolerance:g} cm",
+        crs=report.crs.authid() or report.crs.description(),
+        mark=BEYOND,
+        tolerance=report.tolerance * 100,
+    )
+    count = layout.pageCollection().pageCount()
+    for page in range(count):
+        if page:
+            add_text(layout, key, (MARGIN, 282, TEXT_WIDTH, 5), 8, page=page)
+        text = f"{report.title} · {page + 1} / {count}"
+        label = add_text(layout, text, (MARGIN, 287, TEXT_WIDTH, 5), 8, page=page)
+        label.setHAlign(Qt.AlignmentFlag.AlignRight)
+
+
+def _summary(report: ReportContent) -> str:
+    figures = report.figures
+    lines = [
+        tr_count(
+            figures.count,
+            "{within} of 1 cone ({share:.0f} %) stands within {tolerance:g} cm of its plan.",
+            "{within} of %n cones ({share:.0f} %) stand within {tolerance:g} cm of their plan.",
+            within=figures.within,
+            share=100.0 * figures.within / figures.count,
+            tolerance=report.tolerance * 100,
+        ),
+        tr(
+            "Mean {mean}, RMS {rms}, 95 % within {p95}, largest {most}.",
+            mean=_length(figures.mean),
+            rms=_length(figures.rms),
+            p95=_length(figures.p95),
+            most=_length(figures.most),
+        ),
+        "; ".join([*_times(report), report.crs.userFriendlyIdentifier()]),
+    ]
+    robots = sorted({cone.robot for cone in report.cones if cone.robot}, key=_natural)
+    if robots:
+        names = ", ".join(robots[:8]) + (" …" if len(robots) > 8 else "")
+        lines.insert(2, tr("Robots: {names}", names=names))
+    return "\n".join(lines)
+
+
+def _times(report: ReportContent) -> list[str]:
+    """Return when the first and the last cone were placed; nothing where that is not known."""
+    times = [cone.at for cone in report.cones if cone.at is not None]
+    if not times:
+        return []
+    first, last = time_in_words(min(times)), time_in_words(max(times))
+    if first == last:
+        return [tr("{time} UTC", time=first)]
+    if first[:10] == last[:10]:
+        last = last[11:]
+    return [tr("{first} to {last} UTC", first=first, last=last)]
+
+
+def _natural(name: str) -> list[tuple[int, str]]:
+    """Return what sorts names by the numbers in them: r2 comes before r10."""
+    return [(int(part), "") if part.isdecimal() else (-1, part) for part in re.split(r"(\d+)", name)]
+
+
+def _picture(layout: QgsPrintLayout, report: ReportContent, folder: Path) -> None:
+    file = folder / "histogram.svg"
+    file.write_text(histogram(deviation_values(report.cones), report.tolerance), encoding="utf-8")
+    picture = QgsLayoutItemPicture(layout)
+    picture.setPicturePath(str(file))
+    place_item(picture, (MARGIN, 42, TEXT_WIDTH, TEXT_WIDTH * HEIGHT / WIDTH))
+    layout.addLayoutItem(picture)
+
+
+def _map(layout: QgsPrintLayout, report: ReportContent, project: QgsProject) -> None:
+    top = 42 + TEXT_WIDTH * HEIGHT / WIDTH + 4
+    shown = QgsLayoutItemMap(layout)
+    place_item(shown, (MARGIN, top, TEXT_WIDTH, 274 - top))
+    shown.setFrameEnabled(True)
+    shown.setCrs(report.crs)
+    shown.zoomToExtent(extent_of(report.cones))
+    factor = factor_of(report.cones, shown.extent().width())
+    layers = map_layers(report.cones, report.crs, report.tolerance, factor)
+    project.addMapLayers(layers, False)
+    shown.setLayers([*layers, *report.background])
+    shown.setKeepLayerSet(True)
+    layout.addLayoutItem(shown)
+    bar = QgsLayoutItemScaleBar(layout)
+    bar.setStyle("Line Ticks Up")
+    bar.setLinkedMap(shown)
+    bar.setUnits(QgsUnitTypes.DistanceUnit.DistanceMeters)
+    bar.applyDefaultSize()
+    bar.setUnits(QgsUnitTypes.DistanceUnit.DistanceMeters)
+    bar.setUnitLabel("m")
+    bar.setMapUnitsPerScaleBarUnit(1.0)
+    bar.setBackgroundEnabled(True)
+    bar.setTextFormat(text_format(8, bold=False))
+    bar.setHeight(2.0)
+    bar.resizeToMinimumWidth()
+    bar.setReferencePoint(QgsLayoutItem.ReferencePoint.LowerLeft)
+    bar.attemptMove(corner(MARGIN + 2, 272))
+    layout.addLayoutItem(bar)
+    words = (
+        tr("× planned   ● placed (red: beyond the tolerance)   orange: deviation")
+        if factor == 1
+        else tr(
+            "× planned   ● placed (red: beyond the tolerance)   orange: deviation, {factor} times as long",
+            factor=factor,
+        )
+    )
+    add_text(layout, words, (MARGIN, 275.5, TEXT_WIDTH, 6), 8)
+
+
+def _length(metres: float) -> str:
+    return f"{metres:.2f} m" if metres >= 1.0 else f"{metres * 100:.1f} cm"

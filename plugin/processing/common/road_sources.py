@@ -1,0 +1,434 @@
+"""Roads and keepouts read from layers, and the options of driving on them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from qgis.core import (
+    QgsCoordinateReferenceSystem,
+    QgsProcessing,
+    QgsProcessingAlgorithm,
+    QgsProcessingContext,
+    QgsProcessingFeatureSource,
+    QgsProcessingFeedback,
+    QgsProcessingParameterBoolean,
+    QgsProcessingParameterCrs,
+    QgsProcessingParameterDefinition,
+    QgsProcessingParameterExpression,
+    QgsProcessingParameterFeatureSource,
+    QgsProcessingParameterMultipleLayers,
+    QgsProcessingParameterNumber,
+    QgsProcessingParameterString,
+)
+
+from ....robot_bridge.core.errors import RoadsCancelledError
+from ....robot_bridge.core.roads.centrelines import DEFAULT_SPEED, Centrelines, centrelines
+from ....robot_bridge.core.roads.network import CancelCheck, Network, build_network
+from ....robot_bridge.core.roads.network_checks import RoadFinding, repaired_network
+from ....robot_bridge.core.roads.path_smoothing import Driving
+from ....robot_bridge.core.roads.routes import REACH, Restrictions, Router
+from ...layers.layer_expressions import LayerRules
+from ...layers.layer_source import obstacle_sources
+from ...layers.road_layers import (
+    DEFAULT_WIDTH_M,
+    RoadAttributes,
+    RoadExpressions,
+    RoadRules,
+    edges_through,
+    lines_of,
+    read_areas,
+)
+from ...layers.roles import KEEPOUT, LayerExpressions, expressions_of
+from ...layers.site_transform import LayerToSiteTransform, SiteGeoreference
+from ...ui.language import tr, tr_count
+from .algorithm import ParameterError, Parameters
+from .parameters import SITE_CRS, chosen_crs, filter_in, layer_in
+
+# --- How robots drive and which roads they may use: what routes and assignments ask alike ---
+
+SURFACES, LEAST_WIDTH, DISTANCE = "SURFACES", "LEAST_WIDTH", "DISTANCE"
+SPACING, TURNING_RADIUS, ROBOT_WIDTH = "SPACING", "TURNING_RADIUS", "ROBOT_WIDTH"
+_USUAL = Driving()
+_LENGTHS = {
+    LEAST_WIDTH: (tr("Roads at least this wide, and as wide as the robot [m]"), 0.0, 0.0),
+    DISTANCE: (tr("Farthest place from a road [m]"), REACH, 0.0),
+    SPACING: (tr("Points of the path at most this far apart [m]"), _USUAL.spacing, 0.01),
+    TURNING_RADIUS: (tr("Turning radius of the robot [m]"), _USUAL.turning_radius, 0.0),
+    ROBOT_WIDTH: (tr("Width of the robot [m]"), _USUAL.robot_width, 0.0),
+}
+
+
+@dataclass(frozen=True)
+class DrivingOptions:
+    """How paths are driven, which roads may be used, and how many metres a place may be away from one."""
+
+    driving: Driving
+    restrictions: Restrictions
+    reach: float
+
+    def doubts(self, roads: Centrelines) -> list[str]:
+        """Return what to warn of: surfaces that none of ``roads`` has."""
+        there = {str(surface) for surface in roads.surface}
+        unknown = (self.restrictions.surfaces or frozenset()) - there
+        if not unknown:
+            return []
+        none = tr("none")
+        return [
+            tr(
+                "No road has the surface {surfaces}: the roads have {there}.",
+                surfaces=", ".join(sorted(unknown)),
+                there=", ".join(sorted(surface or f"({none})" for surface in there)) or none,
+            )
+        ]
+
+
+def surfaces_parameter() -> QgsProcessingParameterDefinition:
+    """Return the parameter of the surfaces that may be used."""
+    return QgsProcessingParameterString(
+        SURFACES, tr("Surfaces that may be used (default: all)"), optional=True
+    )
+
+
+def length_parameters() -> list[QgsProcessingParameterDefinition]:
+    """Return the parameters in metres."""
+    real = QgsProcessingParameterNumber.Type.Double
+    return [
+        QgsProcessingParameterNumber(name, title, real, value, minValue=least)
+        for name, (title, value, least) in _LENGTHS.items()
+    ]
+
+
+def driving_options(
+    algorithm: QgsProcessingAlgorithm, parameters: Parameters, context: QgsProcessingContext
+) -> DrivingOptions:
+    """Return what the parameters ask for; as in the gateway no way leads where the robot is too wide.
+
+    :raises RoadInputError: when a number is none to drive by.
+    """
+    metres = {name: algorithm.parameterAsDouble(parameters, name, context) for name in _LENGTHS}
+    names = algorithm.parameterAsString(parameters, SURFACES, context).split(",")
+    surfaces = frozenset(name.strip() for name in names if name.strip())
+    return DrivingOptions(
+        Driving(metres[SPACING], metres[TURNING_RADIUS], metres[ROBOT_WIDTH]),
+        Restrictions(surfaces=surfaces or None, least_width=max(metres[LEAST_WIDTH], metres[ROBOT_WIDTH])),
+        metres[DISTANCE],
+    )
+
+
+# --- Areas that a route must not lead through, from polygon layers ---
+
+KEEPOUTS = "KEEPOUTS"
+
+
+def keepout_parameter() -> QgsProcessingParameterDefinition:
+    """Return the parameter that names the layers."""
+    return QgsProcessingParameterMultipleLayers(
+        KEEPOUTS,
+        tr("Areas that must not be driven through"),
+        QgsProcessing.SourceType.TypeVectorPolygon,
+        optional=True,
+    )
+
+
+class KeepoutAreas:
+    """The layers of one run; to be made in the thread of the layers."""
+
+    def __init__(
+        self, algorithm: QgsProcessingAlgorithm, parameters: Parameters, context: QgsProcessingContext
+    ) -> None:
+        layers = algorithm.parameterAsLayerList(parameters, KEEPOUTS, context)
+        expressions = algorithm.createExpressionContext(parameters, context)
+        self._transforms = context.transformContext()
+        self._sources = obstacle_sources(layers, LayerExpressions(), expressions) if layers else []
+
+    def close(
+        self, router: Router, crs: QgsCoordinateReferenceSystem, feedback: QgsProcessingFeedback
+    ) -> list[str]:
+        """Close the edges of ``router``, whose network is in ``crs``, that come into an area.
+
+        Return what was warned of.
+
+        :raises LayerReadingError: when a layer has no known place in ``crs``.
+        """
+        closed, warnings = self.edges_inside(router.network, crs, feedback)
+        if closed:
+            router.close(closed)
+        return warnings
+
+    def edges_inside(
+        self, network: Network, crs: QgsCoordinateReferenceSystem, feedback: QgsProcessingFeedback
+    ) -> tuple[list[int], list[str]]:
+        """Return the edges of ``network``, which is in ``crs``, that come into an area, and the warnings.
+
+        What runs along the rim of an area does not come into it.
+
+        :raises LayerReadingError: when a layer has no known place in ``crs``.
+        """
+        if not self._sources:
+            return [], []
+        site = SiteGeoreference.in_crs(crs, self._transforms)
+        reading = read_areas(self._sources, site, KEEPOUT, feedback)
+        for warning in reading.warnings:
+            feedback.pushWarning(warning)
+        closed = edges_through(network, [area.rings for area in reading.items])
+        if closed:
+            feedback.pushInfo(
+                tr_count(
+                    len(closed),
+                    "1 edge leads through areas to be avoided, and is closed",
+                    "%n edges lead through areas to be avoided, and are closed",
+                )
+            )
+        return closed, reading.warnings
+
+
+# --- Centrelines for the network, read from the layer that an algorithm is given ---
+
+ROADS, DEFAULT_WIDTH, SPEED_DEFAULT = "ROADS", "DEFAULT_WIDTH", "DEFAULT_SPEED"
+TOLERANCE, REPAIR = "TOLERANCE", "REPAIR"
+WARNING_COUNT = "WARNING_COUNT"
+
+_REAL = QgsProcessingParameterNumber.Type.Double
+_EXPRESSIONS = {
+    "WIDTH": tr("Width of each road [m] (default: the layer's role, else a field width_m or width)"),
+    "SURFACE": tr("Surface of each road (default: the layer's role, else a field surface)"),
+    "DIRECTION": tr("Direction: yes along the line, -1 against it, no both (default: a field oneway, ...)"),
+    "SPEED": tr("Speed on each road [m/s] (default: a field speed_ms, or maxspeed in km/h)"),
+    "CLOSED": tr("Whether each road is closed (default: a field closed)"),
+    "LEVEL": tr("Level of each road, 0 on the ground (default: fields level, layer, bridge, tunnel)"),
+}
+_ROLE = {"width": "width", "surface": "semantics"}
+"""Expressions that a layer's role has for the attributes of a road."""
+
+
+@dataclass
+class RoadReading:
+    """Roads in metres; road ``k`` is a part of feature ``features[k]``.
+
+    ``without_width`` holds the roads whose width is not known and taken as the default one.
+    """
+
+    roads: Centrelines
+    features: list[int]
+    crs: QgsCoordinateReferenceSystem
+    placing: LayerToSiteTransform
+    warnings: list[str] = field(default_factory=list)
+    without_width: list[int] = field(default_factory=list)
+
+
+def road_parameters() -> list[QgsProcessingParameterDefinition]:
+    """Return the parameters that say what the roads are."""
+    advanced: list[QgsProcessingParameterDefinition] = [
+        QgsProcessingParameterExpression(name, title, parentLayerParameterName=ROADS, optional=True)
+        for name, title in _EXPRESSIONS.items()
+    ]
+    advanced += [
+        QgsProcessingParameterNumber(
+            DEFAULT_WIDTH,
+            tr("Width of roads of which it is not known [m]"),
+            _REAL,
+            DEFAULT_WIDTH_M,
+            minValue=0.01,
+        ),
+        QgsProcessingParameterNumber(
+            SPEED_DEFAULT,
+            tr("Speed on roads of which it is not known [m/s]"),
+            _REAL,
+            DEFAULT_SPEED,
+            minValue=0.01,
+        ),
+        QgsProcessingParameterCrs(
+            SITE_CRS, tr("CRS in metres (default: the layer's, or the project's)"), optional=True
+        ),
+    ]
+    for parameter in advanced:
+        parameter.setFlags(parameter.flags() | QgsProcessingParameterDefinition.Flag.FlagAdvanced)
+    lines = [QgsProcessing.SourceType.TypeVectorLine]
+    return [
+        QgsProcessingParameterFeatureSource(ROADS, tr("Road centrelines"), lines),
+        QgsProcessingParameterNumber(
+            TOLERANCE, tr("Ends this near to a road were meant to meet it [m]"), _REAL, 0.5, minValue=0.0
+        ),
+        *advanced,
+    ]
+
+
+def repair_parameter() -> QgsProcessingParameterDefinition:
+    """Return the parameter that asks for repairs."""
+    return QgsProcessingParameterBoolean(
+        REPAIR, tr("Repair: close gaps, cut overshoots, leave out what is drawn twice"), defaultValue=False
+    )
+
+
+class RoadSource:
+    """The layer of roads of one run; made in the main thread, read in any."""
+
+    def __init__(
+        self, algorithm: QgsProcessingAlgorithm, parameters: Parameters, context: QgsProcessingContext
+    ) -> None:
+        layer = layer_in(algorithm, parameters, ROADS, context)
+        role = expressions_of(layer) if layer is not None else LayerExpressions()
+        self._counted = filter_in(algorithm, parameters, ROADS, context)
+        self._algorithm, self._parameters, self._context = algorithm, parameters, context
+        given = {
+            name.lower(): algorithm.parameterAsString(parameters, name, context) for name in _EXPRESSIONS
+        }
+        for name, of_role in _ROLE.items():
+            given[name] = given[name] or getattr(role, of_role)
+        self._expressions = RoadExpressions(**given)
+
+    def read(self, feedback: QgsProcessingFeedback) -> RoadReading | None:
+        """Return the roads; None after a cancel.
+
+        :raises FleetError: when the layer, its CRS or an expression cannot be used.
+        """
+        source = self._algorithm.parameterAsSource(self._parameters, ROADS, self._context)
+        if source is None:
+            raise ParameterError(
+                tr(
+                    "ROADS {roads} cannot be opened: check the file and the layer's name.",
+                    roads=self._parameters.get(ROADS),
+                )
+            )
+        given = self._algorithm, self._parameters, self._context
+        crs = chosen_crs(*given, [source.sourceCrs()], layer_first=True)
+        site = SiteGeoreference.in_crs(crs, self._context.transformContext())
+        placing = site.of_layer(source.sourceName(), source.sourceCrs())
+        return self._read(source, crs, placing, feedback)
+
+    def _read(
+        self,
+        source: QgsProcessingFeatureSource,
+        crs: QgsCoordinateReferenceSystem,
+        placing: LayerToSiteTransform,
+        feedback: QgsProcessingFeedback,
+    ) -> RoadReading | None:
+        name = source.sourceName()
+        scope = self._algorithm.createExpressionContext(self._parameters, self._context, source)
+        rules = LayerRules(name, source.fields(), scope)
+        road_rules = RoadRules(rules, self._expressions)
+        lines: list[np.ndarray] = []
+        known: list[RoadAttributes] = []
+        features: list[int] = []
+        warnings: list[str] = []
+        total = max(source.featureCount(), 1)
+        for number, feature in enumerate(source.getFeatures()):
+            if feedback.isCanceled():
+                return None
+            feedback.setProgress(50.0 * number / total)
+            notes: list[str] = []
+            counts = self._counted is None or self._counted.keeps(feature, notes)
+            rules.at(feature)
+            geometry = placing.of_feature(feature, notes) if counts else None
+            found = [] if geometry is None else lines_of(geometry, notes)
+            if found:
+                known += [road_rules.of(notes)] * len(found)
+            lines += found
+            features += [feature.id()] * len(found)
+            warnings += [
+                tr("Layer {name}, feature {id}: {note}", name=name, id=feature.id(), note=note)
+                for note in notes
+            ]
+        if not lines:
+            raise ParameterError(_no_roads(name, source.featureCount(), warnings))
+        reading = RoadReading(self._columns(lines, known, name, warnings), features, crs, placing, warnings)
+        reading.warnings += rules.warnings
+        reading.without_width += [k for k, one in enumerate(known) if one.width is None]
+        return reading
+
+    def _columns(
+        self, lines: list[np.ndarray], known: list[RoadAttributes], name: str, warnings: list[str]
+    ) -> Centrelines:
+        width, speed = (
+            self._algorithm.parameterAsDouble(self._parameters, key, self._context)
+            for key in (DEFAULT_WIDTH, SPEED_DEFAULT)
+        )
+        # Not every algorithm asks how fast roads are driven.
+        speed = speed or DEFAULT_SPEED
+        unknown = sum(one.width is None for one in known)
+        if unknown:
+            warnings.append(
+                tr_count(
+                    unknown,
+                    "Layer {name}: the width of 1 road is not known; {width:g} m is used",
+                    "Layer {name}: the width of %n roads is not known; {width:g} m is used",
+                    name=name,
+                    width=width,
+                )
+            )
+        return centrelines(
+            lines,
+            width=[one.width or width for one in known],
+            surface=[one.surface for one in known],
+            direction=[one.traffic.direction for one in known],
+            speed=[one.traffic.speed or speed for one in known],
+            closed=[one.traffic.closed for one in known],
+            level=[one.traffic.level for one in known],
+        )
+
+
+def _no_roads(name: str, count: int, warnings: list[str]) -> str:
+    """Return the error for a layer that holds no road, with what it holds instead."""
+    if count == 0:
+        return tr(
+            "ROADS: the layer {name} has no features: choose the layer of the road centrelines.", name=name
+        )
+    return tr(
+        "ROADS: no feature of the layer {name} is a road: each has to be a line with a "
+        "length that the layer's filter keeps. {first}",
+        name=name,
+        first=warnings[0] if warnings else tr("The filter of its role keeps none of them."),
+    )
+
+
+def network_of_roads(
+    algorithm: QgsProcessingAlgorithm,
+    parameters: Parameters,
+    context: QgsProcessingContext,
+    reading: RoadReading,
+    feedback: QgsProcessingFeedback,
+) -> tuple[Network, list[RoadFinding]] | None:
+    """Return the network and what was repaired in it, nothing where REPAIR is not asked for.
+
+    After a cancel return None.
+    """
+    for warning in reading.warnings:
+        feedback.pushWarning(warning)
+    if not algorithm.parameterAsBool(parameters, REPAIR, context):
+        network = network_as_drawn(reading, feedback)
+        return None if network is None else (network, [])
+    tolerance = algorithm.parameterAsDouble(parameters, TOLERANCE, context)
+    try:
+        network, repairs = repaired_network(reading.roads, tolerance, _asking(feedback))
+    except RoadsCancelledError:
+        return None
+    for repair in repairs:
+        feature, text = reading.features[repair.road], repair.told(reading.features)
+        where = f"({repair.x:.3f}, {repair.y:.3f})"
+        feedback.pushInfo(
+            tr(
+                "Repaired: {kind} of feature {feature} at {where}: {text}",
+                kind=repair.kind.value,
+                feature=feature,
+                where=where,
+                text=text,
+            )
+        )
+    return network, repairs
+
+
+def network_as_drawn(reading: RoadReading, feedback: QgsProcessingFeedback) -> Network | None:
+    """Return the network with nothing repaired; None after a cancel."""
+    try:
+        return build_network(reading.roads, _asking(feedback))
+    except RoadsCancelledError:
+        return None
+
+
+def _asking(feedback: QgsProcessingFeedback) -> CancelCheck:
+    def ask() -> None:
+        if feedback.isCanceled():
+            raise RoadsCancelledError
+
+    return ask

@@ -1,0 +1,482 @@
+"""History: stored positions and commands of a span of time, as the replay reads them."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+from qgis.core import QgsApplication, QgsTask
+from qgis.PyQt.QtCore import QObject, pyqtSignal
+
+from ...robot_bridge.core.messages import (
+    Abort,
+    CommandReport,
+    CommandState,
+    CommandStep,
+    GetCommands,
+    GetTrajectory,
+    RobotState,
+)
+from ..control.fleet_controller import FleetController
+from ..gateway_client.buffers import RequestResult
+from ..gateway_client.command_cache import UNDER_WAY, CommandCache, asked_at, command_in_words, state_word
+from ..gateway_client.robot_states import RobotArrays
+from ..gateway_client.robot_table import STATES as HISTORY_STATES
+from ..ui.errors import FleetError
+from ..ui.language import tr
+from ..ui.scheduling import CooperativeTask, Steps
+
+# --- Commands as they were at a moment, and as marks on a time line ---
+
+AT_ONCE = 100
+"""Commands that are looked through in one step of a slice."""
+STATES = tuple(CommandState)
+_CODES = {state: code for code, state in enumerate(STATES)}
+Numbers = npt.NDArray[np.float64]
+Indices = npt.NDArray[np.intp]
+
+
+@dataclass(frozen=True)
+class TimelineMark:
+    """One step of a command on the time line."""
+
+    command: CommandReport
+    step: CommandStep
+
+    @property
+    def at(self) -> float:
+        """When it was, in seconds since 1970."""
+        return self.step.at
+
+    @property
+    def state(self) -> CommandState:
+        """What the command came to."""
+        return self.step.state
+
+    @property
+    def text(self) -> str:
+        """Return it in words."""
+        text = tr(
+            "{robot}: {command} · {state} by {by}",
+            robot=self.command.robot,
+            command=command_in_words(self.command),
+            state=state_word(self.command.op, self.state),
+            by=self.step.by,
+        )
+        return text + (f" ({self.step.reason})" if self.step.reason else "")
+
+
+class TimelineMarks(Sequence[TimelineMark]):
+    """Marks from the oldest to the newest, (n,) columns: of thousands a :class:`TimelineMark` is made of one.
+
+    ``at`` is in seconds since 1970, ``commands`` and ``steps`` are the places of a mark's command among
+    ``reports`` and of its step among that one's, ``states`` are indices into :data:`STATES`.
+    """
+
+    def __init__(
+        self,
+        reports: Sequence[CommandReport],
+        at: Numbers,
+        commands: Indices,
+        steps: Indices,
+        states: Indices,
+    ):
+        self.at = at
+        self._reports, self._commands, self._steps, self._states = reports, commands, steps, states
+
+    def __len__(self) -> int:
+        return len(self.at)
+
+    def __getitem__(self, place: Any) -> Any:
+        report = self._reports[self._commands[place]]
+        return TimelineMark(report, report.steps[self._steps[place]])
+
+    def of(self, state: CommandState) -> Numbers:
+        """Return when commands came to ``state``, seconds since 1970."""
+        return self.at[self._states == _CODES[state]]
+
+    def between(self, since: float, until: float) -> TimelineMarks:
+        """Return the marks from ``since`` to ``until``, both included."""
+        return self._kept((self.at >= since) & (self.at <= until))
+
+    def of_robots(self, names: Collection[str]) -> TimelineMarks:
+        """Return the marks of the commands of these robots."""
+        is_wanted = np.array([report.robot in names for report in self._reports], dtype=bool)
+        return self._kept(is_wanted[self._commands])
+
+    def _kept(self, rows: npt.NDArray[np.bool_]) -> TimelineMarks:
+        columns = (self.at, self._commands, self._steps, self._states)
+        return TimelineMarks(self._reports, *(column[rows] for column in columns))
+
+
+def _no_marks() -> TimelineMarks:
+    none = np.empty(0, dtype=np.intp)
+    return TimelineMarks((), np.empty(0), none, none, none)
+
+
+NO_MARKS = _no_marks()
+
+
+class PastCommands:
+    """What was known of commands when :func:`sort_commands` looked: a frame of the replay asks for all.
+
+    ``reports`` are sorted by when they were asked for; (n,) ``begin`` and ``end`` are from when to when each
+    was under way, seconds since 1970.
+    """
+
+    def __init__(
+        self,
+        reports: Sequence[CommandReport] = (),
+        begin: Sequence[float] = (),
+        end: Sequence[float] = (),
+        marks: TimelineMarks = NO_MARKS,
+    ):
+        self._reports = reports
+        self._begin, self._end = np.array(begin, dtype=np.float64), np.array(end, dtype=np.float64)
+        self._marks = marks
+
+    def under_way_at(self, moment: float) -> list[CommandReport]:
+        """Return what robots were doing at ``moment``: of each the newest command sent and not ended then."""
+        rows = np.flatnonzero((self._begin <= moment) & (moment < self._end)).tolist()
+        return list({self._reports[row].robot: self._reports[row] for row in rows}.values())
+
+    def marks(self, since: float, until: float, robots: Collection[str] = ()) -> TimelineMarks:
+        """Return when commands of ``robots``, or all, were sent and ended from ``since`` to ``until``."""
+        told = self._marks.between(since, until)
+        return told.of_robots(set(robots)) if robots else told
+
+
+def sort_commands(reports: Sequence[CommandReport]) -> Steps[PastCommands]:
+    """Look through commands, in steps."""
+    reports = sorted((one for one in reports if one.steps), key=asked_at)
+    begin, end = [], []
+    marks: list[tuple[float, int, int, int]] = []
+    for number, report in enumerate(reports):
+        if number % AT_ONCE == 0:
+            yield number / len(reports)
+        begin.append(report.steps[0].at)
+        end.append(_ended_at(report))
+        for place, step in enumerate(report.steps):
+            if step.state not in UNDER_WAY or step.state is CommandState.QUEUED:
+                marks.append((step.at, number, place, _CODES[step.state]))
+    return PastCommands(reports, begin, end, _columns(reports, marks))
+
+
+def _columns(reports: Sequence[CommandReport], marks: list[tuple[float, int, int, int]]) -> TimelineMarks:
+    if not marks:
+        return NO_MARKS
+    table = np.array(marks, dtype=np.float64)
+    at, commands, steps, states = table[np.argsort(table[:, 0], kind="stable")].T
+    return TimelineMarks(reports, at, *(column.astype(np.intp) for column in (commands, steps, states)))
+
+
+def _ended_at(report: CommandReport) -> float:
+    """Return until when a robot had something to do by a command: an abort leaves it nothing."""
+    if report.op == Abort.__name__:
+        return -np.inf
+    return next((step.at for step in report.steps if step.state not in UNDER_WAY), np.inf)
+
+
+# --- Keeps the commands of the desk in the order in which a replay asks for them ---
+
+
+class CommandSorter(QObject):
+    """Looks through a book beside what else the window does, and again when there was news meanwhile."""
+
+    done = pyqtSignal(object)
+    """:attr:`commands` are others now: those before."""
+
+    def __init__(self, book: CommandCache, parent: QObject | None = None):
+        super().__init__(parent)
+        self._book = book
+        self._slices = CooperativeTask(self)
+        self._is_outdated = False
+        self.commands = PastCommands()
+
+    @property
+    def is_busy(self) -> bool:
+        """Whether what is known by now is still being looked through."""
+        return self._slices.is_busy
+
+    def renew(self) -> None:
+        """Have in :attr:`commands` soon what the book knows now."""
+        # News that comes faster than one look takes would otherwise never be seen.
+        self._is_outdated = self._slices.is_busy
+        if not self._is_outdated:
+            self._slices.begin_soon(sort_commands(list(self._book)), self._take)
+
+    def forget(self) -> None:
+        """Have no commands any more."""
+        self._slices.stop()
+        self.commands = PastCommands()
+
+    def _take(self, commands: PastCommands) -> None:
+        before, self.commands = self.commands, commands
+        if self._is_outdated:
+            self.renew()
+        self.done.emit(before)
+
+
+# --- Stored positions, and where every robot was at a moment; no I/O, no Qt ---
+
+SILENT_AFTER = 15.0
+"""Seconds between stored positions after which a robot counts as silent: while it is heard of, a gateway
+stores one at least every ten, unless its site.toml says otherwise."""
+_FRESH, _LOST = HISTORY_STATES.index(RobotState.FRESH), HISTORY_STATES.index(RobotState.LOST)
+
+
+class History:
+    """Positions of robots, taken in page by page, oldest first; each robot has one row in what is told."""
+
+    def __init__(self) -> None:
+        self.names: list[str] = []
+        self._rows: dict[str, int] = {}
+        self._pages: list[Numbers] = []
+        self._count = 0
+        self._sorted: Numbers | None = None
+        self._first = np.empty(0, dtype=np.intp)
+        self._extent = np.empty((0, 2))
+
+    def __len__(self) -> int:
+        return self._count
+
+    @property
+    def table(self) -> Numbers:
+        """All positions, robot by robot, oldest first: rows of robot's row, time, x, y, theta, v."""
+        self._arrange()
+        return self._sorted
+
+    @property
+    def is_arranged(self) -> bool:
+        """Whether :attr:`table` is there at once: making it of very many takes longer than a window waits."""
+        return self._sorted is not None
+
+    @property
+    def extent(self) -> Numbers:
+        """The least and the greatest x and y of all positions, (2, 2) metres; empty where there are none."""
+        self._arrange()
+        return self._extent
+
+    def add(self, places: Sequence[Sequence]) -> None:
+        """Take in places as the gateway gives them: robot, time, x, y, theta, v, and more.
+
+        :raises ValueError: when one of them is none.
+        """
+        if not places:
+            return
+        try:
+            numbers = np.array([place[1:6] for place in places], dtype=np.float64)
+            robots = [str(place[0]) for place in places]
+        except (TypeError, IndexError) as error:
+            raise ValueError(f"a stored position is not one: {error}") from error
+        if numbers.shape != (len(places), 5) or not np.isfinite(numbers).all():
+            raise ValueError("a stored position has no finite time or place")
+        for robot in robots:
+            if robot not in self._rows:
+                self._rows[robot] = len(self.names)
+                self.names.append(robot)
+        row = np.array([self._rows[robot] for robot in robots], dtype=np.float64)
+        self._pages.append(np.column_stack([row, numbers]))
+        self._count += len(places)
+        self._sorted = None
+
+    def row(self, robot: str) -> int | None:
+        """Return a robot's row, None for one without a position."""
+        return self._rows.get(robot)
+
+    def at(self, moment: float) -> RobotArrays:
+        """Return every robot as it was at ``moment``, seconds since 1970.
+
+        Between two positions that are near in time a robot was on the straight line; before its first one it
+        has no place; after a longer silence it stays where it was last, lost, with its age.
+        """
+        table, count = self.table, len(self.names)
+        last = self._last_before(moment)
+        known = last >= self._first[:count]
+        here = np.where(known, last, 0)
+        following = np.minimum(here + 1, max(len(table) - 1, 0))
+        if count == 0:
+            return _arrays(self.names, np.empty((0, 4)), np.empty(0), np.empty(0, dtype=bool))
+        now, then = table[here], table[following]
+        span = then[:, 1] - now[:, 1]
+        joined = (then[:, 0] == now[:, 0]) & (span > 0) & (span <= SILENT_AFTER)
+        age = moment - now[:, 1]
+        part = np.where(joined, age / np.where(joined, span, 1.0), 0.0)
+        turn = np.remainder(then[:, 4] - now[:, 4] + np.pi, 2 * np.pi) - np.pi
+        step = np.column_stack([then[:, 2:4] - now[:, 2:4], turn, then[:, 5] - now[:, 5]])
+        pose = now[:, 2:6] + step * part[:, None]
+        pose[~known] = np.nan
+        silent = known & ~joined & (age > SILENT_AFTER)
+        # A robot that is silent does not drive on.
+        pose[silent, 3] = 0.0
+        return _arrays(self.names, pose, np.where(joined | ~known, 0.0, age), silent | ~known)
+
+    def _arrange(self) -> None:
+        if self._sorted is not None:
+            return
+        whole = np.concatenate(self._pages) if self._pages else np.empty((0, 6))
+        # They came oldest first: an order by robots alone, which keeps that, takes a tenth of the time.
+        whole = whole[np.argsort(whole[:, 0].astype(np.uint16), kind="stable")]
+        self._first = np.searchsorted(whole[:, 0], np.arange(len(self.names) + 1))
+        self._extent = _extent(whole)
+        # Further pages are newer than these of the same robot, so that nothing is held twice.
+        self._pages = [whole]
+        self._sorted = whole
+
+    def _last_before(self, moment: float) -> npt.NDArray[np.intp]:
+        """Return for each robot the row of its last position up to ``moment``, before its first if none.
+
+        All robots are searched at once: one after the other takes several milliseconds of a thousand.
+        """
+        times = self.table[:, 1]
+        begin, end = self._first[:-1].copy(), self._first[1:].copy()
+        while (begin < end).any():
+            # Where a search is over, its middle is its end, which may be that of the table.
+            middle = np.minimum((begin + end) // 2, len(times) - 1)
+            later = (begin >= end) | (times[middle] > moment)
+            begin, end = np.where(later, begin, middle + 1), np.where(later, middle, end)
+        return begin - 1
+
+
+def _extent(table: Numbers) -> Numbers:
+    # Column by column: numpy is slow where it goes along rows of two.
+    columns = [table[:, column] for column in (2, 3)] if len(table) else []
+    return np.array([[column.min() for column in columns], [column.max() for column in columns]])
+
+
+def _arrays(names: list[str], pose: Numbers, age: Numbers, silent: npt.NDArray[np.bool_]) -> RobotArrays:
+    return RobotArrays(
+        names=list(names),
+        xy=pose[:, :2],
+        theta=pose[:, 2],
+        v=pose[:, 3],
+        accuracy=np.full(len(names), np.nan),
+        state=np.where(silent, _LOST, _FRESH).astype(np.intp),
+        age=age,
+    )
+
+
+# --- Fetches a stretch of stored positions from the gateway, page by page ---
+
+PAGE = 1000
+"""Positions taken in at once: a few milliseconds of the window's time."""
+MOST = 1_000_000
+"""Positions that are held; with more the rest is left out and that is said."""
+COMMANDS = 1000
+"""The newest commands, which the time line shows besides those that the desk knows already."""
+
+
+class HistoryDownload(QObject):
+    """One stretch after the other; the live link goes on beside it."""
+
+    progressed = pyqtSignal()
+    ended = pyqtSignal(str)
+    """All is there (an empty text), or not all, and why."""
+
+    def __init__(self, desk: FleetController, parent: QObject | None = None):
+        super().__init__(parent)
+        self._desk = desk
+        self._key = ""
+        self._wanted: GetTrajectory | None = None
+        self._task: SortHistoryTask | None = None
+        self.history = History()
+        self.reached = 0.0
+        """The time of the newest position that is there."""
+        desk.answered.connect(self._answered)
+
+    @property
+    def is_busy(self) -> bool:
+        """Whether a page is on its way, or what came is being put in order."""
+        return bool(self._key) or self._task is not None
+
+    def begin(self, since: float, until: float, robots: list[str]) -> None:
+        """Fetch what robots (none named: all) did from ``since`` up to ``until``; forget what was there.
+
+        :raises NotSentError: when it cannot be asked for; what was there stays.
+        """
+        wanted = GetTrajectory(robots=robots, since=since, until=until, limit=PAGE)
+        self._desk.inquire(GetCommands(limit=COMMANDS))
+        self._key = self._desk.inquire(wanted)
+        self._wanted = wanted
+        self._drop_task()
+        self.history, self.reached = History(), since
+
+    def stop(self) -> None:
+        """Ask for no more; what is there stays."""
+        if self._key:
+            self._end(tr("Stopped: the rest of the time was not fetched."))
+
+    def forget(self) -> None:
+        """Hold nothing: it is another site's."""
+        self._drop_task()
+        self._key, self._wanted, self.history = "", None, History()
+
+    def _answered(self, answer: RequestResult) -> None:
+        if not self._key or answer.order.key != self._key:
+            return
+        if answer.error is not None:
+            self._end(tr("The rest of the time was not fetched: {error}", error=answer.error))
+            return
+        result = answer.result or {}
+        places = result.get("places") or []
+        try:
+            self.history.add(places)
+        except ValueError as error:
+            self._end(tr("The gateway's answer cannot be used: {error}.", error=error))
+            return
+        if places:
+            self.reached = float(places[-1][1])
+        following = result.get("next")
+        if not following:
+            self._end("")
+        elif len(self.history) >= MOST:
+            self._end(
+                tr(
+                    "Only the first {count} positions were fetched. Choose less time, or fewer robots.",
+                    count=len(self.history),
+                )
+            )
+        else:
+            self._go_on(str(following))
+
+    def _go_on(self, after: str) -> None:
+        wanted = self._wanted
+        try:
+            request = GetTrajectory(wanted.robots, wanted.since, wanted.until, after=after, limit=PAGE)
+            self._key = self._desk.inquire(request)
+        except FleetError as error:
+            self._end(tr("The rest of the time was not fetched: {error}", error=error))
+            return
+        self.progressed.emit()
+
+    def _end(self, text: str) -> None:
+        self._key = ""
+        self._drop_task()
+        task = self._task = SortHistoryTask(self.history)
+        task.taskCompleted.connect(lambda: self._arranged(task, text))
+        task.taskTerminated.connect(lambda: self._arranged(task, tr("What came could not be put in order.")))
+        QgsApplication.taskManager().addTask(task)
+
+    def _arranged(self, task: SortHistoryTask, text: str) -> None:
+        if task is self._task:
+            self._task = None
+            self.ended.emit(text)
+
+    def _drop_task(self) -> None:
+        task, self._task = self._task, None
+        if task is not None:
+            task.cancel()
+
+
+class SortHistoryTask(QgsTask):
+    """Puts a history in order beside the window; nobody else touches it meanwhile."""
+
+    def __init__(self, history: History):
+        super().__init__(tr("Putting positions in order"), QgsTask.Flag.CanCancel)
+        self._history = history
+
+    def run(self) -> bool:
+        return len(self._history.table) == len(self._history)

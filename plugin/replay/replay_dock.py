@@ -1,0 +1,266 @@
+"""The panel of the replay, and its menu entry."""
+
+from __future__ import annotations
+
+from qgis.core import QgsApplication
+from qgis.gui import QgisInterface
+from qgis.PyQt.QtWidgets import QComboBox, QHBoxLayout, QToolButton, QVBoxLayout, QWidget
+
+from ..control.fleet_controller import FleetController
+from ..control.messages import REPLAY, SELECTION, Level, Topic
+from ..ui.actions import ActionDock, DockAction
+from ..ui.errors import FleetError
+from ..ui.language import tr, tr_count
+from ..ui.scheduling import ONE_STEP, CooperativeTask, Steps
+from ..ui.steady_widgets import ScrollingText
+from ..ui.times import date_and_time
+from .history import NO_MARKS, CommandSorter, HistoryDownload, PastCommands
+from .replay_map import ReplayLayer, ReplayMap
+from .time_controls import SPEEDS, ReplayClock, TimeLine, TimeRangeForm
+
+# --- The panel of the replay: a time is loaded, played and looked at, while the live map goes on ---
+
+BANNER = "background: #7B1FA2; color: white; font-weight: bold; padding: 0px 6px;"
+
+PLAY, PAUSE = "/temporal_navigation/forward.svg", "/temporal_navigation/pause.svg"
+
+
+class ReplayDock(ActionDock):
+    """Puts the parts together. :meth:`remove` undoes what they did outside of it."""
+
+    def __init__(self, desk: FleetController, parent: QWidget | None = None):
+        super().__init__(tr("Replay"), parent)
+        self.setObjectName("fleet_replay_dock")
+        self._desk = desk
+        self._told = ""
+        self._showing = CooperativeTask(self, ONE_STEP)
+        """Shows a history that has just come."""
+        self._past = CommandSorter(desk.book, self)
+        self.fetching = HistoryDownload(desk, self)
+        self.clockwork = ReplayClock(desk.canvas, self)
+        self.layer = ReplayLayer(desk.project, self)
+        self.form = TimeRangeForm()
+        self.map = ReplayMap(desk.canvas)
+        self.map.setTemporalController(self.clockwork.controller)
+        self.banner = ScrollingText("fleet_replay_banner", lines=2)
+        self.banner.set_text_style(BANNER)
+        self.line = TimeLine()
+        self.play = QToolButton()
+        self.play.setObjectName("fleet_replay_play")
+        self._show_playing(False)
+        self.play.setToolTip(tr("Play, or hold (Space)"))
+        self.speed = QComboBox()
+        self.speed.setObjectName("fleet_replay_speed")
+        self.speed.setToolTip(tr("How much faster than it was"))
+        self.speed.addItems([f"× {speed:g}" for speed in SPEEDS])
+        self.speed.setCurrentIndex(SPEEDS.index(1))
+        self._lay_out()
+        self._wire()
+        self._say(tr("Choose a time and press Load."))
+
+    def remove(self) -> None:
+        """Stop the clock, take the layer out of the project, leave the live map alone."""
+        self._showing.stop()
+        self._past.forget()
+        self.fetching.forget()
+        self.clockwork.remove()
+        self.layer.remove()
+        self.map.remove()
+
+    @property
+    def is_busy(self) -> bool:
+        """Whether something of a history is still being fetched or shown."""
+        return any(part.is_busy for part in (self.fetching, self._showing, self._past, self.layer))
+
+    def load(self) -> None:
+        """Fetch the time in the form and begin to show it."""
+        since, until = self.form.stretch()
+        self._desk.messages.end(REPLAY)
+        if self._desk.site is None:
+            self._complain(tr("There is nothing to replay yet. Connect to a gateway first."))
+            return
+        if until <= since:
+            self._complain(tr("The replay's time ends before it begins. Correct one of the two."))
+            return
+        robots = list(self._desk.selection) if self.form.selected.isChecked() else []
+        if self.form.selected.isChecked() and not robots:
+            text = tr("No robot is selected to be replayed. Select one, or replay all.")
+            self._complain(text, SELECTION)
+            return
+        try:
+            self.fetching.begin(since, until, robots)
+        except FleetError as error:
+            self._desk.report_failure(tr("The replay was not loaded: {error}", error=error), REPLAY)
+            return
+        self._robots = robots
+        self._showing.stop()
+        self._past.renew()
+        self.layer.clear()
+        self.map.begin(self._desk.site)
+        self.line.show_time(since, until)
+        self.clockwork.show(since, until)
+        self.form.show_busy(True)
+        self._say(tr("Loading …"))
+
+    def _wire(self) -> None:
+        self.form.wanted.connect(self.load)
+        self.form.stop_wanted.connect(self.fetching.stop)
+        self.fetching.progressed.connect(self._progressed)
+        self.fetching.ended.connect(self._ended)
+        self.layer.failed.connect(self._complain)
+        self.layer.changed.connect(self.map.follow)
+        self.line.wanted.connect(self.clockwork.seek)
+        self.clockwork.moved.connect(self._show)
+        self.line.play_wanted.connect(self._play_or_hold)
+        self.clockwork.playing_changed.connect(self._show_playing)
+        self.play.clicked.connect(self._play_or_hold)
+        self.speed.currentIndexChanged.connect(lambda k: self.clockwork.set_speed(SPEEDS[k]))
+        self._desk.commands_changed.connect(self._commands_changed)
+        self._past.done.connect(self._show_commands)
+        self._desk.site_changed.connect(self._site_changed)
+        self._robots: list[str] = []
+        self._generation = self._desk.picture.generation
+
+    def _play_or_hold(self, *_: object) -> None:
+        self.clockwork.play(not self.clockwork.is_playing)
+
+    def _show_playing(self, on: bool) -> None:
+        # QGIS's own pictures: not every font has signs for playing and holding.
+        self.play.setIcon(QgsApplication.getThemeIcon(PAUSE if on else PLAY))
+
+    def _progressed(self) -> None:
+        self._say(
+            tr(
+                "Loading … {positions}, up to {moment}",
+                positions=tr_count(len(self.fetching.history), "1 position", "%n positions"),
+                moment=date_and_time(self.fetching.reached),
+            )
+        )
+
+    def _ended(self, why: str) -> None:
+        self.form.show_busy(False)
+        history = self.fetching.history
+        if why:
+            self._complain(why)
+        if not len(history):
+            self._say(why or tr("No positions are stored of that time."))
+            return
+        self._say(
+            tr("positions: {positions}, robots: {robots}", positions=len(history), robots=len(history.names))
+            + (tr(" · NOT ALL") if why else "")
+        )
+        self._showing.begin_soon(self._parts())
+
+    def _parts(self) -> Steps[None]:
+        """Show a history part by part: between two of them the window looks for events."""
+        parts = self._show_lines, self._show_all, self._show_robots, self._show_marks
+        for number, show in enumerate(parts):
+            show()
+            yield (number + 1) / len(parts)
+
+    def _show_lines(self) -> None:
+        if self._desk.site is not None:
+            self.layer.show(self.fetching.history, self._desk.site)
+
+    def _show_all(self) -> None:
+        try:
+            self.map.show_all(self.fetching.history)
+        except FleetError as error:
+            self._complain(str(error))
+
+    def _show_robots(self) -> None:
+        self._show(self.clockwork.moment)
+
+    def _show(self, moment: float) -> None:
+        self.line.show_moment(moment)
+        self._show_banner(moment)
+        if not self.fetching.history.is_arranged:
+            # It is shown when all of it is there.
+            return
+        try:
+            self.map.show_moment(self.fetching.history, self._past.commands, moment, self._desk.selection)
+        except FleetError as error:
+            self.clockwork.play(False)
+            self._complain(str(error))
+
+    def _commands_changed(self, *_: object) -> None:
+        if self.clockwork.is_set:
+            self._past.renew()
+
+    def _show_commands(self, before: PastCommands) -> None:
+        self._show_marks()
+        moment = self.clockwork.moment
+        if self._past.commands.under_way_at(moment) != before.under_way_at(moment):
+            self._show(moment)
+
+    def _show_marks(self) -> None:
+        since, until = self.clockwork.since, self.clockwork.until
+        self.line.show_marks(self._past.commands.marks(since, until, self._robots))
+
+    def _site_changed(self) -> None:
+        if self._desk.picture.generation == self._generation:
+            return
+        # Another site's history has no place here, nor another gateway's of the same site: other robots may
+        # bear the same names.
+        self._generation = self._desk.picture.generation
+        self.fetching.forget()
+        self._showing.stop()
+        self._past.forget()
+        self.form.show_busy(False)
+        self.clockwork.play(False)
+        self.layer.clear()
+        self.map.show_nothing()
+        self.line.show_time(0.0, 0.0)
+        self.line.show_marks(NO_MARKS)
+        self._say(tr("Choose a time and press Load."))
+
+    def _complain(self, text: str, *topics: Topic) -> None:
+        """Say what is wrong with what is loaded, until something else is."""
+        self._desk.messages.post(text, Level.WARNING, REPLAY, *topics)
+
+    def _say(self, text: str) -> None:
+        self._told = text
+        self._show_banner(self.clockwork.moment)
+
+    def _show_banner(self, moment: float) -> None:
+        if not self.clockwork.is_set:
+            self.banner.setText(tr("REPLAY · {told}", told=self._told))
+            return
+        self.banner.setText(
+            tr("REPLAY, not live · {moment} · {told}", moment=date_and_time(moment), told=self._told)
+        )
+
+    def _lay_out(self) -> None:
+        bottom = QHBoxLayout()
+        bottom.addWidget(self.play)
+        bottom.addWidget(self.speed)
+        bottom.addWidget(self.line, 1)
+        body = QWidget()
+        rows = QVBoxLayout(body)
+        rows.setContentsMargins(6, 4, 6, 6)
+        rows.setSpacing(4)
+        rows.addWidget(self.form)
+        rows.addWidget(self.banner)
+        rows.addWidget(self.map, 1)
+        rows.addLayout(bottom)
+        self.map.setMinimumHeight(100)
+        self.setWidget(body)
+        self.setFocusProxy(self.form.last)
+
+
+# --- The menu entry that shows the replay ---
+
+
+class ReplayAction(DockAction):
+    """The entry and its panel."""
+
+    def __init__(self, iface: QgisInterface, menu: str, desk: FleetController):
+        super().__init__(
+            iface,
+            menu,
+            ReplayDock(desk, iface.mainWindow()),
+            icon="replay.svg",
+            text=tr("Replay"),
+            name="fleet_replay",
+            tip=tr("Play what robots did, on a map beside the live one"),
+        )

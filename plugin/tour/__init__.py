@@ -1,0 +1,1 @@
+"""The guided tour, with a practice fleet of simulated robots."""

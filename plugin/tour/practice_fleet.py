@@ -1,0 +1,127 @@
+"""A gateway and three simulated robots as processes of this computer, for practice."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+from qgis.PyQt.QtCore import QObject, QProcess, QProcessEnvironment, QStandardPaths, QTemporaryDir, pyqtSignal
+
+from ..ui.language import tr
+
+ROOT = Path(__file__).parents[2]
+SITE = ROOT / "resources" / "sample_site"
+PROGRAM = "robot-bridge"
+POSES = {"r1": "20,8,0", "r2": "48,84,0", "r3": "92,22,3.1416"}
+"""Where each robot stands at first: x, y (metres) and theta (radians) in the sample site's frame."""
+LISTENING = re.compile(r"listening on (ws://127\.0\.0\.1:\d+)")
+PATIENCE_MS = 3000
+
+
+def find_program() -> str:
+    """Return the path of robot-bridge: on PATH, or in the environment beside the plugin; empty for none."""
+    beside = [str(ROOT / ".venv" / folder) for folder in ("bin", "Scripts")]
+    return QStandardPaths.findExecutable(PROGRAM) or QStandardPaths.findExecutable(PROGRAM, beside)
+
+
+def how_to_install() -> str:
+    """Return what to do where there is no robot-bridge."""
+    return tr(
+        "The practice fleet needs robot-bridge, which is not on this computer. In a terminal, in the "
+        "project's folder: python3 -m venv gateway, then gateway/bin/pip install . and put gateway/bin on "
+        "PATH; or make setup. Then restart QGIS. The tour can be read without it."
+    )
+
+
+class PracticeFleet(QObject):
+    """Starts on loopback only, on a free port, and keeps its database in a folder that goes with it."""
+
+    ready = pyqtSignal(str)
+    """The fleet is there; the URL of its desk."""
+    failed = pyqtSignal(str)
+    """It did not come up: why, and what to do."""
+
+    def __init__(self, program: str | None = None, parent: QObject | None = None):
+        super().__init__(parent)
+        self.program = find_program() if program is None else program
+        self.url = ""
+        self._folder: QTemporaryDir | None = None
+        self._processes: list[QProcess] = []
+        self._gateway: QProcess | None = None
+        self._said = ""
+
+    @property
+    def running(self) -> bool:
+        """Whether it was started and has not been stopped."""
+        return bool(self._processes)
+
+    def start(self) -> None:
+        """Start the gateway, and the robots once it listens; :attr:`ready` or :attr:`failed` tells how."""
+        if self.running:
+            return
+        if not self.program:
+            self.failed.emit(how_to_install())
+            return
+        self._folder, self._said = QTemporaryDir(), ""
+        database = f"sqlite:///{self._folder.filePath('fleet.db')}"
+        gateway = self._gateway = self._process()
+        gateway.readyReadStandardOutput.connect(self._read)
+        gateway.finished.connect(self._ended)
+        gateway.errorOccurred.connect(self._ended)
+        gateway.start(self.program, ["serve", "--site", str(SITE), "--port", "0", "--database", database])
+
+    def stop(self) -> None:
+        """End every process, in good order where they do so soon."""
+        processes, self._processes, self._gateway, self.url = self._processes, [], None, ""
+        for process in processes:
+            process.blockSignals(True)
+            process.terminate()
+        for process in processes:
+            if not process.waitForFinished(PATIENCE_MS):
+                process.kill()
+                process.waitForFinished(PATIENCE_MS)
+            process.deleteLater()
+        self._folder = None
+
+    def _process(self) -> QProcess:
+        process = QProcess(self)
+        process.setProcessChannelMode(QProcess.ProcessChannelMode.MergedChannels)
+        # QGIS's own Python may be told its places by these, which are wrong for another one.
+        environment = QProcessEnvironment.systemEnvironment()
+        for name in ("PYTHONHOME", "PYTHONPATH"):
+            environment.remove(name)
+        process.setProcessEnvironment(environment)
+        self._processes.append(process)
+        return process
+
+    def _read(self) -> None:
+        said = bytes(self._gateway.readAllStandardOutput()).decode("utf-8", "replace")
+        if self.url:
+            return
+        self._said += said
+        found = LISTENING.search(self._said)
+        if found:
+            self.url = f"{found.group(1)}/desk"
+            self._start_robots(f"{found.group(1)}/robot")
+            self.ready.emit(self.url)
+
+    def _start_robots(self, url: str) -> None:
+        for name, pose in POSES.items():
+            robot = self._process()
+            robot.setStandardOutputFile(QProcess.nullDevice())
+            robot.start(self.program, ["robot", "--url", url, "--name", name, f"--pose={pose}"])
+
+    def _ended(self, *_: object) -> None:
+        if self._gateway is None:
+            return
+        lines = self._said.strip().splitlines()
+        why = lines[-1] if lines else self._gateway.errorString()
+        self.stop()
+        self.failed.emit(
+            tr(
+                "The practice fleet ended: {why}. Start it again; if that fails, see what {program} says "
+                "by hand.",
+                why=why.rstrip("."),
+                program=self.program,
+            )
+        )

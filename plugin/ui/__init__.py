@@ -1,0 +1,1 @@
+"""Qt helpers: tables, dialogs, steady widgets, actions, colours, glyphs, times and slices of long work."""

@@ -1,0 +1,48 @@
+"""What can go wrong in the plugin; every message names what, where and what to do."""
+
+from __future__ import annotations
+
+from typing import Any
+
+
+class FleetError(Exception):
+    """Something that the operator has to know, in words that can be shown as they are.
+
+    ``topics`` are the conditions it is about (:mod:`..control.messages`): when one has ended it is not true
+    any more.
+    """
+
+    topics: tuple[Any, ...] = ()
+
+
+class LibraryMissingError(FleetError):
+    """A Python package that the plugin needs is not there, or too old."""
+
+
+class AddressError(FleetError):
+    """The gateway's URL cannot be used."""
+
+
+class GatewayLinkError(FleetError):
+    """The gateway could not be reached, or what answered is no gateway.
+
+    ``final`` is true when trying again cannot help before somebody changes something; ``wants_token`` when
+    that is the token or the CA file.
+    """
+
+    def __init__(self, message: str, *, final: bool = False, wants_token: bool = False):
+        super().__init__(message)
+        self.final = final
+        self.wants_token = wants_token
+
+
+class NotSentError(FleetError):
+    """What the operator asked for was not sent."""
+
+    def __init__(self, message: str, topics: tuple[Any, ...] = ()):
+        super().__init__(message)
+        self.topics = topics
+
+
+class MapTransformError(FleetError):
+    """Positions of the site cannot be placed on this canvas."""

@@ -1,0 +1,173 @@
+"""Colours, drawings of robots and cones, and the pen that they are drawn with."""
+
+from __future__ import annotations
+
+from qgis.PyQt.QtCore import QPointF, QRectF, Qt
+from qgis.PyQt.QtGui import QBrush, QColor, QIcon, QPainter, QPainterPath, QPalette, QPen, QPixmap, QPolygonF
+from qgis.PyQt.QtWidgets import QApplication
+
+from ...robot_bridge.core.messages import CommandState, RobotState
+
+# --- The desk's colours: of Okabe and Ito's palette, told apart by colour-blind people as well ---
+
+STATE_COLOURS = {
+    RobotState.FRESH: QColor("#0072B2"),
+    RobotState.STALE: QColor("#E69F00"),
+    RobotState.LOST: QColor("#C62828"),
+    RobotState.OFFLINE: QColor("#757575"),
+}
+"""Each state has a shape of its own as well (see :mod:`.glyphs`)."""
+
+STALE_LETTERS = QColor("#A15C00")
+
+COMMAND_COLOURS = {
+    CommandState.REACHED: QColor("#00795C"),
+    CommandState.ABORTED: QColor("#C62828"),
+    CommandState.FAILED: QColor("#C62828"),
+    CommandState.EXPIRED: QColor("#A15C00"),
+    CommandState.SUPERSEDED: QColor("#757575"),
+}
+
+CASING = QColor(20, 24, 28, 170)
+PAPER = QColor(255, 255, 255)
+TRAIL = QColor("#56C7FF")
+ROUTE = QColor("#FFE14D")
+CONE = QColor("#F26A1B")
+SELECTED = QColor("#FFE14D")
+REFUSED = QColor("#E53935")
+WRONG = QColor("#C62828")
+"""Letters that say what is wrong."""
+DOUBTFUL = QColor("#8A5A00")
+"""Letters that say what may be wrong."""
+WRONG_STYLE = "color: #B71C1C; background: #FDECEA;"
+DOUBTFUL_STYLE = "color: #6B4300; background: #FFF1D0;"
+"""Labels that bring their own background: some themes of QGIS are of a grey on which no red is legible."""
+DARK = 128
+"""Lightness of a background below which letters have to be paler."""
+
+
+def is_dark() -> bool:
+    """Tell whether lists have a dark background now."""
+    return QApplication.palette().color(QPalette.ColorRole.Base).lightness() < DARK
+
+
+def for_letters(colour: QColor) -> QColor:
+    """Return a colour as letters of a list take it: paler on a dark background, darker on a light one."""
+    if is_dark():
+        return colour.lighter(175)
+    # As a spot on the map amber is seen well; its letters on white are not.
+    return QColor(STALE_LETTERS) if colour == STATE_COLOURS[RobotState.STALE] else colour
+
+
+# --- The pen that everything on the map is drawn with ---
+
+
+def pen(colour: QColor, width: float, strength: float = 1.0) -> QPen:
+    """Return a pen with round ends, ``width`` pixels; ``strength`` 1 is the colour as it is, 0 nothing."""
+    shade = QColor(colour)
+    shade.setAlphaF(colour.alphaF() * strength)
+    return QPen(shade, width, Qt.PenStyle.SolidLine, Qt.PenCapStyle.RoundCap, Qt.PenJoinStyle.RoundJoin)
+
+
+# --- The drawings of robots and cones, in logical pixels around (0, 0) ---
+
+CELL = 32
+"""Width and height of the square that a robot's drawing fits in at any heading."""
+ICON_SCALE = 2.04
+"""From a robot's drawing to one of 64 pixels for tables."""
+
+
+def state_icon(state: RobotState) -> QIcon:
+    """Return the drawing of a robot in ``state``, pointing up, for tables and legends."""
+    pixmap = QPixmap(64, 64)
+    pixmap.fill(QColor(0, 0, 0, 0))
+    painter = QPainter(pixmap)
+    painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+    painter.translate(32, 32)
+    painter.scale(ICON_SCALE, ICON_SCALE)
+    painter.rotate(-90)
+    draw_robot(painter, state, True)
+    painter.end()
+    return QIcon(pixmap)
+
+
+def draw_robot(painter: QPainter, state: RobotState, with_heading: bool) -> None:
+    """Draw a robot that points along +x: full when fresh, hollow when stale, crossed out when lost, and a
+    box when offline."""
+    colour = STATE_COLOURS[state]
+    outline = _outline(state, with_heading)
+    painter.setBrush(Qt.BrushStyle.NoBrush)
+    painter.setPen(pen(CASING, 5.0))
+    painter.drawPath(outline)
+    hollow = state in (RobotState.STALE, RobotState.LOST)
+    painter.setPen(pen(PAPER, 3.2))
+    painter.drawPath(outline)
+    painter.setBrush(QBrush(PAPER if hollow else colour))
+    painter.setPen(pen(colour, 2.6 if hollow else 0.6))
+    painter.drawPath(outline)
+    if state is RobotState.LOST:
+        _cross(painter, colour)
+
+
+def draw_arrow(painter: QPainter, state: RobotState, rim: QColor) -> None:
+    """Draw the arrow at the map's border to a robot in ``state``: it points along +x."""
+    arrow = QPolygonF([QPointF(11, 0), QPointF(-6, 9), QPointF(-2, 0), QPointF(-6, -9)])
+    painter.setBrush(QBrush(STATE_COLOURS[state]))
+    for stroke in (pen(CASING, 4.4), pen(rim, 2.0)):
+        painter.setPen(stroke)
+        painter.drawPolygon(arrow)
+
+
+def draw_cone(painter: QPainter, foot: QPointF, size: float = 22.0) -> None:
+    """Draw a traffic cone that stands on ``foot``, ``size`` logical pixels high."""
+    painter.save()
+    painter.translate(foot)
+    painter.scale(size / 22.0, size / 22.0)
+    body = QPolygonF([QPointF(-6.5, -2.5), QPointF(-1.4, -21), QPointF(1.4, -21), QPointF(6.5, -2.5)])
+    base = QRectF(-9.5, -3.2, 19, 4.4)
+    painter.setPen(pen(CASING, 3.6))
+    painter.drawPolygon(body)
+    painter.drawRoundedRect(base, 1.6, 1.6)
+    painter.setPen(pen(PAPER, 1.6))
+    painter.setBrush(QBrush(CONE))
+    painter.drawPolygon(body)
+    painter.drawRoundedRect(base, 1.6, 1.6)
+    painter.setPen(Qt.PenStyle.NoPen)
+    painter.drawPolygon(body)
+    painter.drawRoundedRect(base, 1.6, 1.6)
+    painter.setBrush(QBrush(PAPER))
+    painter.drawPolygon(
+        QPolygonF([QPointF(-4.8, -8.6), QPointF(-3.7, -12.4), QPointF(3.7, -12.4), QPointF(4.8, -8.6)])
+    )
+    painter.restore()
+
+
+def _outline(state: RobotState, with_heading: bool) -> QPainterPath:
+    path = QPainterPath()
+    if state is RobotState.OFFLINE:
+        path.addRoundedRect(QRectF(-7.5, -7.5, 15, 15), 2, 2)
+        nose = [QPointF(7.5, -4), QPointF(12.5, 0), QPointF(7.5, 4)]
+    elif with_heading:
+        path.addPolygon(QPolygonF([QPointF(13, 0), QPointF(-9.5, 9), QPointF(-5, 0), QPointF(-9.5, -9)]))
+        path.closeSubpath()
+        return path
+    else:
+        path.addEllipse(QPointF(0, 0), 8.5, 8.5)
+        return path
+    if with_heading:
+        point = QPainterPath()
+        point.addPolygon(QPolygonF(nose))
+        point.closeSubpath()
+        path = path.united(point)
+    return path
+
+
+def _cross(painter: QPainter, colour: QColor) -> None:
+    """Draw a cross on a disc, small enough to leave the heading to be seen."""
+    centre, arm = QPointF(-7.0, 0.0), 3.1
+    painter.setPen(pen(PAPER, 2.0))
+    painter.setBrush(QBrush(colour))
+    painter.drawEllipse(centre, 7.0, 7.0)
+    painter.setPen(pen(PAPER, 2.4))
+    painter.drawLine(centre + QPointF(-arm, -arm), centre + QPointF(arm, arm))
+    painter.drawLine(centre + QPointF(-arm, arm), centre + QPointF(arm, -arm))

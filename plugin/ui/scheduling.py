@@ -1,0 +1,211 @@
+"""Scheduling in the window's thread: long work in slices, and slots for periodic updates."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Generator
+from typing import Any, TypeVar
+
+from qgis.PyQt.QtCore import QObject, QTimer
+
+from .errors import FleetError
+
+# --- Long work of the window's thread, done in slices between which the window paints and answers the mouse
+# QGIS's own tasks are no help where a click waits for the result: in QGIS 3.22 they wait until the map is
+# drawn, and what they call of QGIS keeps Python to itself as long as it takes.
+
+T = TypeVar("T")
+Steps = Generator[float, None, T]
+"""Work that yields, as often as it can, the share of it that is done: 0 to 1. It returns the result."""
+
+SLICE_SECONDS = 0.008
+ONE_STEP = 0.0
+"""Seconds for a slice of one step, however short that is: for steps that take most of a slice each."""
+REST_MS = 4
+"""Between two slices, for the window."""
+
+
+def _nothing(*_: object) -> None:
+    """Be what is called where nobody wants to be told."""
+
+
+def _raise(error: FleetError) -> None:
+    """Let a fault be seen that nobody expects."""
+    raise error
+
+
+class CooperativeTask(QObject):
+    """Does one piece of work at a time, in slices of ``seconds`` on ``clock``."""
+
+    def __init__(
+        self,
+        parent: QObject | None = None,
+        seconds: float | None = None,
+        clock: Callable[[], float] = time.perf_counter,
+    ):
+        super().__init__(parent)
+        self._clock = clock
+        self._seconds = seconds
+        self._work: Steps[Any] | None = None
+        self._goes_on: Callable[[], None] = _nothing
+        self._done: Callable[[Any], None] = _nothing
+        self._failed: Callable[[FleetError], None] = _raise
+        self.share = 0.0
+        """How much is done, 0 to 1."""
+        self._timer = QTimer(self)
+        self._timer.setSingleShot(True)
+        self._timer.setInterval(REST_MS)
+        self._timer.timeout.connect(self._next)
+
+    @property
+    def is_busy(self) -> bool:
+        """Whether some of the work is still to be done."""
+        return self._work is not None
+
+    def begin(
+        self,
+        work: Steps[T],
+        goes_on: Callable[[], None] = _nothing,
+        done: Callable[[T], None] = _nothing,
+        failed: Callable[[FleetError], None] = _raise,
+    ) -> T | None:
+        """Do the first slice of ``work`` at once: return what it returns if that was enough, else None.
+
+        ``goes_on`` is called after each later slice, then ``done`` with what it returns or ``failed`` with
+        what it raised. What was under way before is given up.
+
+        :raises FleetError: what the first slice raises; ``failed`` is not called then.
+        """
+        self._take(work, goes_on, done, failed)
+        return self._slice()[1]
+
+    def begin_soon(
+        self,
+        work: Steps[T],
+        done: Callable[[T], None] = _nothing,
+        failed: Callable[[FleetError], None] = _raise,
+    ) -> None:
+        """Do all of ``work`` in slices that come when the window has had time for what is under way now.
+
+        ``done`` or ``failed`` is called as by :meth:`begin`. What was under way before is given up.
+        """
+        self._take(work, _nothing, done, failed)
+        self._timer.start()
+
+    def finish(self) -> None:
+        """Do at once all that is left, and call ``done`` or ``failed`` for it.
+
+        Work that begins other work in its place has that done as well.
+        """
+        while self._work is not None:
+            self._timer.stop()
+            self._next()
+
+    def stop(self) -> None:
+        """Give up what is under way; nothing is called for it any more."""
+        self._timer.stop()
+        work, self._work = self._work, None
+        self.share = 0.0
+        # What it does may be why it is to stop; it is not gone on with then.
+        if work is not None and not work.gi_running:
+            work.close()
+
+    def _take(
+        self,
+        work: Steps[T],
+        goes_on: Callable[[], None],
+        done: Callable[[T], None],
+        failed: Callable[[FleetError], None],
+    ) -> None:
+        self.stop()
+        self._work, self._goes_on, self._done, self._failed = work, goes_on, done, failed
+
+    def _next(self) -> None:
+        try:
+            is_done, result = self._slice()
+        except FleetError as error:
+            self._failed(error)
+            return
+        if is_done:
+            self._done(result)
+        elif self._work is not None:
+            self._goes_on()
+
+    def _slice(self) -> tuple[bool, Any]:
+        work = self._work
+        assert work is not None
+        until = self._clock() + (SLICE_SECONDS if self._seconds is None else self._seconds)
+        try:
+            while True:
+                self.share = next(work)
+                if self._work is not work:
+                    return False, None
+                if self._clock() >= until:
+                    break
+        except StopIteration as end:
+            is_wanted = self._work is work
+            if is_wanted:
+                self.stop()
+            return is_wanted, end.value
+        except BaseException:
+            if self._work is work:
+                self.stop()
+            raise
+        self._timer.start()
+        return False, None
+
+
+def run_to_end(work: Steps[T]) -> T:
+    """Do all of ``work`` at once, which is for other threads than the window's."""
+    while True:
+        try:
+            next(work)
+        except StopIteration as end:
+            return end.value
+
+
+def scaled_progress(work: Steps[T], before: int, parts: int) -> Steps[T]:
+    """Do ``work`` as one of so many ``parts``, after ``before`` of them."""
+    while True:
+        try:
+            share = next(work)
+        except StopIteration as end:
+            return end.value
+        yield (before + share) / parts
+
+
+# --- The desk's beat, and the turns in which the parts of the window look at the robots ---
+
+PULL_EVERY_MS = 50
+PULLS_IN_HALF_A_SECOND = 500 // PULL_EVERY_MS
+_STRIDE = 3
+"""Pulls between the turns of two who asked one after the other: ten of them have a pull each."""
+
+
+class UpdateScheduler:
+    """Counts the desk's pulls.
+
+    What is read by people need not change more than twice a second; but if all of it changed in the same
+    pull, the window would stand still for as long as all of it takes.
+    """
+
+    def __init__(self) -> None:
+        self.pulls = 0
+        self._turns = 0
+
+    def turn(self) -> UpdateSlot:
+        """Return a turn in which nobody else comes, as far as there are enough pulls."""
+        self._turns += 1
+        return UpdateSlot(self, self._turns * _STRIDE)
+
+
+class UpdateSlot:
+    """Comes in one pull of each half second, from ``first`` on."""
+
+    def __init__(self, beat: UpdateScheduler, first: int) -> None:
+        self._beat = beat
+        self._first = first
+
+    def has_come(self, half_seconds: int = 1) -> bool:
+        """Tell whether it comes in this pull, if it is to come once in so many half seconds."""
+        return (self._beat.pulls - self._first) % (half_seconds * PULLS_IN_HALF_A_SECOND) == 0

@@ -1,0 +1,231 @@
+"""Tables: models of rows, widths of columns, lists whose rows have a place on the map, CSV files of them."""
+
+from __future__ import annotations
+
+import csv
+import io
+from collections.abc import Callable, Iterable, Sequence
+from datetime import datetime
+from pathlib import Path
+from typing import Any
+
+from qgis.PyQt.QtCore import QAbstractTableModel, QEvent, QModelIndex, QObject, Qt
+from qgis.PyQt.QtWidgets import QAbstractItemView, QHeaderView, QStyle, QTableView, QTreeView
+
+from .errors import FleetError
+from .language import tr
+from .times import short_time
+
+# --- A table with one row for each thing that it is given ---
+
+
+class RowModel(QAbstractTableModel):
+    """Holds :attr:`rows` under ``heads``; what a cell shows is for ``data`` of whoever derives from it."""
+
+    def __init__(self, heads: Sequence[str], parent: QObject | None = None):
+        super().__init__(parent)
+        self._heads = heads
+        self.rows: list[Any] = []
+
+    def rowCount(self, parent: QModelIndex | None = None) -> int:
+        return 0 if parent is not None and parent.isValid() else len(self.rows)
+
+    def columnCount(self, parent: QModelIndex | None = None) -> int:
+        return 0 if parent is not None and parent.isValid() else len(self._heads)
+
+    def headerData(self, section: int, orientation: Qt.Orientation, role: int = 0) -> object:
+        if orientation == Qt.Orientation.Horizontal and role == Qt.ItemDataRole.DisplayRole:
+            return self._heads[section]
+        return None
+
+    def show_rows(self, rows: list[Any], key: Callable[[Any], object] | None = None) -> None:
+        """Show these; where they are the same by ``key`` as before, rows keep their selection."""
+        if key is not None and [key(row) for row in rows] == [key(row) for row in self.rows]:
+            self.rows = rows
+            if rows:
+                self.dataChanged.emit(self.index(0, 0), self.index(len(rows) - 1, len(self._heads) - 1))
+            return
+        self.beginResetModel()
+        self.rows = rows
+        self.endResetModel()
+
+
+class TextModel(RowModel):
+    """Shows of each row the texts that ``cells`` makes of it, one for each head, and as tips too."""
+
+    def __init__(
+        self, heads: Sequence[str], cells: Callable[[Any], Sequence[str]], parent: QObject | None = None
+    ):
+        super().__init__(heads, parent)
+        self._cells = cells
+
+    def data(self, index: QModelIndex, role: int = 0) -> object:
+        if role in (Qt.ItemDataRole.DisplayRole, Qt.ItemDataRole.ToolTipRole):
+            return self._cells(self.rows[index.row()])[index.column()]
+        return None
+
+
+# --- What a model hands out for its cells: numbers, also where Qt 6 has enums for them ---
+
+
+def number_of(value: object) -> int:
+    """Return the number of a Qt enum's member or flags, which are numbers themselves on Qt 5."""
+    return int(getattr(value, "value", value))  # type: ignore[call-overload]
+
+
+TO_THE_RIGHT = number_of(Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter)
+CHECKED = number_of(Qt.CheckState.Checked)
+UNCHECKED = number_of(Qt.CheckState.Unchecked)
+
+
+# --- Tables that have to fit into a narrow and low panel ---
+
+LOWEST = 44
+"""Pixels that a table keeps on a low screen: its head and a row or two."""
+
+
+def shrink_view(view: QAbstractItemView) -> None:
+    """Take a size less for the cells and headers of a table in a narrow panel, and let it be low."""
+    view.setMinimumHeight(LOWEST)
+    font = view.font()
+    font.setPointSizeF(max(7.0, font.pointSizeF() - 1.0))
+    view.setFont(font)
+    for header in view.findChildren(QHeaderView):
+        header.setFont(font)
+
+
+# --- Columns that are as wide as their heads need in the language of QGIS ---
+
+EDGES = 4
+"""Pixels beside a head's words."""
+
+
+def fit_headers(view: QTableView | QTreeView) -> None:
+    """Widen each column whose head would be cut off, now and when it gets the mark of sorting.
+
+    None becomes narrower. The heads of ``view`` have their font and their columns' first widths already.
+    """
+    header = _heads(view)
+    for column in range(header.count()):
+        _fit(header, column)
+    # No function that holds the header itself: nothing else in Python would, so that Python took both for
+    # garbage, and the next click on a head crashed QGIS.
+    header.sortIndicatorChanged.connect(lambda column, _order: _fit(_heads(view), column))
+
+
+def _heads(view: QTableView | QTreeView) -> QHeaderView:
+    return view.header() if isinstance(view, QTreeView) else view.horizontalHeader()
+
+
+def _fit(header: QHeaderView, column: int) -> None:
+    if column < 0 or header.isSectionHidden(column):
+        return
+    head = header.model().headerData(column, Qt.Orientation.Horizontal, Qt.ItemDataRole.DisplayRole)
+    wanted = header.fontMetrics().horizontalAdvance(str(head or "")) + 2 * EDGES
+    if header.isSortIndicatorShown() and header.sortIndicatorSection() == column:
+        wanted += header.style().pixelMetric(QStyle.PixelMetric.PM_HeaderMarkSize, None, header)
+    header.resizeSection(column, max(header.sectionSize(column), wanted))
+
+
+# --- A column of times that is as wide as its widest time ---
+
+TODAY = "00:00:00"
+
+
+class TimeColumn:
+    """The first column of ``view``, with ``beside`` pixels around a time; what the user drags it to stays."""
+
+    def __init__(self, view: QTableView | QTreeView, beside: int):
+        self._view, self._beside = view, beside
+        self._letters = 0
+        self.make_room(None)
+
+    def make_room(self, oldest: float | None) -> None:
+        """Have room for times from ``oldest`` on, seconds since 1970: another day's have their date."""
+        widest = max(TODAY, short_time(oldest), key=len)
+        if len(widest) != self._letters:
+            self._letters = len(widest)
+            self._view.setColumnWidth(0, self._view.fontMetrics().horizontalAdvance(widest) + self._beside)
+
+
+# --- Lists of things that have a place on the map ---
+
+ENTER = (Qt.Key.Key_Return, Qt.Key.Key_Enter)
+ALONE = (Qt.KeyboardModifier.NoModifier, Qt.KeyboardModifier.KeypadModifier)
+
+
+class ZoomMenu(QObject):
+    """Calls ``go`` with a row of ``view`` at a double click on it, and at Enter with the selected one."""
+
+    def __init__(self, view: QAbstractItemView, go: Callable[[QModelIndex], object]):
+        super().__init__(view)
+        self._view = view
+        self._go = go
+        view.doubleClicked.connect(go)
+        view.installEventFilter(self)
+
+    def eventFilter(self, watched: QObject, event: QEvent) -> bool:
+        if event.type() != QEvent.Type.KeyPress or event.key() not in ENTER:
+            return False
+        if event.modifiers() not in ALONE:
+            return False
+        selection, index = self._view.selectionModel(), self._view.currentIndex()
+        if not selection.isSelected(index):
+            # What is renewed all the time may have selected rows and no current one.
+            index = next(iter(selection.selectedRows()), QModelIndex())
+        if index.isValid():
+            self._go(index)
+        return True
+
+
+# --- Tables of the desk as CSV files ---
+
+_FORMULA = ("=", "+", "-", "@", "\t", "\r")
+
+
+class CsvError(FleetError):
+    """A table was not written."""
+
+
+def write_csv(path: str, head: Sequence[str], rows: Iterable[Sequence[object]]) -> int:
+    """Write a table as UTF-8 that spreadsheets open as such, and return how many rows it has.
+
+    Nothing takes the place of an older file before the new one is complete.
+
+    :raises CsvError: when the file cannot be written.
+    """
+    text = io.StringIO(newline="")
+    table = csv.writer(text)
+    table.writerow(head)
+    count = 0
+    for row in rows:
+        table.writerow([_cell(value) for value in row])
+        count += 1
+    target = Path(path)
+    part = target.with_name(target.name + ".part")
+    try:
+        part.write_text(text.getvalue(), encoding="utf-8-sig", newline="")
+        part.replace(target)
+    except OSError as error:
+        raise CsvError(
+            tr(
+                "{file} was not written ({why}). Choose another folder, or close the file where it is open.",
+                file=target,
+                why=error.strerror or error,
+            )
+        ) from error
+    return count
+
+
+def iso_time(at: float | None) -> str:
+    """Return a time since 1970 as ISO 8601 in the computer's time zone; nothing for none."""
+    if at is None:
+        return ""
+    return datetime.fromtimestamp(at).astimezone().isoformat(timespec="milliseconds")
+
+
+def _cell(value: object) -> object:
+    # A spreadsheet would run a text such as =cmd() that came over the wire.
+    if isinstance(value, str) and value.startswith(_FORMULA):
+        return f"'{value}"
+    return "" if value is None else value

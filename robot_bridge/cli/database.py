@@ -1,0 +1,173 @@
+"""``robot-bridge database``: make the tables, bring them up to date, back them up, report their state."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Callable
+from pathlib import Path
+from typing import Annotated, TypeVar
+
+import typer
+from sqlalchemy import URL, Connection
+
+from ..core.errors import StoreError
+from ..core.messages import check_robot_name
+from ..gateway.storage import revisions
+from ..gateway.storage.backup import back_up, revision_in
+from ..gateway.storage.backup import restore as put_back
+from ..gateway.storage.database import run_once, shown
+from ..gateway.storage.dialects import SQLite
+from ..gateway.storage.roles.choice import has_accounts, role_manager_on
+from ..gateway.storage.singleton_lock import no_gateway
+from .audited import act_audited, audited
+from .options import DEFAULT, DatabaseOption, PasswordFileOption, database_address
+from .tokens import NewPasswordOption, new_password
+
+# --- ``robot-bridge database backup`` and ``restore`` ---
+
+
+def backup(
+    file: Annotated[Path, typer.Argument(help="The file to be written.")],
+    database: DatabaseOption = DEFAULT,
+    database_password_file: PasswordFileOption = None,
+    replace: Annotated[bool, typer.Option("--replace", help="Replace FILE if it is there.")] = False,
+) -> None:
+    """Write all that the database holds into one file; the gateway may run meanwhile."""
+    address = database_address(database, database_password_file)
+    with audited(address, "database backup", shown(address), str(file.absolute())):
+        size = back_up(address, file, replace=replace)
+    typer.echo(f"{file}: {size} bytes")
+
+
+def restore(
+    file: Annotated[Path, typer.Argument(help="A backup of the same kind of database.")],
+    database: DatabaseOption = DEFAULT,
+    database_password_file: PasswordFileOption = None,
+    replace: Annotated[bool, typer.Option("--replace", help="Replace what the database holds.")] = False,
+) -> None:
+    """Put a backup in the place of what the database holds; no gateway may run on it."""
+    address = database_address(database, database_password_file)
+    with audited(address, "database restore", shown(address), str(file.absolute())):
+        revision = asyncio.run(put_back(address, file, replace=replace))
+    typer.echo(f"{file} is restored into {shown(address)}")
+    if revision != revisions.NEEDED:
+        typer.echo(f"its tables are of revision {revision}; run now: robot-bridge database upgrade")
+
+
+def add_backup_commands(app: typer.Typer) -> None:
+    """Add both commands to a group."""
+    app.command()(backup)
+    app.command()(restore)
+
+
+# --- ``robot-bridge database account``: the account that the gateway runs under ---
+
+
+def account(
+    name: Annotated[str, typer.Argument(help="The account's name.")],
+    password_file: NewPasswordOption = None,
+    database: DatabaseOption = DEFAULT,
+    database_password_file: PasswordFileOption = None,
+) -> None:
+    """Make the account that the gateway runs under: it reads and writes rows and changes no table.
+
+    For PostgreSQL and MariaDB, as an administrator of the server. The password is printed once, alone on
+    standard output.
+    """
+    check_robot_name(name)
+    address = database_address(database, database_password_file)
+    password = new_password(password_file)
+    act_audited(
+        address,
+        "database account",
+        name,
+        None,
+        lambda connection: role_manager_on(connection).add_gateway(name, password),
+    )
+    if password_file is None:
+        print(password)
+    gateway = address._replace(username=name, password=None)
+    typer.echo(f"account {name} is there: robot-bridge serve --database {shown(gateway)}", err=True)
+
+
+# --- ``robot-bridge database``: make the tables, bring them up to date, say how they are ---
+
+T = TypeVar("T")
+
+app = typer.Typer(help="Make, upgrade and check the database.", no_args_is_help=True)
+app.command()(account)
+add_backup_commands(app)
+
+
+@app.command()
+def create(
+    database: DatabaseOption = DEFAULT,
+    database_password_file: PasswordFileOption = None,
+    for_backup: Annotated[
+        Path | None,
+        typer.Option(
+            help="Make them as they are in this backup, so that it can be restored and then upgraded."
+        ),
+    ] = None,
+) -> None:
+    """Make the tables in an empty database; a server's database itself must be there."""
+    address = database_address(database, database_password_file)
+    revision = revisions.NEEDED if for_backup is None else revision_in(address, for_backup)
+    with audited(address, "database create", shown(address)):
+        _run(address, lambda connection: revisions.create(connection, revision))
+    print(f"{shown(address)}: made the tables, revision {revision}")
+
+
+@app.command()
+def upgrade(database: DatabaseOption = DEFAULT, database_password_file: PasswordFileOption = None) -> None:
+    """Bring the tables of an older version up to date, with all that is in them; no gateway may run on it."""
+    address = _there(database_address(database, database_password_file))
+    with audited(address, "database upgrade", shown(address), f"to revision {revisions.NEEDED}"):
+        found = asyncio.run(_upgrade(address))
+    if found == revisions.NEEDED:
+        print(f"{shown(address)}: revision {found}, nothing is to be done")
+    else:
+        print(f"{shown(address)}: upgraded from revision {found} to {revisions.NEEDED}")
+
+
+@app.command()
+def check(database: DatabaseOption = DEFAULT, database_password_file: PasswordFileOption = None) -> None:
+    """Say which revision the tables have, which is needed, and what differs; status 1 when something does."""
+    address = database_address(database, database_password_file)
+    report = _run(_there(address), revisions.report)
+    print(f"{shown(address)}: revision {report.found or 'none, no tables of the bridge'}")
+    print(f"needed: revision {revisions.NEEDED}")
+    for difference in report.differences:
+        print(f"differs: {difference}")
+    if not report.good:
+        raise StoreError(f"database {shown(address)} cannot be used as it is; {report.advice}")
+    print("the tables are those that this version works with")
+
+
+async def _upgrade(address: URL) -> str:
+    """Upgrade while no gateway runs; return the revision that was there."""
+    async with no_gateway(address, "robot-bridge database upgrade"):
+        found = await asyncio.to_thread(_run, address, revisions.upgrade)
+        if has_accounts(address.drivername):
+            await asyncio.to_thread(
+                _run, address, lambda connection: role_manager_on(connection).renew_rights()
+            )
+    return found
+
+
+def _there(address: URL) -> URL:
+    """Return ``address``; SQLite would make a file that is missing. Raises StoreError."""
+    file = address.database if address.drivername == SQLite.name else None
+    if file and not file.startswith("file:") and not Path(file).is_file():
+        raise StoreError(
+            f"database {shown(address)}: there is no such file; correct the path, or make it with: "
+            "robot-bridge database create"
+        )
+    return address
+
+
+def _run(address: URL, work: Callable[[Connection], T]) -> T:
+    try:
+        return run_once(address, work)
+    except revisions.RevisionError as error:
+        raise StoreError(f"database {shown(address)}: {error}") from None

@@ -1,0 +1,67 @@
+"""Options of several commands: the database's address, and times."""
+
+from __future__ import annotations
+
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from ..core.errors import BridgeError
+
+# --- The options by which every command is told its database ---
+
+if TYPE_CHECKING:
+    from sqlalchemy import URL
+
+DEFAULT = "sqlite:///robot-bridge.db"
+
+DatabaseOption = Annotated[
+    str,
+    typer.Option(
+        "--database",
+        envvar="ROBOT_BRIDGE_DATABASE",
+        help="sqlite:////PATH, postgresql://ACCOUNT@HOST/NAME or mariadb://ACCOUNT@HOST/NAME.",
+    ),
+]
+PasswordFileOption = Annotated[
+    Path | None,
+    typer.Option(
+        "--database-password-file",
+        envvar="ROBOT_BRIDGE_DATABASE_PASSWORD_FILE",
+        help="File with the database account's password; a command line can be seen by others.",
+    ),
+]
+
+
+def database_address(database: str, password_file: Path | None) -> URL:
+    """Return the address that the two options give; raises StoreError."""
+    from ..gateway.storage.database import read_address
+
+    return read_address(database, password_file)
+
+
+# --- Times on the command line ---
+
+
+def time_span(since: str | None, until: str | None) -> tuple[float | None, float | None]:
+    """Return ``--since`` and ``--until`` as seconds since 1970.
+
+    :raises BridgeError: for what is no time, and where nothing lies between the two.
+    """
+    first, last = seconds_of("--since", since), seconds_of("--until", until)
+    if first is not None and last is not None and first > last:
+        raise BridgeError(f"--since {since!r} is later than --until {until!r}; nothing lies between them")
+    return first, last
+
+
+def seconds_of(option: str, text: str | None) -> float | None:
+    """Return ``text``, the value of ``option``, as seconds since 1970; raises BridgeError."""
+    if text is None:
+        return None
+    try:
+        time = datetime.fromisoformat(text)
+    except ValueError:
+        raise BridgeError(f"{option} {text!r} is no time; write it like 2026-11-21T08:00") from None
+    return (time if time.tzinfo else time.replace(tzinfo=UTC)).timestamp()

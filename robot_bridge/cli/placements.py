@@ -1,0 +1,270 @@
+"""``robot-bridge placements``: placed cones to files, CSV, GeoJSON or GeoPackage."""
+
+from __future__ import annotations
+
+import asyncio
+import csv
+import dataclasses
+import struct
+import tempfile
+from collections.abc import Callable, Sequence
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import Annotated, Any
+
+import numpy as np
+import typer
+
+from ..core.errors import BridgeError, counted, listed_names
+from ..core.messages import GetPlacements, PlacementReport
+from ..core.messages.records import MOST_PLACEMENTS
+from ..core.sites.frame import SiteFrame, projections
+from ..core.sites.settings import SETTINGS_FILE, read_settings
+from ..gateway.storage.database import Database
+from ..gateway.storage.repositories import records as stored
+from .options import DEFAULT, DatabaseOption, PasswordFileOption, database_address, time_span
+
+# --- Placed cones as columns: in the site frame, in the site's CRS, and their deviation along both axes
+
+Row = dict[str, Any]
+
+TIMES = ("placed_at", "collected_at")
+TEXTS = ("layout", "cone", "label", "plan", "task", "robot", "collected_by")
+NUMBERS = (
+    "planned_x",
+    "planned_y",
+    "x",
+    "y",
+    "dx",
+    "dy",
+    "deviation",
+    "easting",
+    "northing",
+    "planned_easting",
+    "planned_northing",
+)
+NAMES = ("placement", *TEXTS[:6], TIMES[0], *NUMBERS, TIMES[1], TEXTS[6])
+"""The columns, in order."""
+
+
+def cone_rows(placed: Sequence[PlacementReport], frame: SiteFrame) -> list[Row]:
+    """Return a row for each cone: metres in the site frame, easting and northing in its CRS, times in UTC.
+
+    ``dx`` and ``dy`` are how far the cone stands off its plan along the axes of the site frame.
+    """
+    points = frame.to_crs([(one.x, one.y) for one in placed])
+    planned = frame.to_crs([(one.planned_x, one.planned_y) for one in placed])
+    return [_row(*both) for both in zip(placed, points, planned, strict=True)]
+
+
+def _row(one: PlacementReport, point: Any, planned: Any) -> Row:
+    return {
+        "placement": one.placement,
+        "layout": one.layout,
+        "cone": one.cone,
+        "label": one.label,
+        "plan": one.plan,
+        "task": one.task,
+        "robot": one.robot,
+        "placed_at": _time(one.placed_at),
+        "planned_x": one.planned_x,
+        "planned_y": one.planned_y,
+        "x": one.x,
+        "y": one.y,
+        "dx": one.x - one.planned_x,
+        "dy": one.y - one.planned_y,
+        "deviation": one.deviation,
+        "easting": float(point[0]),
+        "northing": float(point[1]),
+        "planned_easting": float(planned[0]),
+        "planned_northing": float(planned[1]),
+        "collected_at": _time(one.collected_at),
+        "collected_by": one.collected_by,
+    }
+
+
+def _time(seconds: float | None) -> datetime | None:
+    return None if seconds is None else datetime.fromtimestamp(seconds, UTC)
+
+
+# --- Placed cones into a file: CSV, or a GeoPackage for GIS ---
+# Layers of the GeoPackage, in the site's CRS: ``placed`` and ``planned`` (points), ``deviations`` (lines
+# from
+# the plan to the cone).
+
+_UTC = 100
+"""GDAL's code for UTC in a field of date and time."""
+_LAYERS: dict[str, tuple[str, Callable[[Row], bytes]]] = {
+    "placed": ("Point", lambda row: _point(row["easting"], row["northing"])),
+    "planned": ("Point", lambda row: _point(row["planned_easting"], row["planned_northing"])),
+    "deviations": ("LineString", lambda row: _line(row)),
+}
+
+
+def write_placed_cones(found: Sequence[Row], frame: SiteFrame, file: Path) -> None:
+    """Write ``file``, whole or not at all; its suffix, ``.csv`` or ``.gpkg``, says as what.
+
+    :raises BridgeError: when it cannot be written.
+    """
+    as_file = {".csv": _write_csv, ".gpkg": _write_geopackage}[file.suffix.lower()]
+    try:
+        # A folder beside the file, so that the finished one is put into its place at once.
+        with tempfile.TemporaryDirectory(prefix=".exporting-", dir=file.parent) as folder:
+            partial = Path(folder) / file.name
+            as_file(found, frame, partial)
+            partial.replace(file)
+    except OSError as error:
+        raise BridgeError(f"{file} cannot be written: {error.strerror or error}; check its folder") from error
+
+
+def _write_csv(found: Sequence[Row], _frame: SiteFrame, file: Path) -> None:
+    with file.open("w", newline="", encoding="utf-8") as text:
+        writer = csv.DictWriter(text, NAMES)
+        writer.writeheader()
+        writer.writerows({name: _text(row[name]) for name in NAMES} for row in found)
+
+
+def _text(value: Any) -> Any:
+    if value is None:
+        return ""
+    if isinstance(value, float):
+        return f"{value:.3f}"
+    return value if isinstance(value, (int, str)) else value.isoformat(timespec="milliseconds")
+
+
+def _write_geopackage(found: Sequence[Row], frame: SiteFrame, file: Path) -> None:
+    projections()  # before pyogrio imports pyproj aloud
+    import pyogrio
+
+    columns = {name: _column(found, name) for name in NAMES}
+    times = [name for name, values in columns.items() if values.dtype.kind == "M"]
+    for layer, (kind, blob) in _LAYERS.items():
+        geometry = np.empty(len(found), dtype=object)
+        geometry[:] = [blob(row) for row in found]
+        try:
+            pyogrio.raw.write(
+                str(file),
+                geometry=geometry,
+                field_data=list(columns.values()),
+                fields=list(columns),
+                layer=layer,
+                driver="GPKG",
+                geometry_type=kind,
+                crs=frame.crs,
+                append=file.exists(),
+                dataset_options={"VERSION": "1.3"},
+                gdal_tz_offsets={name: np.full(len(found), _UTC) for name in times},
+            )
+        except (pyogrio.errors.DataSourceError, pyogrio.errors.DataLayerError) as error:
+            raise BridgeError(
+                f"{file} cannot be written: {error}; check the folder and free space"
+            ) from error
+
+
+def _column(found: Sequence[Row], name: str) -> Any:
+    values = [row[name] for row in found]
+    if name in TIMES:
+        at = [
+            np.datetime64("NaT") if v is None else np.datetime64(v.replace(tzinfo=None), "ms") for v in values
+        ]
+        return np.array(at, dtype="datetime64[ms]")
+    if name in TEXTS:
+        return np.array(values, dtype=object)
+    return np.array(values, dtype=np.int64 if name == "placement" else np.float64)
+
+
+def _point(x: float, y: float) -> bytes:
+    return struct.pack("<BI2d", 1, 1, x, y)
+
+
+def _line(row: Row) -> bytes:
+    ends = (row["planned_easting"], row["planned_northing"], row["easting"], row["northing"])
+    return struct.pack("<BII4d", 1, 2, 2, *ends)
+
+
+# --- ``robot-bridge placements``: where cones were put down, out of the database ---
+
+app = typer.Typer(help="Where cones were put down.", no_args_is_help=True)
+
+
+@app.callback()
+def placements() -> None:
+    """Where cones were put down."""
+
+
+@app.command()
+def export(
+    file: Annotated[Path, typer.Argument(help="The file to be written: .csv, or .gpkg for GIS.")],
+    site: Annotated[Path, typer.Option(help="Folder of the published site, for its CRS and frame.")],
+    database: DatabaseOption = DEFAULT,
+    database_password_file: PasswordFileOption = None,
+    layout: Annotated[str | None, typer.Option(help="Only the cones of this layout.")] = None,
+    plan: Annotated[str | None, typer.Option(help="Only the cones of this plan.")] = None,
+    robot: Annotated[str | None, typer.Option(help="Only what this robot put down.")] = None,
+    since: Annotated[
+        str | None, typer.Option(help="Not before: 2026-11-21T08:00 (UTC), or with an offset such as +01:00.")
+    ] = None,
+    until: Annotated[str | None, typer.Option(help="Not after.")] = None,
+    collected: Annotated[
+        bool | None,
+        typer.Option("--collected/--standing", help="Only those that were collected, or still stand."),
+    ] = None,
+    replace: Annotated[bool, typer.Option("--replace", help="Replace FILE if it is there.")] = False,
+) -> None:
+    """Write planned and as-placed positions, deviation, robot and time of each cone."""
+    rows = cone_rows
+    write = write_placed_cones
+
+    if file.suffix.lower() not in (".csv", ".gpkg"):
+        raise BridgeError(
+            f"{file} is neither a table nor a GeoPackage; write a name that ends in .csv or .gpkg"
+        )
+    if file.exists() and not replace:
+        raise BridgeError(f"{file} is there already; choose another name, or give --replace")
+    first, last = time_span(since, until)
+    wanted = GetPlacements(
+        layout=layout,
+        plan=plan,
+        robot=robot,
+        since=first,
+        until=last,
+        collected=collected,
+        limit=MOST_PLACEMENTS,
+    )
+    frame = read_settings(site / SETTINGS_FILE).frame
+    address = database_address(database, database_password_file)
+
+    async def work() -> list[PlacementReport]:
+        opened = Database(address, patience=None)
+        try:
+            await _check_named(opened, wanted)
+            return await _all(opened, wanted)
+        finally:
+            await opened.close()
+
+    found = asyncio.run(work())
+    write(rows(found, frame), frame, file)
+    worst = max((one.deviation for one in found), default=0.0)
+    typer.echo(f"{file}: {counted(len(found), 'cone')}, {worst:.3f} m off their places at most")
+
+
+async def _check_named(database: Database, wanted: GetPlacements) -> None:
+    """Raise BridgeError for a layout, plan or robot of which no cone is stored, as for a misspelt one."""
+    for kind in ("layout", "plan", "robot"):
+        name = getattr(wanted, kind)
+        if name is None or await database.run(stored.has_any, kind, name):
+            continue
+        known = await database.run(stored.names, kind)
+        raise BridgeError(
+            f"no cone of {kind} {name!r} is stored in this database; "
+            f"{kind}s with cones in it: {listed_names(known)}. Nothing was written"
+        )
+
+
+async def _all(database: Database, wanted: GetPlacements) -> list[PlacementReport]:
+    """Return every page, in the order in which the cones were put down."""
+    found: list[PlacementReport] = []
+    while page := await database.run(stored.newest_placed_cones, wanted):
+        found += page
+        wanted = dataclasses.replace(wanted, before=page[-1].placement)
+    return found[::-1]

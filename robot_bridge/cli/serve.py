@@ -1,0 +1,171 @@
+"""``robot-bridge serve``: the gateway as a program, from its options to its exit status."""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+import os
+import signal
+import sys
+import threading
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Literal
+
+import typer
+
+from ..core.errors import BridgeError
+from ..core.logs import LogFormat, LogLevel, notify, set_up_log, watchdog_interval
+from ..gateway.monitoring.tasks import freeze_permanent_objects
+from .options import DEFAULT, DatabaseOption, PasswordFileOption, database_address
+
+if TYPE_CHECKING:
+    from ..gateway.app import GatewaySettings, Signals
+
+log = logging.getLogger(__name__)
+
+HOST, PORT = "127.0.0.1", 8765
+LAST_MOMENT = 4.7
+"""seconds after which a gateway that was told to end does so whatever it waits for."""
+
+Loop = Literal["auto", "uvloop", "asyncio"]
+
+
+def serve(
+    site: Annotated[
+        Path,
+        typer.Option(help="Folder of a published site: site.toml and site.gpkg.", envvar="ROBOT_BRIDGE_SITE"),
+    ],
+    database: DatabaseOption = "",
+    database_password_file: PasswordFileOption = None,
+    host: Annotated[
+        str, typer.Option(help=f"Address to listen on ({HOST}); beyond loopback with TLS and accounts.")
+    ] = "",
+    port: Annotated[
+        int | None, typer.Option(help=f"Port to listen on ({PORT}); 0 takes any.", min=0, max=65535)
+    ] = None,
+    certificate: Annotated[
+        Path | None, typer.Option(help="The gateway's certificate (PEM), for wss://.")
+    ] = None,
+    key: Annotated[Path | None, typer.Option(help="Its key (PEM).")] = None,
+    site_as_given: Annotated[
+        bool,
+        typer.Option("--site-as-given", help="Serve --site, whatever site a supervisor chose at a desk."),
+    ] = False,
+    state: Annotated[
+        Path | None,
+        typer.Option(
+            help="Folder in which emergency stops are noted that are not in the database yet; unless given, "
+            "the one that the site's folder lies in. With SQLite they are beside the database.",
+            envvar=["ROBOT_BRIDGE_STATE", "STATE_DIRECTORY"],
+        ),
+    ] = None,
+    log_format: Annotated[
+        LogFormat, typer.Option(help="Lines for people, or JSON.", envvar="ROBOT_BRIDGE_LOG_FORMAT")
+    ] = "text",
+    log_level: Annotated[
+        LogLevel, typer.Option(help="The least that is logged.", envvar="ROBOT_BRIDGE_LOG_LEVEL")
+    ] = "warning",
+    loop: Annotated[Loop, typer.Option(help="Event loop; auto is uvloop where it is installed.")] = "auto",
+) -> None:
+    """Serve one site to robots (/robot, and tables rr and sa) and to operators (/desk).
+
+    What is not given is taken from table gateway of site.toml. SIGHUP reads the site anew.
+    """
+    from ..core.sites.settings import SETTINGS_FILE, read_settings
+    from ..core.sites.settings_tables import GatewayOptions
+    from ..gateway.app import GatewaySettings
+    from ..gateway.auth.tls import server_files
+
+    set_up_log(log_format, log_level)
+    # A folder that is not there is named by whoever reads the whole site.
+    given = read_settings(site / SETTINGS_FILE).gateway if site.is_dir() else GatewayOptions()
+    files = (certificate or _beside(site, given.certificate), key or _beside(site, given.key))
+    settings = GatewaySettings(
+        site=site,
+        database=database_address(database or given.database or DEFAULT, database_password_file),
+        host=host or given.host or HOST,
+        port=next(number for number in (port, given.port, PORT) if number is not None),
+        tls=server_files(*files),
+        state=state,
+        site_as_given=site_as_given,
+    )
+    with asyncio.Runner(loop_factory=_loop_factory(loop)) as runner:
+        runner.run(_serve(settings))
+
+
+async def _serve(settings: GatewaySettings) -> None:
+    from ..gateway.app import Signals, run
+
+    signals = Signals()
+    running = asyncio.get_running_loop()
+    for number in (signal.SIGINT, signal.SIGTERM):
+        running.add_signal_handler(number, _stop, signals)
+    running.add_signal_handler(signal.SIGHUP, signals.reload.set)
+    feeding = asyncio.create_task(_feed_watchdog())
+    try:
+        await run(settings, signals, _started)
+    finally:
+        feeding.cancel()
+
+
+def _started(address: str) -> None:
+    freeze_permanent_objects()
+    _say(f"listening on {address}")
+    notify("READY=1", f"STATUS=listening on {address}")
+
+
+def _say(line: str) -> None:
+    """Print ``line``. A full disk, or a reader that is gone, is no reason to end a gateway."""
+    try:
+        print(line, flush=True)
+    except OSError as error:
+        log.warning("standard output cannot be written: %s", error.strerror)
+        # What is left of it would be tried again when the process ends, and make that a failure.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+
+
+def _stop(signals: Signals) -> None:
+    if not signals.stop.is_set():
+        notify("STOPPING=1")
+        last = threading.Timer(LAST_MOMENT, _end_at_once)
+        last.daemon = True
+        last.start()
+    signals.stop.set()
+
+
+def _end_at_once() -> None:
+    print(
+        f"robot-bridge: something did not end within {LAST_MOMENT} s; the gateway ends without it",
+        file=sys.stderr,
+        flush=True,
+    )
+    os._exit(1)
+
+
+async def _feed_watchdog() -> None:
+    interval = watchdog_interval()
+    while interval is not None:
+        notify("WATCHDOG=1")
+        await asyncio.sleep(interval)
+
+
+def _beside(site: Path, name: str | None) -> Path | None:
+    return None if name is None else site / name
+
+
+def _loop_factory(loop: Loop) -> Callable[[], asyncio.AbstractEventLoop] | None:
+    if loop == "asyncio":
+        return None
+    try:
+        import uvloop
+    except ImportError:
+        if loop == "uvloop":
+            raise BridgeError(
+                "uvloop is not installed; install it with: pip install 'fleet-supervisor-robot-bridge[speed]'"
+            ) from None
+        log.info("event loop: asyncio; uvloop, where it is installed, does the same with half the work")
+        return None
+    log.info("event loop: uvloop")
+    factory: Callable[[], asyncio.AbstractEventLoop] = uvloop.new_event_loop
+    return factory

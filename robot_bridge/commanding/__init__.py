@@ -1,1 +1,0 @@
-"""Commands at work: ordered by operators, stored, followed to their ends."""

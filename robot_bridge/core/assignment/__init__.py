@@ -1,0 +1,1 @@
+"""Assignment of cones to robots: jobs, solver, plans and their changes."""

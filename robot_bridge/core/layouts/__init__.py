@@ -1,0 +1,1 @@
+"""Cone layouts: standard courses, cones from files, placement on a site."""

@@ -1,0 +1,210 @@
+"""Log of a process: formats, repeated lines, unforeseen errors, and its messages to systemd."""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import logging
+import os
+import re
+import secrets
+import socket
+import sys
+import time
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from typing import Literal, TextIO
+
+# --- The log on standard error: lines for people or JSON for programs, neither with a secret in it ---
+
+LogFormat = Literal["text", "json"]
+LogLevel = Literal["debug", "info", "warning", "error"]
+
+_SECRETS = (
+    (re.compile(r"(?i)\b(bearer\s+)[\w.~+/=-]+"), r"\1***"),
+    (re.compile(r"(?i)\b(\w+(?:\+\w+)?://[^\s/:@]*):[^\s/]*@"), r"\1:***@"),
+    (re.compile(r"(?i)\b(password|passwd|token|secret)(\s*=\s*)(\"[^\"]*\"|'[^']*'|[^\s,;&]+)"), r"\1\2***"),
+    (re.compile(r"\b(fleet_(?:op|robot|link)_)[\w-]+"), r"\1***"),
+)
+
+
+def without_secrets(text: str) -> str:
+    """Return ``text`` with what looks like a password or a token replaced by ``***``.
+
+    What the bridge logs holds none; this is for texts that come from elsewhere, such as a driver's error.
+    """
+    for pattern, instead in _SECRETS:
+        text = pattern.sub(instead, text)
+    return text
+
+
+def printable(text: str) -> str:
+    """Return ``text`` with an escape for whatever is no printable character.
+
+    A name, a status or an error comes from outside: with a line break in it, it would forge lines of the log,
+    and with others it would do to the terminal what it likes.
+    """
+    if text.isprintable():
+        return text
+    return "".join(c if c.isprintable() else c.encode("unicode_escape").decode("ascii") for c in text)
+
+
+class PlainLines(logging.Formatter):
+    """Lines for people: time, level, text."""
+
+    def format(self, record: logging.LogRecord) -> str:
+        """Return the line of ``record``, with an indented traceback behind it where there is one."""
+        text = printable(without_secrets(record.getMessage()))
+        lines = [f"{self.formatTime(record)} {record.levelname} {text}"]
+        if record.exc_info:
+            traceback = without_secrets(self.formatException(record.exc_info))
+            lines += [f"    {printable(line)}" for line in traceback.splitlines()]
+        return "\n".join(lines)
+
+
+class JsonLines(logging.Formatter):
+    """One JSON object a line: time (UTC), level, logger, message, and exception where there is one."""
+
+    def format(self, record: logging.LogRecord) -> str:
+        """Return ``record`` as one line of JSON."""
+        entry = {
+            "time": datetime.fromtimestamp(record.created, UTC).isoformat(timespec="milliseconds"),
+            "level": record.levelname.lower(),
+            "logger": record.name,
+            "message": without_secrets(record.getMessage()),
+        }
+        if record.exc_info:
+            entry["exception"] = without_secrets(self.formatException(record.exc_info))
+        text = json.dumps(entry, ensure_ascii=False)
+        return text if text.isprintable() else "".join(map(_in_json, text))
+
+
+def _in_json(character: str) -> str:
+    return character if character.isprintable() else json.dumps(character)[1:-1]
+
+
+def set_up_log(form: LogFormat = "text", level: LogLevel = "warning", stream: TextIO | None = None) -> None:
+    """Send the log of this process to ``stream`` (standard error by default), in place of where it went."""
+    handler = logging.StreamHandler(stream or sys.stderr)
+    handler.setFormatter(JsonLines() if form == "json" else PlainLines())
+    logging.basicConfig(level=level.upper(), handlers=[handler], force=True)
+    # Its errors are about peers that hang up; what matters of them the bridge says itself.
+    logging.getLogger("websockets").setLevel(logging.CRITICAL)
+    logging.getLogger("alembic").setLevel(logging.WARNING)
+
+
+# --- Errors that nobody foresaw: the log is told all of it, and whoever met one a number to ask by ---
+
+
+def log_unforeseen(log: logging.Logger, who: str) -> str:
+    """Log the exception that is being handled, met by ``who``; return what they are told of it."""
+    number = secrets.token_hex(4)
+    log.exception("%s: internal error %s", who, number)
+    return f"internal error {number}; the gateway's log says more under this number"
+
+
+@contextlib.contextmanager
+def log_and_continue(
+    log: logging.Logger, what: str, except_for: type[Exception] | tuple[type[Exception], ...] = ()
+) -> Iterator[None]:
+    """Log what goes wrong in the block: it must keep nothing after it from being done.
+
+    What is raised ``except_for`` that is known and goes on its way.
+    """
+    try:
+        yield
+    except except_for:
+        raise
+    except Exception:
+        log.exception("%s failed; what comes after it is done all the same", what)
+
+
+# --- Lines of the log that one robot or operator causes again and again: the first in full, then counted
+
+IN_FULL = 5
+"""lines of one key that are written as they come."""
+WINDOW = 60.0
+"""seconds after which those that were not written are counted in one line."""
+MOST_KEYS = 10_000
+
+Key = tuple[str, ...]
+
+
+@dataclass
+class _Run:
+    """Lines of one key without a pause of :data:`WINDOW`."""
+
+    log: logging.Logger
+    began: float
+    written: int = 0
+    left_out: int = 0
+    last: str = ""
+
+
+class RepeatedLines:
+    """Writes warnings by their keys, such as link, robot and operation, which bound the size of the log."""
+
+    def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
+        self._clock = clock
+        self._runs: dict[Key, _Run] = {}
+
+    def warn(self, log: logging.Logger, key: Key, line: str) -> None:
+        """Write ``line`` as a warning, or count it."""
+        if self._is_to_be_written(log, key, line):
+            log.warning("%s", line)
+
+    def note_unforeseen(self, log: logging.Logger, key: Key, who: str) -> str:
+        """Log the exception that is being handled, met by ``who``, or count it; return what they are told."""
+        if self._is_to_be_written(log, (*key, "internal error"), f"{who}: internal error"):
+            return log_unforeseen(log, who)
+        return "internal error, again; the gateway's log says more of the first ones"
+
+    def summarise(self) -> None:
+        """Write the counts that are due; to be called every second or so."""
+        now = self._clock()
+        for key, run in list(self._runs.items()):
+            if now - run.began < WINDOW:
+                continue
+            if not run.left_out:
+                del self._runs[key]
+                continue
+            text = "%s: %d more such lines in %.0f s, the last: %s"
+            run.log.warning(text, " ".join(key), run.left_out, now - run.began, run.last)
+            run.began, run.left_out = now, 0
+
+    def _is_to_be_written(self, log: logging.Logger, key: Key, line: str) -> bool:
+        run = self._runs.get(key)
+        if run is None:
+            if len(self._runs) >= MOST_KEYS:
+                del self._runs[next(iter(self._runs))]
+            run = self._runs[key] = _Run(log, self._clock())
+        if run.written < IN_FULL:
+            run.written += 1
+            return True
+        run.left_out += 1
+        run.last = line
+        return False
+
+
+# --- Telling systemd that the service is ready, alive or ending; see sd_notify(3) ---
+
+
+def notify(*states: str) -> None:
+    """Tell the service manager ``states`` such as ``READY=1``, when it started this process and listens."""
+    address = os.environ.get("NOTIFY_SOCKET", "")
+    if not address.startswith(("/", "@")):
+        return
+    # A name that begins with @ stands for one in the abstract namespace, which begins with a zero byte.
+    path = "\0" + address[1:] if address.startswith("@") else address
+    with socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM) as link, contextlib.suppress(OSError):
+        link.settimeout(1)
+        link.sendto("\n".join(states).encode(), path)
+
+
+def watchdog_interval() -> float | None:
+    """Return after how many seconds systemd is to be told WATCHDOG=1: half its limit; None for never."""
+    limit, process = os.environ.get("WATCHDOG_USEC", ""), os.environ.get("WATCHDOG_PID", "")
+    if not limit.isdigit() or process not in ("", str(os.getpid())):
+        return None
+    return int(limit) / 1e6 / 2

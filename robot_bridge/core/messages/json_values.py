@@ -1,0 +1,222 @@
+"""Conversion of messages to and from plain JSON values."""
+
+from __future__ import annotations
+
+import dataclasses
+import functools
+import math
+from enum import Enum
+from typing import Any, TypeVar
+
+from .administration import (
+    LinkReport,
+    Links,
+    NewToken,
+    OperatorReport,
+    Operators,
+    Role,
+    SessionReport,
+    SiteOffer,
+    Sites,
+    Suspension,
+    Suspensions,
+    TokenState,
+)
+from .operator_requests import CommandReport, CommandState, CommandStep, RobotReport, SiteReport
+from .queues import QueueReport, QueueState, TaskKind, TaskReport, TaskState
+from .records import ObservationReport, ObservationState, PlacementReport
+from .roads import (
+    ClosureReport,
+    Closures,
+    ConflictReport,
+    Conflicts,
+    HoldReport,
+    ReplannedRobot,
+    RouteReport,
+    SurfaceMetres,
+    WayOut,
+    WaysOut,
+)
+from .safety import EmergencyReport, RobotState
+from .validation import known_fields
+
+# --- Messages to and from plain JSON values ---
+
+
+def to_json(message: Any) -> dict[str, Any]:
+    """Return a message as JSON values; what is None is left out, a bytes field is left to the payload."""
+    return {
+        name: value if type(value) in _PLAIN_ALREADY else _plain(value)
+        for name in _names(message.__class__)
+        if (value := getattr(message, name)) is not None and not isinstance(value, bytes)
+    }
+
+
+_PLAIN_ALREADY = frozenset({str, int, float, bool})
+
+
+@functools.cache
+def _names(kind: type) -> tuple[str, ...]:
+    return tuple(field.name for field in dataclasses.fields(kind))
+
+
+def _plain(value: Any) -> Any:
+    if dataclasses.is_dataclass(value):
+        return to_json(value)
+    if isinstance(value, Enum):
+        return value.value
+    if isinstance(value, (list, tuple)):
+        return [_plain(item) for item in value]
+    return value
+
+
+def robot_report(values: dict[str, Any]) -> RobotReport:
+    """Return the report that a gateway sent as JSON; unknown fields of newer gateways are passed over."""
+    return RobotReport(**{**known_fields(RobotReport, values), "state": RobotState(values["state"])})
+
+
+def command_report(values: dict[str, Any]) -> CommandReport:
+    """Return the command that a gateway sent as JSON."""
+    steps = [
+        CommandStep(**{**known_fields(CommandStep, step), "state": CommandState(step["state"])})
+        for step in values.get("steps", [])
+    ]
+    report = CommandReport(
+        **{**known_fields(CommandReport, values), "state": CommandState(values["state"]), "steps": steps}
+    )
+    if report.stood is None:
+        return report
+    x, y, theta = report.stood
+    return dataclasses.replace(report, stood=(x, y, theta))
+
+
+def site_report(values: dict[str, Any]) -> SiteReport:
+    """Return the site that a gateway sent as JSON."""
+    known = known_fields(SiteReport, values)
+    return SiteReport(**{**known, "origin": tuple(values["origin"]), "bounds": tuple(values["bounds"])})
+
+
+def observation_report(values: dict[str, Any]) -> ObservationReport:
+    """Return the observation that a gateway sent as JSON."""
+    known = known_fields(ObservationReport, values)
+    return ObservationReport(**{**known, "state": ObservationState(values["state"])})
+
+
+def queue_report(values: dict[str, Any]) -> QueueReport:
+    """Return the queue that a gateway sent as JSON."""
+    enums = {
+        "state": QueueState(values["state"]),
+        "robot_state": RobotState(values["robot_state"]),
+        "tasks": [task_report(task) for task in values.get("tasks", [])],
+        "ended": [task_report(task) for task in values.get("ended", [])],
+    }
+    return QueueReport(**{**known_fields(QueueReport, values), **enums})
+
+
+def task_report(values: dict[str, Any]) -> TaskReport:
+    """Return the task of a queue that a gateway sent as JSON."""
+    typed: dict[str, Any] = {"kind": TaskKind(values["kind"]), "state": TaskState(values["state"])}
+    if values.get("path") is not None:
+        typed["path"] = [tuple(point) for point in values["path"]]
+    return TaskReport(**{**known_fields(TaskReport, values), **typed})
+
+
+def placement_report(values: dict[str, Any]) -> PlacementReport:
+    """Return the placed cone that a gateway sent as JSON."""
+    return PlacementReport(**known_fields(PlacementReport, values))
+
+
+def emergency_report(values: dict[str, Any]) -> EmergencyReport:
+    """Return how an emergency stop stands, as a gateway sent it as JSON."""
+    return EmergencyReport(**known_fields(EmergencyReport, values))
+
+
+# --- What gateways tell of roads, from plain JSON values; unknown fields of newer gateways are passed over
+
+T = TypeVar("T")
+
+
+def closures_report(values: dict[str, Any]) -> Closures:
+    """Return the roads that are closed."""
+    return Closures([closure_report(one) for one in values.get("closures", [])])
+
+
+def closure_report(values: dict[str, Any]) -> ClosureReport:
+    """Return one closed road."""
+    return _made(ClosureReport, {**values, "line": _points(values["line"])})
+
+
+def conflicts_report(values: dict[str, Any]) -> Conflicts:
+    """Return where robots are in each other's way."""
+    return Conflicts(
+        float(values["t"]),
+        [_made(ConflictReport, one) for one in values.get("conflicts", [])],
+        [_made(HoldReport, one) for one in values.get("waiting", [])],
+    )
+
+
+def ways_out_report(values: dict[str, Any]) -> WaysOut:
+    """Return what two robots in each other's way can do."""
+    ways = [_made(WayOut, {**one, "points": _points(one.get("points", []))}) for one in values["ways"]]
+    return WaysOut(float(values["t"]), str(values["robot"]), str(values["other"]), ways)
+
+
+def replanned_robot(values: dict[str, Any]) -> ReplannedRobot:
+    """Return what became of a robot whose road was closed."""
+    return _made(ReplannedRobot, values)
+
+
+def route_report(values: dict[str, Any]) -> RouteReport:
+    """Return the way that was asked for."""
+    surfaces = [_made(SurfaceMetres, one) for one in values.get("surfaces", [])]
+    points, tight = _points(values["points"]), _points(values.get("tight", []))
+    return _made(RouteReport, {**values, "points": points, "tight": tight, "surfaces": surfaces})
+
+
+def _made(kind: type[T], values: dict[str, Any]) -> T:
+    return kind(**known_fields(kind, values))
+
+
+def _points(pairs: list[Any]) -> list[tuple[float, float]]:
+    points = [(float(x), float(y)) for x, y in pairs]
+    if not all(math.isfinite(x) and math.isfinite(y) for x, y in points):
+        raise ValueError("a point has a coordinate that is no number")
+    return points
+
+
+# --- What supervisors are told, from plain JSON values: accounts, tokens, open sessions, sites ---
+
+
+def operators_report(values: dict[str, Any]) -> Operators:
+    """Return every account that a gateway sent as JSON."""
+    return Operators([_operator_report(one) for one in values["operators"]])
+
+
+def _operator_report(values: dict[str, Any]) -> OperatorReport:
+    enums = {"role": Role(values["role"]), "token": TokenState(values["token"])}
+    return OperatorReport(**{**known_fields(OperatorReport, values), **enums})
+
+
+def new_token(values: dict[str, Any]) -> NewToken:
+    """Return the token that was just made, as a gateway sent it as JSON."""
+    return NewToken(**{**known_fields(NewToken, values), "role": Role(values["role"])})
+
+
+def open_session(values: dict[str, Any]) -> SessionReport:
+    """Return one connection of an operator, as a gateway sent it as JSON."""
+    return SessionReport(**known_fields(SessionReport, values))
+
+
+def suspensions_report(values: dict[str, Any]) -> Suspensions:
+    """Return which robots' accounts are locked, as a gateway sent it as JSON."""
+    return Suspensions([Suspension(**known_fields(Suspension, one)) for one in values["robots"]])
+
+
+def links_report(values: dict[str, Any]) -> Links:
+    """Return how each link is, as a gateway sent it as JSON."""
+    return Links([LinkReport(**known_fields(LinkReport, one)) for one in values["links"]])
+
+
+def sites_report(values: dict[str, Any]) -> Sites:
+    """Return the sites that a gateway may serve, as it sent them as JSON."""
+    return Sites([SiteOffer(**known_fields(SiteOffer, one)) for one in values["sites"]])

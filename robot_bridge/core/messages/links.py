@@ -1,0 +1,150 @@
+"""What a link and the gateway tell each other beside the messages of its robots (endpoint ``/link``)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any, ClassVar
+
+from .operator_requests import SiteReport
+from .validation import LONGEST_STATUS, MessageError, check_finite, one_line
+
+LINK_PROTOCOL = 1
+MOST_COUNTS = 50
+MOST_AREA_POINTS = 500_000
+"""of the keepouts and roads in one answer."""
+LONGEST_NAME = 32
+"""characters of the kind of a link, and of the name of a count."""
+
+
+@dataclass(frozen=True)
+class LinkHello:
+    """The first that a link says: the ``protocol`` that it speaks, and its ``kind``, such as ``vda5050``."""
+
+    protocol: int
+    kind: str
+    method: ClassVar[str] = "hello"
+
+    def __post_init__(self) -> None:
+        if self.protocol != LINK_PROTOCOL:
+            raise MessageError(
+                f"protocol {self.protocol} is not spoken here, {LINK_PROTOCOL} is; install the link and the "
+                "gateway in the same version"
+            )
+        _check_name("kind", self.kind)
+
+
+@dataclass(frozen=True)
+class LinkWelcome:
+    """The answer to it: the link's name, the patterns of the ``robots`` that it may speak for, and the site.
+
+    CRS, origin and rotation of the ``site`` are the frame of all positions. An image may have
+    ``largest_image_bytes``.
+    """
+
+    protocol: int
+    link: str
+    robots: list[str]
+    database: str
+    site: SiteReport
+    largest_image_bytes: int
+
+
+@dataclass(frozen=True)
+class GetAreas:
+    """Ask for the site's keepouts and roads that touch ``box``: x_min, y_min, x_max, y_max, site frame."""
+
+    box: tuple[float, float, float, float]
+    method: ClassVar[str] = "get_areas"
+
+    def __post_init__(self) -> None:
+        check_finite(**dict(zip(("x_min", "y_min", "x_max", "y_max"), self.box, strict=True)))
+
+
+@dataclass(frozen=True)
+class SiteArea:
+    """A keepout: the outer ring, then its holes, metres in the site frame."""
+
+    name: str
+    rings: list[list[tuple[float, float]]]
+
+
+@dataclass(frozen=True)
+class SiteRoad:
+    """The middle of a road on the ground, its ``width`` in metres and the ``speed`` on it in m/s."""
+
+    points: list[tuple[float, float]]
+    width: float
+    speed: float
+
+
+@dataclass(frozen=True)
+class SiteAreas:
+    """The answer to it, of the site's ``version``."""
+
+    version: int
+    keepouts: list[SiteArea]
+    roads: list[SiteRoad]
+
+
+@dataclass(frozen=True)
+class LinkStatus:
+    """How a link is: whether its own side is in order, a line about that, and what it has counted."""
+
+    ok: bool
+    text: str | None = None
+    counts: dict[str, float] = field(default_factory=dict)
+    method: ClassVar[str] = "status"
+
+    def __post_init__(self) -> None:
+        if self.text is not None:
+            object.__setattr__(self, "text", one_line(self.text, LONGEST_STATUS))
+        if len(self.counts) > MOST_COUNTS:
+            raise MessageError(f"counts holds {len(self.counts)} names; give at most {MOST_COUNTS}")
+        for name in self.counts:
+            _check_name("a name in counts", name)
+
+
+@dataclass(frozen=True)
+class LinkPositions:
+    """Where robots of the link are, as JSON: SendPos or SendGPS of each, with its ``robot``."""
+
+    positions: list[dict[str, Any]]
+    method: ClassVar[str] = "positions"
+
+
+@dataclass(frozen=True)
+class LinkColumns:
+    """Where robots of the link are, as the table that follows: in each column a 64-bit float for each robot.
+
+    ``columns`` are x, y, theta, v, and what is known of device_time, fix_time, battery, accuracy, altitude,
+    status and theta_from; NaN is what is not known. In the last two a number is a place in ``words``.
+    """
+
+    robots: list[str]
+    columns: list[str]
+    words: list[str]
+
+
+@dataclass(frozen=True)
+class AbortOfAll:
+    """All robots of the link must stop, those as well that have not said Ready by it.
+
+    Each robot answers by a reply of its own, whose id is its name, ``/`` and ``call``.
+    """
+
+    call: str
+    emergency: bool = True
+    method: ClassVar[str] = "Abort"
+
+
+@dataclass(frozen=True)
+class Released:
+    """The link speaks for ``robot`` no more, until it says Ready for it again: ``reason`` says why."""
+
+    robot: str
+    reason: str
+
+
+def _check_name(what: str, name: str) -> None:
+    if not (0 < len(name) <= LONGEST_NAME and name.isidentifier() and name.isascii()):
+        raise MessageError(f"{what} is {name[:40]!r}; give 1 to {LONGEST_NAME} letters, digits or '_'")

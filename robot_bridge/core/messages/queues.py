@@ -1,0 +1,403 @@
+"""Queues: what each robot is to do one after the other, as operators ask for it and are told.
+
+A queue has a ``revision`` that changes with everything but plain progress. Who changes it says which revision
+they saw; another one is refused, together with the newer state.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from enum import Enum
+from typing import ClassVar
+
+from .safety import RobotState, check_override, check_reason
+from .validation import (
+    LONGEST_LABEL,
+    MessageError,
+    Texts,
+    check_crs,
+    check_finite,
+    check_robot_name,
+    check_stored_number,
+    check_texts,
+)
+
+LONGEST_QUEUE = 1000
+"""tasks."""
+LONGEST_PATH = 50_000
+"""points."""
+_SAME_PLACE = 0.01
+"""metres between a path's end and its task's target that are none."""
+
+
+class TaskKind(str, Enum):
+    """What a robot does where its task ends: nothing, put a cone down, or pick one up."""
+
+    DRIVE = "drive"
+    PLACE = "place"
+    COLLECT = "collect"
+
+
+class TaskState(str, Enum):
+    """What has become of a task. One that failed waits at the head of its queue, which is paused.
+
+    The last three are ends: a ``skipped`` one failed and was passed over, by the site's settings.
+    """
+
+    WAITING = "waiting"
+    CURRENT = "current"
+    FAILED = "failed"
+    DONE = "done"
+    SKIPPED = "skipped"
+    REMOVED = "removed"
+
+
+class QueueState(str, Enum):
+    """Whether the gateway sends a robot its next task by itself."""
+
+    RUNNING = "running"
+    PAUSED = "paused"
+
+
+@dataclass(frozen=True)
+class QueueTask:
+    """One task of a queue: a place to be reached, with what is done there.
+
+    ``x``, ``y`` (metres, site frame) are where the cone is to stand, or where a robot that only drives ends;
+    ``theta`` is its heading there. ``path``, if given, is driven to get there and ends there. ``task`` is an
+    id that the operator's side invents: given twice, done once. ``placement`` says which placed cone is
+    collected. ``cone``, ``label``, ``layout`` and ``plan`` are the operator's own names, kept with what is
+    measured. ``after`` names tasks, of any robot's queue, that must be done before this one is sent: its
+    queue waits until they are, with those too that are only given later. In the CRS ``crs``, if given, are
+    ``x``, ``y`` and ``path``, x (longitude, easting) before y; the gateway keeps metres in the site frame.
+    """
+
+    task: str
+    x: float
+    y: float
+    theta: float | None = None
+    kind: TaskKind = TaskKind.DRIVE
+    path: list[tuple[float, float]] | None = None
+    cone: str | None = None
+    label: str | None = None
+    layout: str | None = None
+    plan: str | None = None
+    placement: int | None = None
+    after: list[str] | None = None
+    crs: str | None = None
+    texts: ClassVar[Texts] = dict.fromkeys(("cone", "label", "layout", "plan"), LONGEST_LABEL)
+
+    def __post_init__(self) -> None:
+        check_task_id(self.task)
+        check_finite(x=self.x, y=self.y, theta=self.theta)
+        check_crs(self.crs)
+        check_texts(self)
+        check_stored_number(placement=self.placement)
+        if self.placement is not None and self.kind is not TaskKind.COLLECT:
+            raise MessageError(f"task {self.task}: placement is for what is collected, not {self.kind.value}")
+        if self.path is not None:
+            check_path(self.task, self.path, (self.x, self.y))
+        if self.after is not None:
+            _check_after(self.task, self.after)
+
+
+@dataclass(frozen=True)
+class TaskReport:
+    """A task as it stands. ``path_points`` counts its path's points; ``path`` comes when asked for.
+
+    ``command`` is the command that drives it, or drove it last, after ``attempts``; ``reason`` is why it
+    failed, was given back or is not sent yet, in the robot's or the gateway's words. ``deviation`` is metres
+    between target and robot (of a cone: between planned and as-placed).
+    """
+
+    task: str
+    robot: str
+    kind: TaskKind
+    state: TaskState
+    x: float
+    y: float
+    added_by: str
+    added_at: float
+    theta: float | None = None
+    cone: str | None = None
+    label: str | None = None
+    layout: str | None = None
+    plan: str | None = None
+    placement: int | None = None
+    path_points: int = 0
+    path: list[tuple[float, float]] | None = None
+    attempts: int = 0
+    command: str | None = None
+    began_at: float | None = None
+    ended_at: float | None = None
+    reason: str | None = None
+    deviation: float | None = None
+
+
+@dataclass(frozen=True)
+class QueueReport:
+    """A robot's queue: its open tasks in order, and the newest that ended, newest first.
+
+    ``reason``, ``by`` and ``at`` say why, by whom and when it was paused or resumed last. ``robot_state`` is
+    how far the robot can be heard of: one that is lost or offline is sent nothing.
+    """
+
+    robot: str
+    revision: int
+    state: QueueState
+    robot_state: RobotState
+    tasks: list[TaskReport] = field(default_factory=list)
+    ended: list[TaskReport] = field(default_factory=list)
+    reason: str | None = None
+    by: str | None = None
+    at: float | None = None
+
+
+@dataclass(frozen=True)
+class SetQueue:
+    """Replace what is not yet begun by ``tasks``; what the robot is doing goes on.
+
+    Tasks of this queue that are being done, or were done meanwhile, are passed over. A robot without a queue
+    has revision 0. ``override`` says what speaks against them, and why they are asked for all the same, as
+    with ``send``.
+    """
+
+    method: ClassVar[str] = "set_queue"
+    robot: str
+    revision: int
+    tasks: list[QueueTask]
+    override: str | None = None
+
+    def __post_init__(self) -> None:
+        _check_edit(self.robot, self.revision)
+        check_override(self.override)
+        _check_tasks(self.tasks)
+
+
+@dataclass(frozen=True)
+class AddTasks:
+    """Put tasks into a queue, in front of task ``before``, or at its end.
+
+    ``override`` says what speaks against them, and why they are asked for all the same, as with ``send``.
+    """
+
+    method: ClassVar[str] = "add_tasks"
+    robot: str
+    revision: int
+    tasks: list[QueueTask]
+    before: str | None = None
+    override: str | None = None
+
+    def __post_init__(self) -> None:
+        _check_edit(self.robot, self.revision)
+        check_override(self.override)
+        _check_tasks(self.tasks)
+
+
+@dataclass(frozen=True)
+class MoveTask:
+    """Move a task that is not being done in front of task ``before``, or to the end of its queue."""
+
+    method: ClassVar[str] = "move_task"
+    robot: str
+    revision: int
+    task: str
+    before: str | None = None
+
+    def __post_init__(self) -> None:
+        _check_edit(self.robot, self.revision)
+
+
+@dataclass(frozen=True)
+class RemoveTask:
+    """Take a task that is not being done out of its queue."""
+
+    method: ClassVar[str] = "remove_task"
+    robot: str
+    revision: int
+    task: str
+    reason: str | None = None
+
+    def __post_init__(self) -> None:
+        _check_edit(self.robot, self.revision)
+        check_reason(self.reason)
+
+
+@dataclass(frozen=True)
+class MakeCurrent:
+    """Let a robot do this task first: at once, in place of what it is doing, which then comes next.
+
+    In a queue that is paused the task is put first, and nothing is sent.
+    """
+
+    method: ClassVar[str] = "make_current"
+    robot: str
+    revision: int
+    task: str
+
+    def __post_init__(self) -> None:
+        _check_edit(self.robot, self.revision)
+
+
+@dataclass(frozen=True)
+class PauseQueue:
+    """Send the robot no further task; what it is doing it finishes (``abort`` stops it).
+
+    Needs no revision: to hold is never refused.
+    """
+
+    method: ClassVar[str] = "pause_queue"
+    stops: ClassVar[bool] = True
+    robot: str
+    reason: str | None = None
+
+    def __post_init__(self) -> None:
+        check_robot_name(self.robot)
+        check_reason(self.reason)
+
+
+@dataclass(frozen=True)
+class PauseRobot:
+    """Let a robot stand, whatever it is doing, until its queue is resumed; then it goes on from where it is.
+
+    It is sent Abort. What it was doing waits at the head of its queue, which is paused: a task of that, or
+    else a task made of the SetPosEnd or SetPath that it was sent. Needs no revision; asked again it changes
+    nothing.
+    """
+
+    method: ClassVar[str] = "pause_robot"
+    stops: ClassVar[bool] = True
+    robot: str
+    reason: str | None = None
+
+    def __post_init__(self) -> None:
+        check_robot_name(self.robot)
+        check_reason(self.reason)
+
+
+@dataclass(frozen=True)
+class ResumeQueue:
+    """Let a queue that is paused go on, with the task at its head."""
+
+    method: ClassVar[str] = "resume_queue"
+    robot: str
+    revision: int
+
+    def __post_init__(self) -> None:
+        _check_edit(self.robot, self.revision)
+
+
+@dataclass(frozen=True)
+class GetQueue:
+    """Ask for the queue of one robot, or of every robot that has one; with paths if ``paths``.
+
+    ``ended`` is how many of the newest tasks that ended come with each.
+    """
+
+    method: ClassVar[str] = "get_queue"
+    robot: str | None = None
+    paths: bool = False
+    ended: int = 10
+
+    def __post_init__(self) -> None:
+        if self.robot is not None:
+            check_robot_name(self.robot)
+        if not 0 <= self.ended <= LONGEST_QUEUE:
+            raise MessageError(f"ended is {self.ended}; give a number from 0 to {LONGEST_QUEUE}")
+
+
+@dataclass(frozen=True)
+class SharedTask:
+    """A task in the order that it is to be done in, with its new ``path``.
+
+    Without one, a task keeps its path in its own robot's queue. In another's it loses it, since that began
+    elsewhere; one that only drives keeps it, since the path is the task.
+    """
+
+    task: str
+    path: list[tuple[float, float]] | None = None
+
+
+@dataclass(frozen=True)
+class Share:
+    """What a robot is to do after a task in progress: every task that is to wait in its queue, in order."""
+
+    robot: str
+    revision: int
+    tasks: list[SharedTask]
+
+    def __post_init__(self) -> None:
+        _check_edit(self.robot, self.revision)
+
+
+@dataclass(frozen=True)
+class TakeOver:
+    """Let other robots do what waits in the queue of ``robot``, in one step.
+
+    ``shares`` say for each of them what then waits in its queue: its own tasks and those it takes over. All
+    tasks of these queues that are not being done must be in them once. The task that ``robot`` is doing may
+    be among them: then that robot is told to abort it. Its queue is paused. ``override`` says what speaks
+    against a new path, and why it is asked for all the same, as with ``send``.
+    """
+
+    method: ClassVar[str] = "take_over"
+    robot: str
+    revision: int
+    shares: list[Share]
+    reason: str | None = None
+    override: str | None = None
+
+    def __post_init__(self) -> None:
+        _check_edit(self.robot, self.revision)
+        check_reason(self.reason)
+        check_override(self.override)
+        names = [self.robot, *(share.robot for share in self.shares)]
+        twice = sorted({name for name in names if names.count(name) > 1})
+        if twice:
+            raise MessageError(
+                f"shares: {', '.join(twice)} is named more than once; give each robot one share"
+            )
+
+
+def check_task_id(task: str) -> None:
+    """Refuse an id that cannot tell one task from every other; raises MessageError."""
+    if not (8 <= len(task) <= 64 and task.isprintable()):
+        raise MessageError(f"task is {task[:80]!r}; give an id of 8 to 64 characters, say a UUID")
+
+
+def check_path(task: str, path: list[tuple[float, float]], end: tuple[float, float]) -> None:
+    """Refuse what is no path to ``end``; raises MessageError naming the task."""
+    if not 2 <= len(path) <= LONGEST_PATH:
+        raise MessageError(f"task {task}: path holds {len(path)} points; give 2 to {LONGEST_PATH}")
+    # There may be tens of thousands: which one is wrong is looked for when one is.
+    if not all(math.isfinite(x) and math.isfinite(y) for x, y in path):
+        for number, (x, y) in enumerate(path):
+            check_finite(**{f"task {task}: path[{number}].x": x, f"task {task}: path[{number}].y": y})
+    if max(abs(path[-1][0] - end[0]), abs(path[-1][1] - end[1])) > _SAME_PLACE:
+        raise MessageError(
+            f"task {task}: its path ends at {path[-1]} and its target is {end}; let the path end there"
+        )
+
+
+def _check_after(task: str, after: list[str]) -> None:
+    if len(after) > LONGEST_QUEUE:
+        raise MessageError(f"task {task}: after names {len(after)} tasks; give {LONGEST_QUEUE} at most")
+    if task in after:
+        raise MessageError(f"task {task}: after names the task itself; it would wait for ever")
+    for one in after:
+        check_task_id(one)
+
+
+def _check_edit(robot: str, revision: int) -> None:
+    check_robot_name(robot)
+    check_stored_number(revision=revision)
+
+
+def _check_tasks(tasks: list[QueueTask]) -> None:
+    if len(tasks) > LONGEST_QUEUE:
+        raise MessageError(f"tasks holds {len(tasks)} tasks; a queue takes {LONGEST_QUEUE} at most")
+    ids = [task.task for task in tasks]
+    if len(set(ids)) < len(ids):
+        twice = next(id for id in ids if ids.count(id) > 1)
+        raise MessageError(f"tasks: {twice} is there more than once; give each task an id of its own")

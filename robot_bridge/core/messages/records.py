@@ -1,0 +1,285 @@
+"""Stored records of robots: observations, placed cones, trajectories."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass, field
+from enum import Enum
+from typing import ClassVar, NamedTuple
+
+from .queues import QueueTask
+from .validation import (
+    LONGEST_LABEL,
+    MessageError,
+    Ranges,
+    Texts,
+    check_finite,
+    check_ranges,
+    check_robot_name,
+    check_stored_number,
+    check_texts,
+)
+
+# --- What robots saw, as operators are told it, and what operators make of it ---
+
+LONGEST_REASON = 1000
+"""characters."""
+
+
+class ObservationState(str, Enum):
+    """Whether an operator has looked at an observation, and what came of it."""
+
+    PENDING = "pending"
+    ACCEPTED = "accepted"
+    REJECTED = "rejected"
+
+
+@dataclass(frozen=True)
+class ObservationReport:
+    """One observation: what the robot told by ``op`` (SetObject or SendImage), and its review.
+
+    ``height`` and ``radius`` (metres) are the robot's until an operator gives others; ``label`` is the
+    robot's word for the object and ``semantics`` the map's. ``seen_at`` is by the robot's clock. With
+    ``doubts`` it is no new object: the robot looks through what the map has under that ``src``.
+    """
+
+    observation: int
+    robot: str
+    op: str
+    object: str
+    x: float
+    y: float
+    received_at: float
+    state: ObservationState
+    seen_at: float | None = None
+    label: str | None = None
+    height: float | None = None
+    radius: float | None = None
+    media_type: str | None = None
+    image_bytes: int | None = None
+    semantics: str | None = None
+    reason: str | None = None
+    reviewed_at: float | None = None
+    reviewed_by: str | None = None
+    doubts: str | None = None
+
+
+@dataclass(frozen=True)
+class GetObservations:
+    """Ask for observations, newest first: at most ``limit`` with an id below ``before``.
+
+    Those in one ``state`` or in all, of one robot or of all, of one object (its images too) or of all.
+    """
+
+    method: ClassVar[str] = "get_observations"
+    state: ObservationState | None = None
+    robot: str | None = None
+    object: str | None = None
+    before: int | None = None
+    limit: int = 100
+    ranges: ClassVar[Ranges] = {"limit": (1, 1000)}
+
+    def __post_init__(self) -> None:
+        check_stored_number(before=self.before)
+        check_ranges(self)
+
+
+@dataclass(frozen=True)
+class GetImage:
+    """Ask for the image of an observation; answered with ``media_type`` and ``image`` in base64."""
+
+    method: ClassVar[str] = "get_image"
+    observation: int
+
+    def __post_init__(self) -> None:
+        check_stored_number(observation=self.observation)
+
+
+@dataclass(frozen=True)
+class ReviewObservation:
+    """Accept an observation, so that its object is on the next maps, or reject it.
+
+    ``semantics`` is the object's word on the map, ``height`` and ``radius`` are in metres; what is left out
+    is as the robot told. ``revise`` changes a review that was given before.
+    """
+
+    method: ClassVar[str] = "review_observation"
+    observation: int
+    accept: bool
+    semantics: str | None = None
+    height: float | None = None
+    radius: float | None = None
+    reason: str | None = None
+    revise: bool = False
+    ranges: ClassVar[Ranges] = {"height": (0, 1000), "radius": (0.01, 50)}
+    texts: ClassVar[Texts] = {"semantics": LONGEST_LABEL, "reason": LONGEST_REASON}
+
+    def __post_init__(self) -> None:
+        check_stored_number(observation=self.observation)
+        check_ranges(self)
+        check_texts(self)
+        if not self.accept and (self.semantics, self.height, self.radius) != (None, None, None):
+            raise MessageError("accept is false, and semantics, height and radius are for what is accepted")
+
+
+# --- Where cones were put down: planned and as placed, and how they are collected again ---
+
+MOST_PLACEMENTS = 5000
+
+
+@dataclass(frozen=True)
+class PlacementReport:
+    """A cone that a robot put down; metres and radians in the site frame.
+
+    ``planned_x``, ``planned_y`` is where it was to stand, ``x``, ``y`` where it does: the robot's pose when
+    it had reached its target, and from there the site's cone offset. ``theta`` is the robot's heading.
+    """
+
+    placement: int
+    task: str
+    robot: str
+    planned_x: float
+    planned_y: float
+    x: float
+    y: float
+    theta: float
+    deviation: float
+    placed_at: float
+    command: str
+    cone: str | None = None
+    label: str | None = None
+    layout: str | None = None
+    plan: str | None = None
+    collected_at: float | None = None
+    collected_by: str | None = None
+
+
+@dataclass(frozen=True)
+class GetPlacements:
+    """Ask for cones that were put down, newest first: at most ``limit`` with an id below ``before``.
+
+    Of one layout, plan, cone, robot or of all; put down from ``since`` up to ``until`` (seconds since 1970);
+    with ``collected`` only those that were collected again, or (false) that were not.
+    """
+
+    method: ClassVar[str] = "get_placements"
+    layout: str | None = None
+    plan: str | None = None
+    cone: str | None = None
+    robot: str | None = None
+    since: float | None = None
+    until: float | None = None
+    collected: bool | None = None
+    before: int | None = None
+    limit: int = 1000
+    texts: ClassVar[Texts] = dict.fromkeys(("layout", "plan", "cone"), LONGEST_LABEL)
+
+    def __post_init__(self) -> None:
+        check_texts(self)
+        check_finite(since=self.since, until=self.until)
+        check_stored_number(before=self.before)
+        if self.robot is not None:
+            check_robot_name(self.robot)
+        if not 1 <= self.limit <= MOST_PLACEMENTS:
+            raise MessageError(f"limit is {self.limit}; give a number from 1 to {MOST_PLACEMENTS}")
+
+
+@dataclass(frozen=True)
+class CollectLayout:
+    """Ask for the tasks that collect what stands of a layout; nothing is sent to any robot.
+
+    Without ``layout``, of every cone that was put down and not collected. Which robot takes which is the
+    operator's: the tasks go into queues by ``set_queue`` or ``add_tasks``.
+    """
+
+    method: ClassVar[str] = "collect_layout"
+    layout: str | None = None
+    texts: ClassVar[Texts] = {"layout": LONGEST_LABEL}
+
+    def __post_init__(self) -> None:
+        check_texts(self)
+
+
+@dataclass(frozen=True)
+class CollectingTasks:
+    """The answer to ``collect_layout``: a task for each cone that stands and is in no queue yet.
+
+    ``in_queues`` counts those that a task of some queue collects already.
+    """
+
+    tasks: list[QueueTask] = field(default_factory=list)
+    in_queues: int = 0
+
+
+@dataclass(frozen=True)
+class Placements:
+    """Cones that were put down, newest first."""
+
+    placements: list[PlacementReport]
+
+
+# --- What operators ask about where robots have been ---
+
+MOST_PLACES = 5000
+_MARK = re.compile(r"(-?\d+(?:\.\d+)?(?:e[+-]?\d+)?):(\d{1,18})")
+
+
+class TrajectoryPlace(NamedTuple):
+    """Where a robot was at the gateway's time ``received_at``; the other two times are by its own clock."""
+
+    robot: str
+    received_at: float
+    x: float
+    y: float
+    theta: float
+    v: float
+    device_time: float | None
+    fix_time: float | None
+
+
+@dataclass(frozen=True)
+class Trajectory:
+    """Stored positions, oldest first; ``next`` is the ``after`` of the next page, None at the end."""
+
+    places: list[TrajectoryPlace]
+    next: str | None = None
+
+
+@dataclass(frozen=True)
+class GetTrajectory:
+    """Ask where robots (none named: all) have been, from ``since`` up to ``until``, inside ``bounds``.
+
+    ``bounds`` is x_min, y_min, x_max, y_max in the site frame. ``after`` is ``next`` of the page before.
+    """
+
+    method: ClassVar[str] = "get_trajectory"
+    robots: list[str] = field(default_factory=list)
+    since: float | None = None
+    until: float | None = None
+    bounds: tuple[float, float, float, float] | None = None
+    after: str | None = None
+    limit: int = 1000
+
+    def __post_init__(self) -> None:
+        check_finite(since=self.since, until=self.until)
+        if self.bounds is not None:
+            x_min, y_min, x_max, y_max = self.bounds
+            check_finite(x_min=x_min, y_min=y_min, x_max=x_max, y_max=y_max)
+            if x_min > x_max or y_min > y_max:
+                raise MessageError(
+                    f"bounds {list(self.bounds)} hold nothing; give x_min, y_min, x_max, y_max"
+                )
+        if not 1 <= self.limit <= MOST_PLACES:
+            raise MessageError(f"limit is {self.limit}; give a number from 1 to {MOST_PLACES}")
+        if self.after is not None and _MARK.fullmatch(self.after) is None:
+            raise MessageError(f"after is {self.after[:80]!r}; give 'next' of the page before")
+
+    def mark(self) -> tuple[float, int] | None:
+        """Return the time and id that ``after`` stands for."""
+        found = _MARK.fullmatch(self.after or "")
+        return (float(found[1]), int(found[2])) if found else None
+
+
+def mark_text(received_at: float, id: int) -> str:
+    """Return the ``next`` of a page whose last position has this time and id."""
+    return f"{received_at!r}:{id}"

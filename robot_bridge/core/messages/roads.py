@@ -1,0 +1,382 @@
+"""Roads and their surfaces: routes, closures, conflicts, surface at a place."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import ClassVar, Literal
+
+from .safety import check_reason
+from .validation import MessageError, Texts, check_crs, check_finite, check_robot_name, check_texts
+
+# --- What operators ask about roads: a route to look at, a road to be closed, robots in each other's way
+
+LONGEST_ID = 64
+LONGEST_CLOSURE = 10 * 366 * 86400.0
+"""seconds."""
+
+
+@dataclass(frozen=True)
+class GetRoute:
+    """Ask for the way along the roads from where ``robot`` is, or from ``start``, to (``x``, ``y``).
+
+    ``surfaces`` names those that may be used (None: all), ``least_width`` metres that a road must have at
+    least. With ``avoid_reserved`` roads on which other robots' tasks lead are left out. Places are metres in
+    the site frame, or in the CRS ``crs``, such as ``EPSG:4326``: x (longitude, easting) before y.
+    """
+
+    method: ClassVar[str] = "get_route"
+    x: float
+    y: float
+    robot: str | None = None
+    start: tuple[float, float] | None = None
+    fastest: bool = False
+    surfaces: list[str] | None = None
+    least_width: float = 0.0
+    avoid_reserved: bool = False
+    crs: str | None = None
+
+    def __post_init__(self) -> None:
+        check_crs(self.crs)
+        check_finite(x=self.x, y=self.y, least_width=self.least_width)
+        if (self.robot is None) == (self.start is None):
+            raise MessageError("get_route: give one of robot and start: whose way it is, or from where")
+        if self.robot is not None:
+            check_robot_name(self.robot)
+        if self.start is not None:
+            check_finite(start_x=self.start[0], start_y=self.start[1])
+
+
+@dataclass(frozen=True)
+class SurfaceMetres:
+    """Metres of a route on one surface; the name is empty where it is not known."""
+
+    surface: str
+    metres: float
+
+
+@dataclass(frozen=True)
+class RouteReport:
+    """A way that a robot can be sent by SetPath: ``points`` are those that it drives.
+
+    ``seconds`` are those of the robot: at ``speed_ms`` of the site's settings or the speed that it shows,
+    whichever is more, and nowhere faster than the road. ``tight`` holds the corners that are tighter than the
+    turning radius of the site's settings; ``note`` says what is not as one would expect, such as that the way
+    is no road but a straight line. ``engine`` is what found it, ``off_goal`` metres from the goal to its
+    road.
+    """
+
+    points: list[tuple[float, float]]
+    metres: float
+    seconds: float
+    surfaces: list[SurfaceMetres] = field(default_factory=list)
+    tight: list[tuple[float, float]] = field(default_factory=list)
+    off_goal: float = 0.0
+    note: str = ""
+    engine: str = ""
+
+
+@dataclass(frozen=True)
+class CloseRoad:
+    """Close the road nearest to (``x``, ``y``), from its one junction to the next, for every robot.
+
+    ``closure`` is an id that the operator's side invents: sent twice, done once. The road is open again after
+    ``seconds``, if that is given. It must be within ``reach`` metres.
+    """
+
+    method: ClassVar[str] = "close_road"
+    closure: str
+    x: float
+    y: float
+    reason: str | None = None
+    seconds: float | None = None
+    reach: float = 20.0
+
+    def __post_init__(self) -> None:
+        check_closure_id(self.closure)
+        check_finite(x=self.x, y=self.y, reach=self.reach)
+        check_reason(self.reason)
+        if self.seconds is not None and not 0 < self.seconds <= LONGEST_CLOSURE:
+            raise MessageError(
+                f"seconds is {self.seconds}; give how long, above 0 and up to {LONGEST_CLOSURE:g}, or nothing"
+            )
+
+
+@dataclass(frozen=True)
+class OpenRoad:
+    """Open a road again that was closed under the id ``closure``."""
+
+    method: ClassVar[str] = "open_road"
+    closure: str
+    reason: str | None = None
+
+    def __post_init__(self) -> None:
+        check_closure_id(self.closure)
+        check_reason(self.reason)
+
+
+@dataclass(frozen=True)
+class GetClosures:
+    """Ask for the roads that are closed now."""
+
+    method: ClassVar[str] = "get_closures"
+
+
+@dataclass(frozen=True)
+class ClosureReport:
+    """A road that is closed, or was: ``line`` is the stretch, metres in the site frame.
+
+    ``edges`` counts the edges of the network that it closes; 0 means that the site, as it is published now,
+    has no such road. It opens by itself at ``until``. Times are seconds since 1970.
+    """
+
+    closure: str
+    line: list[tuple[float, float]]
+    closed_at: float
+    closed_by: str
+    level: int = 0
+    edges: int = 0
+    reason: str | None = None
+    until: float | None = None
+    opened_at: float | None = None
+    opened_by: str | None = None
+
+
+@dataclass(frozen=True)
+class ReplannedRobot:
+    """A robot whose way led along a road that was closed, and what became of it.
+
+    ``became`` is ``another way``, ``stopped``, ``told only`` (the site's settings ask for no more), ``later``
+    (as soon as it says where it is now, or the database can be written) or ``failed``: look after that robot
+    yourself. ``command`` is the one that does it, if one does.
+    """
+
+    robot: str
+    became: Literal["another way", "stopped", "told only", "later", "failed"]
+    text: str
+    command: str | None = None
+
+
+@dataclass(frozen=True)
+class RoadClosed:
+    """What closing a road led to."""
+
+    closure: ClosureReport
+    robots: list[ReplannedRobot] = field(default_factory=list)
+
+
+@dataclass(frozen=True)
+class Closures:
+    """The roads that are closed now, oldest first."""
+
+    closures: list[ClosureReport] = field(default_factory=list)
+
+
+@dataclass(frozen=True)
+class GetConflicts:
+    """Ask where the ways of robots come too near to one another, if they are driven as they are now."""
+
+    method: ClassVar[str] = "get_conflicts"
+
+
+@dataclass(frozen=True)
+class ConflictReport:
+    """Two robots that will be nearer to one another than their widths and the margin allow.
+
+    ``kind`` is ``head-on``, ``crossing``, ``following`` or ``standing``: ``other`` does not move then. From
+    ``begins`` to ``ends`` (None: for good), seconds since 1970; nearest at ``nearest_at``, with ``metres``
+    between their middles, at (``x``, ``y``). ``clearance`` is the least metres that should be between their
+    middles; None from an older gateway.
+    """
+
+    robot: str
+    other: str
+    kind: Literal["head-on", "crossing", "following", "standing"]
+    begins: float
+    nearest_at: float
+    metres: float
+    x: float
+    y: float
+    ends: float | None = None
+    clearance: float | None = None
+
+
+@dataclass(frozen=True)
+class Conflicts:
+    """The conflicts of all robots, soonest first, reckoned at the gateway's time ``t``.
+
+    ``waiting`` names the robots that are held until another has passed.
+    """
+
+    t: float
+    conflicts: list[ConflictReport] = field(default_factory=list)
+    waiting: list[HoldReport] = field(default_factory=list)
+
+
+@dataclass(frozen=True)
+class HoldReport:
+    """A robot that waits at (``x``, ``y``) for another to pass; it is sent on at ``until`` or later."""
+
+    robot: str
+    other: str
+    x: float
+    y: float
+    until: float
+    by: str
+    command: str
+
+
+@dataclass(frozen=True)
+class GetWaysOut:
+    """Ask what two robots in each other's way can do about it; nothing is done."""
+
+    method: ClassVar[str] = "get_ways_out"
+    robot: str
+    other: str
+
+    def __post_init__(self) -> None:
+        check_robot_name(self.robot)
+        check_robot_name(self.other)
+        if self.robot == self.other:
+            raise MessageError(f"get_ways_out: robot and other are both {self.robot!r}; give two robots")
+
+
+@dataclass(frozen=True)
+class WayOut:
+    """What ``robot`` can do, and whether that works now: ``text`` says what would happen, or why not.
+
+    It gives way (resolve_conflict), or goes ``aside``: then ``points`` are the way to the nearest free place,
+    metres in the site frame, to be sent as any route.
+    """
+
+    robot: str
+    how: Literal["give way", "aside"]
+    possible: bool
+    text: str
+    points: list[tuple[float, float]] = field(default_factory=list)
+
+
+@dataclass(frozen=True)
+class WaysOut:
+    """What ``robot`` and ``other`` can do, reckoned at the gateway's time ``t``."""
+
+    t: float
+    robot: str
+    other: str
+    ways: list[WayOut] = field(default_factory=list)
+
+
+@dataclass(frozen=True)
+class ResolveConflict:
+    """Ask for a conflict to be resolved by what ``robot`` does; ``other`` goes on as it is.
+
+    It waits, takes another way (``route``), or whichever gets it to its end sooner (``either``).
+    """
+
+    method: ClassVar[str] = "resolve_conflict"
+    robot: str
+    other: str
+    by: Literal["waiting", "route", "either"] = "either"
+
+    def __post_init__(self) -> None:
+        check_robot_name(self.robot)
+        check_robot_name(self.other)
+        if self.robot == self.other:
+            raise MessageError(f"resolve_conflict: robot and other are both {self.robot!r}; give two robots")
+
+
+@dataclass(frozen=True)
+class ConflictResolved:
+    """What the robot was told: ``became`` is ``waits`` or ``another way``; ``command`` is what tells it."""
+
+    robot: str
+    became: Literal["waits", "another way"]
+    text: str
+    command: str
+    delay: float = 0.0
+
+
+def check_closure_id(closure: str) -> None:
+    """Refuse an id that cannot tell one closure from every other; raises MessageError."""
+    if not (8 <= len(closure) <= LONGEST_ID and closure.isprintable()):
+        raise MessageError(f"closure is {closure!r}; give an id of 8 to {LONGEST_ID} characters, say a UUID")
+
+
+# --- Which road surface is at a place: what robots and operators ask, and what they are answered with ---
+# The paper's tables have no such operation: GetSurface and SetSurface are this project's own.
+
+MOST_OF_A_ROBOT = 1000
+MOST_OF_A_DESK = 10_000
+"""Places in one question."""
+LONGEST_SOURCE = 128
+"""characters."""
+
+
+@dataclass(frozen=True)
+class GetSurface:
+    """The robot asks which road surface is at each of ``points``; an operation beside the paper's tables.
+
+    They are metres in the site frame, or in the CRS ``crs``, such as ``EPSG:4326``, x (longitude, easting)
+    before y whatever the CRS. ``source`` is a number or name of the robot's own; SetSurface has it, too.
+    """
+
+    points: list[tuple[float, float]]
+    crs: str | None = None
+    source: str | None = None
+    magic: int | None = None
+    acknowledged: ClassVar[bool] = True
+    texts: ClassVar[Texts] = {"source": LONGEST_SOURCE}
+
+    def __post_init__(self) -> None:
+        _check(self.points, self.crs, MOST_OF_A_ROBOT)
+        check_texts(self)
+
+
+@dataclass(frozen=True)
+class SetSurface:
+    """The answer to GetSurface: the class of the surface at each point in turn, such as ``asphalt``.
+
+    None where there is no road surface, empty where its class is not known. ``source`` is the question's.
+    """
+
+    surfaces: list[str | None]
+    source: str | None = None
+
+
+@dataclass(frozen=True)
+class GetSurfaces:
+    """Ask which road surface is at each of ``points``, metres in the site frame, or in the CRS ``crs``.
+
+    In a CRS such as ``EPSG:4326`` x (longitude, easting) comes before y whatever the CRS.
+    """
+
+    method: ClassVar[str] = "get_surface"
+    points: list[tuple[float, float]]
+    crs: str | None = None
+
+    def __post_init__(self) -> None:
+        _check(self.points, self.crs, MOST_OF_A_DESK)
+
+
+@dataclass(frozen=True)
+class SurfaceAt:
+    """The road surface at a place: its class, its name if it has one, and where it comes from."""
+
+    surface: str
+    origin: Literal["drawn", "generated"]
+    name: str | None = None
+
+
+@dataclass(frozen=True)
+class Surfaces:
+    """The surface at each point in turn, None where there is none."""
+
+    surfaces: list[SurfaceAt | None]
+
+
+def _check(points: Sequence[tuple[float, float]], crs: str | None, most: int) -> None:
+    if not 1 <= len(points) <= most:
+        raise MessageError(f"points holds {len(points)} points; give 1 to {most}, more in further questions")
+    for number, (x, y) in enumerate(points):
+        check_finite(**{f"points[{number}].x": x, f"points[{number}].y": y})
+    check_crs(crs)

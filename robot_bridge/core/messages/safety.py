@@ -1,0 +1,258 @@
+"""State of robots, abort, emergency stop, geofence and nearness alarms."""
+
+from __future__ import annotations
+
+import uuid
+from dataclasses import dataclass, field
+from enum import Enum
+from typing import Any, ClassVar, Literal
+
+from .validation import MessageError, check_command_id, check_robot_name, known_fields, one_line
+
+# --- How far the knowledge of a robot can be trusted ---
+
+PathDeclaration = Literal["asks", "cones", "asks and cones"]
+"""What a robot declared in Ready: ``asks_path``, ``path_cones``, or both."""
+
+
+Ability = Literal["targets", "paths", "start", "cones", "map", "images"]
+"""What a robot can do: drive to targets, along paths, start elsewhere, place cones, use maps, send images."""
+
+
+class RobotState(str, Enum):
+    """How far the knowledge of a robot can be trusted (see :mod:`.liveness`)."""
+
+    FRESH = "fresh"
+    STALE = "stale"
+    LOST = "lost"
+    OFFLINE = "offline"
+
+
+# --- How operators stop robots: one task, one robot, and all of them in an emergency ---
+
+LONGEST_REASON = 500
+"""characters."""
+LONGEST_OVERRIDE = 1000
+"""characters."""
+
+
+def check_reason(reason: str | None) -> None:
+    """Refuse a reason that is no line of the log; raises MessageError."""
+    if reason is not None and not (len(reason) <= LONGEST_REASON and reason.isprintable()):
+        raise MessageError(
+            f"reason has {len(reason)} characters; give one line of at most {LONGEST_REASON} printable ones"
+        )
+
+
+def check_override(override: str | None) -> None:
+    """Refuse an override that does not say in one line of the log what is overridden; raises MessageError."""
+    if override is None:
+        return
+    if not (override.strip() and len(override) <= LONGEST_OVERRIDE and override.isprintable()):
+        raise MessageError(
+            f"override has {len(override)} characters; say in one line of at most {LONGEST_OVERRIDE} "
+            "printable ones what speaks against it and why it is asked for all the same"
+        )
+
+
+@dataclass(frozen=True)
+class AbortTask:
+    """Ask for the end of one command, named by ``aborts``, or of whatever ``robot`` is doing.
+
+    ``command`` is an id that the operator's side invents: sent twice, done once. A command that was
+    superseded or has ended in the meantime is not aborted, nor what came after it: that is refused.
+    """
+
+    method: ClassVar[str] = "abort"
+    stops: ClassVar[bool] = True
+    command: str
+    robot: str | None = None
+    aborts: str | None = None
+    reason: str | None = None
+
+    def __post_init__(self) -> None:
+        check_command_id(self.command)
+        check_reason(self.reason)
+        if (self.robot is None) == (self.aborts is None):
+            raise MessageError("give one of robot and aborts: whose task is to end, or which command")
+        if self.robot is not None:
+            check_robot_name(self.robot)
+
+
+@dataclass(frozen=True)
+class EmergencyStop:
+    """Stop every robot now and let none be sent anywhere until a supervisor clears it.
+
+    ``command`` is an id that the operator's side invents: sent twice, done once. A reason that is no line of
+    the log is made one, since a stop is not refused for what is said about it.
+    """
+
+    method: ClassVar[str] = "emergency_stop"
+    stops: ClassVar[bool] = True
+    command: str
+    reason: str | None = None
+
+    def __post_init__(self) -> None:
+        check_command_id(self.command)
+
+    @classmethod
+    def understood(cls, params: object) -> dict[str, object]:
+        """Return parameters of which a stop can be made, whatever somebody sent: to stop is never refused.
+
+        In place of an id that is none comes one that is the same for the same, so that it is done once.
+        """
+        given = dict(params) if isinstance(params, dict) else {}
+        sent = given.get("command")
+        try:
+            check_command_id(sent if isinstance(sent, str) else "")
+        except MessageError:
+            id = uuid.uuid4() if sent is None else uuid.uuid5(uuid.NAMESPACE_OID, repr(sent))
+            given["command"] = str(id)
+        if not isinstance(given.get("reason"), str):
+            given.pop("reason", None)
+        return given
+
+    @property
+    def line(self) -> str | None:
+        """The reason as one line of the log."""
+        return one_line((self.reason or "")[:LONGEST_REASON], LONGEST_REASON).strip() or None
+
+
+@dataclass(frozen=True)
+class ClearEmergencyStop:
+    """Let robots be sent again. ``stop`` is the stop that the supervisor means, as last told.
+
+    With ``stop`` a newer one, which that supervisor has not seen yet, is not cleared by accident.
+    """
+
+    method: ClassVar[str] = "clear_emergency_stop"
+    reason: str | None = None
+    stop: str | None = None
+
+    def __post_init__(self) -> None:
+        check_reason(self.reason)
+
+
+@dataclass(frozen=True)
+class EmergencyReport:
+    """The emergency stop in force, or the last one that was cleared; without ``stop`` there was none.
+
+    Of ``robots`` known robots ``acknowledged`` have said that they stop and ``standing`` were seen to stand
+    since; ``waiting`` names those that have not answered, ``refused`` those that answered that they will not
+    (some fifty at most of either). ``stored`` is false while the database could not be written: the stop
+    holds, and the next gateway on this computer learns of it from a file.
+    """
+
+    in_force: bool = False
+    stop: str | None = None
+    at: float | None = None
+    by: str | None = None
+    reason: str | None = None
+    stored: bool = True
+    robots: int = 0
+    acknowledged: int = 0
+    standing: int = 0
+    waiting: list[str] = field(default_factory=list)
+    refused: list[str] = field(default_factory=list)
+    cleared_at: float | None = None
+    cleared_by: str | None = None
+    clear_reason: str | None = None
+
+
+# --- What operators are told of robots in keepouts and at obstacles ---
+
+FenceKind = Literal["keepout", "obstacle"]
+StopAction = Literal["none", "pause", "abort"]
+StopOutcome = Literal["none", "asked", "paused", "aborted", "stopped", "failed"]
+
+
+@dataclass(frozen=True)
+class FenceAlarm:
+    """A robot that is in a keepout, or too near to an obstacle, since the time ``since``.
+
+    ``name`` is the keepout's or the obstacle's; the robot came in at (``x``, ``y``), metres, site frame.
+    ``action`` is what the site's settings have the gateway do, and ``outcome`` what came of it: ``asked``
+    until it is stored, ``stopped`` where an emergency stop held the robot already, ``failed`` with a
+    ``reason`` as long as it could not be done; it is tried again. ``current`` is false where the robot is not
+    heard now: it was there when it was heard last.
+    """
+
+    robot: str
+    kind: FenceKind
+    name: str
+    since: float
+    x: float
+    y: float
+    action: StopAction = "none"
+    outcome: StopOutcome = "none"
+    reason: str | None = None
+    current: bool = True
+
+
+@dataclass(frozen=True)
+class Geofence:
+    """All robots in keepouts and at obstacles at the gateway's time ``t``, those that came in last first.
+
+    ``more`` counts alarms that are not listed. ``keepouts`` and ``obstacles`` count what the published site
+    has, with the objects that operators accepted: where there are none, nothing can be told of them.
+    ``unjudged`` names robots, at most 20, that may be anywhere: they have not said where they are since they
+    connected, or are not heard; ``unjudged_more`` counts others. ``fault`` says why nothing is watched.
+    """
+
+    t: float
+    alarms: list[FenceAlarm] = field(default_factory=list)
+    more: int = 0
+    keepouts: int = 0
+    obstacles: int = 0
+    unjudged: list[str] = field(default_factory=list)
+    unjudged_more: int = 0
+    fault: str | None = None
+
+
+def geofence_report(values: dict[str, Any]) -> Geofence:
+    """Return what a gateway sent as JSON; unknown fields of newer gateways are passed over."""
+    alarms = [FenceAlarm(**known_fields(FenceAlarm, one)) for one in values.get("alarms", [])]
+    names = [str(name) for name in values.get("unjudged", [])]
+    return Geofence(**{**known_fields(Geofence, values), "alarms": alarms, "unjudged": names})
+
+
+# --- What operators are told of people and vehicles, that are only seen, near robots ---
+
+
+@dataclass(frozen=True)
+class NearnessAlarm:
+    """``seen``, a phone or a tracker, is near ``robot``, or will be in ``seconds``: it is near now at 0.
+
+    ``metres`` are between the two, now or when it will be near; it is about (``x``, ``y``), metres, site
+    frame. ``since`` is when that was found, seconds since 1970.
+    """
+
+    seen: str
+    robot: str
+    metres: float
+    seconds: float
+    x: float
+    y: float
+    since: float
+
+
+@dataclass(frozen=True)
+class Nearness:
+    """All that are near robots, or will be, at the gateway's time ``t``, the soonest first.
+
+    ``more`` counts alarms that are not listed; ``metres`` and ``within_s`` are the site's limits. ``fault``
+    says why nothing is watched.
+    """
+
+    t: float
+    metres: float
+    within_s: float
+    alarms: list[NearnessAlarm] = field(default_factory=list)
+    more: int = 0
+    fault: str | None = None
+
+
+def nearness_report(values: dict[str, Any]) -> Nearness:
+    """Return what a gateway sent as JSON; unknown fields of newer gateways are passed over."""
+    alarms = [NearnessAlarm(**known_fields(NearnessAlarm, one)) for one in values.get("alarms", [])]
+    return Nearness(**{**known_fields(Nearness, values), "alarms": alarms})

@@ -1,0 +1,209 @@
+"""Validation of messages: bounds, checks of values, known fields."""
+
+from __future__ import annotations
+
+import dataclasses
+import functools
+import math
+import re
+import types
+import typing
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+# --- How large what a robot says may be: every bound of its messages, in one place ---
+# The guide for integrators and the JSON Schemas say the same. What a site may set stands in table
+# ``[limits]``
+# of its ``site.toml`` (:mod:`...sites.limit_settings`).
+
+LARGEST_MESSAGE = 65_536
+"""bytes of a message on WebSocket, characters of ``params`` on SQL; an image may be larger."""
+LONGEST_STATUS = 256
+"""characters of a status; a longer one is cut, so that its robot is not lost for it."""
+LONGEST_REFUSAL = 500
+"""characters of the reason in a robot's OpAck; a longer one is cut."""
+LONGEST_OPERATOR = 128
+"""characters of an operator's name."""
+LONGEST_LABEL = 128
+"""characters; of an object's id, its label and a robot's own number of an observation."""
+COORDINATE = (-1e8, 1e8)
+"""metres in the site frame, whose origin may be that of a CRS with its zone before the easting."""
+SPEED = (-100.0, 100.0)
+"""m/s; backwards is below 0."""
+THETA = (-1e6, 1e6)
+"""radians; taken for the same direction in [-π, π]."""
+ALTITUDE = (-12_000.0, 100_000.0)
+"""metres."""
+CLOCK = (-1e12, 1e12)
+"""seconds of a robot's own clock, whenever it counts from."""
+ACCURACY = (0.0, 1e6)
+"""metres."""
+AREA = (0.0, 1e14)
+"""square metres of a map."""
+CUT = "…"
+"""The end of a text that was cut."""
+
+
+def one_line(text: str, longest: int) -> str:
+    """Return ``text`` as one line of at most ``longest`` characters, cut with a mark where it is longer.
+
+    What is no printable character becomes a space.
+    """
+    line = text if len(text) <= longest else text[: longest - len(CUT)] + CUT
+    return line if line.isprintable() else "".join(c if c.isprintable() else " " for c in line)
+
+
+def direction(theta: float) -> float:
+    """Return ``theta``, radians, as the same direction in [-π, π]."""
+    return theta if -math.pi <= theta <= math.pi else math.remainder(theta, math.tau)
+
+
+# --- What a value in a message may be, whatever the message ---
+
+Ranges = Mapping[str, tuple[float, float]]
+"""The smallest and the largest value of numbers, by the name of the parameter."""
+Texts = Mapping[str, int]
+"""The most characters of texts, by the name of the parameter."""
+
+_CRS = re.compile(r"EPSG:\d{4,6}")
+ROBOT_NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9_.-]{0,62}")
+LARGEST_NUMBER = 2**63 - 1
+"""What an integer column of a database holds."""
+
+
+class MessageError(ValueError):
+    """A message that cannot be understood; the text names the operation, the parameter and what is right."""
+
+
+def check_finite(**numbers: float | None) -> None:
+    """Refuse NaN and infinity; raises MessageError naming the parameter."""
+    for name, value in numbers.items():
+        if value is not None and not math.isfinite(value):
+            raise MessageError(f"{name} is {value}; give a finite number")
+
+
+def check_stored_number(**numbers: int | None) -> None:
+    """Refuse an integer that a database column cannot hold; raises MessageError naming the parameter."""
+    for name, value in numbers.items():
+        if value is not None and not 0 <= value <= LARGEST_NUMBER:
+            raise MessageError(f"{name} is {value}; give a whole number from 0 to {LARGEST_NUMBER}")
+
+
+def check_ranges(message: Any) -> None:
+    """Refuse a number outside the ``ranges`` of its message, NaN included; raises MessageError."""
+    for name, (low, high) in message.ranges.items():
+        value = getattr(message, name)
+        if value is not None and not low <= value <= high:
+            raise MessageError(f"{name} is {value}; give a number from {low:g} to {high:g}")
+
+
+def check_texts(message: Any) -> None:
+    """Refuse what is empty, too long or has a line break among the ``texts`` of its message; MessageError."""
+    for name, longest in message.texts.items():
+        value = getattr(message, name)
+        if value is not None and not (0 < len(value) <= longest and value.isprintable()):
+            raise MessageError(f"{name} is {value[:40]!r}; give 1 to {longest} printable characters")
+
+
+def check_robot_name(name: str) -> str:
+    """Return ``name`` if it can name a robot, else raise MessageError."""
+    if not ROBOT_NAME.fullmatch(name):
+        raise MessageError(
+            f"robot name {name!r} cannot be used; take 1 to 63 letters, digits, '_', '.' or '-', "
+            "beginning with a letter or digit"
+        )
+    return name
+
+
+def check_crs(crs: str | None) -> None:
+    """Refuse what is no code of a CRS; raises MessageError. None is the site frame."""
+    if crs is not None and _CRS.fullmatch(crs) is None:
+        raise MessageError(f"crs is {crs[:40]!r}; give a code such as 'EPSG:4326', or none: the site frame")
+
+
+def check_command_id(command: str) -> None:
+    """Refuse an id that cannot tell one command from every other; raises MessageError."""
+    if not (8 <= len(command) <= 64 and command.isprintable()):
+        raise MessageError(f"command is {command!r}; give an id of 8 to 64 characters, say a UUID")
+
+
+def check_expires_in(seconds: float | None, longest: float) -> None:
+    """Refuse what is no time until something expires; None is never. Raises MessageError."""
+    if seconds is not None and not 0 < seconds <= longest:
+        raise MessageError(
+            f"expires_in is {seconds}; give seconds, above 0 and up to {longest:g}, or leave it out"
+        )
+
+
+# --- Which keys of a JSON object a message has fields for, and which it has not ---
+
+_SHOWN = 40
+"""characters of a key that is refused."""
+
+
+def known_fields(kind: type, values: dict[str, Any]) -> dict[str, Any]:
+    """Return those of ``values`` that ``kind`` has fields for: a newer gateway may tell more."""
+    names = _names(kind)
+    return {name: value for name, value in values.items() if name in names}
+
+
+def unknown_keys(kind: type, values: dict[str, Any]) -> Iterator[str]:
+    """Yield what the dataclass ``kind``, and those that it holds, have no fields for, as ``tasks[2].colour``.
+
+    Values of a wrong type are passed over.
+    """
+    for path, _holder in _unknown(kind, values, ""):
+        yield path
+
+
+def refuse_unknown_keys(kind: type, values: dict[str, Any]) -> None:
+    """Raise MessageError for the first key in ``values`` that ``kind`` has no field for.
+
+    What is passed over may have been what mattered most, such as the CRS of a place.
+    """
+    for path, holder in _unknown(kind, values, ""):
+        names = ", ".join(field.name for field in dataclasses.fields(holder)) or "none"
+        raise MessageError(
+            f"{path} is no parameter here; known are: {names}. Leave it out or correct its name"
+        )
+
+
+def _unknown(kind: type, values: Any, path: str) -> Iterator[tuple[str, type]]:
+    if not isinstance(values, dict):
+        return
+    if not values.keys() <= _names(kind):
+        for name in values.keys() - _names(kind):
+            yield f"{path}{_shown(name)}", kind
+    for name, (inner, many) in _inner(kind).items():
+        value = values.get(name)
+        if many and isinstance(value, (list, tuple)):
+            for number, one in enumerate(value):
+                yield from _unknown(inner, one, f"{path}{name}[{number}].")
+        elif not many:
+            yield from _unknown(inner, value, f"{path}{name}.")
+
+
+def _shown(name: object) -> str:
+    text = str(name)
+    text = text if len(text) <= _SHOWN else f"{text[:_SHOWN]}…"
+    return text if text.isidentifier() else repr(text)
+
+
+@functools.cache
+def _names(kind: type) -> frozenset[str]:
+    return frozenset(field.name for field in dataclasses.fields(kind))
+
+
+@functools.cache
+def _inner(kind: type) -> dict[str, tuple[type, bool]]:
+    """Return the fields of ``kind`` that hold a dataclass, or (``True``) a list of them."""
+    hints = typing.get_type_hints(kind)
+    found = {}
+    for field in dataclasses.fields(kind):
+        hint = hints[field.name]
+        for one in typing.get_args(hint) if isinstance(hint, types.UnionType) else (hint,):
+            many = typing.get_origin(one) in (list, tuple)
+            holds = typing.get_args(one)[0] if many else one
+            if dataclasses.is_dataclass(holds) and isinstance(holds, type):
+                found[field.name] = (holds, many)
+    return found

@@ -1,0 +1,1 @@
+"""Road network: centrelines, noding, defects, routes, surfaces, export."""

@@ -1,0 +1,295 @@
+"""Builder of robot maps: segments clipped by a border, chained into obstacles (paper 1, section III.B)."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable, Iterator, Mapping
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import WindowError
+from .model import CUT, Border, Obstacle, RobotMap, ShapeType, Window
+from .outlines import (
+    CLOSED_TYPES,
+    Outlines,
+    OutlineValidation,
+    Segments,
+    is_closed,
+    oriented_segments,
+    validate_outlines,
+    without_vanished,
+)
+
+# --- Segments cut by a rectangle; arrays throughout ---
+
+_ON_BORDER = 1e-5
+"""centimetres; how far floating point may put a cut off its border where coordinates are large."""
+
+_HEIGHT, _OUTLINE, _NUMBER = 4, 5, 6
+"""Columns of a table of segments, after the two ends."""
+_HELD = ((np.int32, 2.0**31 - 1), (np.int64, 2.0**53))
+"""Types of whole numbers, and up to where each holds all of them."""
+_WHOLE = np.array([[0.0], [1.0]])
+"""Where a segment that is not cut begins and ends, of its length."""
+_INWARDS = np.array([[0, 0], [1, -1], [_ON_BORDER, -_ON_BORDER]]).reshape(3, 2, 1, 1)
+"""From the lower and the upper side to themselves, to what lies beside them, and to how far they reach."""
+
+
+def table_of(segments: Segments) -> NDArray[Any]:
+    """Return ``segments`` as one row of float64 each, (n, 7), so that they are gathered by one call.
+
+    Its columns are a and b in centimetres, then height, outline and number as they are.
+    """
+    ends = np.rint(np.column_stack([segments.a, segments.b]) * 100)
+    return np.column_stack([ends, segments.height, segments.outline, segments.number])
+
+
+def rows_of(segments: Segments, heights: NDArray[Any], first: tuple[int, float] = (0, 0)) -> NDArray[Any]:
+    """Return ``segments`` as whole numbers in as few bytes as hold them, (n, 7).
+
+    As :func:`table_of`, but for the height: 1 for that of the outline, which ``heights`` has, 0 for none.
+    ``first`` is added to outlines and numbers: how many outlines, and the last number, come before these.
+    """
+    table = table_of(segments)
+    table[:, _HEIGHT] = segments.height == heights[segments.outline]
+    table[:, _OUTLINE:] += first
+    largest = np.abs(table).max(initial=0.0)
+    return table.astype(next((kind for kind, most in _HELD if largest <= most), np.float64))
+
+
+def corners_of_rows(rows: NDArray[Any]) -> tuple[NDArray[Any], NDArray[Any]]:
+    """Return the lower and upper corners, (n, 2) metres each, of the segments in ``rows``."""
+    a, b = rows[:, 0:2].astype(np.float64) / 100, rows[:, 2:4].astype(np.float64) / 100
+    return np.minimum(a, b), np.maximum(a, b)
+
+
+def table_of_rows(rows: NDArray[Any], heights: NDArray[Any]) -> NDArray[Any]:
+    """Return what :func:`table_of` said of the segments in ``rows``, made by :func:`rows_of`."""
+    table = rows.astype(np.float64)
+    table[:, _HEIGHT] *= heights[rows[:, _OUTLINE].astype(np.int64)]
+    return table
+
+
+def clip(segments: Segments, border: Border) -> Segments:
+    """Return what of the segments lies inside ``border``: :func:`clip_table` of all of them."""
+    return clip_table(table_of(segments), border)
+
+
+def clip_table(table: NDArray[Any], border: Border) -> Segments:
+    """Return what of the segments in ``table`` lies inside ``border``, in the order of their numbers.
+
+    Segments are cut one by one (Liang and Barsky, 1984), so no wall is invented along the border. Where one
+    is cut is rounded to centimetres, which the border is in. A window of a city has so few segments that
+    the number of calls is what counts, not the number of segments: all of them go through every step.
+    """
+    sides = np.array([round(100 * side) for side in border], dtype=np.float64).reshape(2, 2, 1)
+    # A column each, side by side in memory.
+    columns = table.T.copy()
+    shares = _shares(columns[:4].reshape(2, 2, -1), sides)
+    kept = (shares[0] < shares[1]).nonzero()[0]
+    kept = kept.take(columns[_NUMBER].take(kept).argsort())
+    columns, shares = columns.take(kept, axis=1), shares.take(kept, axis=1)
+    ends, cut = columns[:4].reshape(2, 2, -1), shares != _WHOLE
+    np.copyto(ends, _crossings(ends, shares, sides), where=cut[:, None])
+    ends = ends / 100
+    outline = columns[_OUTLINE].astype(np.int64)
+    return Segments(ends[0].T, ends[1].T, columns[_HEIGHT], outline, columns[_NUMBER], cut)
+
+
+def _shares(ends: NDArray[Any], sides: NDArray[Any]) -> NDArray[Any]:
+    """Return from where to where of its length each of n segments is inside, (2, n) from 0 to 1.
+
+    One that is outside does not end after it begins. ``ends`` is (2, 2, n) and ``sides`` (2, 2, 1): from
+    and to, then x and y.
+    """
+    a, shares = ends[0], np.empty((2, ends.shape[2]))
+    direction = ends[1] - a
+    with np.errstate(divide="ignore", invalid="ignore"):
+        # Of a segment along a side: minus infinity and infinity inside, infinity twice outside, and no number
+        # on the side itself, where the other axis decides.
+        low, high = (sides[0] - a) / direction, (sides[1] - a) / direction
+    first, last = np.minimum(low, high), np.maximum(low, high)
+    np.fmax(first[0], first[1], out=shares[0])
+    np.fmin(last[0], last[1], out=shares[1])
+    return shares.clip(0.0, 1.0)
+
+
+def _crossings(ends: NDArray[Any], shares: NDArray[Any], sides: NDArray[Any]) -> NDArray[Any]:
+    """Return the places, (2, 2, n), at those shares of segments, in whole centimetres.
+
+    A coordinate that is near another side of the border and not on it stays off it: rounded onto it, the
+    stub that a segment leaves in a corner would become a wall along the border.
+    """
+    a, limits = ends[0], sides + _INWARDS
+    (low, high), beside, reach = limits[0], limits[1], limits[2]
+    places = a + shares[:, None] * (ends[1] - a)
+    crossings: NDArray[Any] = np.minimum(np.maximum(np.rint(places), beside[0]), beside[1])
+    np.copyto(crossings, low, where=places <= reach[0])
+    np.copyto(crossings, high, where=places >= reach[1])
+    return crossings
+
+
+# --- Builds a robot map from outlines (paper 1, section III.B) ---
+
+__all__ = ["Window", "build_map"]
+
+Rows = slice | NDArray[Any]
+"""Which segments, in their order."""
+
+_WHEN_CUT = {
+    ShapeType.CLOSED_POLYGON: ShapeType.OPEN_POLYGON,
+    ShapeType.CLOSED_CURVE: ShapeType.OPEN_CURVE,
+}
+
+
+def build_map(
+    outlines: Outlines, window: Window | None = None, meta: Mapping[str, str] | None = None
+) -> RobotMap:
+    """Return the map of ``outlines`` inside ``window``, or of all of them.
+
+    An outline that the window cuts becomes open chains, each an obstacle, marked by the extra ``cut`` where
+    it was a ring. Obstacles are grouped by the first word of their semantics; the id of an outline is its
+    row plus one in every window, each further chain of it has the number of outlines more, so that no id
+    means another outline in another window. ``ext`` names the source. Outlines that are
+    no obstacle (fewer than two different points, a ring that encloses nothing, coordinates that are not
+    finite) are left out and rings that do not close are closed, each with a warning if it lies
+    in the window or nowhere at all. Raises WindowError when there is neither a window nor an outline.
+    """
+    found = validate_outlines(outlines)
+    if window is None:
+        near, border = np.ones(len(outlines), dtype=bool), _bounds(found)
+    else:
+        near, border = found.near(window.border), window.border
+    segments = clip(oriented_segments(found.outlines, found.usable & near), border)
+    return map_of(found.outlines, segments, border, meta, found.notes_on(near))
+
+
+def map_of(
+    outlines: Outlines,
+    segments: Segments,
+    border: Border,
+    meta: Mapping[str, str] | None,
+    warnings: tuple[str, ...],
+) -> RobotMap:
+    """Return the map of ``border`` whose obstacles are the clipped ``segments`` of ``outlines``."""
+    segments = without_vanished(segments)
+    obstacles = sorted(
+        _numbered(_chains(segments, outlines), len(outlines)),
+        key=lambda item: (group_of(outlines, item[2]), item[2], item[0]),
+    )
+    heights, outdoor = np.round(segments.height, 2), outlines.outdoor[segments.outline]
+    return RobotMap(
+        border=border,
+        obstacles=tuple(
+            _obstacle(outlines, segments, heights[rows], outdoor[rows], id, rows, outline, closed)
+            for id, rows, outline, closed in obstacles
+        ),
+        meta=dict(meta or {}),
+        warnings=warnings,
+    )
+
+
+def _bounds(found: OutlineValidation) -> Border:
+    if not found.usable.any():
+        raise WindowError("window: there is no obstacle to take the extent from; give a window")
+    (x_min, y_min), (x_max, y_max) = found.low[found.usable].min(axis=0), found.high[found.usable].max(axis=0)
+    # A single straight wall has no width; the map still needs a border with an inside.
+    x_spare, y_spare = max(0.0, 0.5 - (x_max - x_min) / 2), max(0.0, 0.5 - (y_max - y_min) / 2)
+    return Window.from_bounds(
+        float(x_min - x_spare), float(y_min - y_spare), float(x_max + x_spare), float(y_max + y_spare)
+    ).border
+
+
+def _chains(segments: Segments, outlines: Outlines) -> Iterator[tuple[int, Rows, bool]]:
+    """Yield outline, segments in their order, and whether they close a ring, for each chain."""
+    if not len(segments.outline):
+        return
+    types = outlines.shape_type[segments.outline]
+    begins = np.concatenate([[True], np.diff(segments.outline) != 0])
+    run_begins = begins | (~segments.joined & (types != int(ShapeType.STAIRS)))
+    starts = np.flatnonzero(run_begins)
+    ends = np.append(starts[1:], len(types))
+    firsts = np.flatnonzero(begins[starts])
+    lasts = np.append(firsts[1:], len(starts)) - 1
+    meets = _meet_where_they_begin(segments, outlines, starts[firsts], ends[lasts] - 1).tolist()
+    runs = [slice(start, end) for start, end in zip(starts.tolist(), ends.tolist(), strict=True)]
+    outline = segments.outline[starts[firsts]].tolist()
+    for k, (first, last) in enumerate(zip(firsts.tolist(), lasts.tolist(), strict=True)):
+        own = runs[first : last + 1]
+        if meets[k] and len(own) == 1:
+            yield outline[k], own[0], True
+            continue
+        if meets[k]:
+            # The last run of a ring goes on in the first.
+            both = (own[-1], own[0])
+            round_corner = np.concatenate([np.arange(some.start, some.stop) for some in both])
+            yield outline[k], round_corner, False
+            own = own[1:-1]
+        for run in own:
+            yield outline[k], run, False
+
+
+def _meet_where_they_begin(
+    segments: Segments, outlines: Outlines, first: NDArray[Any], last: NDArray[Any]
+) -> NDArray[Any]:
+    """Tell which outlines are rings whose segments, from ``first`` to ``last``, go through their first point.
+
+    Not any two cuts that fall on one point: the ring's own first corner.
+    """
+    outline = segments.outline[first]
+    corner = np.round(outlines.coordinates[outlines.offsets[outline]], 2)
+    meets: NDArray[Any] = (
+        is_closed(outlines.shape_type[outline])
+        & (segments.b[last] == corner).all(axis=1)
+        & (segments.a[first] == corner).all(axis=1)
+    )
+    return meets
+
+
+def _numbered(chains: Iterable[tuple[int, Rows, bool]], rows: int) -> Iterator[tuple[int, Rows, int, bool]]:
+    """Yield id, segments, outline and whether closed, for each chain; ``rows`` outlines there are."""
+    count: Counter[int] = Counter()
+    for outline, indices, closed in chains:
+        yield outline + 1 + count[outline] * rows, indices, outline, closed
+        count[outline] += 1
+
+
+def group_of(outlines: Outlines, outline: int) -> str:
+    """Return the word by which the obstacles of ``outline`` are grouped."""
+    return outlines.semantics[outline].partition(",")[0]
+
+
+def _obstacle(
+    outlines: Outlines,
+    segments: Segments,
+    heights: NDArray[Any],
+    outdoor: NDArray[Any],
+    id: int,
+    rows: Rows,
+    outline: int,
+    closed: bool,
+) -> Obstacle:
+    shape_type = ShapeType(int(outlines.shape_type[outline]))
+    return Obstacle(
+        id=id,
+        shape_type=shape_type if closed else _WHEN_CUT.get(shape_type, shape_type),
+        semantics=outlines.semantics[outline],
+        a=segments.a[rows],
+        b=segments.b[rows],
+        height=heights,
+        outdoor=outdoor,
+        segment_semantics=("",) * len(heights),
+        ext=_ext(outlines, outline, cut=not closed and shape_type in CLOSED_TYPES),
+    )
+
+
+def _ext(outlines: Outlines, outline: int, cut: bool) -> dict[str, str]:
+    source = outlines.source[outline]
+    extras = {"src": source} if source else {}
+    if outlines.ext is not None:
+        extras.update(outlines.ext[outline])
+    if cut:
+        extras[CUT] = "1"
+    return extras

@@ -1,0 +1,170 @@
+"""The robot map: border, oriented obstacle segments, and the window of a partial map."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from enum import IntEnum
+from typing import Any, NamedTuple
+
+from numpy.typing import NDArray
+
+from ..errors import WindowError
+
+# --- The robot map: a border and oriented obstacle segments (paper 1, section II) ---
+
+CUT = "cut"
+"""The extra, of value ``1``, of a part of a ring that the border cut; its inside is on the left."""
+
+PART_OF = "part_of"
+"""The leading line of a map that does not cover all of its site: x_min, y_min, x_max, y_max of the site."""
+
+
+class ShapeType(IntEnum):
+    """How an obstacle is represented: the integer ST of the paper, in the order of its text."""
+
+    CLOSED_POLYGON = 1
+    OPEN_POLYGON = 2
+    CLOSED_CURVE = 3
+    OPEN_CURVE = 4
+    STAIRS = 5
+    RAMP = 6
+
+
+class Border(NamedTuple):
+    """The rectangle that a map covers, metres in the site frame."""
+
+    x_min: float
+    y_min: float
+    x_max: float
+    y_max: float
+
+    @property
+    def left_upper(self) -> tuple[float, float]:
+        """The corner that the format names first."""
+        return self.x_min, self.y_max
+
+    @property
+    def right_lower(self) -> tuple[float, float]:
+        """The corner that the format names second."""
+        return self.x_max, self.y_min
+
+    def contains(self, other: Border) -> bool:
+        """Tell whether no part of ``other`` is outside."""
+        lower = self.x_min <= other.x_min and self.y_min <= other.y_min
+        return lower and self.x_max >= other.x_max and self.y_max >= other.y_max
+
+    def holds(self, x: float, y: float) -> bool:
+        """Tell whether (x, y) is not outside."""
+        return self.x_min <= x <= self.x_max and self.y_min <= y <= self.y_max
+
+    @property
+    def area(self) -> float:
+        """Square metres."""
+        return (self.x_max - self.x_min) * (self.y_max - self.y_min)
+
+
+class EncodedMap(NamedTuple):
+    """A map in the binary format, what it covers, and whether that is the whole site."""
+
+    content: bytes
+    border: Border
+    is_whole: bool
+
+
+@dataclass(frozen=True, eq=False)
+class Obstacle:
+    """One obstacle with n oriented segments from ``a`` to ``b``; free space lies to the right of a→b.
+
+    ``text`` is how it stood in the file it was read from, so that it is written back byte for byte; a
+    changed copy, made by ``dataclasses.replace``, has none.
+    """
+
+    id: int
+    shape_type: ShapeType
+    semantics: str
+    a: NDArray[Any]
+    """(n, 2) float64, metres in the site frame."""
+    b: NDArray[Any]
+    """(n, 2) float64, metres in the site frame."""
+    height: NDArray[Any]
+    """(n,) float64, metres."""
+    outdoor: NDArray[Any]
+    """(n,) bool."""
+    segment_semantics: tuple[str, ...]
+    ext: dict[str, str] = field(default_factory=dict)
+    segment_ext: tuple[dict[str, str], ...] = ()
+    """n mappings, or nothing when no segment has any."""
+    text: str | None = field(default=None, init=False, repr=False)
+
+
+@dataclass(frozen=True, eq=False)
+class RobotMap:
+    """A map of ``border`` with its obstacles.
+
+    ``meta`` are its leading lines (version, crs, origin, rotation, id). ``warnings`` say what was odd in
+    what it was read or built from. ``head`` and ``tail`` are what stood before the first obstacle and after
+    the last one in the file it was read from.
+    """
+
+    border: Border
+    obstacles: tuple[Obstacle, ...]
+    meta: dict[str, str] = field(default_factory=dict)
+    warnings: tuple[str, ...] = ()
+    head: str | None = field(default=None, init=False, repr=False)
+    tail: str = field(default="", init=False, repr=False)
+
+    @property
+    def segment_count(self) -> int:
+        """How many segments all obstacles have together."""
+        return sum(len(obstacle.a) for obstacle in self.obstacles)
+
+
+# --- The zone that a partial map covers (paper 1, section III.B: H x W around the robot) ---
+
+SMALLEST_SIDE = 0.02
+"""metres; a map is in centimetres, and anything smaller has no inside at that precision."""
+
+
+@dataclass(frozen=True)
+class Window:
+    """A rectangle centred on (x, y): ``width`` along x and ``height`` along y, metres in the site frame."""
+
+    x: float
+    y: float
+    width: float
+    height: float
+
+    def __post_init__(self) -> None:
+        for name in ("x", "y", "width", "height"):
+            if not math.isfinite(getattr(self, name)):
+                raise WindowError(f"window: {name} is {getattr(self, name)}; give a finite number of metres")
+        for name in ("width", "height"):
+            if getattr(self, name) < SMALLEST_SIDE:
+                raise WindowError(
+                    f"window: {name} is {getattr(self, name):g} m, so it encloses nothing; "
+                    f"give at least {SMALLEST_SIDE} m, such as 100"
+                )
+
+    @classmethod
+    def square(cls, x: float, y: float, area: float) -> Window:
+        """Return the square of ``area`` m² centred on (x, y)."""
+        if not math.isfinite(area) or area <= 0:
+            raise WindowError(f"window: the area is {area} m², so it encloses nothing; give more than 0")
+        side = math.sqrt(area)
+        return cls(x, y, side, side)
+
+    @classmethod
+    def from_bounds(cls, x_min: float, y_min: float, x_max: float, y_max: float) -> Window:
+        """Return the window between two corners."""
+        return cls((x_min + x_max) / 2, (y_min + y_max) / 2, x_max - x_min, y_max - y_min)
+
+    @property
+    def border(self) -> Border:
+        """Its rectangle, in whole centimetres, as a map says it."""
+        return Border(
+            round(self.x - self.width / 2, 2),
+            round(self.y - self.height / 2, 2),
+            round(self.x + self.width / 2, 2),
+            round(self.y + self.height / 2, 2),
+        )

@@ -1,0 +1,323 @@
+"""Fenced areas, keepouts and obstacles: which of them are near a robot, which roads come into them."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections import OrderedDict
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..geometry import Track
+from ..roads.centrelines import Floats, Ints
+from ..roads.network import Network
+from ..robotmap.model import ShapeType
+from ..robotmap.outlines import Outlines, is_closed
+from ..robotmap.window_index import BoxGrid
+from .frame import Points
+from .site_layers import outline_groups
+
+# --- Areas that nobody may drive into: which edges, places and paths come into them ---
+
+
+class KeepoutIndex:
+    """Finds what comes into one of ``areas``, each an outer ring and its holes, (n, 2) each.
+
+    What runs along the rim of an area, or stands on it, does not come into it.
+
+    :raises ImportError: where shapely is not installed.
+    """
+
+    def __init__(self, areas: Sequence[Sequence[Floats]]) -> None:
+        import shapely
+
+        self._tree = shapely.STRtree(
+            [shapely.make_valid(shapely.Polygon(outer, holes)) for outer, *holes in areas]
+        )
+
+    def entered(self, tracks: Sequence[Track]) -> dict[int, int]:
+        """Return the numbers of those of ``tracks`` that come into an area, each with the area's lowest."""
+        import shapely
+
+        found = self._entries([shapely.LineString(t) if len(t) > 1 else shapely.Point(t[0]) for t in tracks])
+        return dict(sorted(found.T.tolist(), reverse=True))
+
+    def between_ends(self, path: Track) -> int | None:
+        """Return the number of an area that ``path`` comes into and that holds neither end of it, or None.
+
+        Whoever is in an area has to come out of it, and whoever was sent into one has to come there.
+        """
+        import numpy as np
+        import shapely
+
+        through = self._entries([shapely.LineString(path)])[1]
+        of_ends = self._entries([shapely.Point(path[0]), shapely.Point(path[-1])])[1]
+        crossed = np.setdiff1d(through, of_ends)
+        return int(crossed[0]) if len(crossed) else None
+
+    def edges_through(self, network: Network) -> Ints:
+        """Return the edges of ``network`` that come into an area, each once."""
+        import numpy as np
+        import shapely
+
+        index = np.repeat(np.arange(len(network)), network.edges.counts())
+        through: Ints = np.unique(self._entries(shapely.linestrings(network.edges.xy, indices=index))[0])
+        return through.astype(np.int64)
+
+    def _entries(self, geometries: Sequence[object]) -> Ints:
+        """Return the numbers of what comes into areas, and those of the areas, (2, n)."""
+        import numpy as np
+
+        found = [self._tree.query(geometries, predicate=predicate) for predicate in ("crosses", "within")]
+        entries: Ints = np.concatenate(found, axis=1)
+        return entries
+
+
+# --- The areas of a site that robots must not be in, keepouts and obstacles, and which of them are near
+
+if TYPE_CHECKING:
+    from .geopackage import Area
+
+Indices = NDArray[np.int64]
+
+OVERHEAD_M = 2.5
+"""An obstacle that begins so many metres above the ground is driven under."""
+TOUCH_M = 0.05
+"""Metres within which a leg touches an area."""
+_MOST_KEPT = 20_000
+"""obstacles whose geometry is kept, of those that robots came near to last."""
+
+
+class FencedAreas(ABC):
+    """Areas with a name each; metres in the site frame."""
+
+    @abstractmethod
+    def __len__(self) -> int:
+        """Return how many there are."""
+
+    @abstractmethod
+    def name(self, area: int) -> str:
+        """Return the name of an area."""
+
+    def id(self, area: int) -> int:
+        """Return what an area is known by, beside all others of its kind: its number."""
+        return area
+
+    def near(self, places: Points, metres: float) -> Indices:
+        """Return which of ``places``, (n, 2), are within ``metres`` of which area: (2, m), place and area.
+
+        With 0 metres those inside an area; one on its rim is not, as with the paths of commands.
+        """
+        import shapely
+
+        return self._near(shapely.points(places), metres)
+
+    def near_legs(self, start: tuple[float, float], ends: Points, metres: float) -> Indices:
+        """Return which straight legs, from ``start`` to each of ``ends``, (n, 2), come within ``metres`` of
+        which area: (2, m), leg and area."""
+        import shapely
+
+        legs = np.empty((len(ends), 2, 2))
+        legs[:, 0], legs[:, 1] = start, ends
+        return self._near(shapely.linestrings(legs), metres)
+
+    def are_between(self, start: tuple[float, float], goal: tuple[float, float], metres: float) -> bool:
+        """Tell whether the straight leg comes within ``metres`` of an area at neither end, or touches one.
+
+        A robot may leave an area that it is at, and come to one that it is sent to.
+        """
+        places = np.array([start, goal])
+        for apart in (metres, TOUCH_M):
+            passed = self.near_legs(start, places[1:], apart)[1]
+            if len(np.setdiff1d(passed, self.near(places, apart)[1])):
+                return True
+        return False
+
+    @abstractmethod
+    def _near(self, geometries: Any, metres: float) -> Indices:
+        """Return which of ``geometries`` are within ``metres`` of which area; with 0 metres inside it."""
+
+
+class FencedPolygons(FencedAreas):
+    """Some areas, in shapely's tree of boxes, under ``ids`` where their numbers may be those of others.
+
+    :raises ImportError: where shapely is not installed.
+    """
+
+    def __init__(
+        self, geometries: Sequence[Any], names: Sequence[str], ids: Sequence[int] | None = None
+    ) -> None:
+        import shapely
+
+        self._names, self._ids = list(names), ids
+        self._tree = shapely.STRtree(shapely.make_valid(np.array(geometries, dtype=object)))
+
+    @classmethod
+    def of(cls, areas: Sequence[tuple[int, str, Points]]) -> FencedPolygons:
+        """Return areas of which each is an id, a name, and a ring, (n, 2)."""
+        import shapely
+
+        rings = [shapely.Polygon(ring) for _, _, ring in areas]
+        return cls(rings, [name for _, name, _ in areas], [id for id, _, _ in areas])
+
+    def __len__(self) -> int:
+        return len(self._names)
+
+    def name(self, area: int) -> str:
+        """Return the name of an area."""
+        return self._names[area]
+
+    def id(self, area: int) -> int:
+        """Return what an area is known by."""
+        return area if self._ids is None else self._ids[area]
+
+    def _near(self, geometries: Any, metres: float) -> Indices:
+        if not len(self._names) or not len(geometries):
+            return np.empty((2, 0), dtype=np.int64)
+        if metres > 0:
+            found = self._tree.query(geometries, predicate="dwithin", distance=metres)
+        else:
+            found = self._tree.query(geometries, predicate="within")
+        pairs: Indices = found.astype(np.int64)
+        return pairs
+
+
+@dataclass(frozen=True)
+class FencedRows:
+    """Which outlines are fenced, for :class:`FencedOutlines`: area k is rows ``first[k]`` to ``last[k]`` - 1.
+
+    ``low`` and ``high``, (n, 2), are the corners of their boxes. They stand in the order of ``grid``.
+    """
+
+    first: NDArray[Any]
+    last: NDArray[Any]
+    low: NDArray[Any]
+    high: NDArray[Any]
+    grid: BoxGrid
+
+    @classmethod
+    def of(cls, outlines: Outlines) -> FencedRows:
+        """Return what is fenced of ``outlines``: :func:`fenced_boxes`."""
+        groups, low, high = fenced_boxes(outlines)
+        grid, order = BoxGrid.of(low, high)
+        return cls(groups[order, 0], groups[order, 1], low[order], high[order], grid)
+
+
+def fenced_boxes(outlines: Outlines) -> tuple[Indices, NDArray[Any], NDArray[Any]]:
+    """Return what is fenced of ``outlines``; ramps and what is overhead are driven on and under.
+
+    The first row of each area and the one behind its last, (n, 2), and the corners of its box, (n, 2) each.
+    """
+    groups = np.array(list(outline_groups(outlines)), dtype=np.int64).reshape(-1, 2)
+    ramp = outlines.shape_type[groups[:, 0]] == ShapeType.RAMP
+    overhead = np.zeros(len(groups), dtype=bool)
+    if outlines.base is not None:
+        overhead = outlines.base[groups[:, 0]] >= OVERHEAD_M
+    low, high, count = _boxes(outlines, groups[:, 0])
+    fenced = ~ramp & ~overhead & (count >= 2)
+    return groups[fenced], low[fenced], high[fenced]
+
+
+class FencedOutlines(FencedAreas):
+    """The obstacles of a site, of which only those near robots are ever made geometries of."""
+
+    def __init__(self, outlines: Outlines, rows: FencedRows) -> None:
+        self._outlines = outlines
+        self._rows = rows
+        self._kept: OrderedDict[int, Any] = OrderedDict()
+
+    def __len__(self) -> int:
+        return len(self._rows.first)
+
+    def name(self, area: int) -> str:
+        """Return the name of an area."""
+        return _name(self._outlines, int(self._rows.first[area]))
+
+    def _near(self, geometries: Any, metres: float) -> Indices:
+        import shapely
+
+        bounds = shapely.bounds(geometries).reshape(-1, 4)
+        low, high = bounds[:, :2] - metres, bounds[:, 2:] + metres
+        asked, area = self._rows.grid.pairs(low, high)
+        touches = ((self._rows.high[area] >= low[asked]) & (self._rows.low[area] <= high[asked])).all(axis=1)
+        asked, area = asked[touches], area[touches]
+        shapes = np.array([self._geometry(one) for one in area.tolist()], dtype=object)
+        if metres > 0:
+            near = shapely.dwithin(geometries[asked], shapes, metres)
+        else:
+            near = shapely.within(geometries[asked], shapes)
+        pairs: Indices = np.array([asked, area], dtype=np.int64)[:, near]
+        return pairs
+
+    def _geometry(self, area: int) -> Any:
+        import shapely
+
+        known = self._kept.get(area)
+        if known is None:
+            first, last = int(self._rows.first[area]), int(self._rows.last[area])
+            known = shapely.make_valid(_geometry(self._outlines, first, last))
+            self._kept[area] = known
+            if len(self._kept) > _MOST_KEPT:
+                self._kept.popitem(last=False)
+        return known
+
+
+@dataclass(frozen=True)
+class Fences:
+    """The keepouts and the obstacles of one publication, and ``observed``, which operators accepted.
+
+    The ids of observed ones are no obstacle's of the publication.
+    """
+
+    keepouts: FencedAreas
+    obstacles: FencedAreas
+    observed: FencedAreas = field(default_factory=lambda: FencedPolygons([], []))
+
+    @classmethod
+    def of(cls, keepouts: Iterable[Area], outlines: Outlines, rows: FencedRows | None = None) -> Fences:
+        """Return the fences of a site; ``rows`` are those of ``outlines`` where they are known."""
+        import shapely
+
+        areas = list(keepouts)
+        polygons = [shapely.Polygon(outer, holes) for outer, *holes in (area.rings for area in areas)]
+        obstacles = FencedOutlines(outlines, FencedRows.of(outlines) if rows is None else rows)
+        return cls(FencedPolygons(polygons, [area.label for area in areas]), obstacles)
+
+
+def _boxes(outlines: Outlines, rows: NDArray[Any]) -> tuple[NDArray[Any], NDArray[Any], NDArray[Any]]:
+    """Return the corners of the boxes of ``rows``, (n, 2) each, and how many finite points each has."""
+    points, lengths = outlines.coordinates, np.diff(outlines.offsets)
+    finite = np.isfinite(points).all(axis=1)
+    of = np.repeat(np.arange(len(outlines)), lengths)
+    count = np.bincount(of[finite], minlength=len(outlines))
+    low, high = np.full((len(outlines), 2), np.inf), np.full((len(outlines), 2), -np.inf)
+    some = np.flatnonzero(count)
+    if len(some):
+        starts = np.concatenate([[0], np.cumsum(count[some])[:-1]])
+        low[some] = np.minimum.reduceat(points[finite], starts)
+        high[some] = np.maximum.reduceat(points[finite], starts)
+    return low[rows], high[rows], count[rows]
+
+
+def _name(outlines: Outlines, k: int) -> str:
+    """Return the name that stands behind the kind in ``building,Control tower``, else what there is."""
+    kind, _, name = outlines.semantics[k].partition(",")
+    return name or kind or outlines.source[k] or f"obstacle {k + 1}"
+
+
+def _geometry(outlines: Outlines, first: int, last: int) -> Any:
+    """Return a group of outlines, whose first has two finite points or more, as one geometry."""
+    import shapely
+
+    points = outlines.points(first)
+    points = points[np.isfinite(points).all(axis=1)]
+    if is_closed(outlines.shape_type[first : first + 1])[0] and len(points) > 3:
+        holes = [ring for ring in map(outlines.points, range(first + 1, last)) if len(ring) > 3]
+        return shapely.Polygon(points, holes)
+    if outlines.shape_type[first] == ShapeType.STAIRS and len(points) % 2 == 0:
+        # Between the first riser and the last there are steps everywhere.
+        return shapely.MultiLineString(list(points.reshape(-1, 2, 2))).convex_hull
+    return shapely.LineString(points)

@@ -1,0 +1,472 @@
+"""A published site: read and written as a folder, and the robot maps cut from it."""
+
+from __future__ import annotations
+
+import logging
+import shutil
+import tempfile
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ..errors import CacheError, SiteError, WindowError
+from ..geometry import Track
+from ..messages.links import MOST_AREA_POINTS, SiteArea, SiteAreas, SiteRoad
+from ..roads.centrelines import Surface
+from ..roads.surface_index import SurfaceIndex
+from ..robotmap.model import PART_OF, Border, RobotMap, Window
+from ..robotmap.outlines import Outlines
+from ..robotmap.text_format import write_text
+from ..robotmap.window_index import GroupText, OutlineIndex, group_texts, size_in_binary
+from .fences import Fences, KeepoutIndex
+from .frame import Points, SiteFrame
+from .geopackage import (
+    CENTRELINES,
+    GEOPACKAGE_FILE,
+    KEEPOUTS,
+    KNOWN_BEYOND,
+    OBSTACLES,
+    SURFACES,
+    Area,
+    Centreline,
+    Layer,
+    check_features,
+    read_layers,
+    write_layers,
+)
+from .settings import (
+    SETTINGS_FILE,
+    SiteBounds,
+    SiteSettings,
+    check_settings,
+    earlier_settings,
+    read_settings,
+    settings_text,
+)
+from .settings_tables import value_text
+from .site_cache import CACHE_FILE, SURELY_TOO_LARGE, CacheWriter, SiteCache, read_cache
+from .site_layers import (
+    area_layer,
+    areas_of,
+    centreline_layer,
+    centrelines_of,
+    obstacle_layer,
+    outlines_of,
+    surface_layer,
+    surfaces_of,
+)
+
+# --- A site as the gateway serves it: what is on it, and the robot maps cut from it ---
+
+_SMALLEST_NEAR = 20.0
+"""metres; a robot sees so far by itself, whatever stands there."""
+
+
+@dataclass(frozen=True)
+class Site:
+    """One published site; every geometry is in the site frame, in metres."""
+
+    settings: SiteSettings
+    outlines: Outlines
+    centrelines: tuple[Centreline, ...]
+    surfaces: tuple[Surface, ...]
+    keepouts: tuple[Area, ...]
+    cache: SiteCache | None = None
+    """what was computed of ``outlines`` at publishing; else it is computed when it is needed first."""
+
+    @property
+    def id(self) -> str:
+        """The site's id, unique among the sites of one gateway."""
+        return self.settings.id
+
+    @property
+    def name(self) -> str:
+        """The site's name for people."""
+        return self.settings.name
+
+    @property
+    def version(self) -> int:
+        """How often the site was published."""
+        return self.settings.version
+
+    @property
+    def frame(self) -> SiteFrame:
+        """The frame that robots speak."""
+        return self.settings.frame
+
+    @property
+    def bounds(self) -> SiteBounds:
+        """The rectangle (x_min, y_min, x_max, y_max) in the site frame that robots may be sent into."""
+        return self.settings.bounds
+
+    @property
+    def bounds_border(self) -> Border:
+        """What the map of the whole site covers: the bounds in whole centimetres."""
+        return Window.from_bounds(*self.bounds).border
+
+    def contains(self, x: float, y: float) -> bool:
+        """Tell whether (x, y), metres in the site frame, lies in the site's bounds."""
+        return self.bounds.contains(x, y)
+
+    @property
+    def has_index(self) -> bool:
+        """Whether what maps are cut from is at hand."""
+        return self.cache is not None or "_index" in self.__dict__
+
+    def make_index(self) -> None:
+        """Make what maps are cut from, which takes seconds where nothing was computed at publishing."""
+        assert self._index is not None
+
+    def whole_map(self) -> RobotMap:
+        """Return the map that a robot gets after Ready: everything within the bounds (paper 1, III.A)."""
+        return self._map(Window.from_bounds(*self.bounds))
+
+    def whole_texts(self) -> Iterable[GroupText]:
+        """Return the text of :meth:`whole_map` in parts, to hold little of it at once."""
+        if self.cache is not None and self.cache.whole.texts is not None:
+            return self.cache.whole.texts()
+        return group_texts(self._index.outlines, self.bounds_border)
+
+    def whole_head(self) -> str:
+        """Return the text of :meth:`whole_map` up to its first obstacle."""
+        return whole_head(self.settings)
+
+    def is_too_large(self, most_bytes: int) -> bool:
+        """Tell whether :meth:`whole_map` surely has more bytes than that in the binary format."""
+        whole = None if self.cache is None else self.cache.whole
+        if whole is not None and not whole.is_estimate:
+            return whole.size > most_bytes
+        size = size_in_binary(self._index, self.bounds_border) if whole is None else whole.size
+        return size > SURELY_TOO_LARGE * most_bytes
+
+    def whole_binary(self) -> bytes | None:
+        """Return :meth:`whole_map` in the binary format where it was made at publishing."""
+        whole = None if self.cache is None else self.cache.whole
+        return whole.content if whole is not None and whole.head == self.whole_head() else None
+
+    @property
+    def segment_count(self) -> int:
+        """How many segments all obstacles have together, about."""
+        return self._index.count_near(self.bounds_border)
+
+    def segments_around(self, x: float, y: float, area: float) -> int:
+        """Return how many segments the map of a square has at most, as :meth:`map_around` makes it.
+
+        :raises WindowError: when the three are no window.
+        """
+        return self._index.count_near(Window.square(x, y, area).border)
+
+    def map_near(self, x: float, y: float, side: float, most: int) -> RobotMap:
+        """Return the map of a square around (x, y), or around the nearest place of the site's bounds.
+
+        It has ``side`` metres, or less where it would have more than about ``most`` segments.
+        """
+        x_min, y_min, x_max, y_max = self.bounds
+        x, y = min(max(x, x_min), x_max), min(max(y, y_min), y_max)
+        window = Window(x, y, side, side)
+        while self._index.count_near(window.border) > most and window.width > _SMALLEST_NEAR:
+            window = Window(x, y, window.width / 2, window.width / 2)
+        return self._map(window)
+
+    def map_around(self, x: float, y: float, area: float) -> RobotMap:
+        """Return the answer to GetMap(x, y, A): a square of ``area`` m² centred on (x, y), site frame.
+
+        :raises WindowError: when the three are no window (no area, NaN), or one of which nothing is known:
+            the empty map of it would say that all is free there.
+        """
+        window = Window.square(x, y, area)
+        if not self._is_near(window):
+            x_min, y_min, x_max, y_max = self.bounds
+            raise WindowError(
+                f"no part of {area:g} m² around ({x:.2f}, {y:.2f}) is within {KNOWN_BEYOND:g} m of site "
+                f"{self.name!r}, which reaches from ({x_min:.2f}, {y_min:.2f}) to "
+                f"({x_max:.2f}, {y_max:.2f}); what stands there is not known"
+            )
+        return self._map(window)
+
+    def _is_near(self, window: Window) -> bool:
+        """Tell whether any of ``window`` is where it is known what stands."""
+        x_min, y_min, x_max, y_max = self.bounds
+        apart_x = abs(window.x - (x_min + x_max) / 2) - (window.width + x_max - x_min) / 2
+        apart_y = abs(window.y - (y_min + y_max) / 2) - (window.height + y_max - y_min) / 2
+        return max(apart_x, apart_y) <= KNOWN_BEYOND
+
+    def _map(self, window: Window) -> RobotMap:
+        return self._index.map_of(window, meta=self.map_meta(window.border))
+
+    @cached_property
+    def surface_index(self) -> SurfaceIndex:
+        """What tells the road surface at a place; made when it is asked for first."""
+        return SurfaceIndex(self.surfaces)
+
+    @cached_property
+    def keepout_index(self) -> KeepoutIndex:
+        """What tells which places and ways come into keepouts; made when it is asked for first."""
+        return KeepoutIndex([area.rings for area in self.keepouts])
+
+    def keepout_between(self, path: Track) -> str | None:
+        """Return the name of a keepout that ``path`` leads through and that holds neither end, or None."""
+        number = self.keepout_index.between_ends(path) if self.keepouts else None
+        return None if number is None else self.keepouts[number].label
+
+    @cached_property
+    def fences(self) -> Fences:
+        """What tells which places are in keepouts and at obstacles; made when it is asked for first."""
+        return Fences.of(self.keepouts, self.outlines, None if self.cache is None else self.cache.fenced)
+
+    @cached_property
+    def _index(self) -> OutlineIndex:
+        return OutlineIndex.of(self.outlines) if self.cache is None else self.cache.index
+
+    def map_meta(self, border: Border) -> dict[str, str]:
+        """Return the leading lines of the map of ``border``: :func:`map_meta`."""
+        return map_meta(self.settings, border)
+
+
+def whole_head(settings: SiteSettings) -> str:
+    """Return the text of the map of the whole site up to its first obstacle."""
+    border = Window.from_bounds(*settings.bounds).border
+    return write_text(RobotMap(border, (), map_meta(settings, border)))
+
+
+def map_meta(settings: SiteSettings, border: Border) -> dict[str, str]:
+    """Return the leading lines of the map of ``border`` of a site (design, section 6).
+
+    One that leaves out some of the site says so by the rectangle of all of it.
+    """
+    frame, whole = settings.frame, Window.from_bounds(*settings.bounds).border
+    part_of = {} if border.contains(whole) else {PART_OF: ",".join(f"{edge:.2f}" for edge in whole)}
+    return {
+        "version": str(settings.version),
+        "crs": frame.crs,
+        "origin": f"{frame.origin[0]:.3f},{frame.origin[1]:.3f}",
+        "rotation": f"{frame.rotation:.9f}",
+        "id": settings.id,
+        **part_of,
+    }
+
+
+# --- A published site on disk: a folder with ``site.toml`` and ``site.gpkg``, written whole or not at all
+
+log = logging.getLogger(__name__)
+
+MANY = 50_000
+"""Outlines that take seconds to be read from a GeoPackage."""
+
+
+def check_site(folder: Path | str) -> SiteSettings:
+    """Return the settings of the site published in ``folder``, without reading its layers.
+
+    :raises SiteError: naming what is missing or wrong in the settings, where, and what to do.
+    """
+    folder = Path(folder)
+    if not folder.is_dir():
+        raise SiteError(
+            f"{folder} is no folder: a published site is a folder with {SETTINGS_FILE} and {GEOPACKAGE_FILE}"
+        )
+    return read_settings(folder / SETTINGS_FILE)
+
+
+def read_site(folder: Path | str) -> Site:
+    """Return the site published in ``folder``.
+
+    :raises SiteError: naming what is missing, half there or wrong, where, and what to do.
+    """
+    folder = Path(folder)
+    settings = check_site(folder)
+    file = folder / GEOPACKAGE_FILE
+    cache = _cache(folder, settings) if file.is_file() else None
+    specs = (*(() if cache else (OBSTACLES,)), CENTRELINES, SURFACES, KEEPOUTS)
+    *obstacles, centrelines, surfaces, keepouts = read_layers(file, specs, settings.crs, settings.stamp)
+    outlines = cache.outlines if cache else outlines_of(obstacles[0], settings.frame, str(file))
+    if cache is None and len(outlines) > MANY:
+        log.warning(
+            "%s: %d outlines are read from %s, which takes its time and memory; publish the site again, and "
+            "they are mapped from %s",
+            folder,
+            len(outlines),
+            GEOPACKAGE_FILE,
+            CACHE_FILE,
+        )
+    site = Site(
+        settings=settings,
+        outlines=outlines,
+        centrelines=centrelines_of(centrelines, settings.frame, str(file)),
+        surfaces=surfaces_of(surfaces, settings.frame, str(file)),
+        keepouts=areas_of(keepouts, settings.frame, str(file)),
+        cache=cache,
+    )
+    # Robots would wait for it.
+    site.make_index()
+    return site
+
+
+def write_site_cache(folder: Path, settings: SiteSettings, text: str, obstacles: CacheWriter) -> None:
+    """Write ``site.cache`` beside the ``site.gpkg`` in ``folder`` that ``obstacles`` are published in.
+
+    ``text`` is that of ``site.toml``, which says how large a map may be. What a gateway would refuse, or
+    read otherwise, has no such file. Raises OSError.
+    """
+    said = value_text(text, "maps", "largest_whole_bytes") or ""
+    most = int(said) if said.isdecimal() else settings.maps.largest_whole_bytes
+    publication = _publication(settings)
+    obstacles.write(folder / CACHE_FILE, folder / GEOPACKAGE_FILE, publication, whole_head(settings), most)
+
+
+def cache_writer(partial: Path, frame: SiteFrame) -> CacheWriter:
+    """Return what takes the obstacles of a publication that is made in ``partial``; raises OSError.
+
+    It is to be removed, or left as a context manager, before ``partial`` is.
+    """
+    return CacheWriter(partial / "columns", frame)
+
+
+def _cache(folder: Path, settings: SiteSettings) -> SiteCache | None:
+    file = folder / CACHE_FILE
+    if not file.is_file():
+        return None
+    try:
+        return read_cache(file, folder / GEOPACKAGE_FILE, _publication(settings))
+    except (CacheError, OSError) as error:
+        log.warning("%s; the obstacles are read from %s, which takes longer", error, GEOPACKAGE_FILE)
+        return None
+
+
+def _publication(settings: SiteSettings) -> dict[str, Any]:
+    """Return what the columns of ``site.cache`` depend on."""
+    return {
+        "site": settings.stamp,
+        "frame": [settings.crs, *settings.origin, settings.rotation_deg],
+        "bounds": list(settings.bounds),
+    }
+
+
+def write_site(
+    folder: Path | str,
+    settings: SiteSettings,
+    obstacles: Outlines,
+    centrelines: Sequence[Centreline] = (),
+    surfaces: Sequence[Surface] = (),
+    keepouts: Sequence[Area] = (),
+) -> None:
+    """Publish a site in ``folder``: all geometry in the site frame, in metres.
+
+    Other files in ``folder`` stay, and so does in ``site.toml`` what the operator set there, see
+    :func:`settings_text`. A publication that is there already is replaced only after the new one
+    is complete; one cut off between its two files is refused by :func:`read_site`, never read half.
+
+    :raises SiteError: for what :func:`read_site` would refuse, and when the folder cannot be written.
+    """
+    folder = Path(folder)
+    check_settings(settings, folder / SETTINGS_FILE)
+    frame = settings.frame
+    layers = (
+        obstacle_layer(obstacles, frame),
+        centreline_layer(centrelines, frame),
+        surface_layer(surfaces, frame),
+        area_layer(KEEPOUTS, keepouts, frame),
+    )
+    for layer in layers:
+        check_features(layer, str(folder / GEOPACKAGE_FILE))
+    try:
+        _write(folder, settings, layers, obstacles)
+    except OSError as error:
+        raise SiteError(
+            f"The site cannot be published in {folder}: {error}. Check rights and free space."
+        ) from error
+
+
+def _write(folder: Path, settings: SiteSettings, layers: Sequence[Layer], obstacles: Outlines) -> None:
+    folder.mkdir(parents=True, exist_ok=True)
+    # A folder inside the target, so that both renames stay on one file system.
+    partial = Path(tempfile.mkdtemp(prefix=".writing-", dir=folder))
+    try:
+        write_layers(partial / GEOPACKAGE_FILE, layers, settings.crs, settings.stamp)
+        text = settings_text(settings, earlier_settings(folder, settings.id))
+        (partial / SETTINGS_FILE).write_text(text, encoding="utf-8")
+        with cache_writer(partial, settings.frame) as cache:
+            cache.add(obstacles)
+            write_site_cache(partial, settings, text, cache)
+        put_cache(partial, folder)
+        (partial / GEOPACKAGE_FILE).replace(folder / GEOPACKAGE_FILE)
+        (partial / SETTINGS_FILE).replace(folder / SETTINGS_FILE)
+    finally:
+        shutil.rmtree(partial, ignore_errors=True)
+
+
+def put_cache(partial: Path, folder: Path) -> None:
+    """Put the ``site.cache`` in ``partial`` into ``folder``, or take away the one there; raises OSError.
+
+    Before the files that it belongs to: a gateway does not look at it until they have changed.
+    """
+    if (partial / CACHE_FILE).is_file():
+        (partial / CACHE_FILE).replace(folder / CACHE_FILE)
+    else:
+        (folder / CACHE_FILE).unlink(missing_ok=True)
+
+
+# --- The published sites that lie in one folder, and which of them may follow one another on one gateway
+
+
+def sibling_sites(folder: Path) -> list[str]:
+    """Return the names of the folders beside ``folder`` that hold a site, itself included, sorted."""
+    return sorted(file.parent.name for file in folder.resolve().parent.glob(f"*/{SETTINGS_FILE}"))
+
+
+def frame_mismatch(served: SiteSettings, other: SiteSettings) -> str | None:
+    """Return why ``other`` cannot follow ``served`` where commands and positions are kept, None if it can."""
+    if (served.crs, served.origin, served.rotation_deg) == (other.crs, other.origin, other.rotation_deg):
+        return None
+    x, y = other.origin
+    return (
+        f"{other.id} has another frame ({other.crs}, origin {x:.12g}, {y:.12g}, "
+        f"rotation {other.rotation_deg:g}°) than {served.id}, and positions of the one are wrong in the "
+        "other; start a gateway on it, with a database of its own"
+    )
+
+
+# --- What a site has in a box beside its obstacles: keepouts, and roads with their widths and speeds ---
+
+
+def areas_in_box(site: Site, box: tuple[float, float, float, float]) -> SiteAreas:
+    """Return the keepouts and roads that may touch ``box``: x_min, y_min, x_max, y_max, site frame.
+
+    Closed roads and those on bridges and in tunnels are left out: a robot on the ground drives by others.
+
+    :raises SiteError: where they have more points than one answer holds.
+    """
+    keepouts = [
+        SiteArea(area.label, [_places(ring) for ring in area.rings])
+        for area in site.keepouts
+        if _touches(area.rings[0], box, 0.0)
+    ]
+    roads = [
+        SiteRoad(_places(line.points), line.width_m, line.speed_ms)
+        for line in site.centrelines
+        if not line.closed and line.level == 0 and _touches(line.points, box, line.width_m / 2)
+    ]
+    count = sum(map(len, _lines(keepouts, roads)))
+    if count > MOST_AREA_POINTS:
+        raise SiteError(f"keepouts and roads have {count} points there, and {MOST_AREA_POINTS} are the most")
+    return SiteAreas(site.version, keepouts, roads)
+
+
+def _lines(keepouts: list[SiteArea], roads: list[SiteRoad]) -> Iterable[list[tuple[float, float]]]:
+    for area in keepouts:
+        yield from area.rings
+    for road in roads:
+        yield road.points
+
+
+def _touches(points: Points, box: tuple[float, float, float, float], beside: float) -> bool:
+    x_min, y_min, x_max, y_max = box
+    low, high = points.min(axis=0) - beside, points.max(axis=0) + beside
+    return bool(low[0] <= x_max and high[0] >= x_min and low[1] <= y_max and high[1] >= y_min)
+
+
+def _places(points: Points) -> list[tuple[float, float]]:
+    return [(x, y) for x, y in np.round(points, 3).tolist()]

@@ -1,0 +1,1 @@
+"""The gateway between operators and robots: a server on WebSocket and SQL."""

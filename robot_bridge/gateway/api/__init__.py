@@ -1,0 +1,1 @@
+"""Interfaces of the gateway: operators, robots on WebSocket and SQL, links, HTTP pages."""

@@ -1,0 +1,405 @@
+"""Server of operators: sessions over WebSocket, and the order of their requests."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import logging
+import time
+from collections import deque
+from collections.abc import Callable, Coroutine
+from typing import Any, NamedTuple
+
+import msgspec
+from websockets.exceptions import ConnectionClosed
+
+from ...core.errors import BridgeError, BusyError, OutdatedError, OverridableError, RefusedError
+from ...core.logs import log_and_continue
+from ...core.messages import (
+    DESK_REQUESTS,
+    PROTOCOL_VERSION,
+    Abort,
+    AbortAll,
+    AbortTask,
+    AddTasks,
+    ClearEmergencyStop,
+    DeskRequest,
+    EmergencyStop,
+    GetConflicts,
+    GetImage,
+    GetRoute,
+    GetSurfaces,
+    GetTrajectory,
+    GetWaysOut,
+    Hello,
+    MakeCurrent,
+    MessageError,
+    PauseRobot,
+    PositionForm,
+    ResolveConflict,
+    ResumeQueue,
+    Send,
+    SetPositions,
+    SetQueue,
+    Subscribe,
+    TakeOver,
+    to_json,
+)
+from ...protocol import jsonrpc
+from ...protocol.codec import decode_desk_request, error_code
+from ..auth.connection import ClientConnection
+from ..auth.gate import AuthGate
+from ..fleet.operator_updates import EVERYTHING, Tick
+from ..fleet.service import Fleet
+from .operator_requests import Caller, answer
+
+# --- In which order an operator's requests are dealt with; no socket ---
+# What stops robots is begun at once, whatever was asked before. What may take long is answered aside, and
+# everything else in turn. A stop overtakes what waits its turn: what of that would set robots in motion is
+# refused then, since it was asked before they were to stand.
+
+SLOW = (GetRoute, GetConflicts, GetWaysOut, GetSurfaces, GetTrajectory, GetImage)
+"""Questions that are answered aside: they change nothing, and take long or bring much."""
+STOPPING = (EmergencyStop, AbortTask, AbortAll, PauseRobot)
+MOVING = (
+    Send,
+    SetPositions,
+    SetQueue,
+    AddTasks,
+    MakeCurrent,
+    ResumeQueue,
+    TakeOver,
+    ResolveConflict,
+    ClearEmergencyStop,
+)
+MOST_WAITING, MOST_ASIDE, MOST_STOPPING = 256, 64, 1000
+"""requests of one operator that wait their turn, that wait aside, and that stop robots, at most."""
+MOST_EMERGENCIES = 50
+"""emergency stops of one operator that are dealt with at the same time; the connection waits then."""
+MOST_BYTES = 4_000_000
+"""bytes of one operator's requests that wait, at most in each lane."""
+
+
+class ScheduledRequest(NamedTuple):
+    """A request, the call that it came in, and its length in bytes."""
+
+    call: jsonrpc.Call
+    request: DeskRequest
+    size: int
+
+    @property
+    def stops(self) -> bool:
+        """Tell whether it stops robots."""
+        sent_by_hand = isinstance(self.request, Send) and self.request.op == Abort.__name__
+        return sent_by_hand or isinstance(self.request, STOPPING)
+
+
+Settle = Callable[[ScheduledRequest, Exception | None], Coroutine[Any, Any, None]]
+"""Deals with a request and tells the operator what came of it; with an exception it only tells that."""
+
+
+class RequestScheduler:
+    """The requests of one operator that are being dealt with, or wait."""
+
+    def __init__(self, settle: Settle) -> None:
+        self._settle = settle
+        self._turn = _Lane(settle)
+        self._aside = _Lane(settle)
+        self._stopping: set[asyncio.Task[None]] = set()
+
+    async def take(self, asked: ScheduledRequest) -> None:
+        """See to a request; returns at once, or when one that cannot be taken has been refused."""
+        if asked.stops:
+            await self._stop(asked)
+        elif isinstance(asked.request, SLOW):
+            await self._ask_aside(asked)
+        elif not self._turn.put(asked, MOST_WAITING):
+            await self._settle(asked, _too_many(asked))
+
+    async def finish(self) -> None:
+        """Wait for what stops robots and for what has been begun; forget the rest, the operator is gone."""
+        self._aside.cancel()
+        await asyncio.gather(*self._stopping, self._turn.end(), return_exceptions=True)
+
+    async def _stop(self, asked: ScheduledRequest) -> None:
+        emergency = isinstance(asked.request, EmergencyStop)
+        if not emergency and len(self._stopping) >= MOST_STOPPING:
+            await self._settle(asked, _too_many(asked))
+            return
+        task = asyncio.create_task(self._settle(asked, None))
+        self._stopping.add(task)
+        task.add_done_callback(self._stopping.discard)
+        for late in self._turn.withdraw(lambda waiting: _is_overtaken(waiting, asked)):
+            await self._settle(late, _overtaken(late, asked))
+        while emergency and len(self._stopping) >= MOST_STOPPING + MOST_EMERGENCIES:
+            await asyncio.wait(self._stopping, return_when=asyncio.FIRST_COMPLETED)
+
+    async def _ask_aside(self, asked: ScheduledRequest) -> None:
+        for older in self._aside.withdraw(lambda waiting: _is_renewed(waiting, asked)):
+            await self._settle(older, RefusedError("get_route: it was asked again before this was begun"))
+        if not self._aside.put(asked, MOST_ASIDE):
+            await self._settle(asked, _too_many(asked))
+
+
+class _Lane:
+    """Deals with one request after the other."""
+
+    def __init__(self, settle: Settle) -> None:
+        self._settle = settle
+        self._waiting: deque[ScheduledRequest] = deque()
+        self._task: asyncio.Task[None] | None = None
+
+    def put(self, asked: ScheduledRequest, most: int) -> bool:
+        """Take a request; false when too much waits."""
+        waiting = sum(one.size for one in self._waiting)
+        if len(self._waiting) >= most or (self._waiting and waiting + asked.size > MOST_BYTES):
+            return False
+        self._waiting.append(asked)
+        if self._task is None or self._task.done():
+            self._task = asyncio.create_task(self._run())
+        return True
+
+    def withdraw(self, which: Callable[[ScheduledRequest], bool]) -> list[ScheduledRequest]:
+        """Return what waits and is not to be dealt with any more."""
+        gone = [asked for asked in self._waiting if which(asked)]
+        self._waiting = deque(asked for asked in self._waiting if not which(asked))
+        return gone
+
+    def cancel(self) -> None:
+        """Leave everything unanswered."""
+        self._waiting.clear()
+        if self._task is not None:
+            self._task.cancel()
+
+    async def end(self) -> None:
+        """Wait until what has been begun is dealt with; forget the rest."""
+        self._waiting.clear()
+        if self._task is not None:
+            await self._task
+
+    async def _run(self) -> None:
+        while self._waiting:
+            await self._settle(self._waiting.popleft(), None)
+
+
+def _is_overtaken(waiting: ScheduledRequest, stop: ScheduledRequest) -> bool:
+    """Tell whether a request would set a robot in motion that ``stop``, which came after it, is to stop."""
+    if not isinstance(waiting.request, MOVING):
+        return False
+    one, other = getattr(stop.request, "robot", None), getattr(waiting.request, "robot", None)
+    several = isinstance(waiting.request, (ResolveConflict, TakeOver))
+    return several or one is None or other is None or one == other
+
+
+def _is_renewed(waiting: ScheduledRequest, asked: ScheduledRequest) -> bool:
+    """Tell whether ``asked`` is the same way with another goal, as while a mouse moves."""
+    old, new = waiting.request, asked.request
+    if not (isinstance(old, GetRoute) and isinstance(new, GetRoute)):
+        return False
+    return (old.robot, old.start) == (new.robot, new.start)
+
+
+def _overtaken(late: ScheduledRequest, stop: ScheduledRequest) -> RefusedError:
+    return RefusedError(
+        f"{late.request.method}: {stop.request.method} came after it and before it was begun, so that it was "
+        "not done; ask again if it is to be done all the same"
+    )
+
+
+def _too_many(asked: ScheduledRequest) -> BusyError:
+    return BusyError(
+        f"{asked.request.method}: too many requests of this connection wait to be answered; "
+        "wait for answers, then ask again"
+    )
+
+
+# --- How operators connect: JSON-RPC 2.0 on WebSocket, requests in, positions and commands out ---
+
+log = logging.getLogger(__name__)
+
+OWN = (Hello, Subscribe)
+"""Requests that concern the connection itself; everything later goes by them."""
+SUBJECTS = ("robot", "session", "operator", "site", "observation", "command")
+"""Parameters that say what a request is about; of several the first."""
+UNNOTED = ("hello", "subscribe")
+"""Requests that change nothing but the connection they come from."""
+
+
+class OperatorSession:
+    """One operator's connection.
+
+    A slow operator gets fewer snapshots, each of the newest state, and of each command the newest report:
+    what waits for it never grows beyond one entry for each robot and command.
+    """
+
+    def __init__(self, fleet: Fleet, connection: ClientConnection, gate: AuthGate) -> None:
+        self._fleet = fleet
+        self._connection = connection
+        self._gate = gate
+        assert connection.identity is not None
+        self._operator = connection.identity.name or f"desk {connection.address}"
+        self._news: dict[tuple[str, str], dict[str, Any]] = {}
+        self._news_event = asyncio.Event()
+        self._tasks: dict[str, asyncio.Task[None]] = {}
+        self._lanes = RequestScheduler(self._settle)
+
+    async def run(self) -> None:
+        """Serve the connection to its end."""
+        self._fleet.listeners.add(self)
+        self._start("news", self._push_news())
+        try:
+            async for frame in self._connection:
+                await self._take(frame)
+        except ConnectionClosed:
+            pass
+        finally:
+            self._fleet.listeners.discard(self)
+            for task in self._tasks.values():
+                task.cancel()
+            await self._lanes.finish()
+
+    def notify(self, method: str, key: str, params: dict[str, Any]) -> None:
+        """Keep the newest news of ``key`` until they can be sent."""
+        self._news[method, key] = params
+        self._news_event.set()
+
+    async def _take(self, frame: str | bytes) -> None:
+        call = None
+        try:
+            call = jsonrpc.decode(frame)
+            if not isinstance(call, jsonrpc.Call):
+                raise jsonrpc.FrameError(jsonrpc.INVALID_REQUEST, "a desk sends requests only", call.id)
+            asked = ScheduledRequest(call, decode_desk_request(call.method, call.params), len(frame))
+        except Exception as error:
+            await self._connection.send(self._refused(call, error))
+            return
+        if isinstance(asked.request, OWN):
+            await self._settle(asked, None)
+        else:
+            await self._lanes.take(asked)
+
+    async def _settle(self, asked: ScheduledRequest, refusal: Exception | None) -> None:
+        """Do what is asked, unless it is refused, and tell what came of it."""
+        with contextlib.suppress(ConnectionClosed):
+            await self._connection.send(await self._answer(asked, refusal))
+
+    async def _answer(self, asked: ScheduledRequest, refusal: Exception | None) -> str:
+        try:
+            if refusal is not None:
+                raise refusal
+            result = jsonrpc.result(asked.call.id, await self._do(asked.request))
+        except Exception as error:
+            return self._refused(asked.call, error)
+        self._note(asked.call)
+        return result
+
+    def _refused(self, call: jsonrpc.Call | jsonrpc.Reply | None, error: Exception) -> str:
+        """Return the answer that tells why; called where ``error`` was caught."""
+        if isinstance(error, jsonrpc.FrameError):
+            return jsonrpc.error(error.id, error.code, str(error))
+        code, text = jsonrpc.INTERNAL_ERROR, str(error)
+        if isinstance(error, (MessageError, BridgeError)):
+            self._fleet.repeated.warn(log, self._key_of(call), f"desk of {self._operator}: {error}")
+            code = error_code(error)
+        else:
+            text = self._fleet.repeated.note_unforeseen(log, self._key_of(call), f"desk of {self._operator}")
+        if isinstance(call, jsonrpc.Call):
+            self._note(call, text, code)
+        return jsonrpc.error(call.id if call else None, code, text, _data_of(error))
+
+    def _key_of(self, call: jsonrpc.Call | jsonrpc.Reply | None) -> tuple[str, ...]:
+        """Return what lines of the log about such a request are counted under."""
+        method = call.method if isinstance(call, jsonrpc.Call) else ""
+        return "desk of", self._operator, method if method in DESK_REQUESTS else "unknown methods"
+
+    def _note(self, call: jsonrpc.Call, refusal: str | None = None, code: int | None = None) -> None:
+        """Write down who asked for what to be changed, done or refused, and what a role does not reach."""
+        harmless = call.method in UNNOTED or call.method.startswith("get_")
+        if call.method not in DESK_REQUESTS or (harmless and code != jsonrpc.FORBIDDEN):
+            return
+        asked = call.params if isinstance(call.params, dict) else {}
+        names = (asked.get(name) for name in SUBJECTS)
+        params = msgspec.json.encode(asked).decode()
+        self._gate.journal.note(
+            self._operator,
+            call.method,
+            done=refusal is None,
+            role=self._gate.role(self._connection).value,
+            address=self._connection.address,
+            subject=next((str(name) for name in names if name is not None), None),
+            # First, since what is too long is cut at its end.
+            detail="; ".join(str(text) for text in (refusal, asked.get("override"), params) if text),
+        )
+
+    async def _do(self, request: DeskRequest) -> dict[str, Any]:
+        self._fleet.tally.desk[request.method] += 1
+        if isinstance(request, Hello):
+            return self._hello(request)
+        if isinstance(request, Subscribe):
+            self._start("positions", self._push_positions(1 / request.rate, request.form))
+            return {}
+        role = self._gate.role(self._connection)
+        return await answer(self._fleet, request, Caller(self._operator, role, self._connection.address))
+
+    def _hello(self, request: Hello) -> dict[str, Any]:
+        if request.protocol != PROTOCOL_VERSION:
+            raise MessageError(
+                f"hello: protocol {request.protocol} is not spoken here, {PROTOCOL_VERSION} is; "
+                "install the plugin and the gateway in the same version"
+            )
+        if not request.operator.strip():
+            raise MessageError("hello: operator is empty; give the operator's name, it goes into the log")
+        self._operator = self._gate.name_desk(self._connection, request.operator.strip())
+        if (suspensions := self._fleet.suspensions.report()).robots:
+            self.notify("suspensions", "", to_json(suspensions))
+        if (links := self._fleet.links.report()).links:
+            self.notify("links", "", to_json(links))
+        return {
+            "protocol": PROTOCOL_VERSION,
+            "site": to_json(self._fleet.site.report),
+            "operator": self._operator,
+            "role": self._gate.role(self._connection).value,
+            "emergency": to_json(self._fleet.emergency.report()),
+            "database": self._fleet.reception.database_id,
+        }
+
+    def _start(self, name: str, work: Any) -> None:
+        if name in self._tasks:
+            self._tasks[name].cancel()
+        self._tasks[name] = asyncio.create_task(work)
+
+    async def _push_positions(self, interval: float, form: PositionForm) -> None:
+        frame, seen = self._fleet.snapshots.after(EVERYTHING, form=form)
+        tick = Tick.last(interval, time.monotonic())
+        try:
+            while True:
+                if frame is not None:
+                    await self._connection.send(frame, text=form is PositionForm.ROWS)
+                now = time.monotonic()
+                due = tick.following(now)
+                await asyncio.sleep(due.wait(now))
+                missed = due.number > tick.number + 1
+                frame, seen = self._fleet.snapshots.after(EVERYTHING if missed else seen, due, form)
+                tick = due
+        except ConnectionClosed:
+            return
+
+    async def _push_news(self) -> None:
+        try:
+            while True:
+                await self._news_event.wait()
+                self._news_event.clear()
+                news, self._news = self._news, {}
+                for (method, _), params in news.items():
+                    # What cannot be told of one robot must not keep back what is told of others.
+                    with log_and_continue(log, f"news of {method}", except_for=ConnectionClosed):
+                        await self._connection.send(jsonrpc.call(method, params))
+        except ConnectionClosed:
+            return
+
+
+def _data_of(error: Exception) -> dict[str, Any] | None:
+    """Return what the desk has to know of ``error`` besides its text."""
+    if isinstance(error, OutdatedError):
+        return error.newer
+    return {"found": error.found} if isinstance(error, OverridableError) else None

@@ -1,0 +1,576 @@
+"""Session of one robot: its connection, its requests, messages delivered to it."""
+
+from __future__ import annotations
+
+import asyncio
+import base64
+import contextlib
+import logging
+from collections.abc import AsyncIterator, Callable, Coroutine
+from contextlib import AbstractAsyncContextManager, nullcontext
+from typing import Any, Protocol
+
+from websockets.exceptions import ConnectionClosed, ConnectionClosedOK
+
+from ...core.errors import BridgeError, DataRefusedError, NotReadyError, StoreError
+from ...core.logs import log_unforeseen
+from ...core.messages import (
+    PAYLOADS,
+    REQUESTS,
+    Abort,
+    MessageError,
+    OpAck,
+    Ready,
+    Request,
+    SendPos,
+    SetMap,
+    to_json,
+)
+from ...core.messages.validation import LARGEST_MESSAGE
+from ...protocol import jsonrpc
+from ...protocol.codec import (
+    check_size,
+    decode_position,
+    decode_request,
+    error_code,
+    parse_params,
+    with_base64,
+)
+from ..auth.connection import ClientConnection
+from ..fleet.emergency_persistence import HELD_BACK
+from ..fleet.outbox import Reader, RequestOutcome
+from ..fleet.service import Fleet
+from ..storage.database import to_its_end
+from ..storage.repositories.requests import AnswerRow
+
+# --- What carries the messages of one robot: a WebSocket of its own, or its place in a link of many ---
+
+
+class Channel(Protocol):
+    """The way to and from one robot; frames are JSON-RPC 2.0 texts."""
+
+    @property
+    def name(self) -> str:
+        """What operators see as the robot's link: ``websocket``, or the name of the link."""
+
+    @property
+    def round_trip(self) -> float | None:
+        """Seconds that the last ping took there and back, None before the first."""
+
+    def call(self, method: str, params: Any = None, id: int | str | None = None) -> str:
+        """Return the frame of a request, or of a notification where ``id`` is None."""
+
+    def result(self, id: int | str | None, value: Any) -> str:
+        """Return the frame that answers the robot's call ``id``."""
+
+    def error(self, id: int | str | None, code: int, text: str) -> str:
+        """Return the frame that tells why the robot's call ``id`` failed."""
+
+    def lane(self, *, urgent: bool, large: bool) -> AbstractAsyncContextManager[None]:
+        """Wait for the turn of a message from the outbox: what is ``urgent`` waits for nothing.
+
+        Many robots may share one connection: a ``large`` message of one is not to keep the others waiting.
+        """
+
+    async def send(self, frame: str) -> None:
+        """Write a frame without waiting for a turn; raises ConnectionClosed."""
+
+    async def answers(self) -> bool:
+        """Tell whether the other end is there; takes a second at most."""
+
+    async def release(self, reason: str) -> None:
+        """Tell the other end that the robot has another connection now, and carry nothing more for it."""
+
+
+# --- How a robot's outbox goes out over its connection, and an emergency stop before anything else ---
+
+log = logging.getLogger(__name__)
+
+RETRY_AFTER = 1.0
+"""seconds after which the outbox is looked at again when the database could not be read."""
+
+LARGE = 100_000
+"""bytes of a message above which its frame is made in another thread."""
+PIECE = 3 << 16
+"""bytes that are written as base64 at once; a multiple of three, so that pieces follow one another."""
+
+
+class Delivery:
+    """Sends one robot what waits for it, for as long as its connection is open."""
+
+    def __init__(self, fleet: Fleet, channel: Channel, robot: str) -> None:
+        self._fleet = fleet
+        self._channel = channel
+        self._robot = robot
+        self._work: asyncio.Task[None] | None = None
+        self._stops = 0
+        self._last = {False: 0, True: 0}
+        """the ids of the messages that were sent last, by urgency."""
+        self._stopping: set[asyncio.Task[None]] = set()
+
+    @property
+    def reader(self) -> Reader:
+        """What is to be read for the robot: what comes behind what it was sent."""
+        return self._robot, self._last[False], self._last[True]
+
+    def begin(self) -> None:
+        """Deliver the outbox from its beginning: what was not acknowledged is sent again."""
+        self.end()
+        self._work = asyncio.create_task(self._deliver())
+
+    def begin_later(self) -> None:
+        """Deliver the outbox from its beginning in a moment: the database did not take what it said."""
+        self.end()
+        self._work = asyncio.create_task(self._deliver(RETRY_AFTER))
+
+    def end(self) -> None:
+        """Deliver nothing more."""
+        if self._work is not None:
+            self._work.cancel()
+
+    def stop_now(self, call_id: str, *, emergency: bool = True) -> None:
+        """Send the robot an Abort, before anything that was not sent yet.
+
+        It does not wait for the database; an emergency stop's follows from the outbox under an id of its own.
+        """
+        self.outdate()
+        frame = self._channel.call(Abort.__name__, to_json(Abort(emergency=emergency)), call_id)
+        task = asyncio.create_task(self._send(frame))
+        self._stopping.add(task)
+        task.add_done_callback(self._stopping.discard)
+
+    def outdate(self) -> None:
+        """Send nothing of what was read before: the robot is being told to stop."""
+        self._stops += 1
+
+    async def _send(self, frame: str) -> None:
+        try:
+            await self._channel.send(frame)
+        except ConnectionClosed:
+            return
+
+    async def _deliver(self, after: float = 0.0) -> None:
+        await asyncio.sleep(after)
+        event = self._fleet.mailboxes.event(self._robot)
+        # Of this task alone: one that was ended may still be on its way out.
+        last = self._last = {False: 0, True: 0}
+        while True:
+            event.clear()
+            try:
+                if await self._send_waiting(last):
+                    await event.wait()
+            except ConnectionClosed:
+                return
+            except StoreError as error:
+                log.error("link %s: robot %r: %s", self._channel.name, self._robot, error)
+                await asyncio.sleep(RETRY_AFTER)
+            except Exception:
+                # Whatever it was: this robot must be told to stop by what comes after it.
+                log_unforeseen(log, f"link {self._channel.name}: what waits for robot {self._robot!r}")
+                await asyncio.sleep(RETRY_AFTER)
+
+    async def _send_waiting(self, last: dict[bool, int]) -> bool:
+        """Send the messages above ``last``, by urgency; return false when a stop made them out of date."""
+        stops = self._stops
+        for row in await self._fleet.mailboxes.outbox(self._robot, last[False], last[True]):
+            # Noted first: it must never be taken back as something that the robot cannot have. All else is
+            # noted afterwards, so that no Abort waits for the database, nor behind what does.
+            drives = row.op in HELD_BACK
+            is_due = not drives or await self._fleet.mailboxes.hand_over(self._robot, row.id)
+            if self._stops != stops:
+                return False
+            if is_due and (frame := await self._framed(row)) is not None:
+                async with self._channel.lane(urgent=bool(row.urgent), large=len(frame) > LARGE):
+                    # While this waited for its turn the robot may have been told to stop.
+                    if self._stops != stops:
+                        return False
+                    await self._channel.send(frame)
+            last[row.urgent] = row.id
+            if not drives:
+                await self._fleet.mailboxes.delivered([row.id])
+        return True
+
+    async def _framed(self, row: AnswerRow) -> str | None:
+        if row.payload is None and row.op == SetMap.__name__:
+            row = row._replace(payload=await self._fleet.maps.whole_or_around(self._robot))
+        # A city's map takes a while to be written as text, for which nobody else is to wait.
+        if row.payload is not None and row.op in PAYLOADS and len(row.payload) > LARGE:
+            return await asyncio.to_thread(self._large_frame, row, row.payload)
+        return self._frame(row)
+
+    def _large_frame(self, row: AnswerRow, payload: bytes) -> str | None:
+        """Return what :meth:`_frame` does, piece by piece: each holds up the other threads."""
+        frame = self._frame(row._replace(payload=b""))
+        if frame is None:
+            return None
+        head, name, tail = frame.rpartition(f'"{PAYLOADS[row.op]}":"')
+        pieces = (payload[begin : begin + PIECE] for begin in range(0, len(payload), PIECE))
+        return "".join([head, name, *(base64.b64encode(piece).decode("ascii") for piece in pieces), tail])
+
+    def _frame(self, row: AnswerRow) -> str | None:
+        """Return the call that delivers a message; None for one that cannot be read, which is left out."""
+        try:
+            return self._channel.call(row.op, _params(row), row.id)
+        except MessageError as error:
+            who = self._channel.name, row.id, self._robot
+            log.error("link %s: message %d for robot %r: %s", *who, error)
+            return None
+
+
+def _params(row: AnswerRow) -> dict[str, Any]:
+    params: dict[str, Any] = parse_params(row.op, row.params) or {}
+    return with_base64(row.op, params, row.payload)
+
+
+# --- One robot behind a channel: its requests, its acknowledgements, and its outbox ---
+
+_OTHERS = ("frames", "replies")
+"""What else than calls of an operation is refused."""
+POSITION = jsonrpc.Call("SendPos", None)
+ANEW = "the robot has connected anew"
+
+
+class RobotSession:
+    """One robot on one channel; ``admit`` is called when the robot has said Ready on it."""
+
+    def __init__(
+        self,
+        fleet: Fleet,
+        channel: Channel,
+        robot: str,
+        admit: Callable[[RobotSession], None],
+    ) -> None:
+        self.robot = robot
+        self._fleet = fleet
+        self._channel = channel
+        self._admit = admit
+        self._admitted = False
+        self._delivery = Delivery(fleet, channel, robot)
+        self._closing: asyncio.Task[None] | None = None
+        self._due: asyncio.Task[None] | None = None
+
+    # --- what its connection asks of it -----------------------------------------------------------------
+
+    @property
+    def is_replaced(self) -> bool:
+        """Whether the robot has connected anew elsewhere: what still comes in is passed over."""
+        return self._closing is not None
+
+    @property
+    def is_admitted(self) -> bool:
+        """Whether the robot has said Ready on this channel, and was let in."""
+        return self._admitted
+
+    def replace(self) -> None:
+        """Carry nothing more, because the robot has connected anew."""
+        self._delivery.end()
+        # A connection whose robot is gone takes seconds to close, and the new one must not wait for it.
+        self._closing = asyncio.create_task(self._channel.release(ANEW))
+
+    def end(self) -> None:
+        """Deliver nothing more: the channel is gone."""
+        self._delivery.end()
+
+    def stop_now(self, call_id: str, *, emergency: bool = True) -> None:
+        """Send the robot an Abort under the id ``call_id`` that waits for nothing."""
+        self._delivery.stop_now(call_id, emergency=emergency)
+
+    def outdate(self) -> None:
+        """Send nothing of what waits as it was read: the robot is told to stop with others of its link."""
+        self._delivery.outdate()
+
+    def ask_again(self) -> None:
+        """Send in a moment what it has not acknowledged: a reply of it was not dealt with."""
+        if self._admitted:
+            self._delivery.begin_later()
+
+    def measure(self) -> None:
+        """Note how long the last ping took there and back."""
+        if self._admitted and self._channel.round_trip is not None:
+            self._fleet.robots.measured(self.robot, self._channel.round_trip)
+
+    async def answers(self) -> bool:
+        """Tell whether the robot is there, as far as its channel knows."""
+        return await self._channel.answers()
+
+    # --- what comes in ------------------------------------------------------------------------------------
+
+    def take_pose(self, pose: SendPos) -> bool:
+        """Take in a position at once; false where something must be waited for, and nothing was done."""
+        if not self.listens():
+            return False
+        rest: Coroutine[Any, Any, None] | Exception | None
+        try:
+            rest = self._fleet.take_pose(self.robot, self._channel.name, pose)
+        except Exception as error:
+            rest = error
+        if rest is not None:
+            self.follow_up(rest)
+        return True
+
+    def listens(self) -> bool:
+        """Tell whether nothing has to be waited for before a position can be taken in."""
+        return self._admitted and self._closing is None and self._due is None
+
+    def follow_up(self, rest: Coroutine[Any, Any, None] | Exception) -> None:
+        """Store what a position brought about, or tell what is wrong with it; what comes after it waits."""
+        work = _failed(rest) if isinstance(rest, Exception) else rest
+        self._due = asyncio.create_task(self._store(work))
+
+    async def receive_pose(self, pose: SendPos) -> None:
+        """Take in a position behind what is still to be stored."""
+        await self._settled()
+        await self._answer(POSITION, self._ask(pose, None))
+
+    async def receive(self, message: jsonrpc.Call | jsonrpc.Reply) -> None:
+        """Deal with a call, or with the reply to one, behind what is still to be stored."""
+        await self._settled()
+        if isinstance(message, jsonrpc.Call):
+            await self._answer(message, self._receive_call(message))
+        else:
+            await self._receive_reply(message)
+
+    async def refuse_frame(self, error: jsonrpc.FrameError, *, large: bool = False) -> None:
+        """Tell the robot that a frame cannot be read, and operators too where it was too ``large``."""
+        await self._settled()
+        if large and self._admitted:
+            self._fleet.refuse_large(self.robot, self._channel.name, str(error))
+        self._warn("frames", f"{self._who}: {error}")
+        await self._channel.send(self._channel.error(error.id, error.code, str(error)))
+
+    async def _settled(self) -> None:
+        if self._due is not None:
+            await self._due
+
+    @property
+    def _who(self) -> str:
+        return f"link {self._channel.name}: robot {self.robot!r}"
+
+    async def _store(self, rest: Coroutine[Any, Any, None]) -> None:
+        """Store what a position brought about; what comes after it waits."""
+        try:
+            with contextlib.suppress(ConnectionClosed):
+                await self._answer(POSITION, self._outcome(rest))
+        finally:
+            self._due = None
+
+    async def _outcome(self, rest: Coroutine[Any, Any, None]) -> RequestOutcome:
+        await rest
+        return RequestOutcome(self.robot)
+
+    async def _receive_call(self, call: jsonrpc.Call) -> RequestOutcome:
+        request = decode_request(call.method, call.params)
+        return await self._ask(request, call.id if isinstance(call.id, int) else None)
+
+    async def _answer(self, call: jsonrpc.Call, work: Coroutine[Any, Any, RequestOutcome]) -> None:
+        """Await what comes of a call and tell the robot: acknowledged is only what has its answer stored."""
+        channel = self._channel
+        try:
+            outcome = await work
+            if outcome.answer is not None or outcome.admitted:
+                reader = self._delivery.reader
+                await self._fleet.mailboxes.finish([outcome], [], acks=False, reader=reader)
+        except (MessageError, BridgeError) as error:
+            self._warn(call.method, f"{self._who}: {error}")
+            await channel.send(channel.error(call.id, error_code(error), str(error)))
+            return
+        except ConnectionClosed:
+            raise
+        except Exception:
+            text = self._note_unforeseen(call.method, self._who)
+            await channel.send(channel.error(call.id, jsonrpc.INTERNAL_ERROR, text))
+            return
+        if call.id is not None:
+            await channel.send(channel.result(call.id, to_json(outcome.ack or OpAck())))
+        if call.method == Ready.__name__ and outcome.admitted:
+            self._delivery.begin()
+
+    async def _ask(self, request: Request, id: int | None) -> RequestOutcome:
+        if not isinstance(request, Ready):
+            if not self._admitted:
+                raise NotReadyError(
+                    f"robot {self.robot!r} has not said Ready on this connection; send Ready first"
+                )
+            return await self._fleet.receive(self.robot, self._channel.name, request, id)
+        # A robot that starts anew inside its own connection is no second one.
+        self._fleet.reception.holds.free(self.robot, self)
+        outcome = await self._fleet.receive(self.robot, self._channel.name, request, id)
+        if outcome.admitted:
+            self._admitted = True
+            self._admit(self)
+        return outcome
+
+    async def _receive_reply(self, reply: jsonrpc.Reply) -> None:
+        if not self._admitted:
+            return
+        try:
+            await self._take_reply(reply)
+        except DataRefusedError as error:
+            # Asked again it would say the same again, and for ever.
+            log.error("%s: %s; what it said is left out", self._who, error)
+        except StoreError as error:
+            log.warning("%s: %s; it will be asked again", self._who, error)
+            self.ask_again()
+        except (MessageError, BridgeError) as error:
+            self._warn("replies", f"{self._who}: {error}")
+        except Exception:
+            # There is no answer to an answer: what went wrong is between the log and whoever reads it.
+            self._note_unforeseen("replies", f"{self._who}, acknowledgement {reply.id}")
+
+    async def _take_reply(self, reply: jsonrpc.Reply) -> None:
+        if isinstance(reply.id, str):
+            self._fleet.emergency.answered(self.robot, reply.id, refused=reply.error is not None)
+            return
+        ack = OpAck(id=reply.id, ok=reply.error is None, reason=reply.error)
+        await self._fleet.receive(self.robot, self._channel.name, ack, None)
+
+    def _warn(self, method: str, line: str) -> None:
+        """Count a refusal, and write it into the log unless it comes again and again."""
+        self._fleet.tally.refused[self._channel.name] += 1
+        self._fleet.repeated.warn(log, self._key_of(method), line)
+
+    def _note_unforeseen(self, method: str, who: str) -> str:
+        return self._fleet.repeated.note_unforeseen(log, self._key_of(method), who)
+
+    def _key_of(self, method: str) -> tuple[str, ...]:
+        what = method if method in REQUESTS or method in _OTHERS else "unknown operations"
+        return f"link {self._channel.name}:", "robot", repr(self.robot), what
+
+
+async def _failed(error: Exception) -> None:
+    """Raise what went wrong where every other error is told of."""
+    raise error
+
+
+# --- A robot's own WebSocket: JSON-RPC 2.0 with the operation codes of the paper as methods ---
+# A robot's requests are calls (SendPos and Alive may be notifications), and the gateway's OpAck is the
+# result. The gateway's messages are calls whose id is that of the message; the robot's OpAck is the result,
+# or an error where it will not do it.
+
+NAME = "websocket"
+FRAME_PIECE = 1 << 18
+"""characters of a message that are sent as one frame."""
+PING_TIMEOUT = 1.0
+"""seconds after which a robot counts as gone when another one comes under its name."""
+REPLACED = 4001
+"""Close code for a connection whose robot has connected anew."""
+
+
+class RobotChannel:
+    """The WebSocket of one robot, as its :class:`.robot_session.Channel`."""
+
+    name = NAME
+
+    def __init__(self, connection: ClientConnection) -> None:
+        self._connection = connection
+
+    @property
+    def round_trip(self) -> float | None:
+        """Seconds that the last ping took there and back."""
+        return self._connection.round_trip
+
+    def call(self, method: str, params: Any = None, id: int | str | None = None) -> str:
+        """Return the frame of a request."""
+        return jsonrpc.call(method, params, id)
+
+    def result(self, id: int | str | None, value: Any) -> str:
+        """Return the frame of a result."""
+        return jsonrpc.result(id, value)
+
+    def error(self, id: int | str | None, code: int, text: str) -> str:
+        """Return the frame of an error."""
+        return jsonrpc.error(id, code, text)
+
+    def lane(self, *, urgent: bool, large: bool) -> AbstractAsyncContextManager[None]:
+        """Wait for nobody: the connection is the robot's alone."""
+        return nullcontext()
+
+    async def send(self, frame: str) -> None:
+        """Send a frame."""
+        await send_frame(self._connection, frame)
+
+    async def answers(self) -> bool:
+        """Tell whether the robot answers a ping within a second."""
+        return await is_answering(self._connection)
+
+    async def release(self, reason: str) -> None:
+        """Close the connection."""
+        await self._connection.close(REPLACED, reason)
+
+
+class RobotConnection:
+    """One connection of one robot, from its Start to its end."""
+
+    def __init__(
+        self, fleet: Fleet, connection: ClientConnection, robot: str, admit: Callable[[RobotSession], None]
+    ) -> None:
+        self._fleet = fleet
+        self._connection = connection
+        self._channel = RobotChannel(connection)
+        self.session = RobotSession(fleet, self._channel, robot, admit)
+
+    async def run(self) -> bool:
+        """Serve the connection to its end; return true if the robot closed it in good order."""
+        try:
+            greeting = to_json(self._fleet.reception.greeting())
+            await self._connection.send(self._channel.call("Start", greeting))
+            if (call_id := self._fleet.emergency.call_id) is not None:
+                self.session.stop_now(call_id)
+            self._connection.short_cut.handler = self._take_at_once
+            async for frame in self._connection:
+                if not self.session.is_replaced:
+                    await self._receive(frame)
+        except ConnectionClosedOK:
+            return True
+        except ConnectionClosed:
+            return False
+        finally:
+            self.session.end()
+        return self._connection.close_code in (1000, 1001)
+
+    def _take_at_once(self, frame: bytes) -> bool:
+        """Take in a position; false for everything else, and while something must be waited for."""
+        pose = decode_position(frame)
+        return pose is not None and self.session.take_pose(pose)
+
+    async def _receive(self, frame: str | bytes) -> None:
+        if len(frame) <= LARGEST_MESSAGE and (pose := decode_position(frame)) is not None:
+            await self.session.receive_pose(pose)
+            return
+        large = True
+        try:
+            check_size(frame, LARGEST_MESSAGE)
+            large = False
+            message = jsonrpc.decode(frame)
+        except jsonrpc.FrameError as error:
+            await self.session.refuse_frame(error, large=large)
+            return
+        await self.session.receive(message)
+
+
+async def send_frame(connection: ClientConnection, frame: str) -> None:
+    """Send a message, a large one in several frames: as one it would hold the gateway up while it is copied.
+
+    It is sent to its end though whoever sends it is cancelled: nothing could follow one that is cut off.
+    """
+    if len(frame) <= FRAME_PIECE:
+        await connection.send(frame)
+    else:
+        await to_its_end(connection.send(_pieces(frame)))
+
+
+async def _pieces(frame: str) -> AsyncIterator[str]:
+    for begin in range(0, len(frame), FRAME_PIECE):
+        yield frame[begin : begin + FRAME_PIECE]
+        # A connection that takes everything at once waits for nothing, and others are to have their turn.
+        await asyncio.sleep(0)
+
+
+async def is_answering(connection: ClientConnection) -> bool:
+    """Tell whether a client answers a ping within a second."""
+    try:
+        async with asyncio.timeout(PING_TIMEOUT):
+            await (await connection.ping())
+    except (ConnectionClosed, TimeoutError):
+        return False
+    return True

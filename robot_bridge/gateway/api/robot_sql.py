@@ -1,0 +1,188 @@
+"""The paper's link: robots insert into RR, read their rows of SA and delete them (section IV)."""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+import time
+from collections.abc import Iterable
+from typing import NamedTuple
+
+from ...core.errors import DataRefusedError, NotReadyError, OtherRunError, RefusedError, StoreError
+from ...core.logs import log_unforeseen
+from ...core.messages import PAYLOADS, REQUESTS, MessageError, OpAck, check_robot_name
+from ...core.messages.validation import LARGEST_MESSAGE
+from ...protocol.codec import decode_request, parse_params
+from ..fleet.outbox import RequestOutcome
+from ..fleet.service import Fleet
+from ..storage.database import Database
+from ..storage.repositories import requests
+from ..storage.repositories.requests import AT_ONCE, RequestRow
+from ..storage.wakeups import GATEWAY_CHANNEL
+
+log = logging.getLogger(__name__)
+
+NAME = "sql"
+TURN_S = 0.01
+"""Rows are dealt with for so long before whatever else waits has its turn, such as an emergency stop."""
+RETRY_AFTER = 1.0
+BEAT = "sql link"
+"""The name under which each look at the tables is noted."""
+
+
+class HandledRequests(NamedTuple):
+    """What came of some requests of one robot, and their ids."""
+
+    outcomes: list[RequestOutcome]
+    ids: list[int]
+
+
+class SqlInterface:
+    """Watches RR and SA. A robot's requests are dealt with in their order; one that fails is answered."""
+
+    def __init__(self, fleet: Fleet, database: Database) -> None:
+        self._fleet = fleet
+        self._database = database
+        self._seen_version: int | None = None
+        self._waited_up_to: int | None = None
+        """the newest request from before this link read any; None until it is known."""
+        self._greeted: set[str] = set()
+        self._turn_ends = 0.0
+
+    async def run(self) -> None:
+        """Serve until cancelled; a database that fails for a while is tried again."""
+        wakeup = self._database.wakeup(GATEWAY_CHANNEL)
+        try:
+            while True:
+                try:
+                    found = await self.poll()
+                    if not found and await wakeup.doze():
+                        found = await self.poll()
+                    self._fleet.tally.beat(BEAT)
+                    await wakeup.wait(found=found)
+                except StoreError as error:
+                    log.error("link sql: %s; trying again in %g s", error, RETRY_AFTER)
+                    await asyncio.sleep(RETRY_AFTER)
+        finally:
+            await wakeup.close()
+
+    async def poll(self) -> bool:
+        """Look once whether robots wrote or deleted something, and deal with it; tell whether they did.
+
+        Raises StoreError; what waits is then looked at anew.
+        """
+        try:
+            return await self._poll()
+        except StoreError:
+            self._seen_version = self._waited_up_to = None
+            raise
+
+    async def _poll(self) -> bool:
+        version = await self._database.version()
+        if version is not None and version == self._seen_version:
+            return False
+        if self._waited_up_to is None:
+            self._waited_up_to = await self._fleet.mailboxes.take_up()
+        found = False
+        while rows := await self._fleet.mailboxes.look(NAME):
+            found = True
+            await self._deal_with_all(rows)
+            if len(rows) < AT_ONCE:
+                break
+        self._seen_version = version
+        return found
+
+    async def _deal_with_all(self, rows: list[RequestRow]) -> None:
+        """Deal with requests side by side, those of one robot one after the other."""
+        by_robot: dict[str, list[RequestRow]] = {}
+        for row in rows:
+            by_robot.setdefault(row.robot, []).append(row)
+        dealt = await asyncio.gather(*map(self._deal_with_robot, by_robot.values()), return_exceptions=True)
+        done = [
+            HandledRequests(result, [row.id for row in some])
+            for some, result in zip(by_robot.values(), dealt, strict=True)
+            if not isinstance(result, BaseException)
+        ]
+        # Whose requests were dealt with is answered, whatever is the matter with another robot's.
+        await self._finish(done)
+        for result in dealt:
+            if isinstance(result, BaseException):
+                raise result
+
+    async def _deal_with_robot(self, rows: Iterable[RequestRow]) -> list[RequestOutcome]:
+        outcomes = []
+        for row in rows:
+            if (outcome := await self._deal_with(row)) is not None:
+                outcomes.append(outcome)
+            if time.monotonic() > self._turn_ends:
+                await asyncio.sleep(0)
+                self._turn_ends = time.monotonic() + TURN_S
+        return outcomes
+
+    async def _finish(self, dealt: list[HandledRequests]) -> None:
+        """Store what came of robots' requests: all at once, else each robot's by itself."""
+        outcomes = [outcome for one in dealt for outcome in one.outcomes]
+        ids = [id for one in dealt for id in one.ids]
+        try:
+            await self._fleet.mailboxes.finish(outcomes, ids, acks=True)
+        except DataRefusedError:
+            if len(dealt) > 1:
+                for one in dealt:
+                    await self._finish([one])
+                return
+            # Nothing that the gateway writes should be refused; what is must not come back for ever.
+            log_unforeseen(log, f"link sql: requests {ids}, which stay without an answer")
+            await self._fleet.mailboxes.finish([], ids, acks=True)
+
+    async def _deal_with(self, row: RequestRow) -> RequestOutcome | None:
+        try:
+            check_robot_name(row.robot)
+            self._check_size(row)
+            request = decode_request(row.op, parse_params(row.op, row.params), await self._payload(row))
+            waited = row.id <= (self._waited_up_to or 0)
+            return await self._fleet.receive(row.robot, NAME, request, row.id, waited=waited)
+        except NotReadyError:
+            return self._greet(row.robot)
+        except (MessageError, RefusedError, DataRefusedError) as error:
+            self._fleet.tally.refused[NAME] += 1
+            text = f"link sql: request {row.id} of robot {row.robot!r}: {error}"
+            self._fleet.repeated.warn(log, _key_of(row), text)
+            if isinstance(error, OtherRunError) and not REQUESTS[row.op].acknowledged:
+                # It waits for no answer, and whose account it is would be buried in them.
+                return None
+            return _refusal(row, str(error))
+        except StoreError:
+            raise
+        except Exception:
+            who = f"link sql: request {row.id} of robot {row.robot!r}"
+            text = self._fleet.repeated.note_unforeseen(log, _key_of(row), who)
+            return _refusal(row, f"{row.op}: {text}")
+
+    def _check_size(self, row: RequestRow) -> None:
+        if row.size is None or row.size <= LARGEST_MESSAGE:
+            return
+        text = f"{row.op}: params has {row.size} characters; at most {LARGEST_MESSAGE} are taken"
+        if row.id > (self._waited_up_to or 0):
+            self._fleet.refuse_large(row.robot, NAME, text)
+        raise MessageError(text)
+
+    async def _payload(self, row: RequestRow) -> bytes | None:
+        if row.op not in PAYLOADS:
+            return None
+        return await self._database.run(requests.payload, row.id, self._fleet.observations.check_size)
+
+    def _greet(self, robot: str) -> RequestOutcome | None:
+        """Tell a robot that never said Ready that it may, once: it sends positions many times a second."""
+        if robot in self._greeted:
+            return None
+        self._greeted.add(robot)
+        return RequestOutcome(robot, answer=self._fleet.reception.greeting())
+
+
+def _key_of(row: RequestRow) -> tuple[str, ...]:
+    """Return what lines of the log about such rows are counted under."""
+    return "link sql:", "robot", repr(row.robot), row.op if row.op in REQUESTS else "unknown operations"
+
+
+def _refusal(row: RequestRow, reason: str) -> RequestOutcome:
+    return RequestOutcome(row.robot, OpAck(id=row.id, ok=False, reason=reason))

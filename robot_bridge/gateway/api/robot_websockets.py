@@ -1,0 +1,453 @@
+"""WebSockets of links and robots: messages of many robots over one connection, and who holds which robot."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import itertools
+import logging
+from collections import Counter
+from collections.abc import AsyncIterator, Callable, Coroutine
+from typing import Any, TypeVar
+
+import msgspec
+from websockets.exceptions import ConnectionClosed
+
+from ...core.errors import BridgeError, BusyError, ForbiddenError, NotReadyError, RefusedError, SiteError
+from ...core.json_decoder import DecodingError
+from ...core.logs import log_and_continue
+from ...core.messages import MessageError, Ready, SendImage, check_robot_name, refuse_unknown_keys, to_json
+from ...core.messages.links import (
+    LINK_PROTOCOL,
+    AbortOfAll,
+    GetAreas,
+    LinkHello,
+    LinkPositions,
+    LinkStatus,
+    LinkWelcome,
+)
+from ...core.messages.validation import LARGEST_MESSAGE
+from ...core.position_frame import entries_in, poses_in_frame
+from ...core.sites.site import Site, areas_in_box
+from ...protocol import jsonrpc
+from ...protocol.codec import check_size, error_code
+from ..auth.accounts import speaks_for
+from ..auth.connection import ClientConnection
+from ..auth.gate import ANY_LINK, AuthGate
+from ..fleet.link_supervision import ConnectedLink
+from ..fleet.service import Fleet
+from ..model.robots import RobotPose
+from .robot_session import RobotConnection, RobotSession, is_answering, send_frame
+from .shared_connection import SEPARATOR, LinkedRobotChannel
+
+# --- A link's WebSocket: the messages of many robots over one connection ---
+# Every message of a robot is that of its own connection, with its name as ``robot`` among the params. What
+# one
+# robot of a link does wrong concerns that robot alone. What stops robots waits for nothing.
+
+log = logging.getLogger(__name__)
+
+ANSWER_WITHIN = 5.0
+"""seconds that a link has to answer what it is asked for itself."""
+MOST_ASKED = 20
+"""questions to a link that wait for its answer."""
+
+Message = TypeVar("Message", LinkHello, LinkStatus, GetAreas)
+
+
+class LinkConnection:
+    """One connection of a link, from its Start to its end, and the robots that it speaks for.
+
+    ``admit`` is called when a robot has said Ready by it, ``let_go`` when it speaks for one no more.
+    """
+
+    def __init__(
+        self,
+        fleet: Fleet,
+        connection: ClientConnection,
+        gate: AuthGate,
+        admit: Callable[[RobotSession], None],
+        let_go: Callable[[RobotSession], bool],
+    ) -> None:
+        assert connection.identity is not None
+        self.name = connection.identity.name or ANY_LINK
+        self.kind: str | None = None
+        self.status: LinkStatus | None = None
+        self._fleet = fleet
+        self._connection = connection
+        self._gate = gate
+        self._admit = admit
+        self._let_go = let_go
+        self._places: dict[str, LinkedRobotChannel] = {}
+        self._robots = gate.spoken_for(connection)
+        self._turn, self._large = asyncio.Lock(), asyncio.Lock()
+        self._tasks: set[asyncio.Task[None]] = set()
+        self._numbers = itertools.count(1)
+        self._asked: dict[str, asyncio.Future[jsonrpc.Reply]] = {}
+
+    # --- what the gateway asks of it --------------------------------------------------------------------
+
+    def sessions(self) -> list[RobotSession]:
+        """Return the robots that it speaks for now."""
+        return [place.session for place in self._places.values()]
+
+    async def run(self) -> None:
+        """Serve the connection to its end."""
+        try:
+            await self.send(jsonrpc.call("Start", to_json(self._fleet.reception.greeting())))
+            if (call_id := self._fleet.emergency.call_id) is not None:
+                self.stop_all(call_id)
+            async for frame in self._connection:
+                await self._receive(frame)
+        except ConnectionClosed:
+            return
+        finally:
+            self._fleet.links.withdraw(self.name, self.ask)
+            for answer in self._asked.values():
+                answer.cancel()
+            for place in self._places.values():
+                place.end()
+
+    async def ask(self, method: str, params: dict[str, Any]) -> Any:
+        """Call a method of the link itself, and return its result; raises RefusedError."""
+        if len(self._asked) >= MOST_ASKED:
+            raise RefusedError(f"link {self.name} has not answered yet what it was asked before")
+        id = f"link-{next(self._numbers)}"
+        answer = self._asked[id] = asyncio.get_running_loop().create_future()
+        try:
+            async with asyncio.timeout(ANSWER_WITHIN):
+                await self.send(jsonrpc.call(method, params, id))
+                await asyncio.wait([answer])
+        except (ConnectionClosed, TimeoutError):
+            raise RefusedError(f"link {self.name} does not answer; is it connected?") from None
+        finally:
+            del self._asked[id]
+        if answer.cancelled():
+            raise RefusedError(f"link {self.name} has just ended")
+        reply = answer.result()
+        if reply.error is not None:
+            raise RefusedError(f"link {self.name}: {reply.error[:500]}")
+        return reply.result
+
+    def stop_all(self, call_id: str) -> None:
+        """Tell the link that all its robots must stop, those as well that have not said Ready by it.
+
+        One frame for all; each robot answers to it by a reply with its own name before the id.
+        """
+        for place in self._places.values():
+            place.session.outdate()
+        self._begin(self.send(jsonrpc.call(AbortOfAll.method, to_json(AbortOfAll(call_id)))))
+
+    def update(self) -> None:
+        """Let go the robots that it may not speak for any more."""
+        robots = self._gate.spoken_for(self._connection)
+        if robots == self._robots:
+            return
+        self._robots = robots
+        for place in list(self._places.values()):
+            if not speaks_for(robots, place.robot):
+                self._let_go(place.session)
+                self._begin(place.release(f"link {self.name} may not speak for it any more"))
+
+    # --- what its robots share ----------------------------------------------------------------------------
+
+    @property
+    def round_trip(self) -> float | None:
+        """Seconds that the last ping took there and back."""
+        return self._connection.round_trip
+
+    @contextlib.asynccontextmanager
+    async def lane(self, *, urgent: bool, large: bool) -> AsyncIterator[None]:
+        """Wait for the turn of a message: a small one waits for two large ones at most."""
+        if urgent:
+            yield
+        elif large:
+            async with self._large, self._turn:
+                yield
+        else:
+            async with self._turn:
+                yield
+
+    async def send(self, frame: str) -> None:
+        """Write a message."""
+        await send_frame(self._connection, frame)
+
+    async def answers(self) -> bool:
+        """Tell whether the link answers a ping within a second."""
+        return await is_answering(self._connection)
+
+    def forget(self, place: LinkedRobotChannel) -> None:
+        """Carry nothing more for a robot, until the link says Ready for it again."""
+        if self._places.get(place.robot) is place:
+            del self._places[place.robot]
+
+    def _begin(self, work: Coroutine[Any, Any, None]) -> None:
+        task = asyncio.create_task(_while_connected(work))
+        self._tasks.add(task)
+        task.add_done_callback(self._tasks.discard)
+
+    # --- what comes in ------------------------------------------------------------------------------------
+
+    async def _receive(self, frame: str | bytes) -> None:
+        id: int | str | None = None
+        try:
+            if isinstance(frame, bytes):
+                await self._take_frame(frame)
+                return
+            check_size(frame, LARGEST_MESSAGE, (SendImage.__name__, LinkPositions.method))
+            message = jsonrpc.decode(frame)
+            id = message.id
+            if isinstance(message, jsonrpc.Call):
+                await self._take_call(message)
+            else:
+                self._take_reply(message)
+        except jsonrpc.FrameError as error:
+            await self._refuse(error.id, error, code=error.code)
+        except (MessageError, BridgeError, DecodingError) as error:
+            await self._refuse(id, error)
+        except ConnectionClosed:
+            raise
+        except Exception:
+            # Whatever it was, it ends no connection by which other robots are told to stop.
+            key = f"link {self.name}:", "unforeseen"
+            text = self._fleet.repeated.note_unforeseen(log, key, f"link {self.name}")
+            await self.send(jsonrpc.error(id, jsonrpc.INTERNAL_ERROR, text))
+
+    async def _take_call(self, call: jsonrpc.Call) -> None:
+        if call.method == LinkHello.method:
+            welcome = self._welcome(_decoded(LinkHello, call))
+            await self.send(jsonrpc.result(call.id, to_json(welcome)))
+        elif self.kind is None:
+            raise NotReadyError(f"link {self.name} has not said hello on this connection; send hello first")
+        elif call.method == LinkStatus.method:
+            self.status = _decoded(LinkStatus, call)
+            if call.id is not None:
+                await self.send(jsonrpc.result(call.id, {}))
+        elif call.method == GetAreas.method:
+            # Those of a city take a moment, and its robots' messages are not to wait.
+            self._begin(self._tell_areas(call.id, _decoded(GetAreas, call)))
+        elif call.method == LinkPositions.method:
+            for entry in entries_in(call.params):
+                method = "SendGPS" if "lat" in entry else "SendPos"
+                await self._take_robot_call(jsonrpc.Call(method, entry))
+        else:
+            await self._take_robot_call(call)
+
+    def _welcome(self, hello: LinkHello) -> LinkWelcome:
+        self.kind = hello.kind
+        self._fleet.links.introduce(self.name, hello.kind, self.ask)
+        site = self._fleet.site
+        return LinkWelcome(
+            LINK_PROTOCOL,
+            self.name,
+            list(self._robots),
+            self._fleet.reception.database_id,
+            site.report,
+            site.settings.observations.largest_image_bytes,
+        )
+
+    async def _tell_areas(self, id: int | str | None, wanted: GetAreas) -> None:
+        site = self._fleet.site.site
+        await self.send(await asyncio.to_thread(_areas_reply, id, site, wanted))
+
+    async def _take_robot_call(self, call: jsonrpc.Call) -> None:
+        robot = call.params.get("robot") if isinstance(call.params, dict) else None
+        try:
+            place = self._place_of(robot, admits=call.method == Ready.__name__)
+        except (MessageError, BridgeError) as error:
+            await self._refuse(call.id, error, robot)
+            return
+        params = {name: value for name, value in call.params.items() if name != "robot"}
+        place.add(place.session.receive(jsonrpc.Call(call.method, params, call.id)))
+
+    def _place_of(self, robot: object, *, admits: bool = False) -> LinkedRobotChannel:
+        """Return the place of the robot that a message is about; raises MessageError and BridgeError."""
+        place = self._places.get(robot) if isinstance(robot, str) else None
+        if place is None:
+            place = self._new_place(robot, admits=admits)
+        if not place.count():
+            raise BusyError(f"robot {place.robot!r} says too much; wait {place.wait:.2f} s and send less")
+        return place
+
+    def _new_place(self, robot: object, *, admits: bool) -> LinkedRobotChannel:
+        if self.kind is None:
+            raise NotReadyError(f"link {self.name} has not said hello on this connection; send hello first")
+        if not isinstance(robot, str):
+            raise MessageError(f"robot is {robot!r:.40}; give the name of the robot that this is about")
+        check_robot_name(robot)
+        if not speaks_for(self._robots, robot):
+            raise ForbiddenError(
+                f"link {self.name} may not speak for robot {robot!r}, only for {' '.join(self._robots)}; "
+                f"'robot-bridge links robots {self.name} --robots ...' changes that"
+            )
+        if not admits:
+            raise NotReadyError(
+                f"robot {robot!r} has not said Ready on this connection; send Ready for it first"
+            )
+        limits = self._gate.limits
+        if len(self._places) >= limits.robots:
+            raise BusyError(f"link {self.name} speaks for {limits.robots} robots; there is room for no more")
+        place = self._places[robot] = LinkedRobotChannel(self._fleet, self, robot, limits, self._admit)
+        return place
+
+    async def _take_frame(self, frame: bytes) -> None:
+        """Take in where many robots are; what is wrong with one concerns that one."""
+        at_once: list[RobotPose] = []
+        refused: list[tuple[str, Exception]] = []
+        for robot, pose in poses_in_frame(frame):
+            try:
+                place = self._places.get(robot) or self._new_place(robot, admits=False)
+                if isinstance(pose, MessageError):
+                    raise pose
+                if not place.count():
+                    raise BusyError(f"robot {robot!r} says too much; wait {place.wait:.2f} s and send less")
+            except (MessageError, BridgeError) as error:
+                refused.append((robot, error))
+                continue
+            if place.listens():
+                at_once.append((robot, pose))
+            else:
+                place.add(place.session.receive_pose(pose))
+        for robot, rest in self._fleet.take_poses(self.name, at_once):
+            self._places[robot].session.follow_up(rest)
+        for robot, fault in refused:
+            await self._refuse(None, fault, robot)
+
+    def _take_reply(self, reply: jsonrpc.Reply) -> None:
+        if (answer := self._asked.get(str(reply.id))) is not None:
+            if not answer.done():
+                answer.set_result(reply)
+            return
+        robot, separator, id = str(reply.id).rpartition(SEPARATOR)
+        place = self._places.get(robot)
+        if not separator or place is None:
+            raise MessageError(f"a reply to {str(reply.id)[:80]!r}, which no robot of this link was asked")
+        if not place.count_reply():
+            raise BusyError(f"robot {robot!r} answers too much; it is asked again")
+        own_id = int(id) if id.isascii() and id.isdigit() and len(id) < 20 else id
+        place.add(place.session.receive(jsonrpc.Reply(own_id, reply.result, reply.error, reply.code)))
+
+    async def _refuse(
+        self, id: int | str | None, error: Exception, robot: object = None, code: int | None = None
+    ) -> None:
+        """Tell the link why a message counts for nothing, and which robot that concerns."""
+        self._fleet.tally.refused[self.name] += 1
+        whom = f"link {self.name}:" if robot is None else f"link {self.name}: robot {str(robot)[:63]!r}:"
+        self._fleet.repeated.warn(log, (f"link {self.name}:", type(error).__name__), f"{whom} {error}")
+        data = None if robot is None else {"robot": robot}
+        await self.send(jsonrpc.error(id, code or error_code(error), str(error), data))
+
+
+def _areas_reply(id: int | str | None, site: Site, wanted: GetAreas) -> str:
+    """Return the reply with what the site has in a box; may take long."""
+    try:
+        return jsonrpc.result(id, to_json(areas_in_box(site, wanted.box)))
+    except SiteError as error:
+        return jsonrpc.error(id, jsonrpc.REFUSED, str(error))
+
+
+def _decoded(cls: type[Message], call: jsonrpc.Call) -> Message:
+    """Return the link's own message in a call; raises MessageError."""
+    params = call.params or {}
+    try:
+        message = msgspec.convert(params, cls)
+        refuse_unknown_keys(cls, params)
+    except (msgspec.ValidationError, MessageError) as error:
+        raise MessageError(f"{call.method}: {error}") from None
+    return message
+
+
+async def _while_connected(work: Coroutine[Any, Any, None]) -> None:
+    with contextlib.suppress(ConnectionClosed):
+        await work
+
+
+# --- Robots on WebSocket, by connections of their own and by links: which of them holds which robot ---
+
+
+class WebSocketInterface:
+    """Serves the connections of robots; the one on which a robot said Ready last is the one that counts."""
+
+    def __init__(self, fleet: Fleet) -> None:
+        self._fleet = fleet
+        self._names: Counter[str] = Counter()
+        self._sessions: set[RobotSession] = set()
+        self._links: set[LinkConnection] = set()
+        self._holders: dict[str, RobotSession] = {}
+        fleet.emergency.reach(self._stop_all)
+        fleet.orders.reach(self._abort)
+
+    async def serve(self, connection: ClientConnection, robot: str | None) -> None:
+        """Serve one connection to its end; without a name the robot is given one."""
+        name = robot or self._free_name()
+        own = RobotConnection(self._fleet, connection, name, self._admit)
+        self._names[name] += 1
+        self._sessions.add(own.session)
+        try:
+            in_order = await own.run()
+        finally:
+            self._sessions.discard(own.session)
+            self._names -= Counter([name])
+            held = self._let_go(own.session)
+        if in_order and held:
+            self._fleet.closed(name)
+
+    async def serve_link(self, connection: ClientConnection, gate: AuthGate) -> None:
+        """Serve a link to its end. Its robots may drive on: they are lost by the ordinary clocks."""
+        link = LinkConnection(self._fleet, connection, gate, self._admit, self._let_go)
+        self._links.add(link)
+        try:
+            await link.run()
+        finally:
+            self._links.discard(link)
+            for session in link.sessions():
+                self._let_go(session)
+
+    def links(self) -> list[ConnectedLink]:
+        """Return the links that are connected now."""
+        return [
+            ConnectedLink(link.name, link.kind, link.status, len(link.sessions())) for link in self._links
+        ]
+
+    def update(self) -> None:
+        """Note the latency of every robot's connection, and let go what links may not speak for any more."""
+        for link in list(self._links):
+            with log_and_continue(log, f"looking after link {link.name}"):
+                link.update()
+        for session in self._holders.values():
+            session.measure()
+
+    def _stop_all(self, call_id: str) -> None:
+        for link in list(self._links):
+            with log_and_continue(log, f"telling link {link.name} of an emergency stop"):
+                link.stop_all(call_id)
+        for session in list(self._sessions):
+            with log_and_continue(log, f"telling robot {session.robot!r} of an emergency stop"):
+                session.stop_now(call_id)
+
+    def _abort(self, robot: str, call_id: str) -> bool:
+        """Send an Abort that cannot be stored; return whether the robot is connected."""
+        session = self._holders.get(robot)
+        if session is not None:
+            session.stop_now(call_id, emergency=False)
+        return session is not None
+
+    def _admit(self, session: RobotSession) -> None:
+        """Let ``session`` be the connection of its robot, and end the one before."""
+        former = self._holders.get(session.robot)
+        self._holders[session.robot] = session
+        self._fleet.reception.holds.take(session.robot, session)
+        if former is not None and former is not session:
+            former.replace()
+
+    def _let_go(self, session: RobotSession) -> bool:
+        """Note that ``session`` is gone; return whether its robot was connected by it."""
+        held = self._holders.get(session.robot) is session
+        if held:
+            self._fleet.reception.holds.free(session.robot, session)
+            del self._holders[session.robot]
+        return held
+
+    def _free_name(self) -> str:
+        taken = {*self._fleet.robots.names(), *self._names}
+        return next(name for n in range(1, len(taken) + 2) if (name := f"robot-{n}") not in taken)

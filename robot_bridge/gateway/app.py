@@ -1,0 +1,381 @@
+"""The gateway: its parts wired together, started and stopped."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import http
+import logging
+import socket
+import time
+from collections.abc import Callable, Coroutine, Iterable
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, field
+from pathlib import Path
+from urllib.parse import parse_qs, urlsplit
+
+from sqlalchemy import URL
+from websockets.asyncio.server import Server, ServerConnection
+from websockets.frames import CloseCode
+from websockets.http11 import Request, Response
+
+from ..core.errors import BridgeError, SiteError, StoreError
+from ..core.messages import MessageError, Stopping, check_robot_name, to_json
+from ..core.sites.site import Site, check_site, frame_mismatch, read_site
+from ..protocol.asyncapi import served
+from ..protocol.credentials import AccessError
+from .api.http_pages import HEALTH, METRICS, StatusPages
+from .api.operator_server import OperatorSession
+from .api.robot_sql import SqlInterface
+from .api.robot_websockets import WebSocketInterface
+from .auth.accounts import TokenKind, check_link_name
+from .auth.connection import ClientConnection
+from .auth.gate import PATHS, AuthGate
+from .auth.port import check_reach, host_fault, is_loopback, listen
+from .auth.tls import ServerFiles, ServerTls
+from .fleet.emergency_persistence import StopJournal, journal_file
+from .fleet.link_supervision import LinkProcesses
+from .fleet.service import Fleet
+from .model.clocks import ClockWatch, check_clock_at_start
+from .monitoring.metrics import Metrics
+from .monitoring.tasks import GarbageCollection, Work, every, keep_all_going
+from .retention import Retention
+from .site.site_maps import SiteMaps
+from .site_watch import SiteWatch, stamp_of
+from .storage.database import Database
+from .storage.repositories import metadata
+from .storage.repositories.metadata import newest_time
+from .storage.roles.choice import has_accounts
+from .storage.singleton_lock import SingletonLock
+from .traffic.road_planning import RoadPlanner
+
+# --- The end of a gateway in good order: every client is told, and none of them holds it up ---
+
+REASON = "the gateway ends; connect again after a while"
+FIRST_WORDS = 0.1
+"""seconds for operators' sessions to send what they are told last."""
+CLOSED_WITHIN = 0.8
+"""seconds for the closing handshakes, all at once; who has not closed by then is cut off."""
+
+
+async def notify_clients(server: Server, fleet: Fleet) -> None:
+    """Take no more connections, tell operators ``stopping``, and close every connection with code 1012."""
+    server.close(close_connections=False)
+    fleet.listeners.announce("stopping", "", to_json(Stopping(REASON)))
+    await asyncio.sleep(FIRST_WORDS)
+    connections: Iterable[ServerConnection] = list(server.connections)
+    closing = [asyncio.create_task(_close(connection)) for connection in connections]
+    if closing:
+        await asyncio.wait(closing, timeout=CLOSED_WITHIN)
+    for connection in list(server.handlers):
+        connection.transport.abort()
+    try:
+        async with asyncio.timeout(CLOSED_WITHIN):
+            await server.wait_closed()
+    except TimeoutError:
+        pass  # a handler that does not end, for whatever reason, ends with the process
+
+
+async def _close(connection: ServerConnection) -> None:
+    if isinstance(connection, ClientConnection):
+        await connection.expel(CloseCode.SERVICE_RESTART, REASON)
+    else:
+        await connection.close(CloseCode.SERVICE_RESTART, REASON)
+
+
+# --- The gateway: puts the parts together, starts and stops them ---
+
+log = logging.getLogger(__name__)
+
+AGE_INTERVAL = 0.25
+SAVE_INTERVAL = 1.0
+GARBAGE_INTERVAL = 1.0
+STUCK_INTERVAL = 5.0
+SUSPEND_INTERVAL = 0.5
+PRUNE_INTERVAL = 60.0
+ROADS_INTERVAL = 1.0
+GEOFENCE_INTERVAL = 0.25
+NEARNESS_INTERVAL = 0.5
+MOST_THREADS = 32
+ENDPOINTS = {path: kind for kind, path in PATHS.items()}
+SAVE_WITHIN, CLOSE_WITHIN = 2.2, 0.5
+"""seconds for the last words to the database, so that a gateway ends within five in all."""
+
+
+@dataclass(frozen=True)
+class GatewaySettings:
+    """What a gateway is started with; port 0 takes any free one.
+
+    ``state`` is the folder for what it notes on this computer, None for the one that the site's lies in.
+    A site that a supervisor chose goes before ``site``, unless it is to be served ``site_as_given``.
+    """
+
+    site: Path
+    database: URL
+    host: str = "127.0.0.1"
+    port: int = 8765
+    tls: ServerFiles | None = None
+    state: Path | None = None
+    site_as_given: bool = False
+
+
+@dataclass
+class Signals:
+    """What a gateway is told from outside while it runs: to end, and to read its settings anew."""
+
+    stop: asyncio.Event = field(default_factory=asyncio.Event)
+    reload: asyncio.Event = field(default_factory=asyncio.Event)
+
+
+class Gateway:
+    """One site, one database, one port with ``/robot``, ``/desk`` and pages about the gateway itself."""
+
+    def __init__(
+        self, fleet: Fleet, gate: AuthGate, links: LinkProcesses, tls: ServerTls | None = None
+    ) -> None:
+        self._fleet = fleet
+        self._links = links
+        self._gate = gate
+        self._tls = tls
+        self._robots = WebSocketInterface(fleet)
+        metrics = Metrics(fleet.tally)
+        fleet.database.observe = metrics.database.observe
+        self._status = StatusPages(fleet, metrics)
+        self._clock_watch = ClockWatch(time.time)
+        self._leavings = GarbageCollection()
+        self.retention = Retention(fleet.database, lambda: fleet.site.settings, time.time)
+
+    async def serve(self, host: str, port: int) -> Server:
+        """Listen for robots and operators; raises BridgeError when that cannot be done there."""
+        context = self._tls.context if self._tls else None
+        return await listen(self._gate, host, port, context, self._admit, self._connected)
+
+    def works(self, address: str) -> dict[str, Work]:
+        """Return what keeps a gateway at ``address`` going: liveness, trajectories, links, accounts."""
+        fleet, tally = self._fleet, self._fleet.tally
+        works: dict[str, Work] = {
+            "sql link": SqlInterface(fleet, fleet.database).run,
+            "liveness": lambda: every(AGE_INTERVAL, self._age, "liveness", tally),
+            "queues": fleet.driving.run,
+            "maps": fleet.maps.run,
+            "save": lambda: every(SAVE_INTERVAL, fleet.save, "save", tally),
+            "prune": lambda: every(PRUNE_INTERVAL, self.retention.prune, "prune", tally),
+            "roads": lambda: every(ROADS_INTERVAL, fleet.watch_roads, "roads", tally),
+            "geofence": lambda: every(GEOFENCE_INTERVAL, fleet.geofence.watch, "geofence", tally),
+            "nearness": lambda: every(NEARNESS_INTERVAL, fleet.nearness.watch, "nearness", tally),
+            "links": lambda: self._links.run(_for_links(address)),
+            "accounts": self._gate.watch,
+            "audit log": self._gate.journal.run,
+            "garbage": lambda: every(GARBAGE_INTERVAL, self._clear_away, "garbage", tally),
+        }
+        if has_accounts(fleet.database.dialect.name):
+            works["stuck robots"] = lambda: every(
+                STUCK_INTERVAL, fleet.database.end_stuck, "stuck robots", tally
+            )
+            works["suspensions"] = lambda: every(
+                SUSPEND_INTERVAL, fleet.suspensions.update, "suspensions", tally
+            )
+        if self._tls is not None:
+            works["certificates"] = self._tls.watch
+        return works
+
+    async def _clear_away(self) -> None:
+        self._leavings.clear_away(self._gate.gone)
+        self._fleet.repeated.summarise()
+
+    async def _age(self) -> None:
+        if (step := self._clock_watch.look()) is not None:
+            way = "forward" if step.by > 0 else "back"
+            log.warning("the clock of this computer was set %s by %.0f s", way, abs(step.by))
+            self._fleet.robots.clock_was_set(step)
+        fleet = self._fleet
+        fleet.age()
+        self._robots.update()
+        fleet.links.update(self._robots.links(), self._links.states)
+
+    async def _admit(self, visitor: ClientConnection, request: Request) -> Response | None:
+        if (refusal := self._gate.refuse_page(visitor, request)) is not None:
+            return refusal
+        path = urlsplit(request.path).path
+        if path not in ENDPOINTS and (fault := self._host_fault(request)) is not None:
+            return visitor.respond(http.HTTPStatus.MISDIRECTED_REQUEST, f"{fault}.\n")
+        if path in (HEALTH, METRICS):
+            return await self._status_page(visitor, request, path)
+        if (document := served(path)) is not None:
+            response = visitor.respond(http.HTTPStatus.OK, document)
+            del response.headers["Content-Type"]
+            response.headers["Content-Type"] = "application/json"
+            return response
+        if path not in ENDPOINTS:
+            text = f"{path} is not served here; robots connect to /robot, operators to /desk, links to /link"
+            return visitor.respond(http.HTTPStatus.NOT_FOUND, f"{text}\n")
+        try:
+            name = _name_in(request.path, ENDPOINTS[path])
+        except (MessageError, AccessError) as error:
+            return visitor.respond(http.HTTPStatus.BAD_REQUEST, f"{error}\n")
+        kind = ENDPOINTS[path]
+        return await self._gate.admit(visitor, request, kind, name, self._largest_message(kind))
+
+    def _host_fault(self, request: Request) -> str | None:
+        """Return why a page is not asked for by a name of this gateway, None where it is."""
+        names = (*self._gate.limits.hosts, *(self._tls.names if self._tls is not None else ()))
+        return host_fault(request.headers.get_all("Host"), names)
+
+    async def _status_page(self, visitor: ClientConnection, request: Request, path: str) -> Response:
+        if path == HEALTH:
+            return await self._status.health()
+        if not is_loopback(visitor.address) and (told := await self._gate.may_read(visitor, request)):
+            return told
+        return await self._status.metrics()
+
+    def _largest_message(self, kind: TokenKind) -> int:
+        largest = self._gate.limits.largest_message_bytes
+        if kind is TokenKind.OPERATOR:
+            return largest
+        # An image travels as base64, four bytes for three, with its parameters beside it.
+        image = self._fleet.site.settings.observations.largest_image_bytes
+        return max(largest, image * 4 // 3 + 65_536)
+
+    async def _connected(self, visitor: ClientConnection) -> None:
+        assert visitor.identity is not None
+        kind = visitor.identity.kind
+        if kind is TokenKind.OPERATOR:
+            await OperatorSession(self._fleet, visitor, self._gate).run()
+        elif kind is TokenKind.LINK:
+            await self._robots.serve_link(visitor, self._gate)
+        else:
+            await self._robots.serve(visitor, visitor.identity.name)
+
+
+async def run(settings: GatewaySettings, signals: Signals, started: Callable[[str], None]) -> None:
+    """Run a gateway until it is told to stop; ``started`` is called with its address, ``ws://host:port``.
+
+    :raises BridgeError: when it may not listen there, another gateway runs on its database, or it cannot go
+        on; SiteError and StoreError for its site and database.
+    """
+    # Threads that wait for one another's ways must not keep others waiting.
+    asyncio.get_running_loop().set_default_executor(ThreadPoolExecutor(MOST_THREADS, "gateway"))
+    tls = ServerTls(settings.tls) if settings.tls else None
+    stamp = await asyncio.to_thread(stamp_of, settings.site)
+    await asyncio.to_thread(check_site, settings.site)
+    async with contextlib.AsyncExitStack() as stack:
+        database = Database(settings.database)
+        stack.push_async_callback(database.close, CLOSE_WITHIN)
+        await database.open()
+        sole = SingletonLock(settings.database)
+        await sole.take()
+        stack.push_async_callback(sole.release)
+        # After the database: a city takes a while to read, and a wrong address is told at once.
+        site = await asyncio.to_thread(read_site, settings.site)
+        # Before anything is stored by this clock.
+        doubt = check_clock_at_start(time.time(), await database.run(newest_time))
+        folder = await _site_folder(settings, database)
+        if folder != settings.site:
+            stamp = await asyncio.to_thread(stamp_of, folder)
+            site = await asyncio.to_thread(_chosen, folder, site)
+        journal = await asyncio.to_thread(_journal, settings)
+        gate = AuthGate(database, site.settings.limits, may_be_open=is_loopback(settings.host))
+        await gate.open()
+        accounts = gate.book.has_operator(time.time())
+        check_reach(settings.host, tls=tls is not None, accounts=accounts)
+        maps = SiteMaps(site)
+        planner = await asyncio.to_thread(RoadPlanner, lambda: maps.site)
+        fleet = Fleet(maps, database, planner=planner, stops=journal, note=gate.journal.note)
+        await fleet.start()
+        stack.push_async_callback(_save_last, fleet, gate)
+        links = LinkProcesses(site.settings.links, folder)
+        gateway = Gateway(fleet, gate, links, tls)
+        if doubt is not None:
+            log.warning("%s", doubt.text)
+            if doubt.may_be_ahead:
+                gateway.retention.doubt_clock()
+        server = await gateway.serve(settings.host, settings.port)
+        gate.warn()
+        stack.push_async_callback(notify_clients, server, fleet)
+        address = _address(server, tls is not None)
+        started(address)
+        watch = fleet.site_choice = SiteWatch(folder, stamp, maps, fleet, signals.reload)
+        works = {**gateway.works(address), "site": watch.run, "sole gateway": sole.hold}
+        await _until_stopped(keep_all_going(works, fleet.tally), signals.stop)
+
+
+async def _site_folder(settings: GatewaySettings, database: Database) -> Path:
+    """Return the folder of the site to be served: the one that a supervisor chose, else the given one."""
+    given = settings.site.resolve()
+    if settings.site_as_given:
+        await database.run(metadata.forget_site)
+    chosen = await database.run(metadata.chosen_site)
+    if chosen is None or chosen == given.name:
+        return settings.site
+    log.warning("site %s is served, which a supervisor chose, and not %s", chosen, given.name)
+    return given.parent / chosen
+
+
+def _chosen(folder: Path, given: Site) -> Site:
+    """Return the site in ``folder``, chosen at a desk; raises BridgeError when it cannot be served."""
+    try:
+        site = read_site(folder)
+        why = frame_mismatch(given.settings, site.settings)
+    except SiteError as error:
+        why = str(error)
+    if why is not None:
+        raise BridgeError(
+            f"the site that a supervisor chose cannot be served: {why}. Publish it again, or serve "
+            f"{given.id} with --site-as-given"
+        )
+    return site
+
+
+def _journal(settings: GatewaySettings) -> StopJournal | None:
+    folder = settings.state or settings.site.resolve().parent
+    file = journal_file(settings.database, folder)
+    if file is None:
+        return None
+    journal = StopJournal(file)
+    journal.check()
+    return journal
+
+
+async def _until_stopped(watch: Coroutine[None, None, None], stop: asyncio.Event) -> None:
+    """Run ``watch`` until ``stop`` is set; what it raises ends the gateway."""
+    watching, stopping = asyncio.create_task(watch), asyncio.create_task(stop.wait())
+    await asyncio.wait({watching, stopping}, return_when=asyncio.FIRST_COMPLETED)
+    if watching.done():
+        stopping.cancel()
+        await watching
+    watching.cancel()
+    await asyncio.gather(watching, return_exceptions=True)
+
+
+async def _save_last(fleet: Fleet, gate: AuthGate) -> None:
+    """Store what waits; a database that does not answer must not keep the gateway from ending."""
+    try:
+        async with asyncio.timeout(SAVE_WITHIN):
+            await fleet.finish_trajectories()
+            await gate.close()
+    except (StoreError, TimeoutError) as error:
+        reason = str(error) or "the database does not answer"
+        log.error("%s; the last positions are not stored", reason)
+
+
+def _name_in(path: str, kind: TokenKind) -> str | None:
+    """Return who a request says to come from: ``?robot=NAME``, or ``?link=NAME``."""
+    if kind is TokenKind.LINK:
+        links = parse_qs(urlsplit(path).query).get("link")
+        return check_link_name(links[0]) if links else None
+    names = parse_qs(urlsplit(path).query).get("robot")
+    return check_robot_name(names[0]) if names else None
+
+
+def _for_links(address: str) -> str:
+    """Return where links on this computer find the gateway, of its address ``ws://host:port``."""
+    parts = urlsplit(address)
+    host = {"0.0.0.0": "127.0.0.1", "::": "::1"}.get(parts.hostname or "", parts.hostname or "")
+    return f"{parts.scheme}://{f'[{host}]' if ':' in host else host}:{parts.port}{PATHS[TokenKind.LINK]}"
+
+
+def _address(server: Server, tls: bool) -> str:
+    sock = next(iter(server.sockets))
+    host, port = sock.getsockname()[:2]
+    scheme = "wss" if tls else "ws"
+    return f"{scheme}://[{host}]:{port}" if sock.family == socket.AF_INET6 else f"{scheme}://{host}:{port}"

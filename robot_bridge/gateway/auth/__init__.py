@@ -1,0 +1,1 @@
+"""Authentication and authorisation: accounts, tokens, sessions, audit log, TLS, limits of connections."""

@@ -1,0 +1,406 @@
+"""Connection of a client with its rate limits, and the fast path of its short messages."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import logging
+import socket
+import time
+from collections.abc import AsyncIterator, Awaitable, Callable
+from dataclasses import dataclass
+from functools import partial
+from typing import Any, Protocol, cast
+
+from websockets.asyncio.server import ServerConnection
+from websockets.frames import CloseCode, Frame, Opcode
+from websockets.protocol import OPEN
+
+from ...core.sites.settings_tables import LimitSettings
+from ...protocol import jsonrpc
+from .accounts import TokenKind
+
+# --- A token bucket: how often something may happen, with some room for bursts ---
+
+
+class RateLimit:
+    """Allows ``rate`` takings a second on average and up to ``burst`` at once."""
+
+    __slots__ = ("_at", "_burst", "_clock", "_left", "_rate")
+
+    def __init__(self, rate: float, burst: float, clock: Callable[[], float] = time.monotonic) -> None:
+        self._rate, self._burst, self._clock = rate, burst, clock
+        self._left, self._at = burst, clock()
+
+    def take(self) -> bool:
+        """Take one, if there is one to take."""
+        now = self._clock()
+        self._left = min(self._burst, self._left + (now - self._at) * self._rate)
+        self._at = now
+        if self._left < 1.0:
+            return False
+        self._left -= 1.0
+        return True
+
+    def give_back(self) -> None:
+        """Undo a taking."""
+        self._left = min(self._burst, self._left + 1.0)
+
+    def wait(self) -> float:
+        """Return the seconds until the next one can be taken."""
+        missing = 1.0 - min(self._burst, self._left + (self._clock() - self._at) * self._rate)
+        return max(0.0, missing / self._rate)
+
+
+# --- Where the frames begin in what a client sends, and those that are a short message as they stand; no I/O
+# Frames are those of RFC 6455, section 5.2.
+
+try:
+    from websockets.speedups import apply_mask
+except ImportError:
+    from websockets.utils import apply_mask
+
+LONGEST = 1000
+"""bytes of a message that is short: below any limit on messages that a site may set."""
+_WHOLE_TEXT = 0x81
+_MASKED = 0x80
+_TWO_BYTES, _EIGHT_BYTES = 126, 127
+
+
+def short_text(data: bytes, start: int) -> tuple[bytes, int] | None:
+    """Return the message in the frame that begins at ``start``, and where the next frame begins.
+
+    None where that frame is not all there, or is anything but one whole text of at most LONGEST bytes of
+    ASCII: what may be wrong, or be a part of something, is for those who know all of the protocol.
+    """
+    if len(data) - start < 6 or data[start] != _WHOLE_TEXT:
+        return None
+    length, mask_at = data[start + 1] - _MASKED, start + 2
+    if length == _TWO_BYTES:
+        length, mask_at = data[start + 2] << 8 | data[start + 3], start + 4
+    elif length == _EIGHT_BYTES:
+        # Taken for a length, it would now and then find 127 bytes of ASCII in a long text.
+        return None
+    begin = mask_at + 4
+    end = begin + length
+    if not 0 < length <= LONGEST or end > len(data):
+        return None
+    text = apply_mask(data[begin:end], data[mask_at:begin])
+    return (text, end) if text.isascii() else None
+
+
+class FrameParser:
+    """Follows what a client sends from frame to frame, into whatever pieces it comes cut.
+
+    It keeps no more of it than an unfinished header.
+    """
+
+    __slots__ = ("_header", "_left")
+
+    def __init__(self) -> None:
+        self._header = b""
+        self._left = 0
+
+    @property
+    def between(self) -> bool:
+        """Tell whether the next byte begins a frame."""
+        return not self._left and not self._header
+
+    def pass_over(self, data: bytes) -> None:
+        """Follow the next bytes."""
+        at = 0
+        while at < len(data):
+            if self._left:
+                step = min(self._left, len(data) - at)
+                self._left -= step
+                at += step
+                continue
+            header = self._header + data[at : at + 14]
+            size, payload = _measured(header)
+            if size == 0:
+                self._header = header
+                return
+            at += size - len(self._header)
+            self._header, self._left = b"", payload
+
+
+def _measured(header: bytes) -> tuple[int, int]:
+    """Return the bytes of a frame's header and of its payload, (0, 0) while that cannot be told."""
+    if len(header) < 2:
+        return 0, 0
+    mask = 4 if header[1] & _MASKED else 0
+    short = header[1] & ~_MASKED
+    extended = {_TWO_BYTES: 2, _EIGHT_BYTES: 8}.get(short, 0)
+    size = 2 + extended + mask
+    if len(header) < size:
+        return 0, 0
+    return size, int.from_bytes(header[2 : 2 + extended], "big") if extended else short
+
+
+# --- The way of short messages past the queue of a connection ---
+
+END_OF_REQUEST = b"\r\n\r\n"
+
+
+class FastPath:
+    """Deals with the messages that need no waiting as soon as their bytes are there.
+
+    The parsing, the queue and the tasks that this saves take several times as long as a position does. Only
+    what nothing is on the long way before goes here: messages are dealt with in the order they were sent.
+    ``handler`` deals with a message, or returns false and has done nothing.
+    """
+
+    def __init__(self) -> None:
+        self.handler: Callable[[bytes], bool] | None = None
+        self.on_the_long_way = 0
+        self._edges: FrameParser | None = None
+
+    def begin(self, request: bytes) -> None:
+        """Follow the frames from the end of the request on, whose last bytes these are."""
+        # Where something came behind the request it is not known where the next frame begins.
+        if request.find(END_OF_REQUEST) == len(request) - len(END_OF_REQUEST):
+            self._edges = FrameParser()
+
+    def take(self, data: bytes, messages: RateLimit) -> int:
+        """Deal with the messages at the beginning of ``data``, each one of ``messages``.
+
+        Return where that begins which has to go the long way; :meth:`pass_over` is to be called with it.
+        """
+        start, edges = 0, self._edges
+        if self.handler is None or edges is None or not edges.between or self.on_the_long_way:
+            return 0
+        while (found := short_text(data, start)) is not None and messages.take():
+            message, end = found
+            if not self.handler(message):
+                messages.give_back()
+                break
+            start = end
+        return start
+
+    def pass_over(self, data: bytes) -> None:
+        """Take note of bytes that go the long way."""
+        if self._edges is not None:
+            self._edges.pass_over(data)
+
+
+# --- One connection to the gateway, and the limits it is held to ---
+
+log = logging.getLogger(__name__)
+
+CONTROL_FRAMES_PER_S = 20.0
+CONTROL_BURST = 100.0
+NEVER_REFUSED = "emergency_stop"
+"""Who has talked too much may stop the fleet all the same."""
+CLOSE_WITHIN = 0.5
+"""Seconds that a client that is shown the door has for a close in good order."""
+_OF_MESSAGES = (Opcode.TEXT, Opcode.BINARY, Opcode.CONT)
+
+
+@dataclass(frozen=True)
+class Identity:
+    """Who a connection belongs to; ``token`` is the token's id, None where no tokens are in use."""
+
+    kind: TokenKind
+    name: str | None
+    token: str | None
+    session: str
+
+
+class ConnectionLimiter(Protocol):
+    """What a visitor tells the gate."""
+
+    @property
+    def limits(self) -> LimitSettings:
+        """The limits that hold now."""
+
+    def arrived(self, visitor: ClientConnection) -> None:
+        """Count a new connection."""
+
+    def left(self, visitor: ClientConnection) -> None:
+        """Count a connection that is gone."""
+
+
+class ClientConnection(ServerConnection):
+    """A connection whose messages are counted, and which is cut off when it takes nothing any more."""
+
+    def __init__(self, door: ConnectionLimiter, *arguments: Any, **options: Any) -> None:
+        super().__init__(*arguments, **options)
+        self._door = door
+        self._limits = door.limits
+        self._stuck: asyncio.TimerHandle | None = None
+        self._silence: asyncio.TimerHandle | None = None
+        self._heard_at = 0.0
+        self._expelled = False
+        self.is_gone = False
+        """Whether the connection has ended; nobody gets a place after that."""
+        self._control = RateLimit(CONTROL_FRAMES_PER_S, CONTROL_BURST)
+        self._messages = self._patience = RateLimit(1.0, 1.0)
+        self.short_cut = FastPath()
+        self.identity: Identity | None = None
+        self.address = ""
+        self.round_trip: float | None = None
+        """Seconds that the last ping took there and back."""
+
+    # --- the connection's life ------------------------------------------------------------------------
+
+    def connection_made(self, transport: asyncio.BaseTransport) -> None:
+        """Take a new connection."""
+        peer = transport.get_extra_info("peername") or ("",)
+        self.address = str(peer[0])
+        super().connection_made(transport)
+        self._door.arrived(self)
+
+    def connection_lost(self, exc: Exception | None) -> None:
+        """Note that the connection is gone."""
+        for timer in (self._stuck, self._silence):
+            if timer is not None:
+                timer.cancel()
+        super().connection_lost(exc)
+        self.is_gone = True
+        self._door.left(self)
+
+    def let_in(self, identity: Identity, largest_message: int) -> None:
+        """Hold the connection from now on to the limits of its kind."""
+        self.identity = identity
+        limits = self._limits
+        rate, burst = {
+            TokenKind.ROBOT: (limits.robot_messages_per_s, limits.robot_burst),
+            TokenKind.OPERATOR: (limits.desk_messages_per_s, limits.desk_burst),
+            TokenKind.LINK: (limits.link_messages_per_s, limits.link_burst),
+        }[identity.kind]
+        self._messages, self._patience = RateLimit(rate, float(burst)), RateLimit(rate / 10, float(burst))
+        self.protocol.max_message_size = largest_message
+        # What waits in the system for a slow client is old when it arrives.
+        own = self.transport.get_extra_info("socket")
+        with contextlib.suppress(OSError):
+            own.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, limits.send_buffer_bytes)
+        self._silence = self.loop.call_later(limits.first_message_s, self._check_silence)
+
+    async def expel(self, code: int, reason: str) -> None:
+        """End the connection, whether the client agrees or not; what still comes in is passed over."""
+        self._expelled = True
+        try:
+            with contextlib.suppress(TimeoutError):
+                await asyncio.wait_for(self.close(code, reason), CLOSE_WITHIN)
+        finally:
+            self.transport.abort()
+
+    # --- what comes in --------------------------------------------------------------------------------
+
+    def data_received(self, data: bytes) -> None:
+        """Take in bytes: short messages are dealt with at once where that is possible, the others queued."""
+        start = self._deal_with(data)
+        if start < len(data):
+            rest, asked = data[start:] if start else data, self.request is not None
+            super().data_received(rest)
+            if not asked and self.request is not None:
+                self.short_cut.begin(rest)
+            else:
+                self.short_cut.pass_over(rest)
+
+    def _deal_with(self, data: bytes) -> int:
+        if self.protocol.state is not OPEN or self.protocol.current_size is not None or self._expelled:
+            return 0
+        start = self.short_cut.take(data, self._messages)
+        if start:
+            self._heard_at = self.loop.time()
+        return start
+
+    async def __aiter__(self) -> AsyncIterator[Any]:
+        """Yield the messages; those beyond the limit are refused, and then the connection is closed."""
+        async for frame in super().__aiter__():
+            if self._expelled:
+                return
+            self._heard_at = self.loop.time()
+            if self._messages.take():
+                yield frame
+            elif self._patience.take():
+                if not await self._refuse(frame):
+                    yield frame
+            else:
+                log.warning("%s from %s: too many messages; closed", self.who, self.address)
+                await self.expel(CloseCode.POLICY_VIOLATION, "too many messages a second")
+                return
+            self.short_cut.on_the_long_way -= 1
+
+    async def ping(self, data: Any = None) -> Awaitable[float]:
+        """Send a ping and take its time, since some event loops count in whole milliseconds."""
+        sent = time.perf_counter()
+        pong = cast("asyncio.Future[float]", await super().ping(data))
+        pong.add_done_callback(partial(self._answered, sent))
+        return pong
+
+    def _answered(self, sent: float, pong: asyncio.Future[float]) -> None:
+        if not pong.cancelled() and pong.exception() is None:
+            self.round_trip = time.perf_counter() - sent
+
+    def process_event(self, event: Any) -> None:
+        """Take in one frame; pings and empty pieces of messages are counted, since nobody waits for them."""
+        if isinstance(event, Frame) and _is_idle_talk(event) and not self._control.take():
+            log.warning("%s from %s: too many control frames; cut off", self.who, self.address)
+            self.transport.abort()
+            return
+        if isinstance(event, Frame) and event.fin and event.opcode in _OF_MESSAGES:
+            self.short_cut.on_the_long_way += 1
+        super().process_event(event)
+
+    @property
+    def has_spoken(self) -> bool:
+        """Whether a message has come since the connection was let in."""
+        return self._heard_at > 0
+
+    @property
+    def who(self) -> str:
+        """The connection's owner, for the log."""
+        if self.identity is None:
+            return "somebody"
+        return f"{self.identity.kind.value} {self.identity.name or 'without a name'}"
+
+    async def _refuse(self, frame: str | bytes) -> bool:
+        """Refuse a message; return false for one that is taken all the same."""
+        try:
+            message = jsonrpc.decode(frame)
+        except jsonrpc.FrameError:
+            return True
+        if isinstance(message, jsonrpc.Call):
+            if message.method == NEVER_REFUSED:
+                return False
+            text = f"too many messages; wait {max(self._messages.wait(), 0.01):.2f} s and send fewer a second"
+            if message.id is not None:
+                await self.send(jsonrpc.error(message.id, jsonrpc.TOO_MANY, text))
+        return True
+
+    def _check_silence(self) -> None:
+        limits, robot = self._limits, self.identity is not None and self.identity.kind is TokenKind.ROBOT
+        if self._heard_at and not robot:
+            return
+        due = self._heard_at + limits.silent_s if self._heard_at else self.loop.time()
+        if due <= self.loop.time():
+            log.warning("%s from %s said nothing for too long; closed", self.who, self.address)
+            self._ending = self.loop.create_task(
+                self.expel(CloseCode.POLICY_VIOLATION, "silent for too long")
+            )
+        else:
+            self._silence = self.loop.call_at(due, self._check_silence)
+
+    # --- what goes out --------------------------------------------------------------------------------
+
+    def pause_writing(self) -> None:
+        """Begin to wait for a client that is behind."""
+        super().pause_writing()
+        self._stuck = self.loop.call_later(self._limits.stuck_s, self._give_up)
+
+    def resume_writing(self) -> None:
+        """Go on with a client that has caught up."""
+        if self._stuck is not None:
+            self._stuck.cancel()
+            self._stuck = None
+        super().resume_writing()
+
+    def _give_up(self) -> None:
+        log.warning("%s from %s takes nothing of what it is sent; cut off", self.who, self.address)
+        self.transport.abort()
+
+
+def _is_idle_talk(frame: Frame) -> bool:
+    return frame.opcode in (Opcode.PING, Opcode.PONG) or (not frame.data and not frame.fin)

@@ -1,0 +1,430 @@
+"""Authorisation of connections: who is let in, how many of each kind, and how they are disconnected."""
+
+from __future__ import annotations
+
+import asyncio
+import http
+import logging
+import time
+from collections import Counter, defaultdict
+from collections.abc import Callable, Iterator
+
+from websockets.frames import CloseCode
+from websockets.http11 import Request, Response
+
+from ...core.errors import StoreError, counted
+from ...core.messages import Role
+from ...core.sites.settings_tables import LimitSettings
+from ...protocol.credentials import AccessError
+from ..storage.database import Database
+from . import audit
+from .accounts import AccountCache, TokenKind, new_id, token_in
+from .audit import AuditJournal, SessionRow
+from .connection import ClientConnection, Identity, RateLimit
+
+# --- Who is connected now, how many there are of each sort, and how a connection is ended ---
+
+log = logging.getLogger(__name__)
+
+SHED_LINES_PER_S, SHED_LINES = 1 / 60, 5.0
+"""Lines of the log about connections that made room: their flood is not to become one of the log."""
+
+
+class ConnectionRegistry:
+    """The connections that were let in, and by address those that were not yet.
+
+    Robots, desks and those that have not said yet which of the two they are have places of their own. Of the
+    last, and of desks that have not said anything, the oldest makes room for one that comes: neither robots
+    nor silent connections keep an operator out.
+    """
+
+    def __init__(self, limits: LimitSettings, journal: AuditJournal) -> None:
+        self._limits = limits
+        self._journal = journal
+        self._inside: dict[ClientConnection, Identity] = {}
+        self._counts: Counter[object] = Counter()
+        self._pending: defaultdict[str, dict[ClientConnection, None]] = defaultdict(dict)
+        self._shed_lines = RateLimit(SHED_LINES_PER_S, SHED_LINES)
+        self._endings: set[asyncio.Task[None]] = set()
+
+    def __iter__(self) -> Iterator[tuple[ClientConnection, Identity]]:
+        return iter(list(self._inside.items()))
+
+    @property
+    def sessions(self) -> dict[str, ClientConnection]:
+        """The desks by their sessions' ids."""
+        return {i.session: visitor for visitor, i in self._inside.items() if i.kind is TokenKind.OPERATOR}
+
+    def arrived(self, visitor: ClientConnection) -> None:
+        """Count a connection that has not said yet what it wants; with one too many the oldest ends."""
+        pending = self._pending[visitor.address]
+        pending[visitor] = None
+        if len(pending) <= self._limits.pending_per_address:
+            return
+        # Whoever has asked for something is about to be let in or refused.
+        oldest = next((one for one in pending if one.request is None), next(iter(pending)))
+        self._forget_pending(oldest)
+        if self._shed_lines.take():
+            log.warning(
+                "%s has more than %s that have not said what they want; the oldest are ended",
+                visitor.address,
+                counted(self._limits.pending_per_address, "connection"),
+            )
+        oldest.transport.abort()
+
+    def left(self, visitor: ClientConnection) -> None:
+        """Count a connection that is gone."""
+        if visitor.identity is None:
+            self._forget_pending(visitor)
+        elif (identity := self._take_out(visitor)) is not None and identity.kind is TokenKind.OPERATOR:
+            self._journal.ended(identity.session, visitor.close_reason or "the connection ended")
+
+    def crowded(self, visitor: ClientConnection, identity: Identity) -> str | None:
+        """Return why one more connection is not taken, None when it is."""
+        robots, limits = identity.kind is not TokenKind.OPERATOR, self._limits
+        what, most = {
+            TokenKind.ROBOT: ("robot", limits.robots),
+            TokenKind.LINK: ("link", limits.links),
+            TokenKind.OPERATOR: ("desk", limits.desks),
+        }[identity.kind]
+        if not self._has_room(identity.kind, most, robots):
+            return f"there is room for {counted(most, what)}, and it is taken; try later."
+        if not self._has_room(("from", visitor.address, identity.kind), limits.per_address, robots):
+            open_ones = counted(limits.per_address, what)
+            return f"{visitor.address} has {open_ones} open, and gets no more; close some."
+        if not robots and not self._has_room(("of", identity.token), limits.desks_per_account):
+            open_ones = counted(limits.desks_per_account, "desk")
+            return f"{identity.name} has {open_ones} open, and gets no more; close one."
+        return None
+
+    def _has_room(self, kind: object, most: int, keeps: bool = False) -> bool:
+        """Tell whether there is room for one more of ``kind``; the oldest silent desk makes some."""
+        if self._counts[kind] < most:
+            return True
+        if keeps:
+            # A fleet larger than the limit comes back in one moment: robots would end one another for ever.
+            return False
+        for visitor, identity in self._inside.items():
+            if not visitor.has_spoken and kind in _kinds(visitor, identity):
+                self.end(visitor, CloseCode.TRY_AGAIN_LATER, "it said nothing, and others need its place")
+                return True
+        return False
+
+    def enter(self, visitor: ClientConnection, identity: Identity, largest_message: int) -> None:
+        """Let a connection in."""
+        self._forget_pending(visitor)
+        self._inside[visitor] = identity
+        self._counts.update(_kinds(visitor, identity))
+        visitor.let_in(identity, largest_message)
+
+    def end(self, visitor: ClientConnection, code: int, reason: str) -> None:
+        """End a connection at once, with ``code`` as its close code."""
+        identity = self._take_out(visitor)
+        if identity is None:
+            return
+        log.warning("%s from %s: connection ended: %s", visitor.who, visitor.address, reason)
+        self._journal.note(
+            identity.name or f"{identity.kind.value} without an account",
+            "session ended",
+            address=visitor.address,
+            subject=identity.session,
+            detail=reason,
+        )
+        if identity.kind is TokenKind.OPERATOR:
+            self._journal.ended(identity.session, reason)
+        # A close frame carries at most 123 bytes of reason.
+        short = reason.encode()[:120].decode(errors="ignore")
+        task = asyncio.get_running_loop().create_task(visitor.expel(code, short))
+        self._endings.add(task)
+        task.add_done_callback(self._endings.discard)
+
+    def _take_out(self, visitor: ClientConnection) -> Identity | None:
+        identity = self._inside.pop(visitor, None)
+        if identity is not None:
+            for kind in _kinds(visitor, identity):
+                self._uncount(kind)
+        return identity
+
+    def _forget_pending(self, visitor: ClientConnection) -> None:
+        pending = self._pending[visitor.address]
+        pending.pop(visitor, None)
+        if not pending:
+            del self._pending[visitor.address]
+
+    def _uncount(self, kind: object) -> None:
+        self._counts[kind] -= 1
+        if self._counts[kind] <= 0:
+            del self._counts[kind]
+
+
+def _kinds(visitor: ClientConnection, identity: Identity) -> list[object]:
+    """Return everything that a connection is counted under."""
+    account: list[object] = [] if identity.token is None else [("of", identity.token)]
+    return [identity.kind, ("from", visitor.address, identity.kind), *account]
+
+
+# --- Who is let in, and who is shown the door again ---
+
+LOOK_INTERVAL = 0.4
+"""Seconds after which a token that was revoked elsewhere is noticed."""
+READ_AGAIN_AFTER = 0.1
+"""Seconds between two readings of the accounts because of a token that is not known."""
+REVOKED = 4003
+"""Close code of a connection whose token does not hold any more."""
+ENDED = 4004
+"""Close code of a session that somebody ended."""
+MOST_ADDRESSES = 10_000
+PATHS = {TokenKind.ROBOT: "/robot", TokenKind.OPERATOR: "/desk", TokenKind.LINK: "/link"}
+OWNERS = {
+    TokenKind.ROBOT: "a robot's",
+    TokenKind.OPERATOR: "an operator's",
+    TokenKind.LINK: "a link's",
+}
+ANY_LINK, ANY_ROBOT = "link", ("*",)
+"""What a link without a token is called, and the robots that it speaks for."""
+
+
+class AuthGate:
+    """Tells by its token who a connection belongs to, and ends it when the token does not hold any more.
+
+    Where nobody ever made a token of a kind, and ``may_be_open``, everybody is let in: a gateway that only
+    its own computer can reach needs no accounts. Operators are then supervisors.
+    """
+
+    def __init__(
+        self,
+        database: Database,
+        limits: LimitSettings,
+        *,
+        may_be_open: bool,
+        clock: Callable[[], float] = time.time,
+    ) -> None:
+        self.limits = limits
+        self.journal = AuditJournal(database, clock)
+        self.book = AccountCache(database)
+        self._guests = ConnectionRegistry(limits, self.journal)
+        self.gone = 0
+        """Connections that have gone since the start."""
+        self._database = database
+        self._may_be_open = may_be_open
+        self._clock = clock
+        self._reading = asyncio.Lock()
+        self._read_at = 0.0
+        self._failures: dict[str, RateLimit] = {}
+
+    async def open(self) -> None:
+        """Read the accounts, and note the end of what an earlier gateway left open; raises StoreError."""
+        await self._database.run(audit.end_all_sessions, self._clock(), "the gateway ended")
+        await self.book.refresh()
+
+    def warn(self) -> None:
+        """Say in the log what is open to everybody."""
+        for kind, path in PATHS.items():
+            if self._is_open(kind):
+                log.warning("%s is open to everybody on this computer: no %s has a token", path, kind.value)
+
+    async def watch(self) -> None:
+        """Take over changed accounts, and end what does not hold any more, until cancelled.
+
+        :raises StoreError: when they cannot be read; they stay as they were last read.
+        """
+        while True:
+            await asyncio.sleep(LOOK_INTERVAL)
+            try:
+                await self.look()
+            except StoreError as error:
+                raise StoreError(f"{error}; accounts stay as they were last read") from error
+
+    async def look(self) -> None:
+        """Take over changed accounts, and end what does not hold any more; raises StoreError."""
+        await self.book.refresh()
+        for visitor, identity in self._guests:
+            if (fault := self._fault(identity)) is not None:
+                self._guests.end(visitor, REVOKED, fault)
+        desks = self._guests.sessions
+        ended = await self._database.run(audit.ended_sessions, list(desks))
+        for session, reason in ended.items():
+            self._guests.end(desks[session], ENDED, reason)
+
+    async def close(self) -> None:
+        """Write what waits to be written down."""
+        try:
+            await self.journal.flush()
+        except StoreError as error:
+            log.error("%s; the end of the audit log is lost", error)
+
+    # --- connections come and go ----------------------------------------------------------------------
+
+    def arrived(self, visitor: ClientConnection) -> None:
+        """Count a connection that has not said yet what it wants; it may end an older one."""
+        self._guests.arrived(visitor)
+
+    def left(self, visitor: ClientConnection) -> None:
+        """Count a connection that is gone."""
+        self.gone += 1
+        self._guests.left(visitor)
+
+    def name_desk(self, visitor: ClientConnection, operator: str) -> str:
+        """Return the operator of a desk that says to be ``operator``: its account, where there are any."""
+        assert visitor.identity is not None
+        if visitor.identity.name is not None:
+            return visitor.identity.name
+        self.journal.renamed(visitor.identity.session, operator)
+        return operator
+
+    def role(self, visitor: ClientConnection) -> Role:
+        """Return what a desk may do now."""
+        assert visitor.identity is not None
+        if visitor.identity.token is None:
+            return Role.SUPERVISOR
+        grant = self.book.grant(visitor.identity.token)
+        return (grant.role if grant is not None else None) or Role.VIEWER
+
+    def spoken_for(self, visitor: ClientConnection) -> tuple[str, ...]:
+        """Return the patterns of the robots that a link may speak for now."""
+        assert visitor.identity is not None
+        if visitor.identity.token is None:
+            return ANY_ROBOT
+        grant = self.book.grant(visitor.identity.token)
+        return grant.robots if grant is not None else ()
+
+    # --- who is let in --------------------------------------------------------------------------------
+
+    def refuse_page(self, visitor: ClientConnection, request: Request) -> Response | None:
+        """Return what a script of a web page that may not connect is told, None for everybody else."""
+        if all(origin in self.limits.origins for origin in request.headers.get_all("Origin")):
+            return None
+        return visitor.respond(
+            http.HTTPStatus.FORBIDDEN,
+            "Web pages may not connect here; 'origins' in [limits] of site.toml names those that may.\n",
+        )
+
+    async def may_read(self, visitor: ClientConnection, request: Request) -> Response | None:
+        """Return what somebody is told who may not read the gateway's own pages, None for a viewer."""
+        found = await self._identify(visitor, request, TokenKind.OPERATOR)
+        return found if isinstance(found, Response) else None
+
+    async def admit(
+        self,
+        visitor: ClientConnection,
+        request: Request,
+        kind: TokenKind,
+        name: str | None,
+        largest_message: int,
+    ) -> Response | None:
+        """Let a visitor in as a desk, or as the robot it says to be, or return what it is told instead."""
+        found = await self._identify(visitor, request, kind)
+        if isinstance(found, Response):
+            return found
+        if kind is not TokenKind.OPERATOR:
+            if found.name is None:
+                found = Identity(kind, name, None, found.session)
+            elif name not in (None, found.name):
+                what = kind.value
+                self._note_refusal(visitor, found.name, f"{PATHS[kind]}: asked to be {what} {name}")
+                text = f"This token is {what} {found.name}'s, not {name}'s; give each {what} its own.\n"
+                return visitor.respond(http.HTTPStatus.FORBIDDEN, text)
+        if visitor.is_gone:
+            return _later(visitor, http.HTTPStatus.SERVICE_UNAVAILABLE, "The connection has ended.", 5)
+        if (text := self._guests.crowded(visitor, found) or "") != "":
+            return _later(visitor, http.HTTPStatus.SERVICE_UNAVAILABLE, text, 5)
+        self._guests.enter(visitor, found, largest_message)
+        self._note_login(visitor, found)
+        return None
+
+    async def _identify(
+        self, visitor: ClientConnection, request: Request, kind: TokenKind
+    ) -> Identity | Response:
+        headers = request.headers
+        try:
+            token = token_in(headers.get_all("Authorization"), headers.get_all("Sec-WebSocket-Protocol"))
+        except AccessError as error:
+            return visitor.respond(http.HTTPStatus.BAD_REQUEST, f"{error}\n")
+        try:
+            if token is not None and self.book.find(token) is None:
+                await self._read_again()
+        except StoreError as error:
+            log.error("%s; a token could not be looked up", error)
+            text = "The accounts cannot be read now: the database is away. Try again."
+            return _later(visitor, http.HTTPStatus.SERVICE_UNAVAILABLE, text, 5)
+        if self._is_open(kind):
+            return Identity(kind, None, None, new_id())
+        if token is None:
+            return self._refuse(visitor, kind, "nobody", "no token came with the request")
+        grant = self.book.find(token)
+        if grant is None:
+            return self._refuse(visitor, kind, "nobody", "this token is not known")
+        if grant.kind is not kind:
+            fault = f"this token is {OWNERS[grant.kind]}, and {PATHS[kind]} takes {OWNERS[kind]}"
+            return self._refuse(visitor, kind, grant.owner, fault)
+        identity = Identity(kind, grant.owner, grant.token, new_id())
+        if (wrong := self._fault(identity)) is not None:
+            return self._refuse(visitor, kind, grant.owner, wrong)
+        return identity
+
+    async def _read_again(self) -> None:
+        """Read the accounts for a token that may have been made a moment ago; once for all who knock."""
+        knocked = time.monotonic()
+        async with self._reading:
+            if self._read_at >= knocked:
+                return
+            await asyncio.sleep(max(0.0, self._read_at + READ_AGAIN_AFTER - knocked))
+            self._read_at = time.monotonic()
+            await self.book.refresh()
+
+    def _fault(self, identity: Identity) -> str | None:
+        if identity.token is None:
+            return None if self._is_open(identity.kind) else "accounts are in use now: connect with a token"
+        grant = self.book.grant(identity.token)
+        if grant is None or (identity.kind is TokenKind.OPERATOR and grant.role is None):
+            return "this token is not known any more"
+        return grant.fault(self._clock())
+
+    def _note_login(self, visitor: ClientConnection, identity: Identity) -> None:
+        if identity.token is not None:
+            self.journal.used(identity.token)
+        if identity.kind is TokenKind.ROBOT:
+            # A robot at the edge of the radio's reach comes back a thousand times a day.
+            return
+        if identity.kind is TokenKind.LINK:
+            name = identity.name or ANY_LINK
+            self.journal.note(f"link {name}", "login", address=visitor.address, subject=identity.session)
+            return
+        role, address, session = self.role(visitor).value, visitor.address, identity.session
+        who = identity.name or f"desk {address}"
+        if identity.token is not None:
+            self.journal.note(who, "login", role=role, address=address, subject=session)
+        self.journal.began(SessionRow(session, who, identity.token, role, address, self._clock()))
+
+    def _refuse(self, visitor: ClientConnection, kind: TokenKind, who: str, fault: str) -> Response:
+        # Whoever knocks with wrong tokens is to fill neither the log nor the disk.
+        failures = self._failures_of(visitor.address)
+        if not failures.take():
+            text = "Too many refused logins came from this address."
+            return _later(visitor, http.HTTPStatus.TOO_MANY_REQUESTS, text, failures.wait() + 1)
+        self._note_refusal(visitor, who, f"{PATHS[kind]}: {fault}")
+        text = f"{fault[:1].upper()}{fault[1:]}. Ask whoever runs the site for a token.\n"
+        response = visitor.respond(http.HTTPStatus.UNAUTHORIZED, text)
+        response.headers["WWW-Authenticate"] = 'Bearer realm="fleet"'
+        return response
+
+    def _note_refusal(self, visitor: ClientConnection, who: str, why: str) -> None:
+        log.warning("%s from %s was not let in: %s", who, visitor.address, why)
+        self.journal.note(who, "login", done=False, address=visitor.address, detail=why)
+
+    def _failures_of(self, address: str) -> RateLimit:
+        if len(self._failures) > MOST_ADDRESSES:
+            del self._failures[next(iter(self._failures))]
+        a_minute = self.limits.failed_logins_per_minute
+        return self._failures.setdefault(address, RateLimit(a_minute / 60, a_minute))
+
+    def _is_open(self, kind: TokenKind) -> bool:
+        # A link speaks for robots: where those need tokens, so does it.
+        kinds = (kind, TokenKind.ROBOT) if kind is TokenKind.LINK else (kind,)
+        return self._may_be_open and all(self.book.is_open(one) for one in kinds)
+
+
+def _later(visitor: ClientConnection, status: http.HTTPStatus, text: str, seconds: float) -> Response:
+    response = visitor.respond(status, f"{text}\n")
+    response.headers["Retry-After"] = str(int(seconds))
+    return response

@@ -1,0 +1,200 @@
+"""Port of the gateway: its address and names, and the limits before authorisation."""
+
+from __future__ import annotations
+
+import http
+import ipaddress
+import logging
+import resource
+import ssl
+from collections.abc import Awaitable, Callable, Collection, Iterable
+from functools import partial
+from typing import Any, cast
+from urllib.parse import urlsplit
+
+from websockets.asyncio.server import Server, ServerConnection, serve
+from websockets.frames import CloseCode
+from websockets.http11 import Request, Response
+
+from ...core.errors import BridgeError
+from ...core.logs import log_unforeseen
+from ...core.sites.settings_tables import LimitSettings
+from ...protocol.credentials import AccessError
+from .accounts import chosen_protocol
+from .connection import ClientConnection
+from .gate import AuthGate
+
+# --- How far a gateway may be reached, and what it needs for that ---
+
+
+def is_loopback(host: str) -> bool:
+    """Tell whether an address to listen on is this computer's own; raises AccessError for none."""
+    try:
+        return ipaddress.ip_address("127.0.0.1" if host == "localhost" else host).is_loopback
+    except ValueError:
+        raise AccessError(
+            f"host {host!r} is not an IP address; use 127.0.0.1, or 0.0.0.0 for every IPv4 address of this "
+            "computer"
+        ) from None
+
+
+def check_reach(host: str, *, tls: bool, accounts: bool) -> None:
+    """Refuse to listen beyond this computer without TLS and an operator's account; raises AccessError."""
+    if is_loopback(host):
+        return
+    if not tls:
+        raise AccessError(
+            f"host {host} can be reached from other computers, and without TLS everybody on the way reads "
+            "along; make certificates with 'robot-bridge tls create DIR --name HOST' and give --certificate "
+            "and --key, or use 127.0.0.1"
+        )
+    if not accounts:
+        raise AccessError(
+            f"host {host} can be reached from other computers, and no operator has an account; make one with "
+            "'robot-bridge operators add NAME --role supervisor', or use 127.0.0.1"
+        )
+
+
+# --- Under which names the gateway's pages are asked for ---
+# A web page somewhere can have its own name resolved to this computer's address (DNS rebinding), and its
+# script
+# may then read what is served here as if it were its own. Such a request names the page's host in ``Host``.
+
+LOCAL = ("localhost", "localhost.localdomain", "ip6-localhost")
+_SHOWN = 80
+"""characters of a host that are told back."""
+
+
+def host_fault(headers: Iterable[str], names: Collection[str]) -> str | None:
+    """Return why a request with these ``Host`` headers is refused, None for one that is meant for us.
+
+    It is when it names an address, this computer, or one of ``names``, of which ``*.example.org`` stands for
+    one name in front of that. An address is no name that somebody else could have resolved to ours.
+    """
+    hosts = list(headers)
+    if not hosts:
+        # No browser leaves it out.
+        return None
+    if len(hosts) > 1:
+        return "the request has several Host headers; send one"
+    host = _name_in(hosts[0])
+    if host is not None and (_is_address(host) or host in LOCAL or any(_fits(host, name) for name in names)):
+        return None
+    return (
+        f"Host {hosts[0][:_SHOWN]!r} is no name of this gateway; ask by its address, or have whoever runs "
+        "the site name it under 'hosts' in [limits] of site.toml"
+    )
+
+
+def _name_in(host: str) -> str | None:
+    try:
+        return (urlsplit(f"//{host}").hostname or "").rstrip(".").lower() or None
+    except ValueError:
+        return None
+
+
+def _is_address(host: str) -> bool:
+    try:
+        ipaddress.ip_address(host)
+    except ValueError:
+        return False
+    return True
+
+
+def _fits(host: str, name: str) -> bool:
+    name = name.lower().rstrip(".")
+    return host == name or (name.startswith("*.") and host.partition(".")[2] == name[2:])
+
+
+# --- The gateway's port: how it is listened on, with the limits that hold before anybody is let in ---
+
+log = logging.getLogger(__name__)
+
+PING_INTERVAL = 5.0
+WRITE_LIMIT = 65_536
+"""bytes that wait in this process for a client before whoever sends to it has to wait too."""
+
+SPARE_FILES = 512
+"""Files and connections to the database."""
+ONE_ADDRESS = 65_536
+"""Connections that one address can have open with this port: silent ones are not to take the last file."""
+
+BACKLOG = 1024
+"""Connections that wait to be taken: a whole fleet comes back in one moment when the gateway was away."""
+
+Handler = Callable[[ClientConnection], Awaitable[None]]
+Doorman = Callable[[ClientConnection, Request], Awaitable[Response | None]]
+
+
+async def listen(
+    gate: AuthGate, host: str, port: int, context: ssl.SSLContext | None, doorman: Doorman, handler: Handler
+) -> Server:
+    """Listen; ``doorman`` tells who is let in, and ``handler`` serves them.
+
+    :raises BridgeError: when the address cannot be listened on.
+    """
+    _allow_connections(gate.limits)
+    try:
+        return await serve(
+            cast("Callable[[ServerConnection], Awaitable[None]]", partial(_serve, handler)),
+            host,
+            port,
+            ssl=context,
+            select_subprotocol=cast("Any", lambda _visitor, offered: chosen_protocol(offered)),
+            process_request=cast("Any", partial(_ask, doorman)),
+            create_connection=cast("type[ServerConnection]", partial(ClientConnection, gate)),
+            backlog=BACKLOG,
+            open_timeout=gate.limits.handshake_s,
+            max_size=gate.limits.largest_message_bytes,
+            write_limit=WRITE_LIMIT,
+            compression=None,
+            server_header=None,
+            ping_interval=PING_INTERVAL,
+            ping_timeout=gate.limits.stuck_s,
+        )
+    except OSError as error:
+        raise BridgeError(
+            f"cannot listen on {host}:{port}: {error.strerror or error}; choose another --port, or 0 for any"
+        ) from error
+
+
+def _allow_connections(limits: LimitSettings) -> None:
+    """Let this process hold so many connections beside its files, as far as the system allows."""
+    soft, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
+    needed = limits.robots + limits.desks + limits.pending_per_address + SPARE_FILES
+    wanted = needed + ONE_ADDRESS
+    if hard != resource.RLIM_INFINITY:
+        wanted = min(wanted, hard)
+    if soft < wanted:
+        resource.setrlimit(resource.RLIMIT_NOFILE, (wanted, hard))
+        soft = wanted
+    if soft < needed:
+        log.warning("the system allows %d open files, fewer than the limits of the site take", soft)
+
+
+async def _ask(doorman: Doorman, visitor: ClientConnection, request: Request) -> Response | None:
+    """Ask whether a visitor is let in; who meets a fault of the gateway's stays outside."""
+    if not _is_path(request.path):
+        return visitor.respond(http.HTTPStatus.BAD_REQUEST, "The path of the request cannot be read.\n")
+    try:
+        return await doorman(visitor, request)
+    except Exception:
+        text = log_unforeseen(log, f"somebody from {visitor.address}")
+        return visitor.respond(http.HTTPStatus.INTERNAL_SERVER_ERROR, f"{text}\n")
+
+
+def _is_path(path: str) -> bool:
+    try:
+        urlsplit(path)
+    except ValueError:
+        return False
+    return path.isascii() and path.isprintable()
+
+
+async def _serve(handler: Handler, visitor: ClientConnection) -> None:
+    """Serve one connection; what goes wrong in that ends it alone, and is told to the log alone."""
+    try:
+        await handler(visitor)
+    except Exception:
+        text = log_unforeseen(log, f"{visitor.who} from {visitor.address}")
+        await visitor.expel(CloseCode.INTERNAL_ERROR, text)

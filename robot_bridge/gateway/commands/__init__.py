@@ -1,0 +1,1 @@
+"""Commands: validated, stored, delivered, and followed to their ends."""

@@ -1,0 +1,285 @@
+"""Persistence of commands: transactions, locks of robots, and Aborts that wait for the database."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import dataclasses
+from collections.abc import AsyncIterator, Awaitable, Callable, Iterable, Mapping, Sequence
+from typing import Any, NamedTuple, TypeVar
+
+from sqlalchemy import Connection
+
+from ...core.errors import RefusedError, UncertainError
+from ...core.messages import Abort, Answer, Command, CommandReport, SetPosIni
+from ...protocol.codec import decode_answer
+from ..model.command_states import is_open, note
+from ..storage.database import Database
+from ..storage.repositories import closures, commands, queues
+from ..storage.repositories import requests as answers
+from ..storage.repositories.commands import StoredCommand
+from ..storage.repositories.queues import QueueHold
+from .active_command import ActiveCommand, CommandOrder, Recall, because
+
+# --- How commands and their messages in SA are written, in one transaction; called in the database's thread
+# Nothing here changes anything but the database, so that a transaction can be done again.
+
+
+class CommandInsert(NamedTuple):
+    """An order with the command it makes, ends and recalls of older ones, and why it is refused, if it is.
+
+    ``ends_waiting`` is true for a robot that waits for another.
+
+    An order whose command is stored already is neither done again nor refused.
+    """
+
+    order: CommandOrder
+    command: ActiveCommand
+    ended: list[ActiveCommand]
+    recalls: list[Recall]
+    refusal: RefusedError | None = None
+    ends_waiting: bool = False
+
+
+class WrittenCommands(NamedTuple):
+    """What was written: commands as they now stand, in the order asked for, and older ones that changed."""
+
+    issued: list[ActiveCommand]
+    changed: list[ActiveCommand]
+
+
+FORGOTTEN = ("Start", "OpAck", "SetMap")
+"""What waits for a robot that starts anew, and is void."""
+Also = Callable[[Connection], None]
+"""More to be written in the same transaction."""
+AlsoOf = Callable[[str], Also]
+"""What more is to be written, made from the id of the command that the robot then carries out."""
+
+
+def insert_commands(
+    connection: Connection, drafts: Sequence[CommandInsert], also: Also | None = None
+) -> WrittenCommands:
+    """Write new commands with their messages; raises RefusedError for the first that is refused."""
+    known = commands.find_all(connection, [draft.order.command for draft in drafts])
+    new = [draft for draft in drafts if draft.order.command not in known]
+    for draft in new:
+        if draft.refusal is not None:
+            raise draft.refusal
+    changed = [command for draft in new for command in draft.ended]
+    write_steps(connection, changed)
+    changed += write_recalls(connection, [recall for draft in new for recall in draft.recalls])
+    ids = answers.add_numbered(connection, [(d.order.robot, d.order.message) for d in new])
+    written = {
+        draft.order.command: dataclasses.replace(draft.command, sa_id=id)
+        for draft, id in zip(new, ids, strict=True)
+    }
+    commands.add_all(connection, [_stored(command) for command in written.values()])
+    queues.hold(connection, [hold for draft in new if (hold := _held(draft)) is not None])
+    for draft in new:
+        if draft.ends_waiting and not isinstance(draft.order.message, SetPosIni):
+            closures.release(connection, draft.order.robot)
+    if also is not None:
+        also(connection)
+    issued = [written.get(d.order.command) or opened(known[d.order.command], d.order.message) for d in drafts]
+    return WrittenCommands(issued, changed)
+
+
+def write_steps(connection: Connection, steps: Sequence[ActiveCommand]) -> None:
+    """Write the newest step of commands; what ended takes its message out of SA."""
+    commands.save_all(connection, [_stored(command) for command in steps])
+    answers.remove_answers(connection, [c.sa_id for c in steps if not is_open(c.report.state)])
+
+
+def write_recalls(connection: Connection, recalls: Sequence[Recall]) -> list[ActiveCommand]:
+    """Take messages back that were not fetched, and write what becomes of their commands; return those.
+
+    Fetched is also what its robot has acknowledged without having deleted it, read by the gateway or not.
+    """
+    taken_back = answers.take_back(connection, [recall.queued.sa_id for recall in recalls])
+    if taken_back:
+        taken_back -= _acknowledged(connection, recalls)
+    steps = [recall.ended if recall.queued.sa_id in taken_back else recall.fetched for recall in recalls]
+    commands.save_all(connection, [_stored(command) for command in steps])
+    return steps
+
+
+def _acknowledged(connection: Connection, recalls: Sequence[Recall]) -> set[int]:
+    """Return the messages of ``recalls`` whose OpAcks stand in RR; looked for when the messages are gone."""
+    by_robot = answers.acknowledged(connection, sorted({recall.queued.report.robot for recall in recalls}))
+    return {r.queued.sa_id for r in recalls if r.queued.sa_id in by_robot[r.queued.report.robot]}
+
+
+def write_acknowledged(
+    connection: Connection, robot: str, sa_id: int | None, steps: Sequence[ActiveCommand]
+) -> None:
+    """Write what a robot's OpAck of message ``sa_id`` changes, and take that out of SA."""
+    if sa_id is not None:
+        answers.remove_own(connection, robot, sa_id)
+    write_steps(connection, steps)
+
+
+def write_late(connection: Connection, robot: str, sa_id: int, at: float) -> CommandReport | None:
+    """Take message ``sa_id``, which no open command waits for, out of SA.
+
+    A robot may have read the message of a command that ended while it was on its way: then its log says so,
+    once, and is returned.
+    """
+    answers.remove_own(connection, robot, sa_id)
+    stored = commands.find_message(connection, robot, sa_id)
+    if stored is None or is_open(stored.report.state) or any(s.by == robot for s in stored.report.steps):
+        return None
+    report = note(stored.report, at, robot, "the robot had read it by then, and acknowledged it")
+    commands.save_all(connection, [stored._replace(report=report)])
+    return report
+
+
+def write_again(
+    connection: Connection,
+    robot: str,
+    welcome: Sequence[Answer],
+    again: Sequence[ActiveCommand],
+    ended: Sequence[ActiveCommand],
+    note_run: Callable[[Connection], bool],
+) -> list[ActiveCommand]:
+    """Write ``welcome`` for a robot that starts anew, then the messages of its commands; return those.
+
+    All that is done once for each run of a robot: ``note_run`` notes that, and returns false where it was
+    noted before, by a transaction of which nobody heard that it was done. The messages keep the order in
+    which they stood. Nothing else that sets a robot in motion stays: it answers questions that the robot has
+    forgotten.
+    """
+    if not note_run(connection):
+        return []
+    write_steps(connection, ended)
+    again = sorted(again, key=lambda command: command.sa_id)
+    answers.remove_answers(connection, [command.sa_id for command in again])
+    answers.remove_kinds(connection, robot, [*FORGOTTEN, *answers.ORDERS])
+    answers.add_answers(connection, [(robot, message) for message in welcome])
+    ids = answers.add_numbered(connection, [(c.report.robot, c.message) for c in again])
+    renewed = [dataclasses.replace(command, sa_id=id) for command, id in zip(again, ids, strict=True)]
+    commands.save_all(connection, [_stored(command) for command in renewed])
+    return [*ended, *renewed]
+
+
+def write_driven(connection: Connection, driven: Mapping[str, float]) -> None:
+    """Write how many metres of their paths robots have driven, by command."""
+    commands.save_driven(connection, driven)
+
+
+def opened(stored: StoredCommand, message: Command | None = None) -> ActiveCommand:
+    """Return a stored command as one with a step to come, not judged yet."""
+    report = stored.report
+    if message is None:
+        decoded = decode_answer(report.op, report.params)
+        assert isinstance(decoded, Command)
+        message = decoded
+    return ActiveCommand(report, stored.sa_id, message, expires_at=stored.expires_at)
+
+
+def _held(draft: CommandInsert) -> QueueHold | None:
+    """Return why the robot's queue pauses: it must not overtake whoever orders the robot about."""
+    order, message = draft.order, draft.order.message
+    if order.task is not None or isinstance(message, SetPosIni):
+        return None
+    reason = f"{order.operator} ordered {type(message).__name__} beside the queue"
+    if isinstance(message, Abort):
+        what = "emergency stop by" if message.emergency else "aborted by"
+        reason = because(f"{what} {order.operator}", order.reason)
+    return QueueHold(order.robot, reason, order.operator, draft.command.report.steps[0].at)
+
+
+def _stored(command: ActiveCommand) -> StoredCommand:
+    return StoredCommand(command.report, command.sa_id, command.driven, command.expires_at)
+
+
+# --- Aborts that the database did not take, kept until it does ---
+
+
+class UnstoredAborts:
+    """The newest Abort of each robot, and of each command that was to be aborted alone.
+
+    The Abort of an emergency stop is not among them: the stop keeps it.
+    """
+
+    def __init__(self) -> None:
+        self._orders: dict[str, dict[str | None, CommandOrder]] = {}
+
+    def keep(self, orders: Iterable[CommandOrder]) -> None:
+        """Keep the Aborts among ``orders``."""
+        for order in orders:
+            if isinstance(order.message, Abort) and not order.is_emergency:
+                self._orders.setdefault(order.robot, {})[order.aborts] = order
+
+    def of(self, robots: Iterable[str]) -> list[CommandOrder]:
+        """Return the Aborts of ``robots``."""
+        return [order for robot in robots for order in self._orders.get(robot, {}).values()]
+
+    def robots(self) -> list[str]:
+        """Return the names of the robots of which there are some."""
+        return list(self._orders)
+
+    def discard(self, order: CommandOrder) -> None:
+        """Forget an Abort, unless a newer one is kept in its place."""
+        mine = self._orders.get(order.robot, {})
+        if mine.get(order.aborts) is order:
+            del mine[order.aborts]
+        if not mine:
+            self._orders.pop(order.robot, None)
+
+
+# --- Robots held while what concerns them is stored; what may have been stored or not is looked up first
+
+T = TypeVar("T")
+
+
+class NamedLocks:
+    """A lock for each robot, by name."""
+
+    def __init__(self) -> None:
+        self._locks: dict[str, asyncio.Lock] = {}
+
+    @contextlib.asynccontextmanager
+    async def of(self, names: Iterable[str]) -> AsyncIterator[None]:
+        """Hold some robots, in the one order in which everybody does."""
+        async with contextlib.AsyncExitStack() as stack:
+            for name in sorted(set(names)):
+                await stack.enter_async_context(self._locks.setdefault(name, asyncio.Lock()))
+            yield
+
+
+class RobotLocks:
+    """Robots by name, each held by one at a time: what concerns one waits only for what concerns the same.
+
+    Once a transaction may have been done or not, ``look_up`` finds out what holds before anything else is
+    done with any robot; it raises StoreError where it cannot, and is asked again then.
+    """
+
+    def __init__(self, database: Database, look_up: Callable[[], Awaitable[None]]) -> None:
+        self._database = database
+        self._look_up = look_up
+        self._locks = NamedLocks()
+        self._doubts = self._settled = 0
+
+    @property
+    def are_in_doubt(self) -> bool:
+        """Whether nobody knows what holds."""
+        return self._doubts > self._settled
+
+    @contextlib.asynccontextmanager
+    async def of(self, names: Iterable[str]) -> AsyncIterator[None]:
+        """Hold some robots, in the one order in which everybody does; none only looks up what is in doubt."""
+        async with self._locks.of(names):
+            if self.are_in_doubt:
+                before = self._doubts
+                await self._look_up()
+                # What came into doubt meanwhile may not have been seen.
+                self._settled = max(self._settled, before)
+            yield
+
+    async def run(self, work: Callable[..., T], *arguments: Any) -> T:
+        """Run ``work`` in a transaction; raises StoreError, and UncertainError when it may have been done."""
+        try:
+            return await self._database.run(work, *arguments)
+        except UncertainError:
+            self._doubts += 1
+            raise

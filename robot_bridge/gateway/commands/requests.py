@@ -1,0 +1,179 @@
+"""What operators order robots to do: understood, checked against robot and site, and put into the book."""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+import uuid
+from collections.abc import Callable
+from dataclasses import replace
+
+from ...core.errors import DataRefusedError, RefusedError, StoreError, listed_names
+from ...core.logs import log_and_continue
+from ...core.messages import (
+    COMMANDS,
+    Abort,
+    AbortTask,
+    CommandReport,
+    MessageError,
+    Send,
+    SetPath,
+    TargetPosition,
+    check_crs,
+    to_json,
+)
+from ...protocol.codec import decode_command
+from ..model.robots import Robots
+from ..site.places import ServedSite, check_places, command_in_site_frame, places_of, targets_in_site_frame
+from ..storage.database import Database
+from ..storage.repositories import commands
+from .active_command import CommandOrder
+from .service import CommandService
+
+log = logging.getLogger(__name__)
+
+STORED_WITHIN = 1.0
+"""seconds after which an Abort that is not stored yet is sent over open connections as well."""
+STORED_LATER = "it is stored and sent as soon as the database takes it"
+
+
+class CommandRequests:
+    """Takes operators' orders. Each method returns when what it ordered is stored.
+
+    All raise RefusedError for what cannot be done, MessageError for what cannot be understood, StoreError
+    when it cannot be stored.
+    """
+
+    def __init__(self, site: ServedSite, robots: Robots, book: CommandService, database: Database) -> None:
+        self._site = site
+        self._robots = robots
+        self._book = book
+        self._database = database
+        self._links: list[Callable[[str, str], bool]] = []
+
+    def reach(self, link: Callable[[str, str], bool]) -> None:
+        """Call ``link`` with a robot and the id of a call where an Abort cannot be stored.
+
+        It sends that over the robot's open connection, and returns whether there is one.
+        """
+        self._links.append(link)
+
+    async def send(self, send: Send, operator: str) -> CommandReport:
+        """Issue one command; asked again it is answered as it stands, whatever would be refused by now."""
+        try:
+            order = await self._order(send.command, send.robot, send.op, send.params, operator)
+        except RefusedError as refusal:
+            return await self._issued_before(send.command, refusal)
+        told = [f"override: {send.override}" if send.override else None, send.reason]
+        reason = "; ".join(text for text in told if text) or None
+        fenced = send.override is None
+        order = replace(order, reason=reason, expires_in=send.expires_in, fenced=fenced)
+        issue = self._issue_aborts if isinstance(order.message, Abort) else self._book.issue
+        return (await issue([order]))[0]
+
+    async def set_positions(self, positions: list[TargetPosition], operator: str) -> list[CommandReport]:
+        """Issue a target for each robot, all of them or none."""
+        names = [position.robot for position in positions]
+        twice = sorted({name for name in names if names.count(name) > 1})
+        if twice:
+            raise RefusedError(
+                f"positions: {', '.join(twice)} is named more than once; give each robot one target"
+            )
+        for name in names:
+            self._robots.check_known(name)
+        orders = []
+        for position in await targets_in_site_frame(self._site, positions):
+            target = {name: value for name, value in to_json(position).items() if name != "robot"}
+            order = await self._order(str(uuid.uuid4()), position.robot, "SetPosEnd", target, operator)
+            orders.append(replace(order, fenced=True))
+        return await self._book.issue(orders)
+
+    async def abort(self, request: AbortTask, operator: str) -> CommandReport:
+        """Tell a robot to abort its task, or to abort one command if that still is its task."""
+        try:
+            order = await self._order(request.command, self._robot_of(request), Abort.__name__, {}, operator)
+        except RefusedError as refusal:
+            return await self._issued_before(request.command, refusal)
+        order = replace(order, reason=request.reason, aborts=request.aborts)
+        return (await self._issue_aborts([order]))[0]
+
+    async def abort_all(
+        self, operator: str, command: str | None = None, reason: str | None = None
+    ) -> list[CommandReport]:
+        """Tell every robot to abort its task; asked again with the same ``command`` id it changes nothing."""
+        command = command or str(uuid.uuid4())
+        ids = {name: uuid.uuid5(uuid.NAMESPACE_OID, f"{command} {name}") for name in self._robots.commanded()}
+        return await self._issue_aborts(
+            [CommandOrder(str(id), name, Abort(), operator, reason) for name, id in ids.items()]
+        )
+
+    async def _issue_aborts(self, orders: list[CommandOrder]) -> list[CommandReport]:
+        """Store Aborts; those that are not stored within a second are sent over open connections as well."""
+        storing = asyncio.ensure_future(self._book.issue(orders))
+        await asyncio.wait({storing}, timeout=STORED_WITHIN)
+        sent: list[str] = []
+        if not storing.done() or isinstance(storing.exception(), StoreError):
+            sent = [order.robot for order in orders if self._send_unstored(order)]
+        try:
+            return await storing
+        except StoreError as error:
+            whom = (
+                f"sent to {listed_names(sent)} over the open connection all the same"
+                if sent
+                else "sent to no robot"
+            )
+            then = "" if isinstance(error, DataRefusedError) else f"; {STORED_LATER}"
+            raise StoreError(f"{error}. The Abort is not stored; it was {whom}{then}") from error
+
+    def _send_unstored(self, order: CommandOrder) -> bool:
+        is_sent = False
+        for link in self._links:
+            with log_and_continue(log, f"sending robot {order.robot!r} an Abort that is not stored"):
+                is_sent |= link(order.robot, f"abort-{order.command}")
+        return is_sent
+
+    async def _issued_before(self, command: str, refusal: RefusedError) -> CommandReport:
+        """Return a command as it stands if it was issued before; raises ``refusal`` otherwise.
+
+        Whoever got no answer asks again, and the site, the robots or the task may be others by now.
+        """
+        known = await self._database.run(commands.find, command)
+        if known is None:
+            raise refusal
+        return known
+
+    def _robot_of(self, request: AbortTask) -> str:
+        robot = request.robot or self._book.robot_of(request.aborts or "")
+        if robot is None:
+            raise RefusedError(
+                f"command {request.aborts} has ended or was never issued, so there is nothing to abort"
+            )
+        return robot
+
+    async def _order(
+        self, id: str, robot: str, op: str, params: dict[str, object], operator: str
+    ) -> CommandOrder:
+        self._robots.check_known(robot)
+        if op not in COMMANDS:
+            raise MessageError(f"op {op!r} cannot be sent to a robot; choose one of {', '.join(COMMANDS)}")
+        crs = params.get("crs")
+        if not (crs is None or isinstance(crs, str)):
+            raise MessageError(f"{op}: crs is {crs!r:.40}; give a code such as 'EPSG:4326', or none")
+        check_crs(crs)
+        message = decode_command(op, {name: value for name, value in params.items() if name != "crs"})
+        if isinstance(message, Abort) and message.emergency:
+            raise MessageError("Abort: emergency is for every robot; ask for emergency_stop")
+        message = await command_in_site_frame(self._site, message, crs)
+        if isinstance(message, SetPath) and (message.cone or message.collect):
+            self._check_cone(robot)
+        check_places(self._site, places_of(message))
+        return CommandOrder(id, robot, message, operator)
+
+    def _check_cone(self, robot: str) -> None:
+        """Raise RefusedError for a robot that would drive a path and leave out the cone at its end."""
+        if not self._robots.get(robot).places_on_paths:
+            raise RefusedError(
+                f"SetPath: robot {robot!r} has not declared in Ready that it takes cones with a path "
+                "(path_cones), so it would not do what is to be done at the end: take it for a SetPosEnd, or "
+                "give it a task with a path"
+            )

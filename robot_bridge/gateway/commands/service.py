@@ -1,0 +1,418 @@
+"""The open commands of the fleet: issued, delivered, acknowledged, judged, ended; each step stored first."""
+
+from __future__ import annotations
+
+import contextlib
+import dataclasses
+import logging
+from collections.abc import Callable, Coroutine, Iterable, Sequence
+from typing import Any
+
+from sqlalchemy import Connection
+
+from ...core.errors import DataRefusedError, RefusedError, StoreError
+from ...core.logs import log_and_continue
+from ...core.messages import Answer, CommandReport, CommandState, OpAck, SendPos, SetPath
+from ..model.arrival import PathArrival, arrival_judge
+from ..model.command_states import is_open
+from ..model.robots import RobotPose, Robots
+from ..storage.database import Database, to_its_end
+from ..storage.repositories import commands
+from ..storage.repositories.commands import StoredCommand
+from .active_command import (
+    ABORTED,
+    GATEWAY,
+    ActiveCommand,
+    ActiveCommands,
+    CommandOrder,
+    Recall,
+    acknowledge_command,
+    ended_by,
+    given_up_by,
+    restart_commands,
+)
+from .persistence import (
+    Also,
+    NamedLocks,
+    RobotLocks,
+    UnstoredAborts,
+    insert_commands,
+    opened,
+    write_acknowledged,
+    write_again,
+    write_driven,
+    write_late,
+    write_recalls,
+    write_steps,
+)
+from .validation import CommandReader, CommandRules, CommandValidator
+
+log = logging.getLogger(__name__)
+
+__all__ = ["GATEWAY", "ActiveCommand", "CommandOrder", "CommandService"]
+
+DRIVEN_STEP = 0.5
+"""metres along a path between two that are stored."""
+NOWHERE = SendPos(x=1e8, y=1e8, theta=0.0, v=0.0)
+"""Where a robot was of which that was not stored: far from wherever it is now."""
+ABORTED_TOO_LATE = "it stood at its end when it was heard again, and the Abort came too late"
+MOST_LATE = 1000
+"""acknowledgements of ended commands that wait for the database."""
+
+
+class CommandService(CommandReader):
+    """Holds the open commands and takes them through their lives.
+
+    Every change is committed before it is shown: ``changed`` is called with each command's new report, and
+    ``outbox_changed`` with the robot for which SA holds something new.
+    """
+
+    def __init__(
+        self,
+        database: Database,
+        robots: Robots,
+        tolerance: float,
+        clock: Callable[[], float],
+        rules: CommandRules,
+        changed: Callable[[CommandReport], None],
+        outbox_changed: Callable[[str], None],
+    ) -> None:
+        super().__init__(ActiveCommands())
+        self.drafting = CommandValidator(self._open, robots, rules)
+        self.tolerance = tolerance
+        """metres within which a target counts as reached."""
+        self._database = database
+        self._robots = robots
+        self._clock = clock
+        self._changed = changed
+        self._outbox_changed = outbox_changed
+        self._held = RobotLocks(database, self._look_up)
+        self._turns = NamedLocks()
+        self._late: set[tuple[str, int]] = set()
+        self._unstored = UnstoredAborts()
+
+    async def restore(self) -> None:
+        """Take up the commands that an earlier gateway left open."""
+        for stored in await self._database.run(commands.still_open):
+            self._open.put(self._restored(stored))
+
+    async def issue(self, orders: list[CommandOrder], also: Also | None = None) -> list[CommandReport]:
+        """Store new commands with their messages, all or none, and ``also`` more; return them as stored.
+
+        A command whose id is known already is returned as it stands and changes nothing. An Abort that the
+        database does not take is kept, and stored before anything else that its robot is told.
+        """
+        return await to_its_end(self._issue(orders, also))
+
+    async def lead(self, robot: str, task: str, path: SetPath, write: Callable[[Connection], None]) -> None:
+        """Tell a robot the way to its target; ``write`` writes that. The target stays the command.
+
+        :raises RefusedError: when ``task`` is not what the robot does any more; StoreError.
+        """
+        await to_its_end(self._lead(robot, task, path, write))
+
+    async def hand_over(self, robot: str, sa_id: int) -> bool:
+        """Note that message ``sa_id`` is delivered, before it is sent; false where its command has ended.
+
+        Were it noted afterwards, a gateway that is killed in between would leave a command queued that the
+        robot carries out, and take it back as one that never reached it.
+        """
+        if sa_id not in self._open.queued:
+            return True
+        await to_its_end(self._delivered([sa_id]))
+        return any(command.sa_id == sa_id for command in self._open.of(robot))
+
+    async def delivered(self, sa_ids: Iterable[int]) -> None:
+        """Note that the messages ``sa_ids`` have reached their robots."""
+        wanted = [id for id in sa_ids if id in self._open.queued]
+        if wanted:
+            await to_its_end(self._delivered(wanted))
+
+    async def acknowledged(self, robot: str, ack: OpAck) -> float | None:
+        """Note a robot's OpAck: it took the message on, or (``ok`` false) will not do it, or gave it up.
+
+        Return when the message was written into SA, if it was a command's and is acknowledged at first.
+        """
+        return await to_its_end(self._acknowledged(robot, ack))
+
+    def observe(self, robot: str, pose: SendPos) -> Coroutine[Any, Any, None] | None:
+        """Judge the robot's acknowledged commands by where it is now.
+
+        Return what stores those that are done, to be awaited; None where none is.
+        """
+        mine = self._open.of(robot)
+        done = [
+            (command, deviation, pose)
+            for command in mine
+            if command.arrival
+            and not command.acknowledgement_waits
+            and ((deviation := command.arrival.deviation(pose)) is not None or given_up_by(command, mine))
+        ]
+        return to_its_end(self._all_done(done)) if done else None
+
+    def with_open_commands(self, poses: Iterable[RobotPose]) -> list[RobotPose]:
+        """Return the poses of robots that have open commands."""
+        return [told for told in poses if told[0] in self._open.robots]
+
+    def await_again(self, robot: str, sa_id: int) -> None:
+        """Judge the command with this message only by positions that come after its acknowledgement.
+
+        It waits to be dealt with, if not for the first time; positions before it are older than the command.
+        """
+        for command in self._open.of(robot):
+            command.acknowledgement_waits |= command.sa_id == sa_id
+
+    def lose_sight(self, robot: str) -> None:
+        """Note that nobody saw for a while where a robot drove."""
+        for command in self._open.of(robot):
+            command.lose_sight()
+
+    def rests(self, robot: str, pose: SendPos | None) -> Coroutine[Any, Any, None] | None:
+        """Note that a robot, at ``pose`` for all that is known, says that it has nothing to do.
+
+        Return as :meth:`observe`.
+        """
+        done = [
+            (command, deviation, pose)
+            for command in self._open.of(robot)
+            if isinstance(command.arrival, PathArrival)
+            and (deviation := command.arrival.rests(pose)) is not None
+            and pose is not None
+        ]
+        return to_its_end(self._all_done(done)) if done else None
+
+    async def deliver_again(
+        self,
+        robot: str,
+        reason: str,
+        expire_after: float,
+        welcome: Sequence[Answer],
+        note_run: Callable[[Connection], bool],
+    ) -> None:
+        """Send once more what a robot that started anew may have forgotten, unless it is too old.
+
+        All that waits for it, too, comes behind ``welcome``: it must not drive before it has its map.
+        ``note_run`` notes in the same transaction that it has started anew, and returns false where that is
+        noted: then all is sent.
+        """
+        await to_its_end(self._deliver_again(robot, reason, expire_after, welcome, note_run))
+
+    async def expire(self, expire_after: float) -> None:
+        """End the commands that were not fetched in time: ``expire_after`` seconds, or as they say."""
+        now = self._clock()
+        late = [c for c in self._open.queued.values() if c.expired(now, expire_after)]
+        if late:
+            await to_its_end(self._expire([c.report.command for c in late]))
+
+    async def give_up(self, robot: str, reason: str) -> None:
+        """End every command of a robot, which will not carry it out."""
+        await to_its_end(self._give_up(robot, reason))
+
+    async def look_up(self) -> None:
+        """Find out what became of a transaction that may have been done or not; raises StoreError."""
+        if self._held.are_in_doubt:
+            async with self._held.of(()):
+                # Whoever holds robots looks it up.
+                return
+
+    async def save_progress(self) -> None:
+        """Store kept Aborts, how far robots have come along their paths, and late acknowledgements."""
+        await self.look_up()
+        for robot in self._unstored.robots():
+            await to_its_end(self._issue_unstored(robot))
+        for robot, sa_id in list(self._late):
+            # One that is refused, or goes wrong otherwise, is forgotten: the others have their turn.
+            what = f"a late acknowledgement of robot {robot!r}"
+            with log_and_continue(log, what, except_for=StoreError), contextlib.suppress(DataRefusedError):
+                await self.acknowledged(robot, OpAck(id=sa_id))
+            self._late.discard((robot, sa_id))
+        driven = self._open.progress(DRIVEN_STEP)
+        if driven:
+            await self._database.run(write_driven, driven)
+            self._open.note_progress(driven)
+
+    # --- what has to be done to its end, with the robots' locks held --------------------------------------
+
+    async def _issue(self, orders: list[CommandOrder], also: Also | None) -> list[CommandReport]:
+        robots = {order.robot for order in orders}
+        async with self._turns.of(() if all(order.is_emergency for order in orders) else robots):
+            # What takes long first: nothing may come between the checks and the transaction. And before the
+            # robots are held: while a long path is looked at for one, an emergency stop is stored for all.
+            found = await self.drafting.consider(orders)
+            try:
+                async with self._held.of(robots):
+                    if not all(order.is_emergency for order in orders):
+                        await self._store_unstored(robots)
+                    return await self._store(orders, found, also)
+            except DataRefusedError:
+                raise
+            except StoreError:
+                self._unstored.keep(orders)
+                raise
+
+    async def _issue_unstored(self, robot: str) -> None:
+        async with self._turns.of([robot]), self._held.of([robot]):
+            await self._store_unstored([robot])
+
+    async def _store_unstored(self, robots: Iterable[str]) -> None:
+        """Store the Aborts of robots that the database did not take; one that it refuses is forgotten."""
+        for order in self._unstored.of(robots):
+            with log_and_continue(log, f"storing Abort {order.command}", except_for=StoreError):
+                try:
+                    await self._store([order], [None], None)
+                except (DataRefusedError, RefusedError) as error:
+                    log.warning("Abort %s of robot %r: %s", order.command, order.robot, error)
+            self._unstored.discard(order)
+
+    async def _store(
+        self, orders: list[CommandOrder], found: Sequence[RefusedError | None], also: Also | None
+    ) -> list[CommandReport]:
+        now = self._clock()
+        drafts = [self.drafting.draft(order, fault, now) for order, fault in zip(orders, found, strict=True)]
+        issued, changed = await self._held.run(insert_commands, drafts, also)
+        for command in changed:
+            self._apply(command)
+        for command in issued:
+            id = command.report.command
+            if command.report.state is CommandState.QUEUED and self._open.get(id) is None:
+                self._apply(command)
+                self._outbox_changed(command.report.robot)
+        return [command.report for command in issued]
+
+    async def _lead(self, robot: str, task: str, path: SetPath, write: Callable[[Connection], None]) -> None:
+        async with self._turns.of([robot]):
+            await self.drafting.consider_way(path)
+            async with self._held.of([robot]):
+                self.drafting.check_way(robot, task, path)
+                await self._held.run(write)
+                self._outbox_changed(robot)
+
+    async def _delivered(self, sa_ids: list[int]) -> None:
+        # By now some may be further on.
+        robots = {self._open.queued[id].report.robot for id in sa_ids if id in self._open.queued}
+        async with self._held.of(robots):
+            queued = [self._open.queued[id] for id in sa_ids if id in self._open.queued]
+            now = self._clock()
+            await self._save([command.step(CommandState.DELIVERED, now, GATEWAY) for command in queued])
+
+    async def _acknowledged(self, robot: str, ack: OpAck) -> float | None:
+        async with self._held.of([robot]):
+            command = next((c for c in self._open.of(robot) if c.sa_id == ack.id), None)
+            if command is None and ack.ok and ack.id is not None:
+                await self._note_late(robot, ack.id)
+                return None
+            if command is not None:
+                command.acknowledgement_waits = False
+            steps = [] if command is None else self._answered(command, ack)
+            # One transaction: a message that is gone from SA with its step unsaved would be lost.
+            await self._held.run(write_acknowledged, robot, ack.id, steps)
+            for step in steps:
+                self._apply(step)
+            return command.written_at if command is not None and command.is_on_its_way else None
+
+    async def _note_late(self, robot: str, sa_id: int) -> None:
+        """Note that the robot read a message whose command has ended; what cannot be stored now is kept."""
+        try:
+            report = await self._held.run(write_late, robot, sa_id, self._clock())
+        except DataRefusedError:
+            raise
+        except StoreError:
+            if len(self._late) < MOST_LATE:
+                self._late.add((robot, sa_id))
+            raise
+        self._late.discard((robot, sa_id))
+        if report is not None:
+            self._changed(report)
+
+    async def _all_done(self, done: Sequence[tuple[ActiveCommand, float | None, SendPos]]) -> None:
+        for command, deviation, pose in done:
+            await self._done(command, deviation, pose)
+
+    async def _done(self, command: ActiveCommand, deviation: float | None, pose: SendPos) -> None:
+        """Note that a robot has reached what it was told to, or (no ``deviation``) has given it up unseen."""
+        async with self._held.of([command.report.robot]):
+            if self._open.get(command.report.command) is not command:
+                return
+            now, abort = self._clock(), given_up_by(command, self._open.of(command.report.robot))
+            if deviation is not None:
+                reason = None if abort is None else ABORTED_TOO_LATE
+                # An Abort has no place that it could be off.
+                off = None if command.is_abort else deviation
+                stood = (pose.x, pose.y, pose.theta)
+                await self._save([command.step(CommandState.REACHED, now, GATEWAY, reason, off, stood)])
+            elif abort is not None:
+                await self._save(ended_by(abort, [command], abort.acknowledged_at, ABORTED))
+
+    async def _deliver_again(
+        self,
+        robot: str,
+        reason: str,
+        expire_after: float,
+        welcome: Sequence[Answer],
+        note_run: Callable[[Connection], bool],
+    ) -> None:
+        async with self._held.of([robot]):
+            anew = restart_commands(
+                self._open.of(robot), reason, self._clock(), expire_after, self._robots.pose
+            )
+            again = anew.again, anew.ended
+            for command in await self._held.run(write_again, robot, welcome, *again, note_run):
+                self._apply(command)
+            self._outbox_changed(robot)
+
+    async def _expire(self, ids: list[str]) -> None:
+        async with self._held.of({robot for id in ids if (robot := self.robot_of(id))}):
+            found = [command for id in ids if (command := self._open.get(id))]
+            late = [command for command in found if command.report.state is CommandState.QUEUED]
+            now, reason = self._clock(), "the robot did not fetch it in time"
+            recalls = [Recall(c, c.step(CommandState.EXPIRED, now, GATEWAY, reason)) for c in late]
+            if recalls:
+                for command in await self._held.run(write_recalls, recalls):
+                    self._apply(command)
+
+    async def _give_up(self, robot: str, reason: str) -> None:
+        async with self._held.of([robot]):
+            now = self._clock()
+            mine = self._open.of(robot)
+            await self._save([c.step(CommandState.FAILED, now, GATEWAY, reason) for c in mine])
+
+    # -------------------------------------------------------------------------------------------------------
+
+    def _answered(self, command: ActiveCommand, ack: OpAck) -> list[ActiveCommand]:
+        robot, now = command.report.robot, self._clock()
+        unseen = self._robots.is_unseen(robot, now)
+        return acknowledge_command(command, ack, self._open.of(robot), now, self.tolerance, unseen=unseen)
+
+    def _restored(self, stored: StoredCommand) -> ActiveCommand:
+        seen = self._robots.pose(stored.report.robot)
+        command = dataclasses.replace(opened(stored), handed=seen or NOWHERE, out_of_sight=True)
+        if stored.report.state is CommandState.ACKNOWLEDGED:
+            command.arrival = arrival_judge(
+                command.message, self.tolerance, driven=stored.driven, under_way=True, handed=seen
+            )
+        return command
+
+    async def _save(self, steps: list[ActiveCommand]) -> None:
+        if steps:
+            await self._held.run(write_steps, steps)
+            for command in steps:
+                self._apply(command)
+
+    def _apply(self, command: ActiveCommand) -> None:
+        if is_open(command.report.state):
+            self._open.put(command)
+        else:
+            self._open.remove(command.report.command)
+        with log_and_continue(log, f"telling of command {command.report.command}"):
+            self._changed(command.report)
+
+    async def _look_up(self) -> None:
+        """Take over what the database holds, after a transaction that may have been done or not."""
+        stored = {s.report.command: s for s in await self._database.run(commands.still_open)}
+        here = {command.report.command: command for command in self._open}
+        ended = await self._database.run(commands.find_all, sorted(here.keys() - stored.keys()))
+        for found in [*ended.values(), *stored.values()]:
+            known = here.get(found.report.command)
+            if known is None or (known.report, known.sa_id) != (found.report, found.sa_id):
+                self._apply(self._restored(found))
+                self._outbox_changed(found.report.robot)

@@ -1,0 +1,198 @@
+"""Validation of commands against rules, abilities and what the robots are doing."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections import Counter
+from collections.abc import Awaitable, Callable, Sequence
+from dataclasses import dataclass
+
+from ...core.errors import RefusedError
+from ...core.geometry import Polyline
+from ...core.messages import Ability, Abort, Command, CommandState, SetPath, SetPosEnd
+from ..model.robots import Robots
+from .active_command import (
+    NOTHING,
+    ActiveCommand,
+    ActiveCommands,
+    CommandOrder,
+    create_command,
+    recalled,
+    superseded,
+)
+from .persistence import CommandInsert
+
+# --- What the commands with a step to come tell of the robots; nothing here changes any ---
+
+
+class CommandReader:
+    """Answers from the open commands what robots are doing."""
+
+    def __init__(self, open_commands: ActiveCommands) -> None:
+        self._open = open_commands
+
+    def count(self) -> Counter[CommandState]:
+        """Return how many open commands are in each state."""
+        return Counter(command.report.state for command in self._open)
+
+    def busy_with(self, robot: str) -> str | None:
+        """Return the id of the command that makes the robot drive, if any."""
+        moving = [c.report.command for c in self._open.of(robot) if c.is_motion]
+        return moving[-1] if moving else None
+
+    def task(self, robot: str) -> tuple[SetPosEnd | SetPath, float] | None:
+        """Return what the robot is to drive, and how many metres of it (of a path) it has driven."""
+        for command in reversed(self._open.of(robot)):
+            if isinstance(command.message, (SetPosEnd, SetPath)):
+                return command.message, command.driven or 0.0
+        return None
+
+    def line(self, robot: str) -> Polyline | None:
+        """Return the path that the robot has taken on as a line, None where it has none."""
+        moving = [c for c in self._open.of(robot) if c.is_motion]
+        return moving[-1].line if moving else None
+
+    def is_carrying_out(self, robot: str, command: str) -> bool:
+        """Tell whether the command is the robot's task, and nobody has asked for its end."""
+        mine = self._open.of(robot)
+        task = self._open.get(command)
+        aborted = any(c.is_abort and task is not None and c.sa_id > task.sa_id for c in mine)
+        return command == self.busy_with(robot) and not aborted
+
+    def is_being_aborted(self, robot: str, command: str) -> bool:
+        """Tell whether an Abort is to end the command as soon as the robot says that it has taken that on.
+
+        Not that of an emergency stop, after which nobody goes on before it is cleared.
+        """
+        task = self._open.get(command)
+        aborts = [c for c in self._open.of(robot) if c.is_abort and task is not None and c.sa_id > task.sa_id]
+        return bool(aborts) and not any(abort.is_emergency for abort in aborts)
+
+    def carried_out(self, robot: str) -> ActiveCommand | None:
+        """Return the command that makes the robot drive, None also where somebody has asked for its end."""
+        id = self.busy_with(robot)
+        return self._open.get(id) if id is not None and self.is_carrying_out(robot, id) else None
+
+    def is_open(self, command: str) -> bool:
+        """Tell whether a command has a step to come."""
+        return self._open.get(command) is not None
+
+    def robot_of(self, command: str) -> str | None:
+        """Return the robot of an open command."""
+        known = self._open.get(command)
+        return None if known is None else known.report.robot
+
+    def awaits_abort(self, robot: str) -> bool:
+        """Tell whether an Abort that is no emergency stop's is on its way to the robot."""
+        return any(c.is_abort and not c.is_emergency and c.is_on_its_way for c in self._open.of(robot))
+
+    def awaits_any_abort(self, robot: str) -> bool:
+        """Tell whether an Abort is on its way to the robot, an emergency stop's or another."""
+        return self.awaits_abort(robot) or self.awaits_stop(robot)
+
+    def awaits_stop(self, robot: str) -> bool:
+        """Tell whether the Abort of an emergency stop is on its way to the robot."""
+        return any(c.is_emergency and c.is_on_its_way for c in self._open.of(robot))
+
+    def undelivered(self) -> dict[int, str]:
+        """Return the robot of every message that waits in SA, by the message's id."""
+        return {sa_id: command.report.robot for sa_id, command in self._open.queued.items()}
+
+    def robots(self) -> set[str]:
+        """Return the robots that have a command with a step to come."""
+        return {command.report.robot for command in self._open}
+
+
+# --- Orders made into what is to be stored of them, or why they are refused ---
+
+_NEEDED: dict[str, Ability] = {"SetPosEnd": "targets", "SetPath": "paths", "SetPosIni": "start"}
+"""What a robot has to be able to do for each message."""
+
+
+@dataclass(frozen=True)
+class CommandRules:
+    """Whether a message may be sent to a robot now.
+
+    ``check`` raises RefusedError where it must not; ``consider`` is awaited before, for what of that takes
+    long. ``fence`` tells of orders that are fenced why each must not be sent, None where it may.
+    """
+
+    check: Callable[[Command], None]
+    consider: Callable[[Command], Awaitable[None]]
+    fence: Callable[[Sequence[CommandOrder]], Awaitable[Sequence[RefusedError | None]]]
+
+
+class CommandValidator(CommandReader):
+    """Holds orders against the rules and what their robots are doing, and says what they end."""
+
+    def __init__(self, open_commands: ActiveCommands, robots: Robots, rules: CommandRules) -> None:
+        super().__init__(open_commands)
+        self._robots = robots
+        self._rules = rules
+        self.waits: Callable[[str], bool] = lambda _robot: False
+        """Tells whether a robot waits for another: that ends with whatever else it is told."""
+
+    async def consider(self, orders: Sequence[CommandOrder]) -> list[RefusedError | None]:
+        """Find out what takes long about orders; return why each must not be sent, None where it may be."""
+        for order in orders:
+            await self._rules.consider(order.message)
+        refusals = iter(await self._rules.fence([order for order in orders if order.fenced]))
+        return [next(refusals) if order.fenced else None for order in orders]
+
+    def draft(self, order: CommandOrder, refusal: RefusedError | None, now: float) -> CommandInsert:
+        """Return the draft of an order, refused by ``refusal`` or by what holds now."""
+        try:
+            self._rules.check(order.message)
+            self._check_ability(order)
+            self._check_task(order)
+        except RefusedError as error:
+            refusal = refusal or error
+        mine = self._open.of(order.robot)
+        command = dataclasses.replace(create_command(order, now), handed=self._robots.pose(order.robot))
+        ended, recalls = superseded(order, mine, now), recalled(order, mine, now)
+        return CommandInsert(order, command, ended, recalls, refusal, self.waits(order.robot))
+
+    async def consider_way(self, way: Command) -> None:
+        """Find out what takes long about a way that a robot is to be told."""
+        await self._rules.consider(way)
+
+    def check_way(self, robot: str, task: str, way: Command) -> None:
+        """Raise RefusedError where a robot must not be told the ``way`` to its ``task``, or has another."""
+        self._rules.check(way)
+        if not self.is_carrying_out(robot, task):
+            raise _told_otherwise(robot)
+
+    def _check_task(self, order: CommandOrder) -> None:
+        if order.instead_of is not None and not self._is_open_to(order.robot, order.instead_of):
+            raise _told_otherwise(order.robot)
+        if order.aborts is not None and order.aborts != self.busy_with(order.robot):
+            raise RefusedError(
+                f"command {order.aborts} is no longer what robot {order.robot!r} is doing; look at the log, "
+                "and abort the robot if it is to stop all the same"
+            )
+
+    def _check_ability(self, order: CommandOrder) -> None:
+        """Raise RefusedError for what the robot said in Ready that it cannot do."""
+        name, message = order.robot, order.message
+        if name not in self._robots or isinstance(message, Abort):
+            return
+        robot = self._robots.get(name)
+        if self._robots.is_only_seen(name):
+            raise RefusedError(f"robot {name!r} is only seen: its link {robot.link} takes no commands for it")
+        needed = _NEEDED[type(message).__name__]
+        if not robot.can(needed):
+            raise RefusedError(
+                f"robot {name!r} does not take {type(message).__name__}, only what it said in Ready: "
+                f"{robot.abilities}"
+            )
+        if (getattr(message, "cone", None) or getattr(message, "collect", None)) and not robot.can("cones"):
+            raise RefusedError(f"robot {name!r} places and collects no cones; send it there without one")
+
+    def _is_open_to(self, robot: str, task: str) -> bool:
+        if task == NOTHING:
+            return not any(c.is_motion or c.is_abort for c in self._open.of(robot))
+        return self.is_carrying_out(robot, task)
+
+
+def _told_otherwise(robot: str) -> RefusedError:
+    return RefusedError(f"robot {robot!r} has been told otherwise in the meantime")

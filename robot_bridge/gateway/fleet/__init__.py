@@ -1,0 +1,1 @@
+"""The fleet: requests of robots and operators, emergency stop, geofence, observations, outbox."""

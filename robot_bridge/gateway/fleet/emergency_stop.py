@@ -1,0 +1,361 @@
+"""Emergency stop: every robot stopped before anything else is done, and what each robot answers."""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+import time
+import uuid
+from collections.abc import Callable, Iterable
+from enum import IntEnum
+from typing import Any
+
+from sqlalchemy import Connection
+
+from ...core.errors import RefusedError, StoreError
+from ...core.logs import log_and_continue
+from ...core.messages import (
+    Abort,
+    ClearEmergencyStop,
+    CommandReport,
+    CommandState,
+    EmergencyReport,
+    EmergencyStop,
+    to_json,
+)
+from ...core.messages.validation import LONGEST_OPERATOR, one_line
+from ..commands.active_command import CommandOrder
+from ..commands.service import CommandService
+from ..storage.database import Database
+from ..storage.repositories import commands, emergency_stops
+from ..storage.repositories.emergency_stops import StopRow
+from .emergency_persistence import HELD_BACK, MOTIONS, StopJournal, StopWriter
+
+# --- What the robots said to an emergency stop; no I/O ---
+
+MOST_NAMES = 50
+
+
+class StopAnswer(IntEnum):
+    """How far a robot has come; a later one says more."""
+
+    NONE = 0
+    REFUSED = 1
+    ACKNOWLEDGED = 2
+    STANDING = 3
+
+
+_BY_STATE = {
+    CommandState.FAILED: StopAnswer.REFUSED,
+    CommandState.ACKNOWLEDGED: StopAnswer.ACKNOWLEDGED,
+    CommandState.REACHED: StopAnswer.STANDING,
+}
+
+
+class StopAnswers:
+    """The answer of each robot. Every method that takes one in tells whether it changed anything."""
+
+    def __init__(self) -> None:
+        self._answers: dict[str, StopAnswer] = {}
+
+    def begin(self, robots: Iterable[str]) -> None:
+        """Count from nought: these robots are told."""
+        self._answers = dict.fromkeys(robots, StopAnswer.NONE)
+
+    def told(self, robot: str) -> None:
+        """Count one robot from nought: it is new, or started anew."""
+        self._answers[robot] = StopAnswer.NONE
+
+    def forget(self, robot: str) -> bool:
+        """Count a robot no more; tell whether it was counted."""
+        return self._answers.pop(robot, None) is not None
+
+    def answer(self, robot: str, *, refused: bool) -> bool:
+        """Take in what a robot said."""
+        return self._raise(robot, StopAnswer.REFUSED if refused else StopAnswer.ACKNOWLEDGED)
+
+    def note_step(self, report: CommandReport) -> bool:
+        """Take in what became of a command, if it is the Abort of an emergency stop."""
+        if report.op != Abort.__name__ or not report.params.get("emergency"):
+            return False
+        return self._raise(report.robot, _BY_STATE.get(report.state, StopAnswer.NONE))
+
+    def counts(self) -> dict[str, Any]:
+        """Return robots, acknowledged, standing, waiting and refused as an EmergencyReport has them."""
+        answers = self._answers
+        return {
+            "robots": len(answers),
+            "acknowledged": sum(answer >= StopAnswer.ACKNOWLEDGED for answer in answers.values()),
+            "standing": sum(answer is StopAnswer.STANDING for answer in answers.values()),
+            "waiting": self._names(StopAnswer.NONE),
+            "refused": self._names(StopAnswer.REFUSED),
+        }
+
+    def _names(self, wanted: StopAnswer) -> list[str]:
+        return sorted(robot for robot, answer in self._answers.items() if answer is wanted)[:MOST_NAMES]
+
+    def _raise(self, robot: str, answer: StopAnswer) -> bool:
+        if answer <= self._answers.get(robot, StopAnswer.NONE):
+            return False
+        self._answers[robot] = answer
+        return True
+
+
+# --- The emergency stop: every robot is told to stop before anything else is done, and none is sent anywhere
+# until a supervisor clears it.
+#
+# Safety comes before bookkeeping: a stop is in force the moment it is asked for, noted in a file of this
+# computer (a few milliseconds) and on its way over every open connection; it is stored as soon as the
+# database
+# can be written. What is not stored yet says so. Robots on SQL are reached by nothing but the database, so
+# they
+# are told when it can be written again.
+
+__all__ = ["HELD_BACK", "EmergencyStops"]
+
+log = logging.getLogger(__name__)
+
+STORED_WITHIN = 1.0
+"""seconds for which an operator waits to hear whether the stop is stored; it is in force before that."""
+NOTED_WITHIN = 0.1
+"""seconds for which robots wait until their stop is noted: a disk that hangs must not keep them going."""
+NAME_PREFIX = "emergency-"
+"""Begins the id of the call that tells a robot of a stop directly: a text, unlike the ids of SA."""
+
+
+class EmergencyStops:
+    """The stop in force, if one is, and what the robots say to it.
+
+    ``robots`` returns the names of the robots known, ``announce`` tells every operator. What is not stored
+    yet is noted in ``journal``, where there is one.
+    """
+
+    def __init__(
+        self,
+        book: CommandService,
+        database: Database,
+        clock: Callable[[], float],
+        robots: Callable[[], list[str]],
+        announce: Callable[[str, str, dict[str, Any]], None],
+        journal: StopJournal | None = None,
+    ) -> None:
+        self._book = book
+        self._database = database
+        self._clock = clock
+        self._robots = robots
+        self._tell_operators = announce
+        self._journal = journal
+        self._links: list[Callable[[str], None]] = []
+        self._stop: StopRow | None = None
+        self._unstored: list[StopRow] = []
+        self._unlisted: list[StopRow] = []
+        """what the database refuses as data: noted on the disk alone, and stored no more."""
+        self._writer = StopWriter(book, database)
+        self._seen: set[str] = set()
+        self._tally = StopAnswers()
+        self._writing = asyncio.Lock()
+
+    def reach(self, link: Callable[[str], None]) -> None:
+        """Call ``link`` with the id of the call at every stop: it tells every robot at its other end."""
+        self._links.append(link)
+
+    @property
+    def in_force(self) -> bool:
+        """Whether robots must not be sent anywhere."""
+        return self._stop is not None and self._stop.cleared_at is None
+
+    @property
+    def call_id(self) -> str | None:
+        """The id of the call by which a robot that connects now is told, None when no stop is in force."""
+        return f"{NAME_PREFIX}{self._stop.id}" if self._stop is not None and self.in_force else None
+
+    def report(self) -> EmergencyReport:
+        """Return how things stand."""
+        stop = self._stop
+        if stop is None:
+            return EmergencyReport()
+        return EmergencyReport(
+            in_force=self.in_force,
+            stop=stop.id,
+            at=stop.at,
+            by=stop.by,
+            reason=stop.reason,
+            stored=not self._unstored,
+            cleared_at=stop.cleared_at,
+            cleared_by=stop.cleared_by,
+            clear_reason=stop.clear_reason,
+            **self._tally.counts(),
+        )
+
+    async def restore(self) -> None:
+        """Take up the stop that an earlier gateway left in force, stored or not, and what robots said to it.
+
+        Raises StoreError when it cannot be known whether there is one.
+        """
+        self._stop, self._seen, aborts = await self._database.run(_load)
+        self._tally.begin(self._robots())
+        for report in aborts:
+            self._tally.note_step(report)
+        if self._stop is not None and self.in_force:
+            # That gateway may have died before all of them were stored.
+            reached = {report.robot for report in aborts}
+            self._writer.owe(self._stop, [robot for robot in self._robots() if robot not in reached])
+        noted = await asyncio.to_thread(self._journal.read) if self._journal else []
+        for stop in noted:
+            if stop.id not in self._seen:
+                log.warning("emergency stop by %s%s, from before the restart", stop.by, _because(stop.reason))
+                self._put_in_force(stop)
+        await self._store_and_log()
+        if noted:
+            self._note()
+
+    def check(self, message: object) -> None:
+        """Raise RefusedError for a message that would make a robot drive while a stop is in force."""
+        stop = self._stop
+        if stop is not None and self.in_force and isinstance(message, MOTIONS):
+            raise RefusedError(
+                f"an emergency stop is in force since {_clock(stop.at)}, by {stop.by}"
+                f"{_because(stop.reason)}: no robot is sent anywhere until a supervisor clears it"
+            )
+
+    async def stop(self, request: EmergencyStop, operator: str) -> EmergencyReport:
+        """Stop every robot; asked again under the same id it is the same stop.
+
+        Returns when the stop is stored, or after a second if the database does not answer or cannot be
+        written: it is in force all the same.
+        """
+        if request.command not in self._seen:
+            begun = asyncio.ensure_future(
+                self._begin(StopRow(request.command, self._clock(), _name(operator), request.line))
+            )
+            # Goes on to its end when the operator's connection does not.
+            await asyncio.shield(begun)
+        storing = asyncio.ensure_future(self._store_and_log())
+        await asyncio.wait({storing}, timeout=STORED_WITHIN)
+        return self.report()
+
+    async def clear(self, request: ClearEmergencyStop, supervisor: str) -> EmergencyReport:
+        """Let robots be sent again. Raises RefusedError, and StoreError when that cannot be stored."""
+        seen = self._stop
+        async with self._writing:
+            stop = self._stop
+            if stop is None or not self.in_force:
+                if stop is not None and request.stop == stop.id:
+                    return self.report()
+                raise RefusedError("no emergency stop is in force; there is nothing to clear")
+            # Who asked cannot have meant a stop that came while this waited.
+            if request.stop not in (None, stop.id) or stop is not seen:
+                raise RefusedError(
+                    f"{stop.by} made another emergency stop at {_clock(stop.at)}{_because(stop.reason)}; "
+                    "look at that one first, then clear it"
+                )
+            await self._store()
+            at, supervisor, reason = self._clock(), _name(supervisor), request.reason or None
+            await self._database.run(emergency_stops.clear, at, supervisor, reason)
+            if self._stop is stop:
+                self._stop = stop._replace(cleared_at=at, cleared_by=supervisor, clear_reason=reason)
+                self._writer.clear()
+                self._unlisted.clear()
+                self._note()
+                log.warning("emergency stop of %s cleared by %s%s", stop.by, supervisor, _because(reason))
+        self._announce()
+        return self.report()
+
+    async def store(self) -> None:
+        """Store the stops and Aborts that are not stored yet; raises StoreError when the database is away."""
+        if self._unstored or self._writer.is_owing:
+            async with self._writing:
+                await self._store()
+
+    async def ready(self, robot: str) -> None:
+        """Tell a robot that has just said Ready to stop, unless it is being told already."""
+        stop = self._stop
+        if stop is None or not self.in_force:
+            return
+        self._tally.told(robot)
+        if not self._book.awaits_stop(robot):
+            order = CommandOrder(str(uuid.uuid4()), robot, Abort(emergency=True), stop.by, stop.reason)
+            await self._book.issue([order])
+        self._announce()
+
+    def answered(self, robot: str, call_id: str, refused: bool) -> None:
+        """Note what a robot answered to the call that told it directly."""
+        if call_id == self.call_id and self._tally.answer(robot, refused=refused):
+            self._announce()
+
+    def forget(self, robot: str) -> None:
+        """Wait for a robot no more: it was removed."""
+        self._writer.forget(robot)
+        if self._tally.forget(robot) and self.in_force:
+            self._announce()
+
+    def note_step(self, report: CommandReport) -> None:
+        """Note what became of the Abort that a robot was sent."""
+        if self.in_force and self._tally.note_step(report):
+            self._announce()
+
+    def _put_in_force(self, stop: StopRow) -> None:
+        self._seen.add(stop.id)
+        self._stop = stop
+        self._unstored.append(stop)
+        self._tally.begin(self._robots())
+
+    async def _begin(self, stop: StopRow) -> None:
+        self._put_in_force(stop)
+        # Whatever goes wrong in one of these, what comes after it is done.
+        with log_and_continue(log, "noting an emergency stop"):
+            if (noting := self._note()) is not None:
+                await asyncio.wait({noting}, timeout=NOTED_WITHIN)
+        for link in self._links:
+            with log_and_continue(log, "sending an emergency stop over open connections"):
+                link(f"{NAME_PREFIX}{stop.id}")
+        log.warning("emergency stop by %s%s", stop.by, _because(stop.reason))
+        self._announce()
+
+    def _note(self) -> asyncio.Future[None] | None:
+        """Have what is not stored noted on the disk."""
+        if self._journal is None:
+            return None
+        return self._journal.write([*self._unlisted, *self._unstored])
+
+    async def _store_and_log(self) -> None:
+        try:
+            await self.store()
+        except StoreError as error:
+            log.error("the emergency stop is in force and not stored yet: %s", error)
+        except Exception:
+            log.exception("the emergency stop is in force and not stored yet")
+
+    async def _store(self) -> None:
+        while self._unstored:
+            stop = self._unstored[0]
+            if not await self._writer.write(stop, self._robots()):
+                self._unlisted.append(stop)
+            self._unstored.remove(stop)
+            with log_and_continue(log, "noting that an emergency stop is stored"):
+                self._note()
+            self._announce()
+        await self._writer.write_owed()
+
+    def _announce(self) -> None:
+        with log_and_continue(log, "announcing an emergency stop"):
+            self._tell_operators("emergency", "emergency", to_json(self.report()))
+
+
+def _load(connection: Connection) -> tuple[StopRow | None, set[str], list[CommandReport]]:
+    stop = emergency_stops.newest(connection)
+    aborts = [] if stop is None else commands.of_kind_since(connection, Abort.__name__, stop.at)
+    return stop, emergency_stops.ids(connection), aborts
+
+
+def _name(operator: str) -> str:
+    """Return the name of an operator as it is stored: it must be refused by no database."""
+    return one_line(operator, LONGEST_OPERATOR).strip() or "an operator"
+
+
+def _clock(at: float) -> str:
+    return time.strftime("%H:%M:%S UTC", time.gmtime(at))
+
+
+def _because(reason: str | None) -> str:
+    return f" ({reason})" if reason else ""

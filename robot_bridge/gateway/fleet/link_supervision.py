@@ -1,0 +1,400 @@
+"""Supervision of links' processes, and of robots' accounts that keep the database waiting."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import logging
+import os
+import sys
+import time
+from collections import Counter, defaultdict, deque
+from collections.abc import Awaitable, Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, Protocol
+
+import msgspec
+
+from ...core.errors import RefusedError
+from ...core.messages import to_json
+from ...core.messages.administration import (
+    LinkReport,
+    Links,
+    Playback,
+    PlaybackReport,
+    SetPlayback,
+    Suspension,
+    Suspensions,
+)
+from ...core.messages.links import LinkStatus
+from ...core.sites.settings_tables import LinkOptions
+from ..model.robots import Robots
+from ..storage.database import Database
+from ..storage.roles import blocking_sessions
+
+# --- How each link is: connected or not, its own side in order or not, and what operators are told of that
+
+GRACE = 3.0
+"""seconds that a link may be away before operators are told: most come back by themselves."""
+MOST_NAMES = 50
+AWAY = "it is not connected"
+REPLAY = "replay"
+"""The kind of links that play recordings."""
+
+Announce = Callable[[str, str, dict[str, Any]], None]
+Ask = Callable[[str, dict[str, Any]], Awaitable[Any]]
+"""Calls a method of a link, and returns its result; raises RefusedError."""
+
+
+@dataclass
+class LinkProcess:
+    """A link that the gateway starts; ``fault`` is why it does not run, in a line for operators."""
+
+    name: str
+    kind: str
+    file: Path
+    starts: int = 0
+    pid: int | None = None
+    fault: str | None = "it is not started yet"
+
+
+@dataclass(frozen=True)
+class ConnectedLink:
+    """A link that is connected: its kind, None before it said hello, and what it said last of itself."""
+
+    name: str
+    kind: str | None
+    status: LinkStatus | None
+    robots: int
+
+
+@dataclass
+class _Known:
+    seen_at: float
+    kind: str | None = None
+    status: LinkStatus | None = None
+    process: LinkProcess | None = None
+    robots: int = 0
+    counts: Mapping[str, float] = field(default_factory=dict)
+    ask: Ask | None = None
+    """None while it is not connected."""
+
+
+class LinkWatch:
+    """The links that a site names, and those that have been connected. Operators are told of each change."""
+
+    def __init__(
+        self, robots: Robots, announce: Announce, clock: Callable[[], float] = time.monotonic
+    ) -> None:
+        self._robots = robots
+        self._announce = announce
+        self._clock = clock
+        self._known: dict[str, _Known] = {}
+        self._told = Links()
+
+    def update(self, connected: Iterable[ConnectedLink], processes: Iterable[LinkProcess] = ()) -> None:
+        """Take note of how things are, and tell operators what has changed."""
+        now = self._clock()
+        for process in processes:
+            self._known.setdefault(process.name, _Known(now, process.kind)).process = process
+        for known in self._known.values():
+            known.robots = 0
+        for link in connected:
+            known = self._known.setdefault(link.name, _Known(now))
+            known.seen_at, known.status, known.robots = now, link.status, link.robots
+            known.kind = link.kind or known.kind
+            known.counts = {} if link.status is None else link.status.counts
+        report = self.report()
+        if report != self._told:
+            self._told = report
+            self._announce("links", "", to_json(report))
+
+    def introduce(self, link: str, kind: str, ask: Ask) -> None:
+        """Note the kind of a link that has said hello, before it speaks for any robot, and how to ask it."""
+        known = self._known.setdefault(link, _Known(self._clock()))
+        known.kind, known.ask = kind, ask
+
+    def withdraw(self, link: str, ask: Ask) -> None:
+        """Note that a connection has ended; one that has come in its place is asked on."""
+        known = self._known.get(link)
+        if known is not None and known.ask == ask:
+            known.ask = None
+
+    async def set_playback(self, request: SetPlayback) -> PlaybackReport:
+        """Have a link play its recording otherwise, and return how it does now; raises RefusedError."""
+        known = self._known.get(request.link)
+        if known is None or known.kind != REPLAY:
+            played = ", ".join(sorted(name for name, one in self._known.items() if one.kind == REPLAY))
+            raise RefusedError(f"{request.link[:40]!r} plays no recording; those that do: {played or 'none'}")
+        if known.ask is None:
+            raise RefusedError(f"link {request.link}: {AWAY}")
+        result = await known.ask(Playback.method, to_json(request.change))
+        try:
+            return msgspec.convert(result, PlaybackReport)
+        except msgspec.ValidationError as error:
+            raise RefusedError(f"link {request.link} answers with what is no report: {error}") from None
+
+    def kind_of(self, link: str) -> str | None:
+        """Return the kind of a link; None for one that has not been heard, and for what is none."""
+        known = self._known.get(link)
+        return None if known is None else known.kind
+
+    def report(self) -> Links:
+        """Return how each link is; one that nobody starts and whose robots are all elsewhere is forgotten."""
+        now = self._clock()
+        found = []
+        for name, known in sorted(self._known.items()):
+            text = self._fault(known, now)
+            robots = [] if text is None else self._of(name)
+            if text is not None and known.process is None and not robots and now - known.seen_at > GRACE:
+                continue
+            found.append(LinkReport(name, known.kind, text is None, text, robots[:MOST_NAMES], len(robots)))
+        return Links(found)
+
+    def numbers(self, name: str) -> dict[tuple[str, ...], float]:
+        """Return one number of each link by its name: ``up``, ``robots`` or ``starts``."""
+        now = self._clock()
+        each: dict[str, Callable[[_Known], float]] = {
+            "up": lambda known: float(self._fault(known, now) is None),
+            "robots": lambda known: float(known.robots),
+            "starts": lambda known: float(known.process.starts if known.process else 0),
+        }
+        return {(link,): each[name](known) for link, known in self._known.items()}
+
+    def counts(self) -> dict[tuple[str, ...], float]:
+        """Return what links have counted, by link and name."""
+        return {(link, name): n for link, known in self._known.items() for name, n in known.counts.items()}
+
+    def _fault(self, known: _Known, now: float) -> str | None:
+        """Return what is wrong with a link, None where nothing is."""
+        if now - known.seen_at > GRACE:
+            return (known.process.fault if known.process else None) or AWAY
+        if known.status is not None and not known.status.ok:
+            return known.status.text or "its own side is not in order"
+        return None
+
+    def _of(self, link: str) -> list[str]:
+        return [robot.name for robot in self._robots.changed(-1) if robot.link == link]
+
+
+# --- Links that a site names: each is started as a process of its own, and started again when it ends ---
+
+log = logging.getLogger(__name__)
+
+FIRST_WAIT, LONGEST_WAIT = 1.0, 60.0
+"""seconds between two starts; each time twice as long, until one has lasted for LONGEST_WAIT."""
+END_WITHIN = 1.0
+"""seconds that a process has to end in good order: a gateway ends within five in all."""
+URL = "ROBOT_BRIDGE_LINK_URL"
+"""The environment variable that tells a link where its gateway is, unless its settings do."""
+
+
+class LinkProcesses:
+    """Keeps the links going that ``options`` name, with settings in the site's ``folder``."""
+
+    def __init__(self, options: LinkOptions, folder: Path) -> None:
+        self._processes = [
+            LinkProcess(Path(file).stem, kind, folder / file) for kind, file in options.files()
+        ]
+
+    @property
+    def states(self) -> Sequence[LinkProcess]:
+        """How each of them is."""
+        return self._processes
+
+    async def run(self, url: str) -> None:
+        """Keep them going until cancelled, with the gateway at ``url``; then end them."""
+        async with asyncio.TaskGroup() as group:
+            for one in self._processes:
+                group.create_task(self._keep(one, url))
+            # Without any, nothing would be left to wait for.
+            await asyncio.Event().wait()
+
+    async def _keep(self, one: LinkProcess, url: str) -> None:
+        wait = FIRST_WAIT
+        while True:
+            began = time.monotonic()
+            try:
+                one.fault = await self._run_once(one, url)
+            except Exception as error:
+                # What goes wrong with one link ends no other, whose robots could not be stopped then.
+                log.exception("link %s: unexpected %s", one.name, type(error).__name__)
+                one.fault = f"it cannot be kept going: {error}"
+            if time.monotonic() - began > LONGEST_WAIT:
+                wait = FIRST_WAIT
+            log.error("link %s ended: %s; it is started again in %g s", one.name, one.fault, wait)
+            await asyncio.sleep(wait)
+            wait = min(wait * 2, LONGEST_WAIT)
+
+    async def _run_once(self, one: LinkProcess, url: str) -> str:
+        """Run a link to its end; return why it ended."""
+        try:
+            process = await asyncio.create_subprocess_exec(
+                *(sys.executable, "-m", "robot_bridge", "link", one.kind, "--config", str(one.file)),
+                "--until-stdin-closes",
+                stdin=asyncio.subprocess.PIPE,
+                stderr=asyncio.subprocess.PIPE,
+                env=_environment(url),
+            )
+        except OSError as error:
+            return f"it cannot be started: {error.strerror or error}"
+        one.starts, one.pid, one.fault = one.starts + 1, process.pid, None
+        log.info("link %s runs as process %d", one.name, process.pid)
+        passing = asyncio.create_task(_pass_on(process.stderr))
+        try:
+            status = await process.wait()
+            return await passing or f"exit status {status}"
+        finally:
+            one.pid = None
+            await _end(process)
+            passing.cancel()
+
+
+def _environment(url: str) -> Mapping[str, str]:
+    """Return the environment of a link: whom systemd watches is the gateway alone."""
+    left_out = ("NOTIFY_SOCKET", "WATCHDOG_USEC")
+    own = {name: value for name, value in os.environ.items() if name not in left_out}
+    return {**own, URL: url}
+
+
+async def _pass_on(lines: asyncio.StreamReader | None) -> str:
+    """Write what a link says into this log's stream; return its last line, which says why it ended."""
+    last = ""
+    while lines is not None and (line := await _line(lines)):
+        sys.stderr.write(line)
+        last = line.strip() or last
+    return last.removeprefix("robot-bridge: ")[:300]
+
+
+async def _line(lines: asyncio.StreamReader) -> str:
+    try:
+        return (await lines.readline()).decode("utf-8", "replace")
+    except ValueError:  # longer than any line of a log
+        return (await lines.read(65_536)).decode("utf-8", "replace")
+
+
+async def _end(process: asyncio.subprocess.Process) -> None:
+    if process.returncode is not None:
+        return
+    with contextlib.suppress(ProcessLookupError):
+        process.terminate()
+    try:
+        async with asyncio.timeout(END_WITHIN):
+            await process.wait()
+    except TimeoutError:
+        with contextlib.suppress(ProcessLookupError):
+            process.kill()
+        await process.wait()
+
+
+# --- Robots' accounts of the database that keep the others waiting again and again lose their connections
+
+MOST_OFFENCES, WITHIN_S = 3, 60.0
+"""So often an account may keep the gateway waiting in so many seconds; a flood is once too many."""
+FIRST_S, LONGEST_S = 60.0, 3600.0
+"""How long an account is locked; each time twice as long as the last time, unless that was long ago."""
+FORGIVEN_AFTER_S = 6 * 3600.0
+BLOCKS = "its transactions kept the gateway waiting again and again"
+FLOODS = "it sent notifications without end"
+UPGRADE = "have an administrator run: robot-bridge database upgrade"
+
+
+class SuspendedCommands(Protocol):
+    """The commands that robots have."""
+
+    def awaits_any_abort(self, robot: str) -> bool:
+        """Tell whether an Abort is on its way to the robot, an emergency stop's or another."""
+
+
+class AccountSuspensions:
+    """Locks such accounts for a while, says so to operators, and unlocks them.
+
+    Those that an earlier gateway has locked are unlocked in time, too. No account is locked while an Abort is
+    on its way to its robot: a stop that could not be read would be worse than what the account does.
+    """
+
+    def __init__(
+        self,
+        database: Database,
+        commands: SuspendedCommands,
+        announce: Announce,
+        clock: Callable[[], float] = time.time,
+    ) -> None:
+        self._database = database
+        self._commands = commands
+        self._announce = announce
+        self._clock = clock
+        self._offences: defaultdict[str, deque[float]] = defaultdict(deque)
+        self._last: dict[str, tuple[float, float]] = {}
+        self._in_force: dict[str, tuple[float, str]] = {}
+        self._not_locked: set[str] = set()
+
+    def report(self) -> Suspensions:
+        """Return which accounts are suspended now."""
+        return Suspensions(
+            [
+                Suspension(robot, why, None if robot in self._not_locked else until)
+                for robot, (until, why) in sorted(self._in_force.items())
+            ]
+        )
+
+    async def restore(self) -> None:
+        """Take over what an earlier gateway has locked; raises StoreError."""
+        self._in_force = await self._database.read(blocking_sessions.stored_suspensions)
+        if self._in_force:
+            self._tell()
+
+    async def update(self) -> None:
+        """Lock accounts that have offended too often, unlock those whose time is over; raises StoreError."""
+        now = self._clock()
+        for robot, why in (await self._offenders(now)).items():
+            if robot not in self._in_force and not self._commands.awaits_any_abort(robot):
+                await self._suspend(robot, why, now)
+        for robot, (until, _) in list(self._in_force.items()):
+            # A clock that was set back must not lock an account for ever.
+            is_over = until <= now or until > now + LONGEST_S
+            if is_over or self._commands.awaits_any_abort(robot):
+                await self._resume(robot)
+
+    async def _offenders(self, now: float) -> dict[str, str]:
+        blocking, backends = self._database.offences.drain()
+        flooding: list[str] = []
+        if backends:
+            flooding = await self._database.read(blocking_sessions.robots_of_backends, backends)
+        for robot, times in Counter(blocking).items():
+            seen = self._offences[robot]
+            seen.extend([now] * times)
+            while seen and seen[0] < now - WITHIN_S:
+                seen.popleft()
+        often = [robot for robot, seen in self._offences.items() if len(seen) >= MOST_OFFENCES]
+        for robot in often:
+            del self._offences[robot]
+        return dict.fromkeys(often, BLOCKS) | dict.fromkeys(flooding, FLOODS)
+
+    async def _suspend(self, robot: str, why: str, now: float) -> None:
+        last, lasted = self._last.get(robot, (0.0, 0.0))
+        seconds = min(2 * lasted, LONGEST_S) if lasted and now - last < FORGIVEN_AFTER_S else FIRST_S
+        self._last[robot] = now, seconds
+        in_force = self._in_force | {robot: (now + seconds, why)}
+        # Noted before it is done: whoever comes after a crash in between unlocks what may be locked.
+        await self._database.run(blocking_sessions.store_suspensions, in_force)
+        self._in_force = in_force
+        if await self._database.run_alone(blocking_sessions.set_suspended, robot, True):
+            log.error("database account of robot %s: %s; locked for %.0f s", robot, why, seconds)
+        else:
+            self._not_locked.add(robot)
+            log.error("database account of robot %s: %s; it cannot be locked: %s", robot, why, UPGRADE)
+        self._tell()
+
+    async def _resume(self, robot: str) -> None:
+        await self._database.run_alone(blocking_sessions.set_suspended, robot, False)
+        in_force = {name: one for name, one in self._in_force.items() if name != robot}
+        await self._database.run(blocking_sessions.store_suspensions, in_force)
+        self._in_force = in_force
+        self._not_locked.discard(robot)
+        log.warning("database account of robot %s: not locked any more", robot)
+        self._tell()
+
+    def _tell(self) -> None:
+        self._announce("suspensions", "", to_json(self.report()))

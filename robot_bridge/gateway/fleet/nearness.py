@@ -1,0 +1,259 @@
+"""Nearness of people and vehicles that are only seen to robots, now and soon."""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+import math
+import time
+from collections.abc import Callable, Container, Sequence
+from dataclasses import replace
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ...core.messages import RobotState, SendPos, to_json
+from ...core.messages.safety import Nearness, NearnessAlarm
+from ...core.sites.settings_tables import NearnessSettings
+from ..model.robots import Robot, Robots
+from ..traffic.conflicts import Movement, OtherMovements
+from ..traffic.robot_paths import TrafficSnapshot
+from ..traffic.service import TrafficControl
+from .link_supervision import LinkWatch
+
+# --- Who is near a robot, and who will be if both go on as they do; no I/O ---
+
+MARGIN_M = 1.0
+"""Metres beyond the limit at which who was near is so no more: phones are off by metres."""
+Pair = tuple[str, str]
+"""Who is seen, and the robot."""
+
+
+class Meeting(NamedTuple):
+    """Two that are near, or will be in ``seconds``, with ``metres`` between them then, about ``place``."""
+
+    seen: str
+    robot: str
+    metres: float
+    seconds: float
+    place: tuple[float, float]
+
+    @property
+    def pair(self) -> Pair:
+        """Both names."""
+        return self.seen, self.robot
+
+
+class NearnessLimits(NamedTuple):
+    """Metres between the middles of two that are near, and seconds for which is looked ahead."""
+
+    metres: float
+    within_s: float
+
+
+class Mover(NamedTuple):
+    """Somebody at ``place``, metres, with ``velocity``, m/s, both in the site frame."""
+
+    name: str
+    place: tuple[float, float]
+    velocity: tuple[float, float]
+
+    def straight_on(self, now: float, seconds: float) -> Movement:
+        """Return the movement of who goes on for ``seconds`` as now, and stands then."""
+        begin = np.array(self.place, dtype=np.float64)
+        points = np.stack([begin, begin + np.array(self.velocity, dtype=np.float64) * seconds])
+        return Movement(self.name, points, np.array([now, now + seconds]), 0.0)
+
+
+def find_meetings(
+    people: Sequence[Movement],
+    robots: Sequence[Movement],
+    limits: NearnessLimits,
+    now: float,
+    near: Container[Pair] = (),
+) -> list[Meeting]:
+    """Return who is near which robot now, and who will be soon, the soonest first.
+
+    All radii are 0. Those in ``near`` were near before, and are so up to a margin beyond the limit.
+    """
+    if not people or not robots:
+        return []
+    found = {one.pair: one for one in _near_now(people, robots, limits.metres, now, near)}
+    surroundings = OtherMovements(robots, limits.metres, now)
+    for person in people:
+        for conflict in surroundings.conflicts(person):
+            robot = conflict.other if conflict.robot == person.robot else conflict.robot
+            seconds = conflict.begins - now
+            if seconds <= limits.within_s and (person.robot, robot) not in found:
+                x, y = person.at([conflict.begins])[0].tolist()
+                meeting = Meeting(person.robot, robot, limits.metres, seconds, (x, y))
+                found[meeting.pair] = meeting
+    return sorted(found.values(), key=lambda one: (one.seconds, one.metres, one.pair))
+
+
+def _near_now(
+    people: Sequence[Movement],
+    robots: Sequence[Movement],
+    metres: float,
+    now: float,
+    near: Container[Pair],
+) -> list[Meeting]:
+    here, there = (np.concatenate([one.at([now]) for one in some]) for some in (people, robots))
+    apart = np.hypot(*(here[:, None, :] - there[None, :, :]).T).T
+    found = []
+    for i, j in np.argwhere(apart <= metres + MARGIN_M).tolist():
+        pair, distance = (people[i].robot, robots[j].robot), float(apart[i, j])
+        if distance <= metres or pair in near:
+            x, y = here[i].tolist()
+            found.append(Meeting(*pair, distance, 0.0, (x, y)))
+    return found
+
+
+# --- Nearness at work: people and vehicles that are only seen are held against robots, and operators told
+
+log = logging.getLogger(__name__)
+
+TOLD_EVERY_S = 1.0
+MOST_ALARMS = 300
+SLOWEST_MS = 0.3
+"""m/s below which somebody stands: receivers report some decimetres a second of who does not move."""
+FASTEST_MS = 40.0
+"""m/s that is reckoned with at most when it is sorted out who can meet at all."""
+REPLAY = "replay"
+"""The kind of links whose robots were there once, and can be near to nobody."""
+HEARD = (RobotState.FRESH, RobotState.STALE)
+
+
+class NearnessWatch:
+    """Holds some times a second all that is only seen against all robots; it stops nobody.
+
+    ``settings`` are the site's. ``announce`` tells every operator.
+    """
+
+    def __init__(
+        self,
+        robots: Robots,
+        links: LinkWatch,
+        traffic: TrafficControl,
+        settings: Callable[[], NearnessSettings],
+        clock: Callable[[], float],
+        announce: Callable[[str, str, dict[str, Any]], None],
+    ) -> None:
+        self._robots = robots
+        self._links = links
+        self._traffic = traffic
+        self._settings = settings
+        self._clock = clock
+        self._announce = announce
+        self._since: dict[Pair, tuple[bool, float]] = {}
+        """Whether they are near now, and since when that or the prediction holds."""
+        self._found: list[Meeting] = []
+        self._fault: str | None = None
+        self._told: tuple[float, bool] = (-math.inf, False)
+        """When operators were told last, and whether that was of something."""
+
+    async def watch(self) -> None:
+        """Judge where everybody is now, and tell of it."""
+        now, limits = self._clock(), self._settings()
+        try:
+            found = await self._meetings(now, NearnessLimits(limits.metres, limits.within_s))
+        except Exception as error:
+            if self._fault is None:
+                log.exception("people and trackers near robots cannot be watched")
+            self._fault, found = f"it cannot be judged: {error}", []
+        else:
+            self._fault = None
+        self._note(found)
+        self._tell()
+
+    def report(self) -> Nearness:
+        """Return what operators are told."""
+        limits, now = self._settings(), self._clock()
+        alarms = [
+            NearnessAlarm(
+                one.seen,
+                one.robot,
+                round(one.metres, 1),
+                round(one.seconds, 1),
+                round(one.place[0], 2),
+                round(one.place[1], 2),
+                self._since[one.pair][1],
+            )
+            for one in self._found[:MOST_ALARMS]
+        ]
+        more = max(len(self._found) - MOST_ALARMS, 0)
+        return Nearness(now, limits.metres, limits.within_s, alarms, more, self._fault)
+
+    async def _meetings(self, now: float, limits: NearnessLimits) -> list[Meeting]:
+        if limits.metres <= 0:
+            return []
+        known = [_mover(one, one.pose) for one in self._robots.changed(-1) if one.located and one.pose]
+        people = [one for one, robot in known if self._is_seen(robot)]
+        if not people:
+            return []
+        reach = limits.metres + MARGIN_M + limits.within_s * 2 * FASTEST_MS
+        tasked = [
+            one for one, robot in known if robot.abilities != "" and robot.state is not RobotState.OFFLINE
+        ]
+        robots = _within(tasked, people, reach)
+        near = {pair for pair, (is_near, _) in self._since.items() if is_near}
+        situation = self._traffic.situation({one.name for one in robots})
+        return await asyncio.to_thread(_judged, people, robots, situation, limits, near)
+
+    def _is_seen(self, robot: Robot) -> bool:
+        """Tell whether it is only seen, and heard now: where somebody is who is lost is not known."""
+        replayed = self._links.kind_of(robot.link) == REPLAY
+        return robot.abilities == "" and robot.state in HEARD and not replayed
+
+    def _note(self, found: list[Meeting]) -> None:
+        now = self._clock()
+        since = {}
+        for one in found:
+            is_near = one.seconds == 0.0
+            was_near, began = self._since.get(one.pair, (not is_near, now))
+            since[one.pair] = is_near, began if was_near is is_near else now
+            if is_near and not (was_near and one.pair in self._since):
+                log.warning("%s is %.1f m from robot %s", one.seen, one.metres, one.robot)
+        self._since, self._found = since, found
+
+    def _tell(self) -> None:
+        told_at, told = self._told
+        something = bool(self._found or self._fault)
+        if something is not told or (something and time.monotonic() - told_at >= TOLD_EVERY_S):
+            self._told = time.monotonic(), something
+            self._announce("nearness", "nearness", to_json(self.report()))
+
+
+def _mover(robot: Robot, pose: SendPos) -> tuple[Mover, Robot]:
+    # Who does not know where it heads stands, as far as can be known.
+    goes = abs(pose.v) >= SLOWEST_MS and pose.theta_from != "unknown"
+    velocity = (pose.v * math.cos(pose.theta), pose.v * math.sin(pose.theta)) if goes else (0.0, 0.0)
+    return Mover(robot.name, (pose.x, pose.y), velocity), robot
+
+
+def _within(robots: list[Mover], people: list[Mover], reach: float) -> list[Mover]:
+    """Return the robots that anybody could come near to."""
+    if not robots:
+        return []
+    here, there = (np.array([one.place for one in some]) for some in (robots, people))
+    apart = np.hypot(*(here[:, None, :] - there[None, :, :]).T).T
+    return [robots[row] for row in np.flatnonzero((apart <= reach).any(axis=1)).tolist()]
+
+
+def _judged(
+    people: list[Mover],
+    robots: list[Mover],
+    situation: TrafficSnapshot,
+    limits: NearnessLimits,
+    near: set[Pair],
+) -> list[Meeting]:
+    """Return who is near whom; robots go on along their ways where those are known, all else straight on."""
+    now, seconds = situation.now, limits.within_s
+    on_ways = situation.movements()
+    moving = [
+        replace(on_ways[one.name], radius=0.0)
+        if one.name in situation.on_the_way
+        else one.straight_on(now, seconds)
+        for one in robots
+    ]
+    return find_meetings([one.straight_on(now, seconds) for one in people], moving, limits, now, near)

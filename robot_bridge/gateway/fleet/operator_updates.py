@@ -1,0 +1,452 @@
+"""Updates of operators: snapshots of the fleet, and observations, stored and announced."""
+
+from __future__ import annotations
+
+import asyncio
+import dataclasses
+import hashlib
+import json
+import logging
+import math
+import time
+from collections.abc import Callable, Sequence
+from operator import attrgetter
+from typing import Any, NamedTuple, Protocol
+
+import msgspec
+import numpy as np
+import numpy.typing as npt
+
+from ...core.errors import RefusedError, UncertainError
+from ...core.images import check_size, media_type_of
+from ...core.logs import log_and_continue
+from ...core.messages import (
+    POSITION_ALWAYS,
+    POSITION_TEXTS,
+    GetObservations,
+    MessageError,
+    ObservationReport,
+    ObservationState,
+    Observed,
+    PositionColumns,
+    PositionForm,
+    ReviewObservation,
+    RobotReport,
+    SendImage,
+    SetObject,
+    to_json,
+)
+from ...core.position_frame import METHOD, packed_frame
+from ...core.sites.settings import SiteSettings
+from ..model.robots import Robot, Robots
+from ..site.places import Ground, check_places
+from ..storage.database import Database
+from ..storage.repositories import records
+from ..storage.repositories.records import NewObservation
+
+# --- What robots saw: stored before it is acknowledged, reviewed by operators, and then on the map ---
+
+log = logging.getLogger(__name__)
+
+PENDING, ACCEPTED, REJECTED = ObservationState
+
+
+class ObservedSite(Ground, Protocol):
+    """What is needed of a site to keep observations of it."""
+
+    @property
+    def settings(self) -> SiteSettings:
+        """The settings of the site."""
+
+    def show(self, objects: Sequence[ObservationReport]) -> None:
+        """Draw accepted objects, and no others, on the maps from now on; oldest first."""
+
+
+class ObservationService:
+    """Every observation of the robots of one site.
+
+    ``changed`` is called with each new and each reviewed one, after it was stored.
+    """
+
+    def __init__(
+        self,
+        site: ObservedSite,
+        database: Database,
+        clock: Callable[[], float],
+        changed: Callable[[ObservationReport], None],
+    ) -> None:
+        self._site = site
+        self._database = database
+        self._clock = clock
+        self._changed = changed
+        self._lock = asyncio.Lock()
+        self._undrawn = False
+        """whether something may have been accepted, or rejected, that the maps do not show yet."""
+        self._unsure: set[tuple[str, str]] = set()
+        """robots and sources of what may have been stored, and ``changed`` was not called."""
+        self._untold: set[int] = set()
+        """what may have been reviewed, and ``changed`` was not called."""
+
+    async def restore(self) -> None:
+        """Draw on the maps what operators accepted before."""
+        self._site.show(await self._database.run(records.on_map))
+        self._undrawn = False
+
+    async def catch_up(self) -> None:
+        """Draw and tell what could not be drawn or told when it was stored or reviewed; raises StoreError."""
+        if self._undrawn:
+            async with self._lock:
+                await self.restore()
+        for robot, source in list(self._unsure):
+            found = await self._database.run(records.find_told, robot, source)
+            self._unsure.discard((robot, source))
+            self._tell(found)
+        for id in list(self._untold):
+            found = await self._database.run(records.find, id)
+            self._untold.discard(id)
+            self._tell(found)
+
+    async def add(self, robot: Robot, link: str, told: Observed, id: int | None) -> ObservationReport:
+        """Store what a robot told by its message ``id``; what it told before is there already.
+
+        :raises RefusedError: when an object is not on the site, an image too large, or too much waits;
+            MessageError when an image is none.
+        """
+        if isinstance(told, SetObject):
+            check_places(self._site, [(told.x, told.y)])
+        else:
+            self.check_size(len(told.image))
+        new = _new(robot.name, told, _occasion(robot, link, told, id), self._clock())
+        most_pending = self._site.settings.observations.most_pending
+        told_before = new.robot, new.source
+        try:
+            report, is_new = await self._database.run(records.add_observations, new, most_pending)
+        except UncertainError:
+            self._unsure.add(told_before)
+            raise
+        if is_new or told_before in self._unsure:
+            self._tell(report)
+        self._unsure.discard(told_before)
+        return report
+
+    def check_size(self, size: int) -> None:
+        """Raise RefusedError for an image of more bytes than the site takes."""
+        check_size(size, self._site.settings.observations.largest_image_bytes)
+
+    async def newest(self, wanted: GetObservations) -> list[ObservationReport]:
+        """Return observations, newest first."""
+        return await self._database.run(records.newest_observations, wanted)
+
+    async def image(self, id: int) -> tuple[bytes, str]:
+        """Return the image of observation ``id`` and its media type; raises RefusedError without one."""
+        found = await self._database.run(records.image, id)
+        if found is None:
+            raise RefusedError(f"observation {id} has no image; get_observations lists those with media_type")
+        return found
+
+    async def review(self, review: ReviewObservation, operator: str) -> ObservationReport:
+        """Accept or reject an observation; returns when that is stored. The same again changes nothing.
+
+        :raises RefusedError: when there is no such observation, or it was reviewed otherwise before.
+        """
+        async with self._lock:
+            report = await self._database.run(records.find, review.observation)
+            if report is None:
+                raise RefusedError(f"there is no observation {review.observation}; see get_observations")
+            state = ACCEPTED if review.accept else REJECTED
+            if _says_the_same(report, review, state):
+                return report
+            _check_review(report, review)
+            values = {name: getattr(review, name) for name in ("semantics", "height", "radius", "reason")}
+            is_drawn = report.op == SetObject.__name__
+            self._undrawn |= is_drawn
+            self._untold.add(report.observation)
+            reviewed = await self._database.run(
+                records.review, report.observation, state, operator, self._clock(), values
+            )
+            if is_drawn and ACCEPTED in (report.state, reviewed.state):
+                await self.restore()
+        self._tell(reviewed)
+        self._untold.discard(reviewed.observation)
+        return reviewed
+
+    def _tell(self, report: ObservationReport | None) -> None:
+        if report is not None:
+            with log_and_continue(log, f"telling of observation {report.observation}"):
+                self._changed(report)
+
+
+def _new(robot: str, told: Observed, occasion: str, now: float) -> NewObservation:
+    is_image = isinstance(told, SendImage)
+    said = () if is_image else ("label", "height", "radius", "doubts")
+    details = {name: getattr(told, name) for name in said}
+    return NewObservation(
+        robot=robot,
+        source=_source(told, occasion),
+        kind=type(told).__name__,
+        object=told.object,
+        x=told.x,
+        y=told.y,
+        details={name: value for name, value in details.items() if value is not None},
+        seen_at=told.t,
+        received_at=now,
+        image=told.image if isinstance(told, SendImage) else None,
+        media_type=media_type_of(told.image, told.media_type) if isinstance(told, SendImage) else None,
+    )
+
+
+def _occasion(robot: Robot, link: str, told: Observed, id: int | None) -> str:
+    """Return on what occasion a robot told something: its own source, else the message that it came with."""
+    if told.source is None and link == "sql":
+        return f"row {id}"
+    # The ids of calls, and most sources, begin anew with each run of a robot.
+    return f"run {robot.magic}" if told.source is not None else f"run {robot.magic} call {id}"
+
+
+def _source(told: Observed, occasion: str) -> str:
+    """Return what two tellings have in common only if they are one.
+
+    The content counts: a robot that uses a source or a call's id once more for something else loses nothing.
+    """
+    said: dict[str, Any] = {"op": type(told).__name__, "occasion": occasion, **to_json(told)}
+    if told.source is not None:
+        said.pop("t", None)
+    content = hashlib.sha256(json.dumps(said, sort_keys=True).encode())
+    content.update(told.image if isinstance(told, SendImage) else b"")
+    return content.hexdigest()
+
+
+def _says_the_same(report: ObservationReport, review: ReviewObservation, state: ObservationState) -> bool:
+    if report.state is not state:
+        return False
+    said = {name: getattr(review, name) for name in ("semantics", "height", "radius")}
+    return all(value is None or value == getattr(report, name) for name, value in said.items())
+
+
+def _check_review(report: ObservationReport, review: ReviewObservation) -> None:
+    if report.state is not PENDING and not review.revise:
+        raise RefusedError(
+            f"observation {report.observation} was {report.state.value} by {report.reviewed_by} before; "
+            "give revise to change that"
+        )
+    what = "an image" if report.op == SendImage.__name__ else "of what is missing"
+    is_drawn = report.op == SetObject.__name__ and report.doubts is None
+    if (
+        not is_drawn
+        and (
+            review.semantics,
+            review.height,
+            review.radius,
+        )
+        != (None,) * 3
+    ):
+        raise MessageError(
+            f"review_observation: observation {report.observation} is {what}, which is not drawn on the "
+            "map; leave out semantics, height and radius"
+        )
+
+
+# --- Who is told what happens: the sessions of operators that are connected ---
+
+
+class Listener(Protocol):
+    """An operator's session, told what happens."""
+
+    def notify(self, method: str, key: str, params: dict[str, Any]) -> None:
+        """Take note of news; of those with the same method and key only the last counts. Must not block."""
+
+
+class Listeners:
+    """The sessions that are told what happens: every step of every command."""
+
+    def __init__(self) -> None:
+        self._all: set[Listener] = set()
+
+    def __len__(self) -> int:
+        return len(self._all)
+
+    def add(self, listener: Listener) -> None:
+        """Tell ``listener`` from now on what happens."""
+        self._all.add(listener)
+
+    def discard(self, listener: Listener) -> None:
+        """Tell ``listener`` nothing more."""
+        self._all.discard(listener)
+
+    def announce(self, method: str, key: str, params: dict[str, Any]) -> None:
+        """Tell every session what happened; see :meth:`Listener.notify`."""
+        for listener in list(self._all):
+            with log_and_continue(log, f"telling an operator's session of {method}"):
+                listener.notify(method, key, params)
+
+
+# --- Robots as the table of numbers that :mod:`.messages.position_columns` describes; no I/O ---
+
+_OF_A_ROBOT = {
+    "age": "received_at",
+    "pose_age": "pose_at",
+    **{name: name for name in ("latency", "link", "command", "paths", "abilities")},
+    "stopped": "ended_in_order",
+    "state": "state._value_",
+}
+_OF_A_POSE = {
+    **{name: name for name in ("x", "y", "theta", "v", "battery", "accuracy", "altitude")},
+    **{name: name for name in ("status", "theta_from")},
+    "device_time": "t",
+    "fix_time": "fix_t",
+}
+"""Columns of a report, and where they stand."""
+_AGES = {"age", "pose_age"}
+"""Columns of seconds since a time, in whole milliseconds."""
+_ROBOT, _POSE = attrgetter(*_OF_A_ROBOT.values()), attrgetter(*_OF_A_POSE.values())
+_NOWHERE = (None,) * len(_OF_A_POSE)
+
+
+def position_table(
+    robots: Sequence[Robot], now: float
+) -> tuple[dict[str, npt.NDArray[np.float64]], list[str]]:
+    """Return what is told of ``robots`` at ``now``: (n,) by column, and the words of texts."""
+    if not robots:
+        return {name: np.empty(0) for name in POSITION_ALWAYS}, []
+    facts = zip(*[_ROBOT(robot) for robot in robots], strict=True)
+    poses = zip(*[_NOWHERE if robot.pose is None else _POSE(robot.pose) for robot in robots], strict=True)
+    told = {**dict(zip(_OF_A_ROBOT, facts, strict=True)), **dict(zip(_OF_A_POSE, poses, strict=True))}
+    words: dict[str | None, float] = {None: float("nan")}
+    columns = {}
+    for name, values in told.items():
+        if values.count(None) == len(values):
+            continue
+        columns[name] = _places(values, words) if name in POSITION_TEXTS else np.array(values, np.float64)
+    for name in columns.keys() & _AGES:
+        columns[name] = np.maximum(now - columns[name], 0.0).round(3)
+    if "latency" in columns:
+        columns["latency"] = np.round(columns["latency"], 4)
+    return columns, [word for word in words if word is not None]
+
+
+def table_frame(
+    t: float, robots: Sequence[Robot], now: float, removed: Sequence[str] = (), *, everything: bool = False
+) -> bytes:
+    """Return the binary frame that tells of ``robots`` at ``now``, under the gateway's time ``t``.
+
+    With ``everything`` they are all that there are; else ``removed`` are gone since what was told last.
+    """
+    columns, words = position_table(robots, now)
+    names = [robot.name for robot in robots]
+    head = PositionColumns(t, names, list(columns), words, list(removed), everything)
+    text = msgspec.json.encode({"jsonrpc": "2.0", "method": METHOD, "params": head})
+    return packed_frame(text, columns.values())
+
+
+def _places(texts: Sequence[str | None], words: dict[str | None, float]) -> npt.NDArray[np.float64]:
+    """Return the place of each text among ``words``, which grow by those that are new; NaN for None."""
+    if texts.count(texts[0]) == len(texts):
+        # Nearly all robots are in one state and on one link.
+        return np.full(len(texts), words.setdefault(texts[0], len(words) - 1))
+    # None is among them as well, so that a new word's place is one less than how many there are.
+    return np.array([words.setdefault(text, len(words) - 1) for text in texts], dtype=np.float64)
+
+
+# --- Positions as operators are sent them: what changed, encoded once for all who ask at the same rate
+
+EVERYTHING = -1
+MOST_RATES = 64
+"""rates whose last snapshot is kept."""
+
+ReportRow = msgspec.defstruct(
+    "ReportRow",
+    [
+        (f.name, Any) if f.default is not None else (f.name, Any, None)
+        for f in dataclasses.fields(RobotReport)
+    ],
+    omit_defaults=True,
+    gc=False,
+)
+"""A report as it is encoded: what is unknown is left out, and msgspec makes and writes it several times as
+fast as a dataclass. Thousands of them are told every second."""
+
+
+def positions(rows: Sequence[Any], removed: Sequence[str] = (), *, everything: bool) -> dict[str, Any]:
+    """Return rows as the parameters of ``positions`` and the result of ``get_positions``.
+
+    With ``everything`` they are all that there are; else ``removed`` are gone since what was told last.
+    """
+    told: dict[str, Any] = {"t": round(time.time(), 3), "robots": rows}
+    if removed:
+        told["removed"] = removed
+    return {**told, "everything": True} if everything else told
+
+
+class Snapshot(NamedTuple):
+    """A ``positions`` notification as a frame; None where nothing changed up to ``revision``."""
+
+    frame: bytes | None
+    revision: int
+
+
+class Tick(NamedTuple):
+    """A moment that all who are told every ``interval`` seconds share."""
+
+    interval: float
+    number: int
+
+    @classmethod
+    def last(cls, interval: float, now: float) -> Tick:
+        """Return the newest tick at ``now``, seconds of :func:`time.monotonic`."""
+        return cls(interval, math.floor(now / interval))
+
+    def following(self, now: float) -> Tick:
+        """Return the next tick that is still to come; a timer that went off early counts as on time."""
+        return Tick(self.interval, max(self.number, math.floor(now / self.interval)) + 1)
+
+    def wait(self, now: float) -> float:
+        """Return the seconds until this tick."""
+        return max(0.0, self.number * self.interval - now)
+
+
+class Snapshots:
+    """Makes the frames: at each tick what changed since the one before, and everything for who missed that.
+
+    So a hundred operators at one rate cost two encodings a tick and form at most, however slow some of them
+    are. ``clock`` is the one by which robots' messages came in.
+    """
+
+    def __init__(self, robots: Robots, clock: Callable[[], float]) -> None:
+        self._robots = robots
+        self._clock = clock
+        self._made: dict[float, tuple[int, dict[tuple[PositionForm, int], Snapshot]]] = {}
+
+    def after(
+        self, revision: int, tick: Tick | None = None, form: PositionForm = PositionForm.ROWS
+    ) -> Snapshot:
+        """Return what changed after ``revision``, an earlier snapshot's or EVERYTHING.
+
+        Who asks for the same ``tick`` is told the same; without one it is what is known now.
+        """
+        if tick is None:
+            return self._make(revision, form)
+        number, made = self._made.pop(tick.interval, (tick.number, {}))
+        if number != tick.number:
+            made = {}
+        if (form, revision) not in made:
+            made[form, revision] = self._make(revision, form)
+        # Clients choose their rates; the one that was asked for longest ago is forgotten.
+        self._made[tick.interval] = (tick.number, made)
+        if len(self._made) > MOST_RATES:
+            del self._made[next(iter(self._made))]
+        return made[form, revision]
+
+    def _make(self, revision: int, form: PositionForm) -> Snapshot:
+        return Snapshot(self._encoded(revision, form), self._robots.revision)
+
+    def _encoded(self, revision: int, form: PositionForm) -> bytes | None:
+        now, changed = self._clock(), self._robots.changed(revision)
+        everything = revision == EVERYTHING
+        removed = [] if everything else self._robots.removed(revision)
+        if not (changed or removed or everything):
+            return None
+        if form is PositionForm.COLUMNS:
+            return table_frame(round(time.time(), 3), changed, now, removed, everything=everything)
+        rows = self._robots.rows(now, revision, ReportRow)
+        params = positions(rows, removed, everything=everything)
+        return msgspec.json.encode({"jsonrpc": "2.0", "method": "positions", "params": params})

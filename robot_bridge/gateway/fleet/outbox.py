@@ -1,0 +1,265 @@
+"""Outbox of every robot: answers into SA, requests out of RR, and what comes of both."""
+
+from __future__ import annotations
+
+import asyncio
+from collections import Counter, defaultdict
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+from sqlalchemy import Connection
+
+from ...core.messages import Answer, OpAck, SetMap, Start
+from ..commands.service import CommandService
+from ..model.robots import Robots
+from ..storage.database import Database
+from ..storage.repositories import requests as answers
+from ..storage.repositories import trajectories
+from ..storage.repositories.requests import AnswerRow
+from ..storage.repositories.trajectories import PackedFix
+from ..trajectories.recording import TrajectoryWriter
+from .emergency_persistence import HELD_BACK
+from .emergency_stop import EmergencyStops
+
+# --- What comes of robots' requests, and how it is written: answers into SA, and requests out of RR ---
+
+Reader = tuple[str, int, int]
+"""A robot, and what it was sent last: the ids of a message and of an urgent one."""
+
+WHOLE_SITE = SetMap(b"")
+"""The map of the whole site for a robot that reads no rows itself: what delivers it has the map at hand.
+
+A city's map has megabytes: written, checkpointed and deleted for each robot it keeps all others waiting.
+"""
+
+
+@dataclass(frozen=True)
+class RequestOutcome:
+    """What comes of a robot's request: its OpAck, an answer, and the kinds of older answers that are void.
+
+    What is ``written`` stands in SA already, and only the request is still to be deleted. ``part``: its
+    map is a part of the site, and more of it may have to follow.
+    """
+
+    robot: str
+    ack: OpAck | None = None
+    answer: Answer | None = None
+    void: tuple[str, ...] = ()
+    written: bool = False
+    part: bool = False
+
+    @property
+    def admitted(self) -> bool:
+        """Tell whether the request was a Ready, and taken."""
+        return self.ack is not None and self.ack.ok and self.ack.magic is not None
+
+    def rows(self, *, acks: bool) -> list[tuple[str, Answer]]:
+        """Return what is to be written into SA, the OpAck first."""
+        if self.written:
+            return []
+        messages: list[Answer | None] = [self.ack if acks else None, self.answer]
+        return [(self.robot, message) for message in messages if message is not None]
+
+    def voided(self) -> tuple[str, ...]:
+        """Return the kinds of older answers that are void; a map or a Start is, when there is a newer one."""
+        if self.written:
+            return ()
+        renewed = isinstance(self.answer, (SetMap, Start))
+        return (*self.void, type(self.answer).__name__) if renewed else self.void
+
+
+def answer_rows(outcomes: Sequence[RequestOutcome], *, acks: bool) -> list[tuple[str, Answer]]:
+    """Return what is to be written into SA; left out is what a later Ready of the same robot makes void.
+
+    A robot that said Ready again and again while nobody read it is given the map of the whole site once.
+    """
+    void: defaultdict[str, set[str]] = defaultdict(set)
+    kept: list[tuple[str, Answer]] = []
+    for outcome in reversed(outcomes):
+        gone = void[outcome.robot]
+        kept += [row for row in reversed(outcome.rows(acks=acks)) if type(row[1]).__name__ not in gone]
+        if outcome.admitted:
+            gone.update(outcome.voided())
+    return kept[::-1]
+
+
+def finish_requests(
+    connection: Connection,
+    outcomes: Sequence[RequestOutcome],
+    rows: Sequence[tuple[str, Answer]],
+    request_ids: Sequence[int],
+    fixes: Sequence[PackedFix],
+) -> None:
+    """Write what comes of requests, and where robots were, and delete the requests."""
+    for outcome in outcomes:
+        remove_voided(connection, outcome.robot, outcome.voided())
+        if request_ids and outcome.admitted and isinstance(outcome.answer, SetMap):
+            # It may have come over another link before, and is to read the rows itself from now on.
+            answers.fill_maps(connection, outcome.robot, outcome.answer.map)
+    answers.add_answers(connection, rows)
+    trajectories.add(connection, fixes)
+    answers.remove_requests(connection, request_ids)
+
+
+def finish_and_read(
+    connection: Connection,
+    outcomes: Sequence[RequestOutcome],
+    rows: Sequence[tuple[str, Answer]],
+    reader: Reader,
+) -> list[AnswerRow]:
+    """Write what comes of requests, and return what then waits for one robot."""
+    finish_requests(connection, outcomes, rows, [], [])
+    return answers.read_answers(connection, *reader)
+
+
+def remove_voided(connection: Connection, robot: str, kinds: Sequence[str]) -> None:
+    """Delete the robot's answers of ``kinds``; of maps those that nothing waits behind which needs one."""
+    others = [kind for kind in kinds if kind != SetMap.__name__]
+    if len(others) < len(kinds):
+        answers.remove_maps(connection, robot)
+    if others:
+        answers.remove_kinds(connection, robot, others)
+
+
+def read_requests(connection: Connection, sent: Sequence[int]) -> tuple[list[answers.RequestRow], set[int]]:
+    """Return the oldest requests, and which of the messages ``sent`` still wait to be read."""
+    # In this order: a robot deletes what it read before it acknowledges it.
+    rows = answers.read_requests(connection)
+    return rows, answers.waiting(connection, sent)
+
+
+# --- The robots' mailboxes in the database: what waits for each in SA, and what they have said into RR
+# A message stays in SA until its robot has read it, a request in RR until its answer is stored: what is
+# lost on
+# the way is sent again.
+
+
+class RobotOutboxes:
+    """What links read and write for the robots at their other ends; coroutines raise StoreError."""
+
+    def __init__(
+        self,
+        database: Database,
+        robots: Robots,
+        commands: CommandService,
+        emergency: EmergencyStops,
+        saving: TrajectoryWriter,
+    ) -> None:
+        self._database = database
+        self._robots = robots
+        self._commands = commands
+        self._emergency = emergency
+        self._saving = saving
+        self._events: dict[str, asyncio.Event] = {}
+        self._changes: Counter[str] = Counter()
+        self._fresh: dict[str, tuple[Reader, list[AnswerRow]]] = {}
+        """what was read as an answer was written, until anything else is written for that robot."""
+        self.parts: asyncio.Queue[str] = asyncio.Queue()
+        """the robots for which a map of a part of the site was stored in place of the whole one."""
+
+    def event(self, robot: str) -> asyncio.Event:
+        """Return the event that is set whenever SA holds something new for the robot."""
+        return self._events.setdefault(robot, asyncio.Event())
+
+    def changed(self, robot: str) -> None:
+        """Note that SA holds something new for the robot."""
+        self._changes[robot] += 1
+        self._fresh.pop(robot, None)
+        self.event(robot).set()
+
+    async def outbox(self, robot: str, after: int, after_urgent: int = 0) -> list[AnswerRow]:
+        """Return the robot's messages as :func:`.answers.read`, without those that must not be sent now."""
+        reader = robot, after, after_urgent
+        read, rows = self._fresh.pop(robot, (None, []))
+        if read != reader:
+            rows = await self._database.read(answers.read_answers, *reader)
+        return [row for row in rows if row.op not in HELD_BACK] if self._emergency.in_force else rows
+
+    async def hand_over(self, robot: str, id: int) -> bool:
+        """Note that message ``id`` of SA is about to be sent to its robot; false where it must not be."""
+        return await self._commands.hand_over(robot, id)
+
+    async def delivered(self, ids: Iterable[int]) -> None:
+        """Note that messages of SA have reached their robots."""
+        await self._commands.delivered(ids)
+
+    async def delivered_by_deletion(self, link: str) -> None:
+        """Note the messages that the robots of ``link`` have read and deleted from SA themselves."""
+        sent = self._undelivered(link)
+        if sent:
+            await self._commands.delivered(sent - await self._database.run(answers.waiting, sorted(sent)))
+
+    async def take_up(self) -> int:
+        """Take note of what waits in RR from before it was read; return the id of the newest of it.
+
+        Acknowledgements among that may have been dealt with already: their commands are judged by positions
+        that come after them alone.
+        """
+        # Only what concerns a command with a step to come: of other robots nothing is read here.
+        waiting = sorted(self._commands.robots())
+        newest, acknowledged = await self._database.read(answers.backlog, waiting)
+        for robot, ids in acknowledged.items():
+            for id in ids:
+                self._commands.await_again(robot, id)
+        return newest
+
+    async def look(self, link: str) -> list[answers.RequestRow]:
+        """Return the oldest requests in RR, which stay there until :meth:`finish`; note what was read."""
+        sent = self._undelivered(link)
+        rows, waiting = await self._database.read(read_requests, sorted(sent))
+        if rows and (late := self._undelivered(link) - sent):
+            # Sent while the database looked; its acknowledgement may be among the rows already.
+            sent |= late
+            waiting |= await self._database.read(answers.waiting, sorted(late))
+        if sent - waiting:
+            await self._commands.delivered(sent - waiting)
+        return rows
+
+    async def finish(
+        self,
+        outcomes: list[RequestOutcome],
+        request_ids: list[int],
+        *,
+        acks: bool,
+        reader: Reader | None = None,
+    ) -> None:
+        """Write the answers of requests into SA, with their OpAcks if ``acks``, and delete them from RR.
+
+        One transaction, with the positions that they told: a request is either answered and gone, or will be
+        dealt with again. A robot that said Ready is stored before. ``reader`` is the robot of a single
+        outcome, whose connection then sends the answer without reading SA once more.
+        """
+        fresh = None
+        if outcomes or request_ids:
+            rows = answer_rows(outcomes, acks=acks)
+            if admitted := {outcome.robot for outcome in outcomes if outcome.admitted}:
+                # Together: one by one, the Readys of a whole fleet outlast a gateway that is killed soon.
+                await self._saving.save(*admitted)
+            if request_ids:
+                # A request whose answer a power cut undid is there again, and is dealt with again.
+                # It may have waited for long: where the robot was then must not be in memory alone.
+                await self._saving.jot_with(finish_requests, outcomes, rows, request_ids)
+            elif not all(isinstance(one.answer, SetMap) and not one.admitted for one in outcomes):
+                await self._database.run(finish_requests, outcomes, rows, request_ids, [])
+            # A map that a power cut undoes is sent again: the robot says Ready on its next connection.
+            elif reader is None:
+                await self._database.jot(finish_requests, outcomes, rows, request_ids, [])
+            else:
+                changes = self._changes[reader[0]]
+                read = await self._database.jot(finish_and_read, outcomes, rows, reader)
+                # Whatever else was written for it meanwhile may not be among that.
+                fresh = (reader, read) if self._changes[reader[0]] == changes else None
+        for outcome in outcomes:
+            if outcome.answer is not None:
+                self.changed(outcome.robot)
+            if outcome.part:
+                self.parts.put_nowait(outcome.robot)
+        if fresh is not None:
+            self._fresh[fresh[0][0]] = fresh
+
+    def _undelivered(self, link: str) -> set[int]:
+        return {
+            id
+            for id, robot in self._commands.undelivered().items()
+            if robot in self._robots and self._robots.get(robot).link == link
+        }

@@ -1,0 +1,268 @@
+"""Registration of robots that say Ready, claims to a robot's name, and decommissioning."""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+from collections.abc import Callable, Iterable
+from functools import partial
+from typing import Protocol
+
+from ...core.errors import RefusedError, StoreError, listed_names
+from ...core.messages import Answer, KeptRobot, OpAck, Ready, RemoveRobots, RobotsRemoved, SetMap, Start
+from ..commands.service import CommandService
+from ..model.robots import AWAY, Robot, Robots
+from ..queues.requests import QueueEditor
+from ..site.places import ServedSite
+from ..storage.database import Database
+from ..storage.repositories import metadata
+from ..storage.repositories import robots as stored_robots
+from ..traffic.yielding import YieldManager
+from ..trajectories.recording import TrajectoryWriter
+from .emergency_stop import EmergencyStops
+from .outbox import RequestOutcome, RobotOutboxes
+from .robot_answers import MapSender
+
+# --- Who holds a robot's name: a second robot that says Ready under the same account is noticed and refused
+
+
+class ConnectionClaim(Protocol):
+    """A connection of a robot."""
+
+    async def answers(self) -> bool:
+        """Tell whether the robot at its other end is there; takes a second at most."""
+
+
+class ConnectionClaims:
+    """The connections that robots hold, by name. Robots on SQL have none."""
+
+    def __init__(self) -> None:
+        self._holds: dict[str, ConnectionClaim] = {}
+
+    def take(self, robot: str, hold: ConnectionClaim) -> None:
+        """Note that ``robot`` is at the other end of ``hold``, and of no other."""
+        self._holds[robot] = hold
+
+    def free(self, robot: str, hold: ConnectionClaim) -> None:
+        """Note that ``robot`` is no longer at the other end of ``hold``."""
+        if self._holds.get(robot) is hold:
+            del self._holds[robot]
+
+    async def answers(self, robot: str) -> bool:
+        """Tell whether the robot holds a connection and is there."""
+        hold = self._holds.get(robot)
+        return hold is not None and await hold.answers()
+
+
+async def claim_refusal(
+    robot: Robot, magic: int, silent: float, stale_after: float, holds: ConnectionClaims
+) -> str | None:
+    """Return why a Ready with ``magic`` is refused: it comes from another robot than the one of this name.
+
+    ``silent`` is seconds since that one was heard. One that was restarted is let in: its old connection is
+    closed or does not answer; on SQL it said Stopped, or is silent for ``stale_after`` seconds.
+    """
+    if robot.magic == magic or silent >= stale_after:
+        return None
+    there = not robot.ended_in_order if robot.link == "sql" else await holds.answers(robot.name)
+    if not there:
+        return None
+    return (
+        f"another robot runs as {robot.name!r} (magic {robot.magic}, heard {silent:.1f} s ago); give each "
+        "robot an account of its own, or end the other one"
+    )
+
+
+# --- Robots that say Ready: let in, told what they are to know, or refused as a second one of their name
+
+log = logging.getLogger(__name__)
+
+
+class Registration:
+    """Takes robots in. ``holds`` are the connections that they hold, told by their links."""
+
+    def __init__(
+        self,
+        site: ServedSite,
+        robots: Robots,
+        commands: CommandService,
+        emergency: EmergencyStops,
+        mailboxes: RobotOutboxes,
+        maps: MapSender,
+        saving: TrajectoryWriter,
+        database: Database,
+        clock: Callable[[], float],
+    ) -> None:
+        self.holds = ConnectionClaims()
+        self._site = site
+        self._robots = robots
+        self._commands = commands
+        self._emergency = emergency
+        self._mailboxes = mailboxes
+        self._maps = maps
+        self._saving = saving
+        self._database = database
+        self._clock = clock
+        self._database_id = ""
+        self._greeting: dict[str, asyncio.Lock] = {}
+
+    async def restore(self) -> None:
+        """Learn the name of the database, which robots are greeted with; raises StoreError."""
+        self._database_id = await self._database.run(metadata.database_id)
+
+    @property
+    def database_id(self) -> str:
+        """The name that tells the database from every other."""
+        return self._database_id
+
+    def greeting(self) -> Start:
+        """Return what robots are told when the gateway begins to listen to them."""
+        return Start(self._database_id)
+
+    async def receive(self, robot: str, link: str, request: Ready, id: int | None) -> RequestOutcome:
+        """Let a robot in that said Ready as request ``id``, or refuse it, one of a name at a time.
+
+        :raises StoreError: when that cannot be stored; the robot is not in then.
+        """
+        async with self._greeting.setdefault(robot, asyncio.Lock()):
+            reason = await self._refusal(robot, request.magic)
+            if reason is not None:
+                log.warning("link %s: a second robot said Ready: %s", link, reason)
+                return RequestOutcome(robot, OpAck(id=id, ok=False, reason=reason, magic=request.magic))
+            content, part = None, False
+            if request.abilities is None or "map" in request.abilities:
+                offer = await self._maps.first(robot)
+                content, part = SetMap(offer.content), not offer.is_whole
+            ack = OpAck(id=id, magic=request.magic, robot=robot, database=self._database_id)
+            welcome: list[Answer | None] = [ack if link == "sql" else None, content]
+            if await self._let_in(robot, link, request, [one for one in welcome if one is not None]):
+                return RequestOutcome(robot, ack, content, written=True, part=part)
+            return RequestOutcome(robot, ack, content, void=("Start", "OpAck"), part=part)
+
+    async def _let_in(self, robot: str, link: str, ready: Ready, welcome: list[Answer]) -> bool:
+        """Let a robot in; tell whether it starts anew, and ``welcome`` is written before all else for it."""
+        if starts_anew := self._robots.starts_anew(robot, ready.magic):
+            # Before it is known by its new number: after a failure it must be seen to start anew once more.
+            await self._mailboxes.delivered_by_deletion(self._robots.get(robot).link)
+            reason = f"robot {robot} started anew; sent once more"
+            expire_after = self._site.settings.commands.expire_after_s
+            # In one transaction: a gateway that dies next must not take it for one that starts anew again,
+            # and send it once more what it is doing by then.
+            note_run = partial(stored_robots.note_run, robot=self._robots.get(robot), magic=ready.magic)
+            await self._commands.deliver_again(robot, reason, expire_after, welcome, note_run)
+        self._robots.ready(robot, ready.magic, link, self._clock(), ready.paths, ready.can)
+        self._saving.touch(robot)
+        if starts_anew:
+            await self._saving.save(robot)
+        if not self._robots.is_only_seen(robot):
+            await self._emergency.ready(robot)
+        return starts_anew
+
+    async def _refusal(self, robot: str, magic: int) -> str | None:
+        if robot not in self._robots:
+            return None
+        known, limit = self._robots.get(robot), self._site.report.stale_after
+        return await claim_refusal(known, magic, self._clock() - known.received_at, limit, self.holds)
+
+
+# --- Robots that somebody removes while the gateway runs, with a program or at a desk: gone everywhere
+
+REASON = "the robot was removed"
+MOST_NAMED = 10
+"""Robots that a text names."""
+
+
+class Decommissioning:
+    """Takes robots out of the fleet that are found missing where they were stored.
+
+    One that says Ready again, as it can where no tokens are asked for, is a new robot.
+    """
+
+    def __init__(
+        self,
+        robots: Robots,
+        saving: TrajectoryWriter,
+        book: CommandService,
+        emergency: EmergencyStops,
+        waiting: YieldManager,
+        queues: QueueEditor,
+        database: Database,
+    ) -> None:
+        self._robots = robots
+        self._saving = saving
+        self._book = book
+        self._emergency = emergency
+        self._waiting = waiting
+        self._queues = queues
+        self._database = database
+        self._leaving: set[str] = set()
+        """robots that are gone, and of whose commands that may not be stored yet."""
+
+    def begin(self, known: Iterable[str]) -> None:
+        """Take note of the robots that are stored: others were removed while no gateway ran."""
+        self._saving.begin(known)
+        self._leaving = self._book.robots().difference(known)
+
+    async def remove(self, request: RemoveRobots, operator: str) -> RobotsRemoved:
+        """Remove those of the robots that are lost or offline, with their queues and commands.
+
+        What they say next is answered with an Abort: one that comes back may still be under way.
+
+        :raises RefusedError: when none of them can be removed, or an emergency stop is in force; StoreError.
+        """
+        if self._emergency.in_force:
+            raise RefusedError(
+                "remove_robots: an emergency stop is in force, and who has not answered it has to be seen; "
+                "clear it first"
+            )
+        for robot in self._gone(request.robots):
+            await self._queues.end(robot, operator, REASON)
+        # Storing that took time, in which robots may have come back.
+        removed = self._gone(request.robots)
+        kept = [KeptRobot(robot, why) for robot in request.robots if (why := self._why_kept(robot))]
+        if not removed:
+            raise RefusedError(f"remove_robots: {'; '.join(one.reason for one in kept[:MOST_NAMED])}")
+        await self._database.run(stored_robots.forget_all, removed)
+        log.warning("%s removes %d robots: %s", operator, len(removed), listed_names(removed))
+        try:
+            await self._saving.save()
+            await self.carry_out()
+        except StoreError as error:
+            # They are removed, and the rest is done with what is stored next.
+            log.error("%s", error)
+        return RobotsRemoved(removed, kept)
+
+    def _gone(self, robots: Iterable[str]) -> list[str]:
+        return sorted({robot for robot in robots if self._why_kept(robot) is None})
+
+    def _why_kept(self, robot: str) -> str | None:
+        """Return why a robot is not removed; None for one that is lost or offline."""
+        if robot not in self._robots:
+            return f"robot {robot!r} is not known to this gateway"
+        state = self._robots.get(robot).state
+        if state in AWAY:
+            return None
+        return f"robot {robot!r} is {state.value}; only robots that are lost or offline are removed"
+
+    async def carry_out(self) -> None:
+        """Take out who was removed since the last call; raises StoreError, and goes on at the next."""
+        for robot in sorted(self._saving.take_removed()):
+            log.warning("robot %s was removed", robot)
+            self._robots.remove(robot)
+            self._leaving.add(robot)
+        failed: list[StoreError] = []
+        for robot in sorted(self._leaving):
+            try:
+                await self._take_out(robot)
+            except StoreError as error:
+                failed.append(error)
+        if failed:
+            raise failed[0]
+
+    async def _take_out(self, robot: str) -> None:
+        if robot not in self._robots:
+            await self._book.give_up(robot, REASON)
+            await self._waiting.forget(robot)
+            # Behind the end of its Abort, which would count as its answer.
+            self._emergency.forget(robot)
+        self._leaving.discard(robot)

@@ -1,0 +1,418 @@
+"""The fleet: what robots say and ask goes in here, and so does what operators want of them.
+
+Links and the desk server call it; it knows neither. Everything that must outlive the process is committed
+before it is answered.
+"""
+
+from __future__ import annotations
+
+import logging
+import time
+from collections import Counter
+from collections.abc import Callable, Coroutine, Sequence
+from dataclasses import replace
+from typing import Any
+
+from ...core.errors import RefusedError
+from ...core.logs import RepeatedLines
+from ...core.messages import (
+    Answer,
+    Command,
+    CommandReport,
+    CommandState,
+    GetPath,
+    ObservationReport,
+    Observed,
+    OpAck,
+    Question,
+    Ready,
+    Request,
+    RobotReport,
+    SendGPS,
+    SendPos,
+    Stopped,
+    to_json,
+)
+from ...core.messages.validation import LONGEST_REFUSAL, one_line
+from ..commands.active_command import CommandOrder
+from ..commands.requests import CommandRequests
+from ..commands.service import CommandService
+from ..commands.validation import CommandRules
+from ..model.planner import Planner, StraightPlanner
+from ..model.position_checks import NO_FIX, GroundTracks, PlaceChecks
+from ..model.robots import Robot, RobotPose, Robots
+from ..monitoring.metrics import Counters
+from ..monitoring.tasks import Steps
+from ..queues.registry import QueueContext, QueueRegistry
+from ..queues.requests import PauseService, QueueEditor
+from ..queues.runner import QueueRunner
+from ..site.places import ServedSite, SiteChoice, keepout_refusals
+from ..storage.database import Database
+from ..storage.repositories import commands
+from ..storage.repositories import robots as stored_robots
+from ..traffic.road_planning import RoadPlanner
+from ..traffic.service import RoadTraffic
+from ..trajectories.recording import TrajectoryRecorder, TrajectoryWriter
+from .emergency_persistence import StopJournal
+from .emergency_stop import EmergencyStops
+from .geofence import AuditNote, GeofenceWatch
+from .link_supervision import AccountSuspensions, LinkWatch
+from .nearness import NearnessWatch
+from .operator_updates import Listeners, ObservationService, ReportRow, Snapshots
+from .outbox import RequestOutcome, RobotOutboxes
+from .registration import Decommissioning, Registration
+from .robot_answers import MapSender, RobotAnswers
+
+log = logging.getLogger(__name__)
+
+Rest = tuple[str, Coroutine[Any, Any, None] | Exception]
+"""A robot, and what is to be stored since it said where it is, or what is wrong with that."""
+
+
+class Fleet:
+    """The robots of one site and their commands, on one database."""
+
+    def __init__(
+        self,
+        site: ServedSite,
+        database: Database,
+        clock: Callable[[], float] = time.time,
+        planner: Planner | None = None,
+        stops: StopJournal | None = None,
+        note: AuditNote | None = None,
+    ) -> None:
+        self.site = site
+        self.site_choice: SiteChoice | None = None
+        """the sites that supervisors may choose among, where there is a choice."""
+        self._database = database
+        self._clock = clock
+        self.listeners = Listeners()
+        """the operators' sessions, told what happens."""
+        announce = self.listeners.announce
+        self.robots = Robots(site.report.stale_after, site.report.lost_after)
+        self.links = LinkWatch(self.robots, announce)
+        self.snapshots = Snapshots(self.robots, clock)
+        self._book = CommandService(
+            database,
+            self.robots,
+            site.report.reached_tolerance,
+            clock,
+            CommandRules(self._check, self._consider, self._fence),
+            self._command_changed,
+            self._outbox_changed,
+        )
+        self.orders = CommandRequests(site, self.robots, self._book, database)
+        self.emergency = EmergencyStops(self._book, database, clock, self.robots.commanded, announce, stops)
+        self._queue_book = QueueRegistry(database, self.robots, announce)
+        planner = planner or StraightPlanner()
+        about_queues = QueueContext(site, self.robots, self._book, self._queue_book, database, clock, planner)
+        self.queues = QueueEditor(about_queues)
+        self.driving = QueueRunner(about_queues)
+        self.roads = RoadTraffic(
+            site,
+            self.robots,
+            self._book,
+            self.orders,
+            self.driving,
+            database,
+            clock,
+            planner if isinstance(planner, RoadPlanner) else None,
+            announce,
+        )
+        self.pauses = PauseService(about_queues, self.roads.waiting.row_of)
+        self.geofence = GeofenceWatch(
+            site, self.robots, self.orders, self.pauses, self.emergency, clock, announce, note
+        )
+        self.nearness = NearnessWatch(
+            self.robots, self.links, self.roads.traffic, lambda: site.settings.nearness, clock, announce
+        )
+        self.recorder = TrajectoryRecorder(lambda: self.site.settings.trajectories)
+        self._saving = TrajectoryWriter(database, self.robots, self.recorder, clock)
+        self.mailboxes = RobotOutboxes(database, self.robots, self._book, self.emergency, self._saving)
+        self.maps = MapSender(site, self.robots, self.mailboxes, database)
+        self.reception = Registration(
+            site,
+            self.robots,
+            self._book,
+            self.emergency,
+            self.mailboxes,
+            self.maps,
+            self._saving,
+            database,
+            clock,
+        )
+        self.removals = Decommissioning(
+            self.robots,
+            self._saving,
+            self._book,
+            self.emergency,
+            self.roads.waiting,
+            self.queues,
+            database,
+        )
+        self.observations = ObservationService(site, database, clock, self._observation_changed)
+        self._answering = RobotAnswers(site, database, self.robots, self._book, planner, self.roads.ways)
+        self._tracks = GroundTracks()
+        self._places = PlaceChecks(lambda: site.settings)
+        self._steps = Steps("save")
+        self.suspensions = AccountSuspensions(database, self._book, announce, clock)
+        self.tally = Counters()
+        self.repeated = RepeatedLines()
+
+    @property
+    def database(self) -> Database:
+        """The database that everything is kept in."""
+        return self._database
+
+    async def start(self) -> None:
+        """Go on where the last gateway on this database stopped, and tell its robots Start."""
+        await self.reception.restore()
+        known = await self._database.run(stored_robots.load)
+        for robot in known:
+            self.robots.restore(robot, self._clock())
+        await self._book.restore()
+        self.removals.begin([robot.name for robot in known])
+        for robot in known:
+            self.robots.assign(robot.name, self._book.busy_with(robot.name))
+        await self.emergency.restore()
+        await self.roads.restore()
+        await self._queue_book.restore()
+        await self.observations.restore()
+        await self.suspensions.restore()
+        start = self.reception.greeting()
+        greetings = [RequestOutcome(robot.name, answer=start) for robot in known if robot.link == "sql"]
+        await self.mailboxes.finish(greetings, [], acks=False)
+
+    # --- robots ---------------------------------------------------------------------------------------
+
+    async def receive(
+        self, robot: str, link: str, request: Request, id: int | None, *, waited: bool = False
+    ) -> RequestOutcome:
+        """Deal with request ``id`` of a robot; its link sends what comes of it: :meth:`.Mailboxes.finish`.
+
+        One that has ``waited`` until there was a gateway to read it tells what was, not what is.
+
+        :raises NotReadyError: from a robot that never said Ready; RefusedError for what is not done, saying
+            why; MessageError for what is wrong in itself.
+        """
+        now = self._clock()
+        self.tally.requests[link, type(request).__name__] += 1
+        if isinstance(request, Ready):
+            return await self.reception.receive(robot, link, request, id)
+        self.robots.check_run(robot, request.magic, link)
+        if isinstance(request, SendGPS):
+            request = self._pose_of(robot, link, request, now, waited=waited)
+        elif isinstance(request, SendPos):
+            self._check_place(robot, link, (request.x, request.y), now, waited=waited)
+        if isinstance(request, SendPos):
+            if (rest := self._take_pose(robot, link, request, now, waited=waited)) is not None:
+                await rest
+            return RequestOutcome(robot)
+        # Only driving sets a robot that said Stopped in motion.
+        stopped = isinstance(request, Stopped) or self.robots.get(robot).ended_in_order
+        known = self.robots.heard(robot, link, now, stopped=stopped, waited=waited)
+        self._saving.touch(robot)
+        answer, note = await self._deal_with(known, link, request, id)
+        return RequestOutcome(
+            robot, OpAck(id=id, reason=note or None) if request.acknowledged else None, answer
+        )
+
+    def take_pose(self, robot: str, link: str, pose: SendPos) -> Coroutine[Any, Any, None] | None:
+        """Deal with a position as :meth:`receive` does, at once but for what is returned, to be awaited.
+
+        That is the storing of a command that the robot has carried out, nearly always None.
+        """
+        self.tally.requests[link, "SendPos"] += 1
+        now = self._clock()
+        self.robots.check_run(robot, pose.magic, link)
+        self._check_place(robot, link, (pose.x, pose.y), now)
+        return self._take_pose(robot, link, pose, now)
+
+    def take_poses(self, link: str, poses: Sequence[RobotPose]) -> list[Rest]:
+        """Deal with positions of many robots, each named once, as :meth:`take_pose` does with that of one.
+
+        Return what is left for some: a coroutine to be awaited, or what is wrong with a position.
+        """
+        now = self._clock()
+        moved, others = self.robots.follow(poses, link, now, self._places.near())
+        self.tally.requests[link, "SendPos"] += len(poses) - len(others)
+        self._saving.observe(now, moved)
+        self.maps.located([robot for robot, _ in moved])
+        rests = [
+            *(
+                (robot, _attempt(self._book.observe, robot, pose))
+                for robot, pose in self._book.with_open_commands(moved)
+            ),
+            *((robot, _attempt(self.take_pose, robot, link, pose)) for robot, pose in others),
+        ]
+        return [(robot, rest) for robot, rest in rests if rest is not None]
+
+    def refuse_large(self, robot: str, link: str, fault: str) -> None:
+        """Note that a robot sent what is too large to be read: it is there, and its operators are told."""
+        if robot in self.robots:
+            self.robots.disbelieve(robot, link, self._clock(), fault)
+
+    def closed(self, robot: str) -> None:
+        """Note that the robot closed its link in good order."""
+        self.robots.closed(robot)
+        self._saving.touch(robot)
+
+    # --- operators ------------------------------------------------------------------------------------
+
+    def reports(self, since: int = -1) -> list[RobotReport]:
+        """Return the robots that changed after revision ``since`` of :attr:`robots`."""
+        return self.robots.reports(self._clock(), since)
+
+    def rows(self, since: int = -1) -> list[Any]:
+        """Return them as they are encoded (see :mod:`.operator_updates`)."""
+        return self.robots.rows(self._clock(), since, ReportRow)
+
+    async def commands(self, robot: str | None, limit: int) -> list[CommandReport]:
+        """Return the newest commands first, of one robot or of all."""
+        return await self._database.run(commands.newest, robot, limit)
+
+    def open_commands(self) -> Counter[CommandState]:
+        """Return how many commands with a step to come are in each state."""
+        return self._book.count()
+
+    async def site_changed(self) -> None:
+        """Go by the site's newest facts and settings from now on, and tell operators of them."""
+        report = self.site.report
+        self.robots.limit(report.stale_after, report.lost_after)
+        self._book.tolerance = report.reached_tolerance
+        await self.observations.restore()
+        await self.roads.closures.site_changed()
+        self.listeners.announce("site", report.id, to_json(report))
+
+    # --- time -----------------------------------------------------------------------------------------
+
+    async def watch_roads(self) -> None:
+        """See to closed roads, and to robots in each other's way."""
+        await self.roads.watch(listened_to=bool(self.listeners))
+
+    def age(self) -> None:
+        """Bring the liveness of every robot up to now."""
+        self.robots.age(self._clock())
+
+    async def save(self) -> None:
+        """Store what is not stored yet, an emergency stop first; see to who was removed and what is too old.
+
+        Each is done whatever becomes of the others. Raises StoreError when one of them could not be.
+        """
+        expire_after = self.site.settings.commands.expire_after_s
+        await self._steps.run(
+            {
+                "emergency stops": self.emergency.store,
+                "positions": self._saving.save,
+                "removed robots": self.removals.carry_out,
+                "observations": self.observations.catch_up,
+                "progress": self._book.save_progress,
+                "expiry": lambda: self._book.expire(expire_after),
+            }
+        )
+
+    async def finish_trajectories(self) -> None:
+        """Store where robots are and have been, up to the last position of each: the gateway ends."""
+        self.recorder.finish()
+        await self.save()
+
+    # ---------------------------------------------------------------------------------------------------
+
+    async def _deal_with(
+        self, robot: Robot, link: str, request: Request, id: int | None
+    ) -> tuple[Answer | None, str]:
+        """Deal with what is neither Ready nor a position; return the answer to it, and a note about that."""
+        if isinstance(request, OpAck):
+            if request.reason is not None:
+                request = replace(request, reason=one_line(request.reason, LONGEST_REFUSAL))
+            self._measure(robot, await self._book.acknowledged(robot.name, request))
+        elif isinstance(request, Stopped):
+            if (rest := self._book.rests(robot.name, robot.pose if robot.located else None)) is not None:
+                await rest
+        elif isinstance(request, Observed):
+            await self.observations.add(robot, link, request, id)
+        elif isinstance(request, Question):
+            if isinstance(request, GetPath):
+                self.roads.waiting.check(robot.name)
+            answer, note = await self._answering.answer(robot.name, request)
+            self.emergency.check(answer)
+            return answer, note
+        return None, ""
+
+    def _pose_of(self, robot: str, link: str, fix: SendGPS, now: float, *, waited: bool) -> SendPos:
+        last = self.robots.get(robot).pose
+        try:
+            if not fix.has_fix:
+                raise RefusedError(NO_FIX)
+            place, theta = self.site.place_on_earth(fix.lat, fix.lon, fix.heading)
+        except RefusedError as error:
+            self.robots.disbelieve(robot, link, now, str(error), waited=waited)
+            raise
+        self._check_place(robot, link, place, now, waited=waited)
+        return self._tracks.pose(robot, fix, place, theta, last, now)
+
+    def _check_place(
+        self, robot: str, link: str, place: tuple[float, float], now: float, *, waited: bool = False
+    ) -> None:
+        """Raise RefusedError for a place where the robot cannot be; it is heard all the same."""
+        fault = self._places.fault(self.robots.get(robot), place, now)
+        if fault is not None:
+            self.robots.disbelieve(robot, link, now, fault, waited=waited)
+            raise RefusedError(f"robot {robot!r} cannot be where it says: {fault}")
+
+    def _take_pose(
+        self, robot: str, link: str, pose: SendPos, now: float, *, waited: bool = False
+    ) -> Coroutine[Any, Any, None] | None:
+        unseen = self.robots.is_unseen(robot, now)
+        if not self.robots.observe(robot, pose, link, now, waited=waited):
+            return None
+        if unseen:
+            self._book.lose_sight(robot)
+        self._saving.observe(now, [(robot, pose)])
+        self.maps.located([robot])
+        return self._book.observe(robot, pose)
+
+    def _measure(self, robot: Robot, written_at: float | None) -> None:
+        """Take the time from a message's writing to its OpAck for the latency of a link that has no pings."""
+        if robot.link == "sql" and written_at is not None:
+            took = self._clock() - written_at
+            # A robot that was away in between says nothing about its link.
+            if 0 <= took < self.site.report.lost_after:
+                self.robots.measured(robot.name, took)
+
+    def _check(self, message: Command) -> None:
+        """Raise RefusedError for a message that must not be sent to any robot now."""
+        self.emergency.check(message)
+        self.roads.closures.check(message)
+
+    async def _consider(self, message: Command) -> None:
+        await self.roads.closures.consider(message)
+
+    async def _fence(self, orders: Sequence[CommandOrder]) -> Sequence[RefusedError | None]:
+        """Return for each order why it must not be sent, None where it leads into no keepout."""
+        straight_from = [self.robots.straight_from(order.robot, order.message) for order in orders]
+        return await keepout_refusals(self.site, [order.message for order in orders], straight_from)
+
+    def _command_changed(self, command: CommandReport) -> None:
+        self.robots.assign(command.robot, self._book.busy_with(command.robot))
+        self.tally.steps[command.state.value] += 1
+        self.emergency.note_step(command)
+        self.driving.note_step(command)
+        self.roads.note_step(command)
+        self.listeners.announce("command", command.command, to_json(command))
+
+    def _observation_changed(self, observation: ObservationReport) -> None:
+        self.listeners.announce("observation", str(observation.observation), to_json(observation))
+
+    def _outbox_changed(self, robot: str) -> None:
+        self.mailboxes.changed(robot)
+
+
+def _attempt(
+    take: Callable[..., Coroutine[Any, Any, None] | None], *arguments: Any
+) -> Coroutine[Any, Any, None] | Exception | None:
+    """Return what is left to be awaited, or what went wrong: that concerns one robot and no other."""
+    try:
+        return take(*arguments)
+    except Exception as error:
+        return error

@@ -1,0 +1,218 @@
+"""Has a robot done what it was told? Judged from its poses, not from its word."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+from numpy.typing import NDArray
+
+from ...core.geometry import Polyline
+from ...core.messages import Command, SendPos, SetPath, SetPosEnd, SetPosIni
+
+STANDING_SPEED = 0.05
+"""m/s below which a robot counts as standing."""
+HEADING_TOLERANCE = 0.15
+"""radians; only where the target gives a heading."""
+CORRIDOR = 2.0
+"""metres a robot may be off its path and still be seen to advance along it."""
+LOOK_AHEAD = 5.0
+"""metres of path searched ahead of the place reached last, so that a loop is not cut short."""
+LOOK_AHEAD_TIME = 2.0
+"""seconds of driving added to it: a fast robot is far ahead by its next pose."""
+STRIDE = 0.2
+"""metres between the poses that are looked for on a path, which takes longer than all else about a pose."""
+
+
+def standing(pose: SendPos) -> bool:
+    """Tell whether the robot stands."""
+    return abs(pose.v) <= STANDING_SPEED
+
+
+@dataclass
+class TargetArrival:
+    """Judges SetPosEnd: the robot stands within ``tolerance`` metres of the target."""
+
+    target: SetPosEnd
+    tolerance: float
+
+    def deviation(self, pose: SendPos) -> float | None:
+        """Return metres between robot and target once it has arrived, else None."""
+        distance = math.hypot(pose.x - self.target.x, pose.y - self.target.y)
+        if distance > self.tolerance or not standing(pose):
+            return None
+        if self.target.theta is not None and _turn(pose.theta, self.target.theta) > HEADING_TOLERANCE:
+            return None
+        return distance
+
+
+class PathArrival:
+    """Judges SetPath: the robot followed the path and stands within ``tolerance`` metres of its end.
+
+    A path may end where it began, or beside that, so standing at the end counts only after the whole of it
+    was driven. ``driven`` is the metres of path that the robot is known to have driven; where that is not
+    known (None) it is taken to be as far as it can be. ``handed`` is where it was seen last before it can
+    have begun, and ``under_way`` is true where it may have driven since then without being seen.
+
+    A robot is looked for a few metres ahead of where it was, further where it has left its path and comes
+    back to it, and on all of what is left where it was out of sight and has moved. Where it may be at two
+    places of its path the sooner one counts: a robot that stands blocked at the beginning of a loop has not
+    come to its end. Whether it has it says itself: see :meth:`rests`.
+    """
+
+    def __init__(
+        self,
+        path: SetPath,
+        tolerance: float,
+        *,
+        driven: float | None = 0.0,
+        under_way: bool = False,
+        handed: SendPos | None = None,
+    ) -> None:
+        self.line = Polyline(path.points)
+        self._tolerance = tolerance
+        self._theta = path.theta
+        self._anywhere = driven is None
+        self._last = handed
+        self._on_path: SendPos | None = None
+        self.driven = driven or 0.0
+        self._unseen_from = self.driven if under_way else None
+        self._is_lost = under_way
+        self._rests = False
+
+    def deviation(self, pose: SendPos) -> float | None:
+        """Return metres between robot and end of path once it has arrived, else None."""
+        end_x, end_y = self.line.end
+        distance = math.hypot(pose.x - end_x, pose.y - end_y)
+        stands_there = distance <= self._tolerance and standing(pose)
+        if stands_there or self._moved(pose):
+            self._follow(pose)
+        self._rests &= stands_there
+        if self._rests and self._is_unsure:
+            self.driven = self.line.length
+        if not stands_there or self.driven < self.line.length - self._tolerance:
+            return None
+        turned = self._theta is not None and _turn(pose.theta, self._theta) > HEADING_TOLERANCE
+        return None if turned else distance
+
+    def lose_sight(self) -> None:
+        """Take it that the robot may have driven since its last pose without being seen."""
+        self._unseen_from = self.driven
+        self._is_lost = True
+
+    def rests(self, pose: SendPos | None) -> float | None:
+        """Take it that the robot, at ``pose`` for all that is known, has nothing left to do.
+
+        Its word decides where its poses cannot: when it was out of sight and stands at the end of a path that
+        passes there more than once. Return as :meth:`deviation`.
+        """
+        self._rests = True
+        return None if pose is None or self._on_path is None else self.deviation(pose)
+
+    @property
+    def _is_unsure(self) -> bool:
+        """Whether the robot was out of sight, and has not been followed for long since."""
+        return self._unseen_from is not None and self.driven <= self._unseen_from + LOOK_AHEAD
+
+    def _moved(self, pose: SendPos) -> bool:
+        """Tell whether the robot is far enough from where it was followed last to be looked for again."""
+        last = self._last
+        return last is None or _apart(pose, last) >= STRIDE
+
+    def _follow(self, pose: SendPos) -> None:
+        station, off = self.line.feet(pose.x, pose.y)
+        on_line = off <= CORRIDOR
+        left = on_line & (station >= self.driven - self._tolerance)
+        near = on_line & (station > self.driven) & (station <= self.driven + self._reach(pose))
+        if left.any() and self._is_elsewhere(pose, station[left]):
+            self.driven = max(self.driven, self._found(station[left], off[left], self._tolerance))
+        elif near.any():
+            followed = self._on_path is self._last
+            self.driven = self._found(station[near], off[near], 0.0 if followed else self._tolerance)
+        if near.any() or (on_line & (station <= self.driven)).any():
+            self._on_path = pose
+        self._last, self._anywhere, self._is_lost = pose, False, False
+
+    def _is_elsewhere(self, pose: SendPos, station: NDArray[Any]) -> bool:
+        """Tell whether the robot has come unseen to one of ``station``, and not to where it was expected."""
+        if self._anywhere:
+            return True
+        return self._was_missed(pose) and not (station <= self.driven + LOOK_AHEAD).any()
+
+    def _was_missed(self, pose: SendPos) -> bool:
+        """Tell whether the robot has driven unseen; one that had not set off may stand where it stood."""
+        last = self._last
+        if self._is_lost and (last is None or self.driven > LOOK_AHEAD):
+            return True
+        if last is None:
+            return False
+        return _apart(pose, last) > LOOK_AHEAD + LOOK_AHEAD_TIME * max(abs(pose.v), abs(last.v))
+
+    def _found(self, station: NDArray[Any], off: NDArray[Any], slack: float) -> float:
+        """Return the one of ``station`` that is nearest, within ``slack`` metres, and soonest of those."""
+        best = station[off <= off.min() + slack]
+        return float(best.max() if self._anywhere else best.min())
+
+    def _reach(self, pose: SendPos) -> float:
+        """Return how many metres of path ahead the robot may be of where it was on it last."""
+        last = self._last or pose
+        driving = LOOK_AHEAD_TIME * max(abs(pose.v), abs(last.v))
+        # Round a corner the path is longer than the way as the crow flies.
+        away = 0.0 if self._on_path is None else 2 * _apart(pose, self._on_path)
+        return LOOK_AHEAD + max(driving, away)
+
+
+@dataclass
+class BeginArrival:
+    """Judges SetPosIni: the robot takes itself to be there, standing or not."""
+
+    begin: SetPosIni
+    tolerance: float
+
+    def deviation(self, pose: SendPos) -> float | None:
+        """Return metres between robot and beginning once its pose is that, else None."""
+        distance = math.hypot(pose.x - self.begin.x, pose.y - self.begin.y)
+        turned = self.begin.theta is not None and _turn(pose.theta, self.begin.theta) > HEADING_TOLERANCE
+        return None if turned or distance > self.tolerance else distance
+
+
+class AbortArrival:
+    """Judges Abort: the robot stands."""
+
+    def deviation(self, pose: SendPos) -> float | None:
+        """Return 0.0 once the robot stands, else None."""
+        return 0.0 if standing(pose) else None
+
+
+Arrival = TargetArrival | PathArrival | BeginArrival | AbortArrival
+
+
+def arrival_judge(
+    command: Command,
+    tolerance: float,
+    *,
+    driven: float | None = 0.0,
+    under_way: bool = False,
+    handed: SendPos | None = None,
+) -> Arrival:
+    """Return the judge of a command; ``tolerance`` is metres, ``under_way`` if the robot may be driving.
+
+    ``driven`` is metres of a path that it is known to have driven, None if that is not known; ``handed`` is
+    where it was when the command was given to it.
+    """
+    if isinstance(command, SetPosEnd):
+        return TargetArrival(command, tolerance)
+    if isinstance(command, SetPath):
+        return PathArrival(command, tolerance, driven=driven, under_way=under_way, handed=handed)
+    if isinstance(command, SetPosIni):
+        return BeginArrival(command, tolerance)
+    return AbortArrival()
+
+
+def _apart(a: SendPos, b: SendPos) -> float:
+    return math.hypot(a.x - b.x, a.y - b.y)
+
+
+def _turn(a: float, b: float) -> float:
+    return abs(math.remainder(a - b, math.tau))

@@ -1,0 +1,172 @@
+"""Clocks: order of poses in time, a clock that is set while the gateway runs, a clock in doubt at start."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import NamedTuple
+
+from ...core.steady_time import steady_time
+
+# --- Which pose of a robot is newest: by the time of its fix, else by the robot's clock, else as they come
+
+CLOCK_SET_BACK_AFTER = 3.0
+"""seconds of nothing but late poses, on the link of the newest one and at the pace of a clock, after which
+the robot's clock must have been set back: within one link messages do not overtake each other."""
+LONGEST_DELAY = 30.0
+"""seconds of nothing but late poses after which they count whatever their pace and link: no link holds
+messages back for longer, and a robot must not stand still on the map for ever."""
+PACE = (0.5, 1.5)
+"""seconds of the robot's clock for each second of the gateway's that still pass for a clock; what was kept
+back and is now sent in one go comes faster."""
+
+
+@dataclass
+class _LateRun:
+    """Late poses since the last one that counted; ``paced_*`` is where their pace is measured from."""
+
+    since: float
+    paced_since: float
+    paced_stamp: float
+
+
+@dataclass
+class PoseOrder:
+    """The stamps of a robot's newest pose, by its own clocks, and the link that it came on."""
+
+    fix_t: float | None = None
+    t: float | None = None
+    link: str = ""
+    _late: _LateRun | None = None
+
+    def admit(self, fix_t: float | None, t: float | None, link: str, now: float) -> bool:
+        """Tell whether a pose with these stamps counts, and take it for the newest if so.
+
+        ``now`` is the gateway's clock, seconds. A pose is late when its fix is older than that of the newest,
+        or as old and sent earlier; where one of the two has no fix time, when it was sent earlier. A pose
+        without any stamp counts as it comes.
+        """
+        if fix_t is not None or t is None or (self.t is not None and t < self.t):
+            stamp = self._late_by(fix_t, t)
+            if stamp is not None and not self._set_back(stamp, link, now):
+                return False
+        self.fix_t = self.fix_t if fix_t is None else fix_t
+        self.t = self.t if t is None else t
+        self.link = link
+        self._late = None
+        return True
+
+    def restarted(self) -> None:
+        """Forget the robot's own clock: a robot that started anew may count from nought."""
+        self.t = self._late = None
+
+    def _late_by(self, fix_t: float | None, t: float | None) -> float | None:
+        """Return the stamp by which a pose is late, or None for one that is not."""
+        if fix_t is not None and self.fix_t is not None and fix_t != self.fix_t:
+            return fix_t if fix_t < self.fix_t else None
+        return t if t is not None and self.t is not None and t < self.t else None
+
+    def _set_back(self, stamp: float, link: str, now: float) -> bool:
+        """Tell whether poses have been late for so long that it must be the robot's clock."""
+        run = self._late
+        if run is None or now < run.since:
+            self._late = _LateRun(now, now, stamp)
+            return False
+        if now - run.since >= LONGEST_DELAY:
+            return True
+        elapsed = now - run.paced_since
+        if elapsed < CLOCK_SET_BACK_AFTER:
+            return False
+        if PACE[0] * elapsed <= stamp - run.paced_stamp <= PACE[1] * elapsed:
+            return link == self.link
+        run.paced_since, run.paced_stamp = now, stamp
+        return False
+
+
+# --- Noticing that this computer's clock was set, while the gateway goes by it ---
+# A small computer without a battery for its clock begins with a wrong time, set right once it has a
+# network.
+
+LEAST_STEP = 1.0
+"""seconds; less is what a clock is corrected by all the time."""
+
+
+class ClockStep(NamedTuple):
+    """The clock was set forward by ``by`` seconds, back where that is negative, after ``since``.
+
+    ``since`` and ``now``, when that was noticed, are by the clock as it is set now.
+    """
+
+    by: float
+    since: float
+    now: float
+
+    def moved(self, at: float) -> float:
+        """Return a time that was noted before as the clock would have it now."""
+        return at if self.since <= at <= self.now else at + self.by
+
+
+class ClockWatch:
+    """Holds a ``clock``, seconds since 1970, against a ``steady`` one."""
+
+    def __init__(self, clock: Callable[[], float], steady: Callable[[], float] = steady_time) -> None:
+        self._clock, self._steady = clock, steady
+        self._seen = clock(), steady()
+
+    def look(self) -> ClockStep | None:
+        """Return how the clock was set since the last look, None where it was not."""
+        (then, steady_then), self._seen = self._seen, (self._clock(), self._steady())
+        now, steady_now = self._seen
+        passed = steady_now - steady_then
+        by = now - then - passed
+        return None if abs(by) < LEAST_STEP else ClockStep(by, now - passed, now)
+
+
+# --- What the times in the database say of this computer's clock when the gateway starts; no I/O ---
+# A clock that is wrong before the gateway runs is not seen to be set: see :mod:`.clock_watch` for that.
+
+LEAST_BEHIND = 5.0
+"""seconds; less is what a clock is corrected by."""
+LONG_IDLE = 7 * 86400.0
+"""seconds without anything stored after which it may be the clock that is ahead."""
+RELEASED = 1_767_225_600.0
+"""2026-01-01 UTC: no computer with this version has an earlier time."""
+_SET_IT = "set it ('timedatectl' shows it, 'timedatectl set-ntp true' has the network set it)"
+
+
+class ClockDoubt(NamedTuple):
+    """Why the clock may be wrong, with what to do; ``may_be_ahead`` if it may make what is kept too old."""
+
+    text: str
+    may_be_ahead: bool = False
+
+
+def check_clock_at_start(now: float, newest: float | None) -> ClockDoubt | None:
+    """Return why the clock, which says ``now``, may be wrong; None where nothing speaks against it.
+
+    ``newest`` is the newest time in the database, None in an empty one; both are seconds since 1970.
+    """
+    if newest is not None and newest - now >= LEAST_BEHIND:
+        return ClockDoubt(
+            f"the clock of this computer says {_utc(now)}, and what was stored last is from {_utc(newest)}: "
+            f"the clock is behind now, or was ahead then. If it is behind, end the gateway, {_SET_IT}, and "
+            "start the gateway again: until then it stores times that are wrong"
+        )
+    if now < RELEASED:
+        return ClockDoubt(
+            f"the clock of this computer says {_utc(now)}, which is before this version was made: end the "
+            f"gateway, {_SET_IT}, and start the gateway again"
+        )
+    if newest is not None and now - newest >= LONG_IDLE:
+        return ClockDoubt(
+            f"the clock of this computer says {_utc(now)}, and what was stored last is from {_utc(newest)}. "
+            f"For a day nothing is deleted for its age; if the clock is ahead, end the gateway before then, "
+            f"{_SET_IT}, and start the gateway again",
+            may_be_ahead=True,
+        )
+    return None
+
+
+def _utc(at: float) -> str:
+    return time.strftime("%Y-%m-%d %H:%M:%S UTC", time.gmtime(at))

@@ -1,0 +1,185 @@
+"""Checks of reported positions against the site and speed, and course over ground where none is reported."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Literal
+
+from ...core.messages import SendGPS, SendPos
+from ...core.messages.validation import SPEED
+from ...core.sites.settings import SiteBounds, SiteSettings
+from .robots import AcceptedArea, Robot
+
+# --- Whether a robot may be where it says that it is: not far from its site, nor in a leap from where it was
+
+BELIEVED_AFTER = 3.0
+"""seconds of places beside one another, and of none where the robot was, after which a leap is believed: it
+was carried, or its localisation found itself."""
+NO_FIX = (
+    "SendGPS: lat and lon are both 0, as receivers say without a fix; the robot keeps its last place. Send "
+    "Alive until there is a fix"
+)
+
+Place = tuple[float, float]
+
+
+@dataclass
+class Leap:
+    """Where a robot says to be since ``since`` without being believed, last at ``at``; gateway's seconds."""
+
+    place: Place
+    since: float
+    at: float
+
+
+class PlaceChecks:
+    """Judges the places that robots say; it keeps for each robot the leap that is not believed yet."""
+
+    def __init__(self, settings: Callable[[], SiteSettings]) -> None:
+        self._settings = settings
+        self._leaps: dict[str, Leap] = {}
+
+    def fault(self, robot: Robot, place: Place, now: float) -> str | None:
+        """Return why the robot is not at ``place``, metres in the site frame, None where it may be there."""
+        settings = self._settings()
+        limits = settings.limits
+        beyond = distance_beyond(place, settings.bounds)
+        if beyond > limits.place_within_m:
+            return (
+                f"({place[0]:.2f}, {place[1]:.2f}) is {beyond / 1000:.1f} km outside site {settings.id}, "
+                f"and at most {limits.place_within_m / 1000:g} km are believed (place_within_m in its "
+                "settings); the robot keeps its last place. Correct its position, or the frame that it is in"
+            )
+        if robot.pose is None or robot.pose_at is None or not robot.located:
+            self._leaps.pop(robot.name, None)
+            return None
+        here = robot.pose.x, robot.pose.y
+        if math.dist(here, place) <= _reach(limits.leap_m, robot.pose_at, now):
+            self._leaps.pop(robot.name, None)
+            return None
+        return self._leap(robot, here, place, now, limits.leap_m)
+
+    def near(self) -> AcceptedArea:
+        """Return where the place of a robot that is believed needs no second look."""
+        settings = self._settings()
+        bounds, limits = settings.bounds, settings.limits
+        within = limits.place_within_m
+        return AcceptedArea(
+            bounds.x_min - within,
+            bounds.y_min - within,
+            bounds.x_max + within,
+            bounds.y_max + within,
+            limits.leap_m / math.sqrt(2),
+        )
+
+    def _leap(self, robot: Robot, here: Place, place: Place, now: float, leap_m: float) -> str | None:
+        leap = self._leaps.get(robot.name)
+        if leap is None or math.dist(leap.place, place) > _reach(leap_m, leap.at, now):
+            leap = self._leaps[robot.name] = Leap(place, now, now)
+        leap.place, leap.at = place, now
+        if now - leap.since >= BELIEVED_AFTER:
+            del self._leaps[robot.name]
+            return None
+        return (
+            f"({place[0]:.2f}, {place[1]:.2f}) is {math.dist(here, place):.0f} m from where it was a moment "
+            f"ago, more than {leap_m:g} m (leap_m in the site's settings); it is believed when it goes on "
+            f"from there for {BELIEVED_AFTER:g} s"
+        )
+
+
+def distance_beyond(place: Place, bounds: SiteBounds) -> float:
+    """Return how many metres (x, y) lies outside ``bounds``, 0 or less inside; the larger of x and y."""
+    x, y = place
+    return max(bounds.x_min - x, x - bounds.x_max, bounds.y_min - y, y - bounds.y_max)
+
+
+def _reach(leap_m: float, since: float, now: float) -> float:
+    return leap_m + SPEED[1] * max(now - since, 0.0)
+
+
+# --- Course and speed over ground, for robots whose GPS says only where they are ---
+
+LEAST_MOVE = 0.5
+"""metres below which a move tells no course; more where the robot says that its fixes are worse."""
+STANDS_AFTER = 2.0
+"""seconds without such a move after which the robot counts as standing."""
+_SHORTEST = 0.01
+"""seconds between two fixes that are told apart, so that a speed is always finite."""
+
+Source = Literal["course", "last", "unknown"]
+
+
+@dataclass
+class GroundTrack:
+    """One robot's last fix that told a course: x, y in metres, seconds, theta in radians, v in m/s."""
+
+    x: float
+    y: float
+    at: float
+    theta: float | None = None
+    v: float = 0.0
+
+    def follow(self, x: float, y: float, at: float, accuracy: float | None) -> None:
+        """Take in a fix: what moved less than it may be wrong by has not been seen to move."""
+        move = math.hypot(x - self.x, y - self.y)
+        if move > max(LEAST_MOVE, accuracy or 0.0):
+            self.v = move / max(at - self.at, _SHORTEST)
+            self.theta = math.atan2(y - self.y, x - self.x)
+            self.x, self.y, self.at = x, y, at
+        elif at - self.at > STANDS_AFTER:
+            self.v = 0.0
+
+
+class GroundTracks:
+    """Makes poses of GPS fixes. What a fix leaves open is told from where the robot was before."""
+
+    def __init__(self) -> None:
+        self._tracks: dict[str, GroundTrack] = {}
+
+    def pose(
+        self,
+        robot: str,
+        fix: SendGPS,
+        place: tuple[float, float],
+        theta: float | None,
+        last: SendPos | None,
+        now: float,
+    ) -> SendPos:
+        """Return ``fix`` as a pose at ``place``, metres in the site frame.
+
+        ``theta`` is the heading it came with, in the site frame. Without one theta is the course over ground,
+        else that of the ``last`` pose, else 0, and ``theta_from`` says which. ``v`` is that of the fix, else
+        the speed over ground. ``now`` is the gateway's time, for fixes without one of their own.
+        """
+        x, y = place
+        at = next(time for time in (fix.fix_t, fix.t, now) if time is not None)
+        # Until two fixes tell how fast it is it goes as it did: one that drove has not been seen to stand.
+        track = self._tracks.setdefault(robot, GroundTrack(x, y, at, v=0.0 if last is None else last.v))
+        if at < track.at:
+            # A clock that was set back tells no speed; the track begins anew.
+            track = self._tracks[robot] = GroundTrack(x, y, at, track.theta)
+        track.follow(x, y, at, fix.accuracy)
+        turned, source = (theta, None) if theta is not None else _direction(track, last)
+        return SendPos(
+            x=round(x, 4),
+            y=round(y, 4),
+            theta=round(turned, 5),
+            v=round(min(track.v, SPEED[1]), 3) if fix.v is None else fix.v,
+            t=fix.t,
+            battery=fix.battery,
+            status=fix.status,
+            fix_t=fix.fix_t,
+            accuracy=fix.accuracy,
+            altitude=fix.altitude,
+            theta_from=source,
+        )
+
+
+def _direction(track: GroundTrack, last: SendPos | None) -> tuple[float, Source]:
+    if track.v > 0 and track.theta is not None:
+        return track.theta, "course"
+    if last is not None and last.theta_from != "unknown":
+        return last.theta, "last"
+    return 0.0, "unknown"

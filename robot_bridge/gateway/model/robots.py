@@ -1,0 +1,438 @@
+"""Robots as known now: poses, clocks, liveness, latency of their links; no I/O."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, field, replace
+from typing import NamedTuple, TypeVar
+
+from ...core.errors import NotReadyError, OtherRunError, RefusedError
+from ...core.messages import (
+    Ability,
+    Command,
+    PathDeclaration,
+    RobotReport,
+    RobotState,
+    SendPos,
+    SetPath,
+    SetPosEnd,
+    check_robot_name,
+)
+from .arrival import standing
+from .clocks import ClockStep, PoseOrder
+
+# --- How far the knowledge of a robot can be trusted, from the age of its last message ---
+
+
+def liveness(
+    age: float, *, ended_in_order: bool, stale_after: float = 3.0, lost_after: float = 10.0
+) -> RobotState:
+    """Return the state of a robot whose last message is ``age`` seconds old.
+
+    ``ended_in_order`` is true when the robot said Stopped last, or closed its link in good order: silence
+    is expected of it then, so it goes offline where another would be lost.
+    """
+    if age < stale_after:
+        return RobotState.FRESH
+    if ended_in_order:
+        return RobotState.OFFLINE
+    return RobotState.STALE if age < lost_after else RobotState.LOST
+
+
+# --- The robots as known now: poses, clocks, liveness and link latency; no I/O ---
+# Three clocks are kept apart: the robot's (``t`` of a pose), that of the fix (``fix_t``), and the
+# gateway's, by
+# which alone a robot is fresh, stale or lost.
+
+Report = TypeVar("Report")
+RobotPose = tuple[str, SendPos]
+AWAY = (RobotState.LOST, RobotState.OFFLINE)
+"""States of robots that cannot be told anything."""
+
+
+class AcceptedArea(NamedTuple):
+    """Where a place needs no second look: within limits of the site frame, and a ``step`` along each axis
+    from where the robot was a moment ago; metres.
+    """
+
+    x_min: float
+    y_min: float
+    x_max: float
+    y_max: float
+    step: float
+
+
+@dataclass
+class Robot:
+    """One robot. ``received_at`` is the gateway's time of its last message, ``pose_at`` that of its pose.
+
+    ``latency`` is the seconds that its link took there and back when that was last measured. ``paths`` is
+    what its last Ready declared, to this gateway or to an earlier one. ``located`` is true once it has said
+    where it is since its last Ready: until then its pose is what was stored of it, or what it was before its
+    link broke, and it may have driven on unseen. ``doubt`` is why the place that it said last is not
+    believed. ``says_magic`` is true once this run has said its number with a message. ``abilities`` are what
+    it can do with spaces between them, None for everything.
+    """
+
+    name: str
+    magic: int
+    link: str
+    received_at: float
+    ended_in_order: bool = False
+    pose: SendPos | None = None
+    pose_at: float | None = None
+    located: bool = False
+    state: RobotState = RobotState.FRESH
+    command: str | None = None
+    latency: float | None = None
+    doubt: str | None = None
+    says_magic: bool = False
+    revision: int = 0
+    paths: PathDeclaration | None = None
+    abilities: str | None = None
+    order: PoseOrder = field(default_factory=PoseOrder)
+
+    @property
+    def asks_path(self) -> bool:
+        """Whether it declared that it asks for its path to every target, and does not drive before."""
+        return self.paths in ("asks", "asks and cones")
+
+    @property
+    def places_on_paths(self) -> bool:
+        """Whether it declared that it places and collects cones at the ends of paths."""
+        return self.paths in ("cones", "asks and cones")
+
+    def can(self, ability: Ability) -> bool:
+        """Tell whether it did not declare that it cannot do this."""
+        return self.abilities is None or ability in self.abilities.split()
+
+
+class Robots:
+    """All robots by name. Every change gets the next revision, so that a reader can ask what is new."""
+
+    def __init__(self, stale_after: float = 3.0, lost_after: float = 10.0) -> None:
+        self._stale_after = stale_after
+        self._lost_after = lost_after
+        self._robots: dict[str, Robot] = {}
+        self._removed: dict[str, int] = {}
+        """the robots that were removed and have not come back, with the revision of that."""
+        self.revision = 0
+        self.is_back: Callable[[str, float], None] = lambda _robot, _seconds: None
+        """Called when a robot is heard again that was lost or offline, with how many seconds it was not."""
+
+    def limit(self, stale_after: float, lost_after: float) -> None:
+        """Judge liveness by other limits from now on, in seconds."""
+        self._stale_after, self._lost_after = stale_after, lost_after
+
+    def __contains__(self, name: str) -> bool:
+        return name in self._robots
+
+    def names(self) -> list[str]:
+        """Return the names of all robots, sorted."""
+        return sorted(self._robots)
+
+    def commanded(self) -> list[str]:
+        """Return the names of those that are not only seen, sorted."""
+        return sorted(name for name, robot in self._robots.items() if robot.abilities != "")
+
+    def is_only_seen(self, name: str) -> bool:
+        """Tell whether the robot said that it can do nothing, so that it is told nothing."""
+        robot = self._robots.get(name)
+        return robot is not None and robot.abilities == ""
+
+    def get(self, name: str) -> Robot:
+        """Return the robot ``name``; raises NotReadyError if it never said Ready."""
+        robot = self._robots.get(name)
+        if robot is None:
+            raise NotReadyError(f"robot {name!r} has not said Ready to this gateway; send Ready first")
+        return robot
+
+    def check_known(self, name: str) -> None:
+        """Raise RefusedError for a robot that never said Ready, MessageError for what names none."""
+        check_robot_name(name)
+        if name not in self:
+            known = ", ".join(self.names()) or "none yet"
+            raise RefusedError(f"robot {name!r} is not known to this gateway; known are: {known}")
+
+    def pose(self, name: str) -> SendPos | None:
+        """Return where a robot was when it said so last, None for one that never did."""
+        robot = self._robots.get(name)
+        return None if robot is None else robot.pose
+
+    def straight_from(self, name: str, message: Command) -> tuple[float, float] | None:
+        """Return where a robot is that drives straight to a target, or to a path's first point, from there.
+
+        That is where it was when it said so last; None for one that never did, and for one that is told a way
+        to the target first.
+        """
+        robot = self._robots.get(name)
+        if robot is None or robot.pose is None or not isinstance(message, (SetPosEnd, SetPath)):
+            return None
+        if isinstance(message, SetPosEnd) and robot.asks_path:
+            return None
+        return robot.pose.x, robot.pose.y
+
+    def is_placed(self, name: str) -> bool:
+        """Tell whether it is known where a robot is now: it is heard, and has said so since its last Ready.
+
+        It is not known of one whose last place is not believed.
+
+        What is known of others is where they were: they may have driven on unseen.
+        """
+        robot = self._robots.get(name)
+        fresh = robot is not None and robot.located and robot.state is RobotState.FRESH
+        return robot is not None and fresh and robot.doubt is None
+
+    def is_unseen(self, name: str, now: float) -> bool:
+        """Tell whether a robot may have come further since it said where it is: too long ago, or before its
+        link or the gateway broke.
+        """
+        robot = self._robots.get(name)
+        if robot is None or robot.pose_at is None:
+            return False
+        return not robot.located or now - robot.pose_at >= self._stale_after
+
+    def restore(self, robot: Robot, now: float) -> None:
+        """Take in a robot that an earlier gateway knew."""
+        self._robots[robot.name] = robot
+        if robot.pose is not None:
+            robot.order = PoseOrder(robot.pose.fix_t, robot.pose.t, robot.link)
+        robot.state = self._judge(robot, now)
+        self._touch(robot)
+
+    def starts_anew(self, name: str, magic: int) -> bool:
+        """Tell whether a Ready with ``magic`` comes from another run of a robot that is known."""
+        robot = self._robots.get(name)
+        return robot is not None and robot.magic != magic
+
+    def ready(
+        self,
+        name: str,
+        magic: int,
+        link: str,
+        now: float,
+        paths: PathDeclaration | None = None,
+        abilities: str | None = None,
+    ) -> None:
+        """Register a robot, or this run of it; ``paths`` and ``abilities`` are what it declares of them."""
+        anew = self.starts_anew(name, magic)
+        robot = self._robots.setdefault(name, Robot(name, magic, link, now))
+        self._removed.pop(name, None)
+        if anew and robot.pose is not None:
+            # A robot that started anew may have a clock that did so too.
+            robot.pose = replace(robot.pose, t=None)
+            robot.order.restarted()
+        robot.magic, robot.link, robot.located, robot.says_magic = magic, link, False, False
+        robot.doubt = None
+        robot.paths, robot.abilities = paths, abilities
+        self.heard(name, link, now)
+
+    def check_run(self, name: str, magic: int | None, link: str) -> None:
+        """Raise OtherRunError for what the run of the robot that was let in did not say.
+
+        Over SQL all come under one name: a run that has said its ``magic`` number says it with everything.
+        """
+        robot = self.get(name)
+        if magic == robot.magic:
+            robot.says_magic = True
+        elif magic is not None or (robot.says_magic and link == "sql"):
+            came = "without a magic number" if magic is None else f"with magic {magic}"
+            raise OtherRunError(
+                f"this came {came}, and robot {name!r} was let in with {robot.magic}: another one under its "
+                "account, or one that has not said Ready; it counts for nothing until its Ready is taken"
+            )
+
+    def heard(
+        self, name: str, link: str, now: float, *, stopped: bool = False, waited: bool = False
+    ) -> Robot:
+        """Note that a message of the robot came in; ``stopped`` when it said Stopped.
+
+        One that has ``waited`` until there was a gateway to read it does not show that the robot is there.
+        """
+        robot = self.get(name)
+        robot.link, robot.ended_in_order = link, stopped
+        if not waited:
+            if robot.state in AWAY:
+                self.is_back(name, now - robot.received_at)
+            robot.received_at = now
+        robot.state = self._judge(robot, now) if waited else RobotState.FRESH
+        self._touch(robot)
+        return robot
+
+    def observe(self, name: str, pose: SendPos, link: str, now: float, *, waited: bool = False) -> bool:
+        """Take in a pose; return false for a late one (see :mod:`.clocks`), which moves nothing.
+
+        One that has ``waited`` says where the robot was.
+        """
+        robot = self.get(name)
+        standing_still = robot.ended_in_order and standing(pose)
+        self.heard(name, link, now, stopped=standing_still, waited=waited)
+        if not robot.order.admit(pose.fix_t, pose.t, link, now):
+            return False
+        robot.pose, robot.doubt = pose, None
+        if waited:
+            robot.pose_at = robot.received_at
+        else:
+            robot.pose_at, robot.located = now, True
+        return True
+
+    def follow(
+        self, poses: Iterable[RobotPose], link: str, now: float, near: AcceptedArea
+    ) -> tuple[list[RobotPose], list[RobotPose]]:
+        """Take in, as :meth:`observe`, the poses that only go on from where their robots were a moment ago.
+
+        Return those that moved a robot, and those that there is something to consider about, with which
+        nothing was done.
+        """
+        moved, others = [], []
+        revision, stale_after = self.revision, self._stale_after
+        x_min, y_min, x_max, y_max, step = near
+        for told in poses:
+            name, pose = told
+            robot = self._robots.get(name)
+            if (
+                robot is None
+                or (last := robot.pose) is None
+                or robot.pose_at is None
+                or not -step <= pose.x - last.x <= step
+                or not -step <= pose.y - last.y <= step
+                or not (x_min <= pose.x <= x_max and y_min <= pose.y <= y_max)
+                or not now - robot.pose_at < stale_after
+                or robot.state is not RobotState.FRESH
+                or not robot.located
+                or robot.doubt is not None
+                or robot.ended_in_order
+                or pose.magic is not None
+                or robot.link != link
+            ):
+                others.append(told)
+                continue
+            robot.received_at = now
+            revision += 1
+            robot.revision = revision
+            if robot.order.admit(pose.fix_t, pose.t, link, now):
+                robot.pose, robot.pose_at = pose, now
+                moved.append(told)
+        self.revision = revision
+        return moved, others
+
+    def disbelieve(self, name: str, link: str, now: float, doubt: str, *, waited: bool = False) -> None:
+        """Note that the robot is heard, and that the place that it says cannot be."""
+        robot = self.get(name)
+        robot.doubt = doubt
+        self.heard(name, link, now, stopped=robot.ended_in_order, waited=waited)
+
+    def remove(self, name: str) -> None:
+        """Know a robot no more, until it says Ready again."""
+        if self._robots.pop(name, None) is not None:
+            self.revision += 1
+            self._removed[name] = self.revision
+
+    def removed(self, since: int) -> list[str]:
+        """Return the robots that were removed after revision ``since`` and have not come back."""
+        return [name for name, revision in self._removed.items() if revision > since]
+
+    def closed(self, name: str) -> None:
+        """Note that the robot closed its link in good order."""
+        robot = self._robots.get(name)
+        if robot is not None:
+            robot.ended_in_order = True
+            self._touch(robot)
+
+    def measured(self, name: str, latency: float) -> None:
+        """Note how many seconds the robot's link took there and back; told with the robot's next change."""
+        robot = self._robots.get(name)
+        if robot is not None:
+            robot.latency = latency
+
+    def assign(self, name: str, command: str | None) -> None:
+        """Set the command that the robot is busy with."""
+        robot = self._robots.get(name)
+        if robot is not None and robot.command != command:
+            robot.command = command
+            self._touch(robot)
+
+    def clock_was_set(self, step: ClockStep) -> None:
+        """Keep the times since robots were heard: silent ones would be fresh again, or all of them lost."""
+        for robot in self._robots.values():
+            robot.received_at = step.moved(robot.received_at)
+            robot.pose_at = None if robot.pose_at is None else step.moved(robot.pose_at)
+
+    def age(self, now: float) -> None:
+        """Bring the state of every robot up to ``now``; what changed gets a new revision."""
+        for robot in self._robots.values():
+            # Were the gateway's clock set back, a silent robot would stay fresh until it has caught up.
+            robot.received_at = min(robot.received_at, now)
+            state = self._judge(robot, now)
+            if state is not robot.state:
+                robot.state = state
+                self._touch(robot)
+
+    def reports(self, now: float, since: int = -1) -> list[RobotReport]:
+        """Return the robots that changed after revision ``since``, as operators are told."""
+        return self.rows(now, since, RobotReport)
+
+    def rows(self, now: float, since: int, kind: Callable[..., Report]) -> list[Report]:
+        """Return them as ``kind``, which takes the parameters of a RobotReport by name."""
+        return [_report(robot, now, kind) for robot in self.changed(since)]
+
+    def changed(self, since: int) -> list[Robot]:
+        """Return the robots that changed after revision ``since``."""
+        return [robot for robot in self._robots.values() if robot.revision > since]
+
+    def _judge(self, robot: Robot, now: float) -> RobotState:
+        return liveness(
+            now - robot.received_at,
+            ended_in_order=robot.ended_in_order,
+            stale_after=self._stale_after,
+            lost_after=self._lost_after,
+        )
+
+    def _touch(self, robot: Robot) -> None:
+        self.revision += 1
+        robot.revision = self.revision
+
+
+def _report(robot: Robot, now: float, kind: Callable[..., Report]) -> Report:
+    pose, latency = robot.pose, robot.latency
+    if pose is None or robot.pose_at is None:
+        return kind(
+            robot=robot.name,
+            state=robot.state,
+            age=_thousandths(now - robot.received_at),
+            link=robot.link,
+            stopped=robot.ended_in_order,
+            status=robot.doubt,
+            command=robot.command,
+            latency=None if latency is None else round(latency, 4),
+            paths=robot.paths,
+            abilities=robot.abilities,
+        )
+    return kind(
+        robot=robot.name,
+        state=robot.state,
+        age=_thousandths(now - robot.received_at),
+        link=robot.link,
+        stopped=robot.ended_in_order,
+        x=pose.x,
+        y=pose.y,
+        theta=pose.theta,
+        accuracy=pose.accuracy,
+        altitude=pose.altitude,
+        theta_from=pose.theta_from,
+        v=pose.v,
+        device_time=pose.t,
+        fix_time=pose.fix_t,
+        pose_age=_thousandths(now - robot.pose_at),
+        battery=pose.battery,
+        status=pose.status if robot.doubt is None else robot.doubt,
+        command=robot.command,
+        latency=None if latency is None else round(latency, 4),
+        paths=robot.paths,
+        abilities=robot.abilities,
+    )
+
+
+def _thousandths(seconds: float) -> float:
+    """Return ``seconds``, not below 0, in whole milliseconds; ``round`` takes three times as long."""
+    return int(seconds * 1000 + 0.5) / 1000 if seconds > 0 else 0.0

@@ -1,0 +1,1 @@
+"""Monitoring of the gateway: counters, metrics, periodic tasks, garbage collection."""

@@ -1,0 +1,190 @@
+"""Periodic tasks with retries, unforeseen errors, and garbage collection."""
+
+from __future__ import annotations
+
+import asyncio
+import gc
+import logging
+import math
+import time
+from collections.abc import Awaitable, Callable, Mapping
+
+from ...core.errors import BridgeError, FatalError
+from .metrics import Counters
+
+# --- Work that goes on as long as the gateway does: what fails is logged, counted and tried again ---
+
+log = logging.getLogger(__name__)
+
+Work = Callable[[], Awaitable[None]]
+
+FIRST_PAUSE, LONGEST_PAUSE = 0.25, 2.0
+"""seconds before something foreseen, such as a database that is away, is tried again."""
+LONGEST_PAUSE_UNFORESEEN = 30.0
+LAST_ATTEMPT = 20
+"""failures in a row that nobody foresaw, after which the process had better be started anew."""
+SOUND = 60.0
+"""seconds of work without a failure after which earlier ones no longer count."""
+SAY_AGAIN_AFTER = 60.0
+
+
+async def keep_all_going(works: Mapping[str, Work], tally: Counters) -> None:
+    """Run every work side by side, as :func:`keep_going`, until one of them is hopeless.
+
+    :raises FatalError: when one of them cannot go on.
+    """
+    tasks = [asyncio.create_task(keep_going(name, work, tally), name=name) for name, work in works.items()]
+    try:
+        await asyncio.gather(*tasks)
+    finally:
+        for task in tasks:
+            task.cancel()
+        await asyncio.gather(*tasks, return_exceptions=True)
+
+
+async def keep_going(name: str, work: Work, tally: Counters) -> None:
+    """Run ``work``, and again after a growing pause when it raises; returns when it returns.
+
+    :raises FatalError: when ``work`` raises it, or fails again and again for a reason nobody foresaw.
+    """
+    trouble = RetryState(name)
+    while True:
+        began = time.monotonic()
+        try:
+            return await work()
+        except FatalError:
+            raise
+        except Exception as error:
+            tally.failures[name] += 1
+            pause = trouble.take(error, lasted=time.monotonic() - began)
+        await asyncio.sleep(pause)
+
+
+class RetryState:
+    """The failures of one work in a row: how long to wait after each, and which the log is told of."""
+
+    def __init__(self, name: str) -> None:
+        self._name = name
+        self._pause = FIRST_PAUSE
+        self._unforeseen = 0
+        self._told = ("", 0.0)
+
+    def take(self, error: Exception, lasted: float) -> float:
+        """Log ``error`` and return the seconds to wait; ``lasted`` is how long the work went well before it.
+
+        :raises FatalError: when it has failed too often for a reason nobody foresaw.
+        """
+        if lasted > SOUND:
+            self._pause, self._unforeseen = FIRST_PAUSE, 0
+        foreseen = isinstance(error, BridgeError)
+        self._unforeseen += 0 if foreseen else 1
+        pause = self._pause
+        self._pause = min(2 * pause, LONGEST_PAUSE if foreseen else LONGEST_PAUSE_UNFORESEEN)
+        self._tell(error, foreseen, pause)
+        if self._unforeseen >= LAST_ATTEMPT:
+            raise FatalError(
+                f"{self._name} failed {self._unforeseen} times, last with {type(error).__name__}: {error}; "
+                "see the log, and report it"
+            ) from error
+        return pause
+
+    def _tell(self, error: Exception, foreseen: bool, pause: float) -> None:
+        text, told_at = self._told
+        now = time.monotonic()
+        if not foreseen:
+            name = type(error).__name__
+            log.exception("%s: unexpected %s; trying again in %g s", self._name, name, pause)
+        elif str(error) != text or now - told_at > SAY_AGAIN_AFTER:
+            log.error("%s: %s; trying again until it works", self._name, error)
+            self._told = (str(error), now)
+
+
+class Steps:
+    """The steps of one work: each is done whatever becomes of the others."""
+
+    def __init__(self, name: str) -> None:
+        self._name = name
+        self._told: dict[str, tuple[str, float]] = {}
+
+    async def run(self, steps: Mapping[str, Work]) -> None:
+        """Do every step in its order; the log is told of each that fails, once a minute while it does.
+
+        What nobody foresaw stays with its step: what a robot or a row has brought about there would end the
+        gateway, and the next one too.
+
+        :raises BridgeError: the first one of any step, after the last step.
+        """
+        failed: list[BridgeError] = []
+        for step, work in steps.items():
+            try:
+                await work()
+                self._told.pop(step, None)
+            except BridgeError as error:
+                failed.append(error)
+                if self._is_news(step, error):
+                    log.error("%s, %s: %s; trying again until it works", self._name, step, error)
+            except Exception as error:
+                if self._is_news(step, error):
+                    log.exception("%s, %s: unexpected %s", self._name, step, type(error).__name__)
+        if failed:
+            raise failed[0]
+
+    def _is_news(self, step: str, error: Exception) -> bool:
+        text, now = f"{type(error).__name__} {error}", time.monotonic()
+        told, at = self._told.get(step, ("", 0.0))
+        if text == told and now - at <= SAY_AGAIN_AFTER:
+            return False
+        self._told[step] = text, now
+        return True
+
+
+async def every(seconds: float, work: Work, name: str, tally: Counters) -> None:
+    """Run ``work`` every so many seconds for ever, each success noted as a beat of ``name``."""
+    while True:
+        await asyncio.sleep(seconds)
+        await work()
+        tally.beat(name)
+
+
+# --- How often Python looks for objects that hold each other: rarely, since everybody waits while it does
+
+YOUNG, MIDDLE, OLD = 50_000, 5, 4
+"""Objects, and rounds, before the next look (see :func:`gc.set_threshold`). A thousand robots that send ten
+thousand positions a second have up to 20 000 objects waiting to be stored, whose end is known of without a
+look. With fewer YOUNG than that there was one every two seconds, and one of 30 ms every ten; with Python's
+own it was one of 140 ms every five. What connections leave behind that are gone waits for a look at the OLD,
+which comes after ten thousand of them: see :class:`GarbageCollection`."""
+MOST_GONE = 1000
+"""Connections that go before the next look at all objects, whatever else there is to do. Each leaves 90
+objects that hold each other, 12 kB in all."""
+REST = 50.0
+"""How many times as long as such a look took none follows: everybody waits while it is done."""
+
+
+def freeze_permanent_objects() -> None:
+    """Call when everything is loaded: that is not looked at again, and the rest less often."""
+    gc.collect()
+    gc.freeze()
+    gc.set_threshold(YOUNG, MIDDLE, OLD)
+
+
+class GarbageCollection:
+    """Sees to what connections leave behind: by the time they go it is old, and looks at the old are rare.
+
+    ``clock`` returns seconds that only ever go on.
+    """
+
+    def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
+        self._clock = clock
+        self._looked_at = 0
+        self._rests_until = -math.inf
+
+    def clear_away(self, gone: int) -> None:
+        """Look at all objects when ``gone``, connections since the start, has grown by MOST_GONE since."""
+        began = self._clock()
+        if gone - self._looked_at < MOST_GONE or began < self._rests_until:
+            return
+        self._looked_at = gone
+        gc.collect()
+        now = self._clock()
+        self._rests_until = now + REST * (now - began)

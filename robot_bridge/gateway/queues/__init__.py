@@ -1,0 +1,1 @@
+"""Queues of tasks: edited by operators, stored, sent task by task."""

@@ -1,0 +1,154 @@
+"""Registry of the fleet's queues, each change stored before it is reported, and what works on them."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+from collections.abc import AsyncIterator, Awaitable, Callable, Iterable, Sequence
+from dataclasses import dataclass, field
+from typing import Any, TypeVar
+
+from ...core.errors import OutdatedError
+from ...core.messages import PlacementReport, QueueReport, to_json
+from ..commands.service import CommandService
+from ..model.planner import Planner, StraightPlanner
+from ..model.robots import Robots
+from ..model.task_queue import Queue, QueuedTask, queue_report
+from ..site.places import ServedSite
+from ..storage.database import Database
+from ..storage.repositories import queues
+from ..storage.repositories.queues import ChangedError
+
+# --- The queues of the fleet as they are stored; each change is stored before it is told ---
+
+T = TypeVar("T")
+ENDED_TOLD = 10
+"""tasks that ended which a queue's report holds."""
+
+
+class QueueRegistry:
+    """Holds every queue as it is stored; whoever changes one holds its lock.
+
+    ``due`` is called with the name of each robot whose queue may have something to send.
+    """
+
+    def __init__(
+        self,
+        database: Database,
+        robots: Robots,
+        announce: Callable[[str, str, dict[str, Any]], None],
+    ) -> None:
+        self._database = database
+        self._robots = robots
+        self._tell = announce
+        self._queues: dict[str, Queue] = {}
+        self._ended: dict[str, list[QueuedTask]] = {}
+        self._locks: dict[str, asyncio.Lock] = {}
+        self._doubtful: set[str] = set()
+        self.due: Callable[[str], None] = lambda robot: None
+
+    async def restore(self) -> None:
+        """Take up the queues that an earlier gateway left."""
+        self._queues = await self._database.run(queues.load)
+        for robot in self._queues:
+            self._ended[robot] = await self._database.run(queues.newest_ended, robot, ENDED_TOLD)
+        for robot in self.names():
+            self.due(robot)
+
+    def get(self, robot: str) -> Queue:
+        """Return a robot's queue as it was stored last; an empty one where there is none."""
+        return self._queues.get(robot) or Queue(robot)
+
+    def names(self) -> list[str]:
+        """Return the names of the robots that have a queue."""
+        return sorted(name for name in self._queues if name in self._robots)
+
+    def is_doubtful(self, robot: str) -> bool:
+        """Tell whether a robot's queue may be stored otherwise than it is known here."""
+        return robot in self._doubtful
+
+    def doubt(self, robot: str) -> None:
+        """Read a robot's queue from the database before it is used again: it may have been paused there."""
+        self._doubtful.add(robot)
+        self.due(robot)
+
+    @contextlib.asynccontextmanager
+    async def holding(self, robots: Iterable[str]) -> AsyncIterator[None]:
+        """Hold the locks of some robots' queues, with these as they are stored."""
+        async with contextlib.AsyncExitStack() as stack:
+            for robot in sorted(set(robots)):
+                await stack.enter_async_context(self._locks.setdefault(robot, asyncio.Lock()))
+                if robot in self._doubtful:
+                    await self._read_again(robot)
+            yield
+
+    async def save(self, before: Queue, after: Queue, ended: Sequence[QueuedTask] = ()) -> QueueReport:
+        """Store what has changed in a queue, and tell it; raises as :meth:`stored`."""
+        await self.stored([after.robot], self._database.run(queues.save, before, after, ended))
+        return self.accept(after, ended)
+
+    async def stored(self, robots: Sequence[str], writing: Awaitable[T]) -> T:
+        """Await ``writing``; after a failure the queues are read again before they are used.
+
+        :raises OutdatedError: when one of the queues is not as it was taken for; nothing is written then.
+        """
+        try:
+            return await writing
+        except ChangedError as error:
+            self._doubtful.update(robots)
+            for robot in robots:
+                await self._read_again(robot)
+            raise self.outdated(robots[0], str(error)) from None
+        except BaseException:
+            self._doubtful.update(robots)
+            raise
+
+    def outdated(self, robot: str, text: str) -> OutdatedError:
+        """Return the refusal of a change, with the queue as it is."""
+        return OutdatedError(text, to_json(queue_report(self.get(robot), self._robots.get(robot).state)))
+
+    def accept(self, queue: Queue, ended: Sequence[QueuedTask] = ()) -> QueueReport:
+        """Take over a queue that is stored, and tell operators of it."""
+        self._queues[queue.robot] = queue
+        told = self._ended.setdefault(queue.robot, [])
+        told[:0] = reversed(ended)
+        del told[ENDED_TOLD:]
+        self.due(queue.robot)
+        return self.announce(queue.robot)
+
+    def announce(self, robot: str) -> QueueReport:
+        """Tell operators of a robot's queue."""
+        report = queue_report(self.get(robot), self._robots.get(robot).state, self._ended.get(robot, ()))
+        self._tell("queue", robot, to_json(report))
+        return report
+
+    def announce_placement(self, report: PlacementReport) -> None:
+        """Tell operators of a cone that was put down or collected."""
+        self._tell("placement", str(report.placement), to_json(report))
+
+    async def _read_again(self, robot: str) -> None:
+        found = await self._database.run(queues.load, [robot])
+        self._doubtful.discard(robot)
+        if robot in found and found[robot] != self._queues.get(robot):
+            self._queues[robot] = found[robot]
+            self._ended[robot] = await self._database.run(queues.newest_ended, robot, ENDED_TOLD)
+            self.announce(robot)
+
+
+# --- What everything works with that works on queues ---
+
+
+@dataclass(frozen=True)
+class QueueContext:
+    """The queues in their ``book``, and what they depend on: site, robots, commands, database, clock (s).
+
+    ``planner`` finds the ways to tasks without a path.
+    """
+
+    site: ServedSite
+    robots: Robots
+    commands: CommandService
+    book: QueueRegistry
+    database: Database
+    clock: Callable[[], float]
+    planner: Planner = field(default_factory=StraightPlanner)

@@ -1,0 +1,334 @@
+"""Requests of operators on queues, and pauses of robots."""
+
+from __future__ import annotations
+
+import contextlib
+import uuid
+from collections.abc import AsyncIterator, Callable
+from dataclasses import replace
+from functools import partial
+
+from ...core.errors import OutdatedError, RefusedError
+from ...core.messages import (
+    Abort,
+    AddTasks,
+    CollectingTasks,
+    CollectLayout,
+    GetQueue,
+    MakeCurrent,
+    MoveTask,
+    PauseQueue,
+    PauseRobot,
+    PlacementReport,
+    QueueReport,
+    QueueTask,
+    RemoveTask,
+    ResumeQueue,
+    SetPath,
+    SetPosEnd,
+    SetQueue,
+    TakeOver,
+    TaskKind,
+    TaskState,
+)
+from ..commands.active_command import ActiveCommand, CommandOrder, because
+from ..model import task_queue
+from ..model.task_queue import Queue, QueuedTask, queue_report
+from ..site.places import check_keepouts, check_places, tasks_in_site_frame
+from ..storage.repositories import queues, records
+from ..storage.repositories.closures import HoldRow
+from . import task_life
+from .registry import QueueContext
+from .task_life import commands_of_task, pause_with_task, task_of_command, task_of_rest
+
+# --- A robot that is to stand and go on later, whatever it is doing and whoever ordered it ---
+# The protocol has no pause: the robot is told to abort, and what it was doing waits at the head of its
+# queue,
+# which is paused. Resumed, the queue sends it on from where it stands by then.
+
+_TRIES = 3
+"""So often it is looked what a robot does that is told otherwise in between."""
+
+
+class PauseService:
+    """Pauses robots. ``waiting`` tells how a robot waits for another, and what it is to drive afterwards."""
+
+    def __init__(self, context: QueueContext, waiting: Callable[[str], HoldRow | None]) -> None:
+        self._site = context.site
+        self._robots = context.robots
+        self._commands = context.commands
+        self._book = context.book
+        self._clock = context.clock
+        self._waiting = waiting
+
+    async def pause(self, request: PauseRobot, operator: str) -> QueueReport:
+        """Let a robot stand, and keep what it was doing; return its queue when that is stored.
+
+        Asked again it changes nothing. Raises RefusedError for a robot that is not known, MessageError for a
+        path that is too long to be kept, and StoreError.
+        """
+        self._robots.check_known(request.robot)
+        async with self._book.holding([request.robot]):
+            for _ in range(_TRIES - 1):
+                try:
+                    return await self._pause(request, operator)
+                except RefusedError:
+                    # Something came in between: its task ended, or it was given another one.
+                    continue
+            return await self._pause(request, operator)
+
+    async def _pause(self, request: PauseRobot, operator: str) -> QueueReport:
+        robot, queue = request.robot, self._book.get(request.robot)
+        reason, now = because(f"paused by {operator}", request.reason), self._clock()
+        doing = self._commands.carried_out(robot)
+        own = None if doing is None else _task_by(queue, doing.report.command)
+        kept = self._kept(robot, doing) if own is None else []
+        if own is None and not kept:
+            return await self._book.save(queue, queue.paused(reason, operator, now))
+        after = pause_with_task(queue, kept, reason, operator, now)
+        abort = CommandOrder(
+            str(uuid.uuid4()),
+            robot,
+            Abort(),
+            operator,
+            because("paused", request.reason),
+            aborts=None if doing is None else doing.report.command,
+            task=(own or kept[0]).id,
+        )
+        write = partial(queues.save, before=queue, after=after)
+        await self._book.stored([robot], self._commands.issue([abort], write))
+        return self._book.accept(after)
+
+    def _kept(self, robot: str, doing: ActiveCommand | None) -> list[QueuedTask]:
+        """Return as tasks what the robot does beside its queue, and is to do after another has passed."""
+        kept, known, row = [], self._robots.get(robot), self._waiting(robot)
+        if doing is not None:
+            here = (known.pose.x, known.pose.y) if known.located and known.pose is not None else None
+            kept.append(task_of_command(doing, self._site.settings.cones.offset, here))
+        # A target that is waited on the way to, or a task of the queue, is kept as a whole already.
+        if row is not None and row.task is None and not (doing and isinstance(doing.message, SetPosEnd)):
+            rest, offset = SetPath(**row.rest), self._site.settings.cones.offset
+            kept.append(task_of_rest(rest, offset, row.command, row.by, self._clock()))
+        return kept
+
+
+def _task_by(queue: Queue, command: str) -> QueuedTask | None:
+    """Return the task of the queue that a command drives."""
+    return next((task for task in queue.tasks if task.command == command), None)
+
+
+# --- What operators change in queues: understood, checked against robots and site, and put into the book
+
+
+class QueueEditor:
+    """Takes what operators want of queues. Each method returns when what it changed is stored.
+
+    Those that change a queue raise OutdatedError when it is not as the operator saw it, RefusedError for what
+    cannot be done, MessageError for what cannot be understood, and StoreError when it cannot be stored.
+    """
+
+    def __init__(self, context: QueueContext) -> None:
+        self._site = context.site
+        self._robots = context.robots
+        self._commands = context.commands
+        self._book = context.book
+        self._database = context.database
+        self._clock = context.clock
+
+    async def set(self, request: SetQueue, operator: str) -> QueueReport:
+        """Replace what is not begun."""
+        request = replace(request, tasks=await tasks_in_site_frame(self._site, request.tasks))
+        async with self._editing(request.robot, request.revision) as queue:
+            known = await self._checked(request, queue)
+            after = task_queue.replace_tasks(queue, request.tasks, known, operator, self._clock())
+            return await self._edit(queue, after, operator, "another list took its place")
+
+    async def add(self, request: AddTasks, operator: str) -> QueueReport:
+        """Put tasks into a queue."""
+        request = replace(request, tasks=await tasks_in_site_frame(self._site, request.tasks))
+        async with self._editing(request.robot, request.revision) as queue:
+            known = await self._checked(request, queue)
+            now = self._clock()
+            after = task_queue.add_tasks(queue, request.tasks, request.before, known, operator, now)
+            return await self._edit(queue, after, operator)
+
+    async def move(self, request: MoveTask, operator: str) -> QueueReport:
+        """Move a task to another place of its queue."""
+        async with self._editing(request.robot, request.revision) as queue:
+            return await self._edit(
+                queue, task_queue.move_task(queue, request.task, request.before), operator
+            )
+
+    async def remove(self, request: RemoveTask, operator: str) -> QueueReport:
+        """Take a task out of its queue."""
+        async with self._editing(request.robot, request.revision) as queue:
+            return await self._edit(
+                queue, task_queue.remove_task(queue, request.task), operator, request.reason
+            )
+
+    async def make_current(self, request: MakeCurrent, operator: str) -> QueueReport:
+        """Let a task be done first."""
+        async with self._editing(request.robot, request.revision) as queue:
+            return await self._edit(queue, task_queue.put_task_first(queue, request.task), operator)
+
+    async def pause(self, request: PauseQueue, operator: str) -> QueueReport:
+        """Send a robot nothing more by itself."""
+        reason = because(f"paused by {operator}", request.reason)
+        async with self._book.holding([request.robot]):
+            self._robots.check_known(request.robot)
+            try:
+                return await self._pause(request.robot, reason, operator)
+            except OutdatedError:
+                # An order beside the queue came in between, and the queue has been read again.
+                return await self._pause(request.robot, reason, operator)
+
+    async def resume(self, request: ResumeQueue, operator: str) -> QueueReport:
+        """Let a queue go on; where its robot has not stopped yet as it was told to, as soon as it has."""
+        async with self._editing(request.robot, request.revision) as queue:
+            after, current = task_queue.resume_queue(queue, operator, self._clock()), queue.current
+            if current is not None and self._is_being_aborted(queue.robot, current):
+                after = after.with_head(task_queue.return_task(current, task_life.STOPS_FIRST))
+            return await self._edit(queue, after, operator)
+
+    async def take_over(self, request: TakeOver, operator: str) -> list[QueueReport]:
+        """Let other robots do what waits in one robot's queue, all of it or nothing."""
+        names = [request.robot, *(share.robot for share in request.shares)]
+        revisions = {request.robot: request.revision}
+        revisions.update({share.robot: share.revision for share in request.shares})
+        async with self._book.holding(names):
+            for name in names:
+                self._robots.check_known(name)
+                self._check_revision(name, revisions[name])
+            before = {name: self._book.get(name) for name in names}
+            after = task_life.transfer_tasks(before, request, operator, self._clock())
+            for share in request.shares:
+                paths = [wanted.path for wanted in share.tasks if wanted.path]
+                for path in paths:
+                    check_places(self._site, path)
+                if request.override is None:
+                    await check_keepouts(self._site, [SetPath(path) for path in paths])
+            write = partial(queues.save_many, changes=[(before[name], after[name]) for name in names])
+            taken = task_life.transferred_current_task(before[request.robot], request)
+            if taken is not None and taken.command is not None and self._commands.is_open(taken.command):
+                abort = CommandOrder(
+                    task_life.abort_id(taken),
+                    request.robot,
+                    Abort(),
+                    operator,
+                    f"task {taken.id} is taken over by another robot",
+                    task=taken.id,
+                )
+                await self._book.stored(names, self._commands.issue([abort], write))
+            else:
+                await self._book.stored(names, self._database.run(write))
+            return [self._book.accept(after[name]) for name in names]
+
+    async def end(self, robot: str, operator: str, reason: str) -> None:
+        """End every task of a robot's queue, begun or not: nobody is left to do it."""
+        async with self._book.holding([robot]):
+            queue = self._book.get(robot)
+            if robot in self._robots and queue.tasks:
+                await self._edit(queue, queue.with_tasks((), edited=True), operator, reason)
+
+    async def read(self, request: GetQueue) -> list[QueueReport]:
+        """Return queues as they are."""
+        if request.robot is not None:
+            self._robots.check_known(request.robot)
+        found = []
+        for name in self._book.names() if request.robot is None else [request.robot]:
+            ended = await self._database.read(queues.newest_ended, name, request.ended)
+            state = self._robots.get(name).state
+            found.append(queue_report(self._book.get(name), state, ended, paths=request.paths))
+        return found
+
+    async def collecting(self, request: CollectLayout) -> CollectingTasks:
+        """Return a task for each cone that stands and is in no queue yet."""
+        found = await self._database.read(records.standing, request.layout)
+        queued = {task.task.placement for name in self._book.names() for task in self._book.get(name).tasks}
+        turns = self._site.settings.cones.offset != (0.0, 0.0)
+        tasks = [_collecting(cone, turns) for cone in found if cone.placement not in queued]
+        return CollectingTasks(tasks, len(found) - len(tasks))
+
+    def _is_being_aborted(self, robot: str, task: QueuedTask) -> bool:
+        return task.command is not None and self._commands.is_being_aborted(robot, task.command)
+
+    async def _pause(self, robot: str, reason: str, operator: str) -> QueueReport:
+        queue = self._book.get(robot)
+        return await self._edit(queue, queue.paused(reason, operator, self._clock()), operator)
+
+    @contextlib.asynccontextmanager
+    async def _editing(self, robot: str, revision: int) -> AsyncIterator[Queue]:
+        async with self._book.holding([robot]):
+            self._robots.check_known(robot)
+            self._check_revision(robot, revision)
+            yield self._book.get(robot)
+
+    async def _edit(
+        self, before: Queue, after: Queue, operator: str, reason: str | None = None
+    ) -> QueueReport:
+        kept = {task.id for task in after.tasks}
+        why = because(f"removed by {operator}", reason)
+        now = self._clock()
+        gone = [
+            task_life.end_task(task, TaskState.REMOVED, now, why)
+            for task in before.tasks
+            if task.id not in kept
+        ]
+        return await self._book.save(before, after, gone)
+
+    def _check_revision(self, robot: str, revision: int) -> None:
+        now = self._book.get(robot).revision
+        if revision != now:
+            raise self._book.outdated(
+                robot, f"the queue of robot {robot!r} is at revision {now}, not {revision}; look at it again"
+            )
+
+    async def _checked(self, request: SetQueue | AddTasks, queue: Queue) -> dict[str, task_queue.Whereabouts]:
+        """Return which of the tasks were given before; raises RefusedError for one that cannot be driven.
+
+        What stands in the robot's ``queue`` as it is asked for may lead into a keepout: that was overridden.
+        """
+        tasks = request.tasks
+        driven = {task.task: self._driven(task) for task in tasks}
+        if request.override is None:
+            waiting = {queued.id: queued.task for queued in queue.tasks}
+            new = [leg for task in tasks if waiting.get(task.task) != task for leg in driven[task.task]]
+            await check_keepouts(self._site, new)
+        wanted = {task.placement: task.task for task in tasks if task.placement is not None}
+        for name, queue in ((n, self._book.get(n)) for n in self._book.names()):
+            for queued in queue.tasks:
+                if queued.task.placement in wanted and wanted[queued.task.placement] != queued.id:
+                    raise RefusedError(
+                        f"placed cone {queued.task.placement} is collected by task {queued.id} of robot "
+                        f"{name!r} already; leave it out"
+                    )
+        standing = await self._database.read(records.standing_ids, sorted(wanted))
+        gone = sorted(wanted.keys() - standing)
+        if gone:
+            raise RefusedError(
+                f"placed cone {gone[0]} does not stand: it was collected, or never put down; "
+                "see get_placements"
+            )
+        return await self._database.read(queues.whereabouts, [task.task for task in tasks])
+
+    def _driven(self, task: QueueTask) -> list[SetPath | SetPosEnd]:
+        """Return what drives a task; raises RefusedError where that cannot be."""
+        driven = commands_of_task(task, self._site.settings.cones.offset)
+        check_places(self._site, [(task.x, task.y), *(task.path or ())])
+        return driven
+
+
+def _collecting(cone: PlacementReport, turns: bool) -> QueueTask:
+    """Return the task that collects a cone; one that stands off its robot is taken from the same side."""
+    return QueueTask(
+        task=str(uuid.uuid4()),
+        x=cone.x,
+        y=cone.y,
+        theta=cone.theta if turns else None,
+        kind=TaskKind.COLLECT,
+        cone=cone.cone,
+        label=cone.label,
+        layout=cone.layout,
+        plan=cone.plan,
+        placement=cone.placement,
+    )

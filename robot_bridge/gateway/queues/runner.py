@@ -1,0 +1,511 @@
+"""Runner of queues: sends task after task, and settles how each ended."""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+import math
+from collections.abc import Callable
+from functools import partial
+
+from sqlalchemy import Connection
+
+from ...core.errors import OutdatedError, RefusedError, StoreError
+from ...core.logs import log_unforeseen
+from ...core.messages import (
+    CommandReport,
+    CommandState,
+    PlacementReport,
+    QueueTask,
+    RobotState,
+    SetPath,
+    SetPosEnd,
+    SetPosIni,
+    TaskKind,
+    TaskState,
+)
+from ...core.messages.queues import check_path
+from ..commands.active_command import CommandOrder
+from ..commands.persistence import Also, AlsoOf
+from ..model.command_states import is_open
+from ..model.robots import AWAY
+from ..model.task_queue import Queue, QueuedTask, Whereabouts
+from ..site.places import crossing
+from ..storage.database import Database
+from ..storage.repositories import commands as stored_commands
+from ..storage.repositories import queues, records
+from ..storage.repositories.commands import StoredCommand
+from ..storage.repositories.records import CollectedCone, NewPlacement
+from . import task_life
+from .registry import QueueContext, QueueRegistry
+from .task_life import Path, SettledTask, commands_of_task, cone_place, path_to_task_end, remaining_task_path
+
+# --- What comes of a task whose command has ended: written down with where its cone stands ---
+
+
+class QueueOutcomes:
+    """Settles the tasks whose commands have ended."""
+
+    def __init__(self, context: QueueContext) -> None:
+        self._site = context.site
+        self._commands = context.commands
+        self._book = context.book
+        self._database = context.database
+        self._clock = context.clock
+
+    async def settle(self, queue: Queue) -> None:
+        """Write down what came of the current task's command, if that has ended."""
+        await self._settle_current(queue)
+        await self._settle_given_back(self._book.get(queue.robot))
+
+    async def _settle_current(self, queue: Queue) -> None:
+        current = queue.current
+        if current is None or current.command is None or self._commands.is_open(current.command):
+            return
+        found = (await self._database.run(stored_commands.find_all, [current.command])).get(current.command)
+        if found is None:
+            reason = "what its command came to is not stored any more"
+            await self._book.save(
+                queue, task_life.mark_failed(queue, reason, self._clock(), skips=False).queue
+            )
+            return
+        if is_open(found.report.state):
+            return
+        skips = self._site.settings.queues.on_failure == "skip"
+        outcome = task_life.settle_task(queue, found.report, self._legs_of(current), skips=skips)
+        await self._write(queue, outcome, found.report)
+
+    async def _settle_given_back(self, queue: Queue) -> None:
+        """Write down that the task that comes next is done, if its robot came to its end all the same."""
+        head = queue.head
+        if head is None or head.is_current or head.command is None or not queue.running:
+            return
+        found = (await self._database.run(stored_commands.find_all, [head.command])).get(head.command)
+        if found is None or found.report.state is not CommandState.REACHED:
+            return
+        count = self._legs_of(head)
+        again = task_life.done_after_all(queue, count)
+        if again is not None:
+            await self._write(
+                queue, task_life.settle_task(again, found.report, count, skips=False), found.report
+            )
+
+    async def _write(self, before: Queue, outcome: SettledTask, report: CommandReport) -> None:
+        ended, placed, collected = outcome.ended, None, None
+        if ended is not None and report.state is CommandState.REACHED:
+            if ended.task.kind is TaskKind.PLACE:
+                placed = _placed(before.robot, ended, report, self._site.settings.cones.offset)
+                ended = task_life.with_deviation(ended, placed.deviation)
+            elif ended.task.kind is TaskKind.COLLECT:
+                task, at = ended.task, report.steps[-1].at
+                collected = CollectedCone(before.robot, at, task.placement, task.cone, task.layout)
+        gone = [] if ended is None else [ended]
+        written = await self._book.stored(
+            [before.robot],
+            self._database.run(write_outcome, before, outcome.queue, gone, placed, collected),
+        )
+        self._book.accept(outcome.queue, gone)
+        if written is not None:
+            self._book.announce_placement(written)
+
+    def _legs_of(self, current: QueuedTask) -> int:
+        try:
+            return len(commands_of_task(current.task, self._site.settings.cones.offset))
+        except RefusedError:
+            # The site's settings have changed since; what was sent was the last that there is.
+            return current.leg + 1
+
+
+def _placed(robot: str, task: QueuedTask, report: CommandReport, offset: tuple[float, float]) -> NewPlacement:
+    """Return the cone that a robot has put down by the command that ``report`` tells of."""
+    wanted = task.task
+    assert report.stood is not None
+    x, y = cone_place(report.stood, offset)
+    return NewPlacement(
+        task=task.id,
+        robot=robot,
+        command=report.command,
+        planned_x=wanted.x,
+        planned_y=wanted.y,
+        x=x,
+        y=y,
+        theta=report.stood[2],
+        deviation=math.hypot(x - wanted.x, y - wanted.y),
+        placed_at=report.steps[-1].at,
+        cone=wanted.cone,
+        label=wanted.label,
+        layout=wanted.layout,
+        plan=wanted.plan,
+    )
+
+
+def write_outcome(
+    connection: Connection,
+    before: Queue,
+    after: Queue,
+    ended: list[QueuedTask],
+    placed: NewPlacement | None,
+    collected: CollectedCone | None,
+) -> PlacementReport | None:
+    """Write a task's end, and where its cone stands now."""
+    queues.save(connection, before, after, ended)
+    if placed is not None:
+        return records.add_placed_cones(connection, placed)
+    return None if collected is None else records.collect(connection, collected)
+
+
+# --- What has to be done before a task: by whichever robot, and whenever that is given to one ---
+
+_SAID = 2
+"""Tasks that are named of those that are waited for; the others are counted."""
+
+
+class TaskPrecedence:
+    """Tells which tasks are still waited for; those that are done once are never asked for again."""
+
+    def __init__(self, book: QueueRegistry, database: Database) -> None:
+        self._book = book
+        self._database = database
+        self._done: set[str] = set()
+
+    async def waits_for(self, robot: str, task: QueueTask) -> str | None:
+        """Return in words what ``task`` of ``robot`` waits for, None when all of that is done.
+
+        What was taken out of its queue, or passed over, is not done: that nobody waits for it any more is for
+        people to say. Raises StoreError.
+        """
+        wanted = [id for id in task.after or () if id not in self._done]
+        if not wanted:
+            return None
+        queued = {one.id: (name, one) for name in self._book.names() for one in self._book.get(name).tasks}
+        elsewhere = [id for id in wanted if id not in queued]
+        known = await self._database.read(queues.whereabouts, elsewhere) if elsewhere else {}
+        done = {id for id, found in known.items() if found.state is TaskState.DONE}
+        left = [id for id in wanted if id not in done]
+        if not left:
+            # It is sent now, and asks no more.
+            self._done.difference_update(task.after or ())
+            return None
+        self._done |= done
+        told = []
+        for id in left[:_SAID]:
+            name, one = queued.get(id, ("", None))
+            told.append(_gone(id, known.get(id)) if one is None else _queued(name, one, mine=name == robot))
+        return _in_words(told, len(left))
+
+
+def _in_words(told: list[str], count: int) -> str:
+    more = f" and {count - len(told)} more" if count > len(told) else ""
+    return f"waits for {', '.join(told)}{more}"
+
+
+def _queued(robot: str, task: QueuedTask, *, mine: bool) -> str:
+    name = f"cone {task.task.cone}" if task.task.cone else f"task {task.id}"
+    if mine:
+        return f"{name}, which comes later in this queue: move it to the front"
+    if task.state is TaskState.FAILED:
+        return f"{name} of {robot}, which failed"
+    return f"{name} of {robot}"
+
+
+def _gone(id: str, found: Whereabouts | None) -> str:
+    if found is None:
+        return f"task {id}, which no robot has been given"
+    return f"task {id}, which was {found.state.value} at {found.robot}: give this task anew without it"
+
+
+# --- Sends robots the tasks of their queues, one after the other ---
+# What is to be done is seen from what is stored, never from what was heard: so a gateway that was killed
+# goes
+# on where it stopped, and a task that was sent is known as sent. A task and the command that drives it are
+# written in one transaction.
+
+log = logging.getLogger(__name__)
+
+LOOK_INTERVAL = 1.0
+"""seconds after which every queue with something to do is looked at, whether anything was heard or not."""
+
+
+class QueueRunner:
+    """Keeps the robots' queues going."""
+
+    def __init__(self, context: QueueContext) -> None:
+        self._site = context.site
+        self._robots = context.robots
+        self._commands = context.commands
+        self._book = context.book
+        self._settling = QueueOutcomes(context)
+        self._precedence = TaskPrecedence(context.book, context.database)
+        self._planner = context.planner
+        self._database = context.database
+        self._clock = context.clock
+        self._due: set[str] = set()
+        self._event = asyncio.Event()
+        self._sending: set[str] = set()
+        self._told: dict[str, RobotState] = {}
+        self._returned: set[str] = set()
+        """robots that are back after nobody had heard them for long."""
+        self.waits_for: Callable[[str, str], str | None] = lambda _robot, _task: None
+        """Tells whom a robot is to let pass before it is sent a task, None for nobody."""
+        context.book.due = self.look
+        context.robots.is_back = self._is_back
+
+    async def run(self) -> None:
+        """Keep them going until cancelled."""
+        while True:
+            try:
+                async with asyncio.timeout(LOOK_INTERVAL):
+                    await self._event.wait()
+            except TimeoutError:
+                self.look_at_all()
+            await self.advance()
+
+    def look(self, robot: str) -> None:
+        """Look at a robot's queue soon."""
+        self._due.add(robot)
+        self._event.set()
+
+    def note_step(self, report: CommandReport) -> None:
+        """Note what became of a command; called with each step of every one."""
+        queue = self._book.get(report.robot)
+        head = queue.head
+        if head is None:
+            return
+        if report.command == head.command:
+            if not is_open(report.state):
+                self.look(report.robot)
+        elif report.state is CommandState.QUEUED and self._is_beside(queue, report):
+            # It has paused the queue in its own transaction.
+            self._book.doubt(report.robot)
+
+    def look_at_all(self) -> None:
+        """Look at every queue that has something to do; tell of robots that are lost, or back."""
+        for robot in self._book.names():
+            queue = self._book.get(robot)
+            if self._book.is_doubtful(robot):
+                self.look(robot)
+            if not queue.tasks:
+                self._told.pop(robot, None)
+                continue
+            state = self._robots.get(robot).state
+            if self._told.setdefault(robot, state) is not state:
+                self._told[robot] = state
+                self._book.announce(robot)
+            if queue.running or queue.current is not None:
+                self.look(robot)
+
+    async def advance(self) -> None:
+        """Do what is due now: settle what has ended, send what comes next."""
+        self._event.clear()
+        due, self._due = self._due, set()
+        # A robot that was removed has a queue still, should it come back.
+        await asyncio.gather(*(self._advance(robot) for robot in sorted(due) if robot in self._robots))
+
+    async def redirect(
+        self, robot: str, path: SetPath, operator: str, reason: str | None = None
+    ) -> CommandReport | None:
+        """Send the robot to the end of its present task by another path; its queue goes on.
+
+        Return the command that does it, None when the robot is not doing a task of its queue. Raises
+        MessageError for a path that ends elsewhere, RefusedError and StoreError.
+        """
+        async with self._book.holding([robot]):
+            queue, current = self._book.get(robot), self._current(robot)
+            if current is None:
+                return None
+            check_path(current.id, path.points, (current.task.x, current.task.y))
+            after = task_life.redirect_task(queue, path.points)
+            message = commands_of_task(after.tasks[0].task, self._site.settings.cones.offset)[0]
+            return await self._send(queue, after, message, operator, reason, current.command)
+
+    async def stop_over(self, robot: str, first: Path, rest: Path, other: str, by: str, also: AlsoOf) -> str:
+        """Send the robot along ``first`` only, as a task of its own; the task that it does waits behind that.
+
+        It is begun anew along ``rest`` as soon as :attr:`waits_for` lets it. ``also`` is written in the same
+        transaction. Return the id of the command. Raises MessageError for a ``rest`` that ends elsewhere,
+        RefusedError for a robot that does no task of its queue any more, and StoreError.
+        """
+        async with self._book.holding([robot]):
+            queue = self._book.get(robot)
+            current = self._current(robot)
+            if current is None:
+                raise RefusedError(f"robot {robot!r} has been told otherwise in the meantime")
+            check_path(current.id, rest, (current.task.x, current.task.y))
+            label = f"waits for {other}"
+            after = task_life.split_at_stop(queue, first, rest, label, by, self._clock())
+            report = await self._send(queue, after, SetPath(first), by, label, current.command, also)
+            return report.command
+
+    def current(self, robot: str) -> QueueTask | None:
+        """Return the task of its queue that the robot does, None where it does none of it."""
+        current = self._current(robot)
+        return None if current is None else current.task
+
+    def to_the_end(self, task: QueueTask, left: Path) -> Path:
+        """Return what is ``left`` of the path that was sent for a task, up to the task's place."""
+        return path_to_task_end(task, self._site.settings.cones.offset, left)
+
+    def _current(self, robot: str) -> QueuedTask | None:
+        current = self._book.get(robot).current
+        if current is None or current.command is None or not self._commands.is_open(current.command):
+            return None
+        return current
+
+    # --------------------------------------------------------------------------------------------------
+
+    async def _advance(self, robot: str) -> None:
+        try:
+            async with self._book.holding([robot]):
+                await self._settling.settle(self._book.get(robot))
+                await self._hold_back(self._book.get(robot))
+                await self._go_on(self._book.get(robot))
+        except OutdatedError:
+            self.look(robot)
+        except StoreError as error:
+            log.error("queue of %s: %s; it is looked at again", robot, error)
+        except Exception:
+            # The queues of all other robots go on.
+            log_unforeseen(log, f"queue of {robot}; it is looked at again")
+
+    def _is_back(self, robot: str, away: float) -> None:
+        queue = self._book.get(robot)
+        if away > self._longest_silence and queue.running and queue.tasks:
+            self._returned.add(robot)
+            self.look(robot)
+
+    @property
+    def _longest_silence(self) -> float:
+        return self._site.settings.commands.expire_after_s
+
+    async def _hold_back(self, queue: Queue) -> None:
+        """Pause the queue of a robot that was not heard for long, so that it does not set off by surprise.
+
+        Whether it was away itself, its link or the gateway: nobody saw what became of its surroundings.
+        """
+        robot = self._robots.get(queue.robot)
+        is_away = robot.state in AWAY and self._clock() - robot.received_at > self._longest_silence
+        if (is_away or robot.name in self._returned) and queue.running and queue.tasks:
+            reason = (
+                f"the robot was not heard for longer than {self._longest_silence:g} s, or no gateway was "
+                "there to hear it; resume when it may drive again"
+            )
+            await self._book.save(queue, queue.paused(reason, task_life.GATEWAY, self._clock()))
+        self._returned.discard(robot.name)
+
+    def _is_beside(self, queue: Queue, report: CommandReport) -> bool:
+        return queue.running and report.op != SetPosIni.__name__ and report.command not in self._sending
+
+    # --- what comes next ------------------------------------------------------------------------------
+
+    async def _go_on(self, queue: Queue) -> None:
+        """Send what comes next, or pause, saying why it cannot be sent."""
+        head = queue.head
+        if head is None or not queue.running or (head.is_current and head.command is not None):
+            return
+        if self._robots.get(queue.robot).state in AWAY:
+            return
+        if (why := await self._why_not_yet(queue.robot, head)) is not None:
+            if head.reason != why:
+                await self._book.save(queue, task_life.mark_waiting(queue, why))
+            return
+        busy, own = self._commands.busy_with(queue.robot), {task.command for task in queue.tasks}
+        try:
+            if busy is not None and busy not in own:
+                raise RefusedError(f"the robot is busy with command {busy}, which is not of its queue")
+            message = await self._message(queue, head)
+            await self._send(queue, task_life.mark_sent(queue, self._clock()), message, head.added_by)
+        except OutdatedError:
+            raise
+        except RefusedError as error:
+            await self._book.save(queue, task_life.pause_before_head(queue, str(error), self._clock()))
+
+    async def _why_not_yet(self, robot: str, head: QueuedTask) -> str | None:
+        """Return why what comes next is not sent yet, None when it may be; raises StoreError."""
+        if self._is_stopping(robot, head):
+            return task_life.STOPS_FIRST
+        other = self.waits_for(robot, head.id)
+        if other is not None:
+            return f"waits for {other}"
+        known = self._robots.get(robot)
+        finds_way = self._planner.has_roads and not known.asks_path
+        if not known.located and (head.task.path is not None or finds_way):
+            # Where it is now its path begins.
+            return "waits for the robot to say where it is"
+        # What was begun is not given up because of what another robot does.
+        return None if head.is_current else await self._precedence.waits_for(robot, head.task)
+
+    def _is_stopping(self, robot: str, head: QueuedTask) -> bool:
+        """Tell whether the robot is to stop first: it was resumed before it has said that it did.
+
+        By then it may be done with its task, and what it is sent meanwhile would be ended by that Abort if it
+        came to read that last.
+        """
+        was_begun = not head.is_current and head.command is not None and self._commands.is_open(head.command)
+        return was_begun or self._commands.awaits_abort(robot)
+
+    async def _message(self, queue: Queue, head: QueuedTask) -> SetPath | SetPosEnd:
+        message = commands_of_task(head.task, self._site.settings.cones.offset)[head.leg]
+        if not isinstance(message, SetPath):
+            return await self._with_way(queue.robot, head, message)
+        pose = self._robots.get(queue.robot).pose
+        assert pose is not None
+        before = None if head.command is None else await self._stored(head.command)
+        driven = 0.0 if before is None else before.driven or 0.0
+        join = before is not None or head.task.kind is not TaskKind.DRIVE
+        return remaining_task_path(message, (pose.x, pose.y), driven, join=join)
+
+    async def _with_way(self, robot: str, head: QueuedTask, target: SetPosEnd) -> SetPath | SetPosEnd:
+        """Return what sends a robot to a target without a path: along the roads from where it is now.
+
+        It is the bare target for a robot that asks for its path, at the end of a task's path, and where no
+        roads are near. A robot that does not take cones with a path drives straight to them.
+
+        :raises RefusedError: when no way leads there, or the straight one leads through a keepout.
+        """
+        start = self._robots.straight_from(robot, target)
+        if start is None or head.leg > 0:
+            return target
+        carries = target.cone or target.collect
+        if self._planner.has_roads and (not carries or self._robots.get(robot).places_on_paths):
+            planned = await asyncio.to_thread(self._planner.path, start, (target.x, target.y))
+            if planned.along_roads:
+                return SetPath(list(planned.points), target.theta, target.cone or None, target.collect)
+        straight = [start, (target.x, target.y)]
+        crossed = await asyncio.to_thread(self._site.keepouts_crossed, [straight])
+        if crossed:
+            raise RefusedError(f"{crossing(straight, crossed[0])}; give the task a path around it")
+        return target
+
+    async def _send(
+        self,
+        before: Queue,
+        after: Queue,
+        message: SetPath | SetPosEnd,
+        operator: str,
+        reason: str | None = None,
+        instead_of: str | None = None,
+        also: AlsoOf | None = None,
+    ) -> CommandReport:
+        task = after.tasks[0]
+        assert task.command is not None
+        what = f"task {task.id}" if reason is None else f"task {task.id}: {reason}"
+        told = (task.command, before.robot, message, operator, what)
+        order = CommandOrder(*told, task=task.id, instead_of=instead_of)
+        self._sending.add(order.command)
+        try:
+            more = None if also is None else also(order.command)
+            issuing = self._commands.issue([order], partial(_save, before, after, more))
+            (report,) = await self._book.stored([before.robot], issuing)
+        finally:
+            self._sending.discard(order.command)
+        self._book.accept(after)
+        return report
+
+    async def _stored(self, command: str) -> StoredCommand | None:
+        return (await self._database.run(stored_commands.find_all, [command])).get(command)
+
+
+def _save(before: Queue, after: Queue, also: Also | None, connection: Connection) -> None:
+    queues.save(connection, before, after)
+    if also is not None:
+        also(connection)

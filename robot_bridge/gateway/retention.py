@@ -1,0 +1,106 @@
+"""How long things are kept: what is older than the site's settings say is deleted, in small pieces."""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+from collections.abc import Callable, Iterator
+from typing import NamedTuple
+
+from sqlalchemy import Connection
+
+from ..core.sites.settings import SiteSettings
+from ..core.steady_time import steady_time
+from .auth import audit
+from .model.clocks import ClockWatch
+from .storage.database import Database
+from .storage.repositories import closures, commands, emergency_stops, queues, records, trajectories
+
+log = logging.getLogger(__name__)
+
+DAY = 86400.0
+AT_ONCE = 1000
+IMAGES_AT_ONCE = 20
+"""in one transaction; an image may be 15 MiB."""
+PAUSE = 0.05
+"""seconds between two deletions, in which robots and operators have the database."""
+LARGEST_STEP = 3600.0
+DOUBT = DAY
+"""seconds without deletions while the clock may be ahead: everything would be too old at once, and nothing
+brings back what is deleted."""
+
+
+class RetainedRows(NamedTuple):
+    """Things of one kind: ``forget(connection, before, limit)`` deletes some, and returns how many."""
+
+    name: str
+    days: float
+    forget: Callable[[Connection, float, int], int]
+    at_once: int = AT_ONCE
+
+
+def kept(settings: SiteSettings) -> Iterator[RetainedRows]:
+    """Yield all that is kept for a time only, with the days for which a site wants it."""
+    yield RetainedRows("positions", settings.trajectories.keep_days, trajectories.forget)
+    yield RetainedRows("ended commands", settings.commands.keep_days, commands.forget)
+    yield RetainedRows("ended tasks", settings.commands.keep_days, queues.forget)
+    yield RetainedRows("collected cones", settings.commands.keep_days, records.forget)
+    yield RetainedRows("emergency stops", settings.commands.keep_days, emergency_stops.forget)
+    yield RetainedRows("opened roads", settings.commands.keep_days, closures.forget)
+    yield RetainedRows("rejected objects", settings.observations.keep_days, records.forget_rejected)
+    yield RetainedRows(
+        "images", settings.observations.keep_images_days, records.forget_images, IMAGES_AT_ONCE
+    )
+    yield RetainedRows("entries of the audit log", settings.audit.keep_days, audit.forget_entries)
+    yield RetainedRows("sessions", settings.audit.keep_days, audit.forget_ended_sessions)
+
+
+class Retention:
+    """Deletes what is too old; ``settings`` is asked each time, so they may change.
+
+    The ``steady`` clock is one that nobody sets.
+    """
+
+    def __init__(
+        self,
+        database: Database,
+        settings: Callable[[], SiteSettings],
+        clock: Callable[[], float],
+        steady: Callable[[], float] = steady_time,
+    ) -> None:
+        self._database = database
+        self._settings = settings
+        self._clock = clock
+        self._steady = steady
+        self._clock_watch = ClockWatch(clock, steady)
+        self._doubtful_until = steady()
+
+    def doubt_clock(self) -> None:
+        """Delete nothing for a day: the clock may be ahead."""
+        self._doubtful_until = self._steady() + DOUBT
+
+    async def prune(self) -> None:
+        """Delete what the settings do not keep any longer; raises StoreError."""
+        if not self._trusts_clock():
+            return
+        for kind in kept(self._settings()):
+            if removed := await self._forget(kind):
+                log.info("deleted %d %s, older than %g days", removed, kind.name, kind.days)
+
+    def _trusts_clock(self) -> bool:
+        step = self._clock_watch.look()
+        if step is not None and step.by > LARGEST_STEP:
+            self.doubt_clock()
+            log.warning(
+                "the clock of this computer was set forward by %.1f days; for a day nothing is deleted for "
+                "its age. If it is wrong, set it right before then, and before the gateway is started anew",
+                step.by / DAY,
+            )
+        return self._steady() >= self._doubtful_until
+
+    async def _forget(self, kind: RetainedRows) -> int:
+        before, removed = self._clock() - kind.days * DAY, 0
+        while some := await self._database.run(kind.forget, before, kind.at_once):
+            removed += some
+            await asyncio.sleep(PAUSE)
+        return removed

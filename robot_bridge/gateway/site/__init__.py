@@ -1,0 +1,1 @@
+"""Published site as the gateway serves it: maps, places and coordinates."""

@@ -1,0 +1,1 @@
+"""SQL storage: the paper's tables RR and SA, and what the gateway keeps for itself."""

@@ -1,0 +1,480 @@
+"""Database: its address, connections, transactions and retries."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import logging
+import threading
+import time
+from collections.abc import Callable, Coroutine, Sequence
+from pathlib import Path
+from queue import Empty, SimpleQueue
+from typing import Any, NamedTuple, TypeVar
+
+import sqlalchemy
+from sqlalchemy import URL, Connection, Engine
+from sqlalchemy.exc import ArgumentError, DBAPIError, NoSuchModuleError, SQLAlchemyError
+
+from ...core.errors import DataRefusedError, StoreError, UncertainError
+from . import revisions
+from .dialects import PATIENCE_S, Dialect, Durability, MariaDB, PostgreSQL, SQLite
+from .roles.blocking_sessions import BLOCKING_S, Offences, blocking_robots, end_blocking_sessions
+from .wakeups import GATEWAY_CHANNEL, AdaptiveWakeup, NotifiedWakeup, PollingWakeup, Wakeup
+
+# --- Where a database is: reading its URL, and writing it so that no password is in it ---
+
+FORMS = "sqlite:////path/fleet.db, postgresql://account@host/database or mariadb://account@host/database"
+_OTHERS = 0o007
+
+
+def read_address(text: str, password_file: Path | None = None) -> URL:
+    """Return the URL in ``text``, with the password in ``password_file``; raises StoreError."""
+    try:
+        url = sqlalchemy.make_url(text)
+    except (ArgumentError, ValueError):
+        # Whatever stands before an @ may be a password.
+        raise StoreError(
+            f"database URL {text.rpartition('@')[2]!r} cannot be read; write it like {FORMS}"
+        ) from None
+    if isinstance(_dialect(url), SQLite) and url.database in (None, "", ":memory:"):
+        # SQLite would keep it in memory: what is told as queued would go with the process.
+        raise StoreError(f"database {shown(url)}: no file is named; write it like sqlite:////path/fleet.db")
+    secret = sorted({"password", "passwd", "passfile"} & {key.lower() for key in url.query})
+    if secret:
+        raise StoreError(
+            f"database {shown(url)}: {secret[0]} does not belong into the URL; write the password into a "
+            "file and name it with --database-password-file"
+        )
+    return url if password_file is None else url.set(password=read_password(password_file))
+
+
+def shown(url: URL) -> str:
+    """Return ``url`` as it may be printed: without its password, and without what is asked of the driver."""
+    if url.get_backend_name() != "sqlite":
+        url = url.set(query={})
+    return url.render_as_string(hide_password=True)
+
+
+def open_engine(url: URL, patience: float | None = PATIENCE_S) -> tuple[Engine, Dialect]:
+    """Return an engine on ``url`` and what is particular to its database; raises StoreError."""
+    dialect = _dialect(url)
+    try:
+        return dialect.engine(url, patience), dialect
+    except (ModuleNotFoundError, NoSuchModuleError) as error:
+        raise StoreError(
+            f"database {shown(url)}: its driver is missing ({error}); install it with: "
+            f"pip install 'fleet-supervisor-robot-bridge[{dialect.name}]'"
+        ) from None
+    except (ArgumentError, TypeError, ValueError) as error:
+        raise StoreError(f"database {shown(url)}: {error}; write the URL like {FORMS}") from None
+
+
+def _dialect(url: URL) -> Dialect:
+    for kind in (SQLite, PostgreSQL, MariaDB):
+        if url.drivername == kind.name:
+            return kind()
+    raise StoreError(f"database {shown(url)}: {url.drivername} is not supported; write {FORMS}")
+
+
+def read_password(file: Path) -> str:
+    """Return the first line of a file that is closed to others; raises StoreError."""
+    try:
+        open_to_others = file.stat().st_mode & _OTHERS
+        lines = file.read_text(encoding="utf-8").splitlines()
+    except (OSError, UnicodeDecodeError) as error:
+        reason = getattr(error, "strerror", None) or "it is no text"
+        raise StoreError(f"password file {file}: {reason}; write the password into its first line") from None
+    if open_to_others:
+        raise StoreError(f"password file {file} can be read by every account here; run: chmod 600 {file}")
+    if not lines or not lines[0]:
+        raise StoreError(f"password file {file} is empty; write the password into its first line")
+    return lines[0]
+
+
+# --- The database's thread: one connection, and the pieces of work that wait for it, together where they can
+
+log = logging.getLogger(__name__)
+
+LARGEST_GROUP = 64
+"""Pieces of work in one transaction: a commit waits for the disk, and they may as well wait together."""
+ATTEMPTS = 5
+WRONG_AT_ONCE_S = 1.0
+
+
+class DatabaseJob(NamedTuple):
+    """A piece of work and who waits for it; ``alone`` keeps it out of any transaction."""
+
+    work: Callable[..., Any]
+    arguments: tuple[Any, ...]
+    loop: asyncio.AbstractEventLoop
+    future: asyncio.Future[Any]
+    mode: Durability = Durability.WRITE
+    alone: bool = False
+
+
+Outcome = tuple[DatabaseJob, Any, BaseException | None]
+
+
+class DatabaseWorker:
+    """Does jobs in the order they came. What waits together is committed together, and fails by itself.
+
+    A transaction that the database gave up, or whose connection turned out to be dead before its commit, is
+    done again: work changes nothing but the database.
+    """
+
+    def __init__(
+        self, engine: Engine, dialect: Dialect, where: str, patience: float | None, offences: Offences
+    ) -> None:
+        self._engine = engine
+        self._dialect = dialect
+        self._where = where
+        self._patience = patience
+        self._offences = offences
+        self._jobs: SimpleQueue[DatabaseJob | None] = SimpleQueue()
+        self._connection: Connection | None = None
+        self._since: float | None = None
+        self._lock = threading.Lock()
+        self._thread: threading.Thread | None = None
+        self.backend: int | None = None
+        self.session = 0
+        """how many connections there have been, the present one included."""
+
+    def submit(self, job: DatabaseJob) -> None:
+        """Have ``job`` done; its future tells when."""
+        if self._thread is None:
+            self._thread = threading.Thread(target=self._serve, name="database", daemon=True)
+            self._thread.start()
+        self._jobs.put(job)
+
+    @property
+    def waiting(self) -> int:
+        """Return how many jobs wait."""
+        return self._jobs.qsize()
+
+    def close(self, timeout: float) -> None:
+        """Close the connection when all is done that was submitted, and end the thread."""
+        if self._thread is not None:
+            self._jobs.put(None)
+            self._thread.join(timeout)
+        self._engine.dispose()
+
+    def interrupt_if_stuck(self) -> None:
+        """Cut the connection when the database has not answered for longer than a server's own limit."""
+        with self._lock:
+            if self._since is None or self._connection is None or self._patience is None:
+                return
+            if time.monotonic() - self._since > self._patience + 1:
+                self._dialect.interrupt(self._connection.connection.driver_connection)
+
+    def _serve(self) -> None:
+        while (job := self._jobs.get()) is not None:
+            group = [job]
+            while not group[-1].alone and len(group) < LARGEST_GROUP:
+                try:
+                    following = self._jobs.get_nowait()
+                except Empty:
+                    break
+                if following is None:
+                    self._jobs.put(None)
+                    break
+                group.append(following)
+            self._do_in_order(group)
+        self._drop()
+
+    def _do_in_order(self, group: list[DatabaseJob]) -> None:
+        group = [job for job in group if not job.future.cancelled()]
+        last = group.pop() if group and group[-1].alone else None
+        for jobs in (group, [last] if last else []):
+            if jobs:
+                _tell(self._do(jobs))
+
+    def _do(self, jobs: list[DatabaseJob]) -> list[Outcome]:
+        began = time.monotonic()
+        try:
+            results = self._insist(jobs)
+            return [(job, result, None) for job, result in zip(jobs, results, strict=True)]
+        except StoreError as error:
+            # One piece of work may be at fault; but not each of them is to wait for the database as long.
+            one_is_wrong = self._connection is not None and time.monotonic() - began < WRONG_AT_ONCE_S
+            if len(jobs) == 1 or not (one_is_wrong or isinstance(error, DataRefusedError)):
+                return [(job, None, error) for job in jobs]
+        except BaseException as error:
+            if len(jobs) == 1:
+                return [(jobs[0], None, error)]
+        return [outcome for job in jobs for outcome in self._do([job])]
+
+    def _insist(self, jobs: Sequence[DatabaseJob]) -> list[Any]:
+        """Do ``jobs`` in one transaction, again where that helps; raises StoreError and what they raise."""
+        for attempt in range(1, ATTEMPTS + 1):
+            fresh = self._connection is None
+            began = time.monotonic()
+            try:
+                return self._attempt(jobs)
+            except (UnicodeEncodeError, OverflowError) as error:
+                # What a driver raises for a text or a number that it cannot even send.
+                raise DataRefusedError(f"database {self._where} refuses a value: {error}") from error
+            except SQLAlchemyError as error:
+                if not self._worth_repeating(error, attempt, fresh, time.monotonic() - began):
+                    raise self._explain(error) from error
+        raise AssertionError("the last attempt ended the loop")
+
+    def _worth_repeating(self, error: SQLAlchemyError, attempt: int, fresh: bool, took: float) -> bool:
+        if not isinstance(error, DBAPIError) or attempt == ATTEMPTS:
+            return False
+        if self._dialect.deadlocked(error):
+            return True
+        if self._dialect.kept_waiting(error):
+            return self._make_way()
+        # The server was restarted since this connection was last used; on a new one it may well go on.
+        patience = self._patience or took
+        return error.connection_invalidated and not fresh and took < patience
+
+    def _make_way(self) -> bool:
+        """End robots' transactions that may hold what the gateway waits for; tell whether that was done."""
+        try:
+            with self._connected().begin():
+                self._offences.add_blocking(blocking_robots(self._connected(), BLOCKING_S))
+                end_blocking_sessions(self._connected(), BLOCKING_S)
+        except SQLAlchemyError as error:
+            log.warning("database %s: %s", self._where, self._dialect.cause(error))
+            return False
+        finally:
+            self._rest()
+        return True
+
+    def _attempt(self, jobs: Sequence[DatabaseJob]) -> list[Any]:
+        connection = self._connected()
+        try:
+            if jobs[0].alone:
+                found = [job.work(connection, *job.arguments) for job in jobs]
+                self._rest()
+                return found
+            transaction = self._dialect.begin(connection, max(job.mode for job in jobs))
+            results = [job.work(connection, *job.arguments) for job in jobs]
+        except BaseException:
+            self._roll_back(connection)
+            raise
+        try:
+            transaction.commit()
+        except DBAPIError as error:
+            self._drop()
+            if error.connection_invalidated:
+                raise UncertainError(self._text(error)) from error
+            raise
+        finally:
+            self._rest()
+        return results
+
+    def _connected(self) -> Connection:
+        if self._connection is None:
+            connection = self._engine.connect()
+            with self._lock:
+                self._connection = connection
+            self.session += 1
+            self.backend = self._dialect.backend(connection)
+        self._since = time.monotonic()
+        return self._connection
+
+    def _rest(self) -> None:
+        with self._lock:
+            self._since = None
+
+    def _roll_back(self, connection: Connection) -> None:
+        try:
+            if connection.in_transaction():
+                connection.get_transaction().rollback()  # type: ignore[union-attr]
+            if connection.invalidated:
+                self._drop()
+        except SQLAlchemyError:
+            self._drop()
+        finally:
+            self._rest()
+
+    def _drop(self) -> None:
+        """Let go of the connection, whatever state it is in."""
+        with self._lock:
+            connection, self._connection = self._connection, None
+            self._since = None
+        if connection is not None:
+            with contextlib.suppress(SQLAlchemyError):
+                connection.close()
+
+    def _explain(self, error: SQLAlchemyError) -> StoreError:
+        if self._dialect.refuses_data(error):
+            return DataRefusedError(f"database {self._where} refuses a value: {self._dialect.cause(error)}")
+        return StoreError(self._text(error))
+
+    def _text(self, error: SQLAlchemyError) -> str:
+        return f"database {self._where}: {self._dialect.cause(error)}; {self._dialect.advice}"
+
+
+def _tell(outcomes: list[Outcome]) -> None:
+    loops = {outcome[0].loop for outcome in outcomes}
+    for loop in loops:
+        # A loop that was closed has nobody left who waits.
+        with contextlib.suppress(RuntimeError):
+            loop.call_soon_threadsafe(_settle, [outcome for outcome in outcomes if outcome[0].loop is loop])
+
+
+def _settle(outcomes: list[Outcome]) -> None:
+    for job, result, error in outcomes:
+        if job.future.done():
+            continue
+        if error is None:
+            job.future.set_result(result)
+        else:
+            job.future.set_exception(error)
+
+
+# --- The database: one connection in one thread of its own, so that the event loop never waits for a disk
+
+T = TypeVar("T")
+WATCH_INTERVAL_S = 1.0
+
+
+class Database:
+    """Runs pieces of work, each in a transaction: ``await database.run(work, *arguments)``.
+
+    ``work`` is called as ``work(connection, *arguments)`` in the database's thread. Its transaction is
+    committed when ``run`` returns and rolled back when it raises. It must do nothing but use the database:
+    where a transaction has to be done again, it is called again; work that waits together shares one.
+
+    ``patience`` is how many seconds a statement may take; None is for work that takes long.
+    """
+
+    def __init__(self, address: str | URL, patience: float | None = PATIENCE_S) -> None:
+        self.url = read_address(address) if isinstance(address, str) else address
+        self._engine, self.dialect = open_engine(self.url, patience)
+        self.offences = Offences()
+        """What robots' accounts do to others."""
+        self._worker = DatabaseWorker(self._engine, self.dialect, shown(self.url), patience, self.offences)
+        self._watch: asyncio.Task[None] | None = None
+        self.observe: Callable[[float], None] = _pass_over
+        """Called with the seconds that each piece of work took, waiting included."""
+
+    @property
+    def where(self) -> str:
+        """The database's URL without its password."""
+        return shown(self.url)
+
+    async def open(self) -> None:
+        """Check that the tables are those of this version; SQLite's are made where there are none.
+
+        :raises StoreError: when the database cannot be used, or has to be created or upgraded first.
+        """
+        create = await self.run(revisions.must_create, self.where, self.dialect.made_by_serve)
+        if create:
+            await self.run(revisions.create)
+
+    async def run(self, work: Callable[..., T], *arguments: Any) -> T:
+        """Run ``work`` in a transaction.
+
+        :raises DataRefusedError: when the database refuses a value, whoever gave it.
+        :raises UncertainError: when the connection was lost during the commit.
+        :raises StoreError: when the database cannot be used; the transaction was not done.
+        """
+        return await self._timed(work, arguments, Durability.WRITE)
+
+    async def jot(self, work: Callable[..., T], *arguments: Any) -> T:
+        """As :meth:`run`, but a power cut may undo it, though never before what was done earlier."""
+        return await self._timed(work, arguments, Durability.JOT)
+
+    async def read(self, work: Callable[..., T], *arguments: Any) -> T:
+        """As :meth:`run`, for work that changes nothing; its statements may each see a newer state."""
+        return await self._timed(work, arguments, Durability.READ)
+
+    async def version(self) -> int | None:
+        """Return a number that changes when another connection wrote, or None where there is none."""
+        if not self.dialect.has_version:
+            return None
+        result: int | None = await self._submit(self.dialect.version, (), Durability.READ, alone=True)
+        return result
+
+    async def run_alone(self, work: Callable[..., T], *arguments: Any) -> T:
+        """Run ``work`` outside of any transaction: it begins and ends its own; raises StoreError."""
+        result: T = await self._submit(work, arguments, Durability.READ, alone=True)
+        return result
+
+    async def end_stuck(self) -> None:
+        """End robots' transactions that take too long; raises StoreError."""
+        await self._submit(_end_stuck, (), Durability.READ, alone=True)
+
+    def wakeup(self, channel: str) -> Wakeup:
+        """Return what tells when it is time to look for new rows; ``channel`` is one of the triggers'."""
+        if not self.dialect.listens:
+            return PollingWakeup()
+        listening = NotifiedWakeup(self._engine, channel, lambda: self._worker.backend, self.offences)
+        if channel != GATEWAY_CHANNEL:
+            return listening
+        return AdaptiveWakeup(
+            listening, lambda: self.read(self.dialect.doze), lambda: self.read(self.dialect.rouse)
+        )
+
+    @property
+    def session(self) -> int:
+        """Return a number that changes whenever the connection is a new one."""
+        return self._worker.session
+
+    @property
+    def waiting(self) -> int:
+        """Return how many pieces of work wait for the database."""
+        return self._worker.waiting
+
+    async def close(self, within: float = 2 * PATIENCE_S) -> None:
+        """Close the connection and end the thread; one that takes longer than ``within`` seconds is left."""
+        if self._watch is not None:
+            self._watch.cancel()
+        await asyncio.to_thread(self._worker.close, within)
+
+    async def _timed(self, work: Callable[..., T], arguments: tuple[Any, ...], mode: Durability) -> T:
+        began = time.perf_counter()
+        try:
+            result: T = await self._submit(work, arguments, mode)
+        finally:
+            self.observe(time.perf_counter() - began)
+        return result
+
+    async def _submit(
+        self, work: Callable[..., Any], arguments: tuple[Any, ...], mode: Durability, *, alone: bool = False
+    ) -> Any:
+        loop = asyncio.get_running_loop()
+        if self._watch is None:
+            self._watch = loop.create_task(self._watch_over())
+        future: asyncio.Future[Any] = loop.create_future()
+        self._worker.submit(DatabaseJob(work, arguments, loop, future, mode, alone))
+        return await future
+
+    async def _watch_over(self) -> None:
+        """Cut the connection to a server that does not answer: a frozen one keeps no limits of its own."""
+        while True:
+            await asyncio.sleep(WATCH_INTERVAL_S)
+            self._worker.interrupt_if_stuck()
+
+
+async def to_its_end(work: Coroutine[Any, Any, T]) -> T:
+    """Await ``work``, which goes on when the waiting is cancelled: what is stored must be known here, too."""
+    task = asyncio.ensure_future(work)
+    task.add_done_callback(lambda done: done.cancelled() or done.exception())
+    return await asyncio.shield(task)
+
+
+def _pass_over(_seconds: float) -> None:
+    """Take no note."""
+
+
+def _end_stuck(connection: Connection) -> None:
+    with connection.begin():
+        end_blocking_sessions(connection)
+
+
+def run_once(address: str | URL, work: Callable[..., T], *arguments: Any) -> T:
+    """Run ``work`` in a transaction of a connection of its own, for programs that end after it."""
+
+    async def once() -> T:
+        async with contextlib.AsyncExitStack() as stack:
+            database = Database(address, patience=None)
+            stack.push_async_callback(database.close)
+            return await database.run(work, *arguments)
+
+    return asyncio.run(once())

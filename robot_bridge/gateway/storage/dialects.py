@@ -1,0 +1,435 @@
+"""SQL dialects: SQLite, PostgreSQL and MariaDB; the address of a database."""
+
+from __future__ import annotations
+
+import contextlib
+import logging
+import os
+import socket
+import sqlite3
+import stat
+import time
+from enum import IntEnum
+from pathlib import Path
+from typing import Any, ClassVar, NamedTuple
+
+import sqlalchemy
+from sqlalchemy import URL, Connection, Engine, Transaction, event
+from sqlalchemy.exc import (
+    DataError,
+    DBAPIError,
+    IntegrityError,
+    OperationalError,
+    SQLAlchemyError,
+    StatementError,
+)
+from sqlalchemy.pool import NullPool
+
+# --- What the bridge asks of a kind of database; the default is a database that needs nothing special ---
+
+CONNECT_TIMEOUT_S = 5
+LOCK_TIMEOUT_S = 1
+"""How long the gateway waits for a lock before it makes way (see :mod:`.roles.blocking_sessions`)."""
+PATIENCE_S = 10
+"""How long one statement may take: a server that is dead or frozen must not hold up the gateway for ever."""
+
+
+class Durability(IntEnum):
+    """What a transaction is for; of several that are done together the highest counts."""
+
+    READ = 1
+    """It changes nothing."""
+    JOT = 2
+    """What it changes may be lost in a power cut, though never before what was changed earlier."""
+    WRITE = 3
+    """What it changes outlives a power cut."""
+
+
+class Dialect:
+    """One kind of database. ``patience`` is seconds for a statement, or None where a long one is expected."""
+
+    name: ClassVar[str]
+    advice: ClassVar[str] = "check that the server runs and that this account may use the database"
+    made_by_serve: ClassVar[bool] = False
+    """Whether a gateway makes a database that is missing."""
+    has_version: ClassVar[bool] = False
+    """Whether it can be asked cheaply if another connection wrote (see :meth:`version`)."""
+    listens: ClassVar[bool] = False
+    """Whether the database tells its readers of new rows (see :mod:`.wakeups`)."""
+
+    def engine(self, url: URL, patience: float | None) -> Engine:
+        """Return an engine on ``url``; raises ModuleNotFoundError when its driver is not installed."""
+        raise NotImplementedError
+
+    def begin(self, connection: Connection, mode: Durability) -> Transaction:
+        """Begin a transaction."""
+        return connection.begin()
+
+    def version(self, connection: Connection) -> int | None:
+        """Return a number that changes when another connection wrote, or None where there is none."""
+        return None
+
+    def backend(self, connection: Connection) -> int | None:
+        """Return the number under which notifications of this connection come, or None."""
+        return None
+
+    def doze(self, connection: Connection) -> bool:
+        """Have those who write into RR tell of it from now on; false while one writes who does not."""
+        return False
+
+    def rouse(self, connection: Connection) -> None:
+        """Let those who write into RR tell nobody of it."""
+
+    def interrupt(self, driver_connection: Any) -> None:
+        """End the wait of another thread for a server that does not answer."""
+
+    def deadlocked(self, error: DBAPIError) -> bool:
+        """Tell whether the database gave up this transaction for another's sake: it may be repeated."""
+        return False
+
+    def kept_waiting(self, error: DBAPIError) -> bool:
+        """Tell whether somebody else held a lock for too long."""
+        return False
+
+    def refuses_data(self, error: SQLAlchemyError) -> bool:
+        """Tell whether the values were wrong, and not the database out of order."""
+        if isinstance(error, (DataError, IntegrityError)):
+            return True
+        return isinstance(error, StatementError) and not isinstance(error, DBAPIError)
+
+    def cause(self, error: SQLAlchemyError) -> str:
+        """Return in one line what the database said."""
+        return " ".join(str(getattr(error, "orig", None) or error).split())
+
+
+# --- MariaDB 10.11 or newer, through PyMySQL ---
+
+_DEADLOCK = 1213
+_MARIADB_LOCK_TIMEOUT = 1205
+_RECORD_CHANGED = 1020
+_REFUSALS = (1153, 1366, 4025)
+"""Packet too large, text that is no text, a constraint: the driver takes these for other errors."""
+_LARGEST_PACKET = 64 << 20
+
+
+class MariaDB(Dialect):
+    """READ COMMITTED: the default level locks gaps, in which inserts and deletes of others meet."""
+
+    name = "mariadb"
+
+    def engine(self, url: URL, patience: float | None) -> Engine:
+        engine = sqlalchemy.create_engine(
+            url.set(drivername="mariadb+pymysql"),
+            connect_args={
+                "connect_timeout": CONNECT_TIMEOUT_S,
+                # The server's own limit comes first; this one is for a server that does not answer at all.
+                "read_timeout": None if patience is None else round(patience) + 1,
+                "write_timeout": None if patience is None else round(patience) + 1,
+                "charset": "utf8mb4",
+                "max_allowed_packet": _LARGEST_PACKET,
+            },
+            isolation_level="READ COMMITTED",
+            poolclass=NullPool,
+            hide_parameters=True,
+        )
+        if patience is not None:
+            event.listen(engine, "connect", _mariadb_limits(patience))
+        return engine
+
+    def interrupt(self, driver_connection: Any) -> None:
+        with contextlib.suppress(OSError, AttributeError):
+            driver_connection._sock.shutdown(socket.SHUT_RDWR)
+
+    def deadlocked(self, error: DBAPIError) -> bool:
+        return _code(error) in (_DEADLOCK, _RECORD_CHANGED)
+
+    def kept_waiting(self, error: DBAPIError) -> bool:
+        return _code(error) == _MARIADB_LOCK_TIMEOUT
+
+    def refuses_data(self, error: SQLAlchemyError) -> bool:
+        return super().refuses_data(error) or _code(error) in _REFUSALS
+
+    def cause(self, error: SQLAlchemyError) -> str:
+        arguments: tuple[Any, ...] = getattr(getattr(error, "orig", None), "args", ())
+        return " ".join(str(arguments[1]).split()) if len(arguments) > 1 else super().cause(error)
+
+
+def _code(error: SQLAlchemyError) -> int | None:
+    arguments: tuple[Any, ...] = getattr(getattr(error, "orig", None), "args", ())
+    return arguments[0] if arguments and isinstance(arguments[0], int) else None
+
+
+def _mariadb_limits(patience: float) -> Any:
+    def limit(connection: Any, _record: Any) -> None:
+        with connection.cursor() as cursor:
+            cursor.execute(f"set session max_statement_time = {patience}")
+            cursor.execute(f"set session innodb_lock_wait_timeout = {LOCK_TIMEOUT_S}")
+            cursor.execute(f"set session lock_wait_timeout = {LOCK_TIMEOUT_S}")
+
+    return limit
+
+
+# --- PostgreSQL 15 or newer, through psycopg 3 ---
+
+CONNECT_ARGUMENTS: dict[str, Any] = {
+    "connect_timeout": CONNECT_TIMEOUT_S,
+    "application_name": "robot-bridge",
+    "client_encoding": "utf8",
+    # A cable that was pulled is noticed within seconds, not within the system's two hours.
+    "keepalives_idle": 5,
+    "keepalives_interval": 2,
+    "keepalives_count": 3,
+}
+GATEWAY_DOZES = 0x666C656574
+"""The number of the lock that a gateway holds while it wants to be told of new rows ('fleet')."""
+_REPEATABLE = ("40001", "40P01")
+_POSTGRESQL_LOCK_TIMEOUT = "55P03"
+
+
+class PostgreSQL(Dialect):
+    """The server ends statements that take too long; a server that is frozen has its connection cut."""
+
+    name = "postgresql"
+    listens = True
+
+    def engine(self, url: URL, patience: float | None) -> Engine:
+        engine = sqlalchemy.create_engine(
+            url.set(drivername="postgresql+psycopg"),
+            connect_args=CONNECT_ARGUMENTS,
+            isolation_level="READ COMMITTED",
+            poolclass=NullPool,
+            hide_parameters=True,
+        )
+        # Many rows in one statement instead of one statement each.
+        engine.dialect.use_insertmanyvalues_wo_returning = True
+        if patience is not None:
+            event.listen(engine, "connect", _postgresql_limits(patience))
+        return engine
+
+    def begin(self, connection: Connection, mode: Durability) -> Transaction:
+        driver = connection.connection.driver_connection
+        assert driver is not None
+        # A connection that was lost is told of by the first statement.
+        with contextlib.suppress(driver_error()):
+            # Saves a reader two of three round trips to the server.
+            driver.autocommit = mode is Durability.READ
+        transaction = connection.begin()
+        if mode is Durability.JOT:
+            connection.exec_driver_sql("set local synchronous_commit = off")
+        return transaction
+
+    def backend(self, connection: Connection) -> int | None:
+        driver = connection.connection.driver_connection
+        assert driver is not None
+        return int(driver.info.backend_pid)
+
+    def doze(self, connection: Connection) -> bool:
+        # Taken twice the lock would have to be given back twice.
+        if not connection.info.get("dozes"):
+            text = f"select pg_try_advisory_lock({GATEWAY_DOZES})"
+            connection.info["dozes"] = connection.exec_driver_sql(text).scalar_one()
+        return bool(connection.info["dozes"])
+
+    def rouse(self, connection: Connection) -> None:
+        if connection.info.pop("dozes", False):
+            connection.exec_driver_sql(f"select pg_advisory_unlock({GATEWAY_DOZES})")
+
+    def interrupt(self, driver_connection: Any) -> None:
+        # A second number for the same socket: this one may be closed while the other thread uses its own.
+        with contextlib.suppress(OSError), socket.socket(fileno=os.dup(driver_connection.fileno())) as twin:
+            twin.shutdown(socket.SHUT_RDWR)
+
+    def deadlocked(self, error: DBAPIError) -> bool:
+        return getattr(error.orig, "sqlstate", None) in _REPEATABLE
+
+    def kept_waiting(self, error: DBAPIError) -> bool:
+        return getattr(error.orig, "sqlstate", None) == _POSTGRESQL_LOCK_TIMEOUT
+
+
+def driver_error() -> type[Exception]:
+    """Return the driver's errors; the driver is imported where it is used, for it may be missing."""
+    import psycopg
+
+    return psycopg.Error
+
+
+def _postgresql_limits(patience: float) -> Any:
+    def limit(connection: Any, _record: Any) -> None:
+        with connection.cursor() as cursor:
+            cursor.execute(f"set statement_timeout = {round(patience * 1000)}")
+            cursor.execute(f"set lock_timeout = {LOCK_TIMEOUT_S * 1000}")
+            cursor.execute(f"set idle_in_transaction_session_timeout = {round(patience * 1000)}")
+        connection.commit()
+
+    return limit
+
+
+# --- SQLite: one file on this computer, with a write-ahead log; no server ---
+
+log = logging.getLogger(__name__)
+
+LOCK_PAUSE_S = 0.0005
+_GONE = "was taken away or replaced while it was in use: put it back, or end whatever uses it"
+
+
+class SQLite(Dialect):
+    """Waits for a lock as long as its patience lasts."""
+
+    name = "sqlite"
+    advice = "check that it exists, that it may be written and that its disk has room"
+    made_by_serve = True
+    has_version = True
+
+    def engine(self, url: URL, patience: float | None) -> Engine:
+        self._timeout = PATIENCE_S if patience is None else patience
+        engine = sqlalchemy.create_engine(
+            url,
+            connect_args={"timeout": self._timeout, "check_same_thread": False},
+            poolclass=NullPool,
+            hide_parameters=True,
+        )
+        event.listen(engine, "do_connect", self._make_file)
+        event.listen(engine, "connect", _prepare)
+        event.listen(engine, "connect", self._close_to_others)
+        event.listen(engine, "begin", self._begin)
+        return engine
+
+    def begin(self, connection: Connection, mode: Durability) -> Transaction:
+        connection.info["mode"] = mode
+        return connection.begin()
+
+    def version(self, connection: Connection) -> int | None:
+        # Through the driver: SQLAlchemy would begin a transaction, and take the lock of all writers for it.
+        driver = connection.connection.driver_connection
+        assert driver is not None
+        return int(driver.execute("PRAGMA data_version").fetchone()[0])
+
+    def _begin(self, connection: Connection) -> None:
+        opened: _Opened | None = connection.info.get("opened")
+        if opened is not None and not opened.is_there():
+            raise OperationalError("BEGIN", None, sqlite3.OperationalError(f"{opened.path} {_GONE}"))
+        mode = connection.info.get("mode", Durability.WRITE)
+        # Through the driver, here and below: through SQLAlchemy each takes several times as long.
+        driver = connection.connection.driver_connection
+        assert driver is not None
+        if mode is Durability.READ:
+            # Readers hold up nobody, and nobody holds them up.
+            try:
+                driver.execute("BEGIN")
+            except sqlite3.OperationalError as error:
+                raise OperationalError("BEGIN", None, error) from error
+            return
+        # A command that an operator was told is queued must outlive a power cut, not only a crash.
+        synchronous = "FULL" if mode is Durability.WRITE else "NORMAL"
+        if connection.info.get("synchronous") != synchronous:
+            connection.exec_driver_sql(f"PRAGMA synchronous = {synchronous}")
+            connection.info["synchronous"] = synchronous
+        self._lock(connection)
+
+    @staticmethod
+    def _make_file(_dialect: Any, _record: Any, arguments: list[Any], _options: Any) -> None:
+        path = str(arguments[0])
+        if path != ":memory:" and not path.startswith("file:"):
+            make_sqlite_file(Path(path))
+
+    @staticmethod
+    def _close_to_others(_connection: Any, record: Any) -> None:
+        """Take the file, and what SQLite keeps beside it, from every account that is not of its group."""
+        opened: _Opened | None = record.info.get("opened")
+        if opened is None:
+            return
+        for path in [Path(f"{opened.path}{end}") for end in ("", "-wal", "-shm", "-journal")]:
+            try:
+                rights = stat.S_IMODE(path.stat().st_mode)
+            except OSError:
+                continue
+            if not rights & stat.S_IRWXO:
+                continue
+            try:
+                path.chmod(rights & ~stat.S_IRWXO)
+            except OSError as error:
+                text = "every account of this computer may open %s (%s); run: chmod o-rwx on it"
+                log.warning(text, path, error.strerror)
+                continue
+            log.warning("every account of this computer could open %s; now its owner and group may", path)
+
+    def _lock(self, connection: Connection) -> None:
+        """Take the lock of all writers as soon as it is free; SQLite itself would sleep up to 0.1 s."""
+        until = time.monotonic() + self._timeout
+        driver = connection.connection.driver_connection
+        assert driver is not None
+        driver.execute("PRAGMA busy_timeout = 0")
+        try:
+            while True:
+                try:
+                    driver.execute("BEGIN IMMEDIATE")
+                    return
+                except sqlite3.OperationalError as error:
+                    if "locked" not in str(error) or time.monotonic() > until:
+                        raise OperationalError("BEGIN IMMEDIATE", None, error) from error
+                time.sleep(LOCK_PAUSE_S)
+        finally:
+            driver.execute(f"PRAGMA busy_timeout = {round(self._timeout * 1000)}")
+
+
+class _Opened(NamedTuple):
+    """The file that a connection has open, as it was found at its path."""
+
+    path: Path
+    device: int
+    inode: int
+
+    @classmethod
+    def by(cls, connection: sqlite3.Connection) -> _Opened | None:
+        """Return the file of a connection, None for a database in memory."""
+        rows = connection.execute("PRAGMA database_list").fetchall()
+        file = next((file for _number, name, file in rows if name == "main"), "")
+        if not file:
+            return None
+        path = Path(file)
+        status = path.stat()
+        return cls(path, status.st_dev, status.st_ino)
+
+    def is_there(self) -> bool:
+        """Tell whether it is still at its path: what is written into a file that was taken away is lost."""
+        try:
+            status = self.path.stat()
+        except OSError:
+            return False
+        return (status.st_dev, status.st_ino) == (self.device, self.inode)
+
+
+def _prepare(connection: Any, record: Any) -> None:
+    # The driver would begin transactions late, when a reader can no longer become a writer.
+    connection.isolation_level = None
+    # Anyone may write anything into RR: text that is no UTF-8 is to be refused row by row, not by the driver.
+    connection.text_factory = _decode_leniently
+    cursor = connection.cursor()
+    cursor.execute("PRAGMA journal_mode = WAL")
+    # Some distributions have SQLite write zeros over what is deleted: the map of a city, page by page, for
+    # which everybody else would wait.
+    cursor.execute("PRAGMA secure_delete = FAST")
+    cursor.close()
+    record.info["opened"] = _Opened.by(connection)
+
+
+def make_sqlite_file(path: Path) -> None:
+    """Make a new database's file for its owner alone, whatever the umask: who may write it, commands."""
+    with contextlib.suppress(OSError):
+        os.close(os.open(path, os.O_RDWR | os.O_CREAT | os.O_EXCL | os.O_CLOEXEC, 0o600))
+
+
+def _decode_leniently(text: bytes) -> str:
+    return text.decode(errors="replace")
+
+
+def sqlite_file_of(url: URL) -> Path | None:
+    """Return the file of a SQLite database, None for one in memory; raises SQLAlchemyError."""
+    engine = SQLite().engine(url, None)
+    with engine.connect() as connection:
+        driver = connection.connection.driver_connection
+        assert driver is not None
+        found = driver.execute("PRAGMA database_list").fetchall()
+    engine.dispose()
+    file = next((row[2] for row in found if row[1] == "main"), "")
+    return Path(file).resolve() if file else None

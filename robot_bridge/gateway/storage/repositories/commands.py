@@ -1,0 +1,240 @@
+"""Commands with every step of their lives, and the tracks that robots were given."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping, Sequence
+from typing import Any, NamedTuple
+
+from sqlalchemy import Connection, Select, bindparam, delete, insert, select, update
+
+from ....core.json_decoder import decode_json
+from ....core.messages import CommandReport, CommandState, CommandStep
+from ...model.command_states import is_open
+from ..rows import beside_the_time, delete_oldest, readable
+from ..schema import command_steps, commands
+
+# --- Commands and every step of their lives ---
+
+# Built once: SQLAlchemy takes longer to build a statement than the database to do it.
+_ADD, _ADD_STEPS = insert(commands), insert(command_steps)
+_SAVE = (
+    update(commands)
+    .where(commands.c.id == bindparam("key"))
+    .values(
+        state=bindparam("new_state"),
+        deviation=bindparam("new_deviation"),
+        stood_x=bindparam("new_x"),
+        stood_y=bindparam("new_y"),
+        stood_theta=bindparam("new_theta"),
+        driven=bindparam("new_driven"),
+        sa_id=bindparam("new_sa_id"),
+    )
+)
+_BY_ID = select(commands).where(commands.c.id.in_(bindparam("ids", expanding=True)))
+_BY_MESSAGE = select(commands).where(
+    commands.c.robot == bindparam("of"), commands.c.sa_id == bindparam("message")
+)
+_STEPS = (
+    select(command_steps)
+    .where(command_steps.c.command.in_(bindparam("commands", expanding=True)))
+    .order_by(command_steps.c.id)
+)
+
+
+class StoredCommand(NamedTuple):
+    """A command with what only the gateway needs of it.
+
+    ``sa_id`` is the row of SA that holds its message, ``driven`` the metres of its path that were driven,
+    ``expires_at`` when it is given up if nobody has fetched it (None: by the site's settings).
+    """
+
+    report: CommandReport
+    sa_id: int
+    driven: float | None = None
+    expires_at: float | None = None
+
+
+def add_all(connection: Connection, new: Sequence[StoredCommand]) -> None:
+    """Write new commands with their steps."""
+    if not new:
+        return
+    connection.execute(_ADD, [_row(command) for command in new])
+    _add_steps(connection, [(c.report.command, step) for c in new for step in c.report.steps])
+
+
+def save_all(connection: Connection, changed: Sequence[StoredCommand]) -> None:
+    """Write the newest step of each of some commands that are stored already."""
+    if not changed:
+        return
+    rows = [
+        {
+            "key": c.report.command,
+            "new_state": c.report.state.value,
+            "new_deviation": c.report.deviation,
+            **dict(zip(("new_x", "new_y", "new_theta"), c.report.stood or (None,) * 3, strict=True)),
+            "new_driven": c.driven,
+            "new_sa_id": c.sa_id,
+        }
+        for c in changed
+    ]
+    connection.execute(_SAVE, rows)
+    _add_steps(connection, [(c.report.command, c.report.steps[-1]) for c in changed])
+
+
+def save_driven(connection: Connection, driven: Mapping[str, float]) -> None:
+    """Write how many metres of its path each of some commands has been driven."""
+    if driven:
+        statement = update(commands).where(commands.c.id == bindparam("key"))
+        rows = [{"key": id, "metres": metres} for id, metres in driven.items()]
+        connection.execute(statement.values(driven=bindparam("metres")), rows)
+
+
+def find_all(connection: Connection, ids: Sequence[str]) -> dict[str, StoredCommand]:
+    """Return those of some commands that are stored, by their ids."""
+    found = _load(connection, _BY_ID, {"ids": list(ids)}) if ids else []
+    return {command.report.command: command for command in found}
+
+
+def find(connection: Connection, command: str) -> CommandReport | None:
+    """Return a command by its id."""
+    found = find_all(connection, [command]).get(command)
+    return None if found is None else found.report
+
+
+def find_message(connection: Connection, robot: str, sa_id: int) -> StoredCommand | None:
+    """Return the robot's command whose message is, or was, row ``sa_id`` of SA."""
+    return next(iter(_load(connection, _BY_MESSAGE, {"of": robot, "message": sa_id})), None)
+
+
+def newest(connection: Connection, robot: str | None, limit: int) -> list[CommandReport]:
+    """Return the newest commands first, of one robot or of all."""
+    query = select(commands).order_by(commands.c.created_at.desc(), commands.c.sa_id.desc()).limit(limit)
+    if robot is not None:
+        query = query.where(commands.c.robot == robot)
+    return [command.report for command in _load(connection, query)]
+
+
+def still_open(connection: Connection) -> list[StoredCommand]:
+    """Return the commands that have a step to come, oldest first."""
+    states = [state.value for state in CommandState if is_open(state)]
+    query = select(commands).where(commands.c.state.in_(states)).order_by(commands.c.sa_id)
+    return _load(connection, query)
+
+
+def of_kind_since(connection: Connection, op: str, since: float) -> list[CommandReport]:
+    """Return the commands of one kind that were issued at ``since`` or later, oldest first."""
+    query = select(commands).where(commands.c.op == op, commands.c.created_at >= since)
+    return [command.report for command in _load(connection, query.order_by(commands.c.sa_id))]
+
+
+def forget(connection: Connection, before: float, limit: int) -> int:
+    """Delete at most ``limit`` ended commands from before a time, with their steps; return how many."""
+    ended = [state.value for state in CommandState if not is_open(state)]
+    has_ended = beside_the_time(commands.c.state).in_(ended)
+    gone = delete_oldest(connection, commands.c.id, commands.c.created_at, before, limit, has_ended)
+    if gone:
+        connection.execute(delete(command_steps).where(command_steps.c.command.in_(gone)))
+    return len(gone)
+
+
+def _row(command: StoredCommand) -> dict[str, object]:
+    report = command.report
+    return {
+        "id": report.command,
+        "robot": report.robot,
+        "op": report.op,
+        "params": json.dumps(report.params),
+        "operator": report.operator,
+        "state": report.state.value,
+        "driven": command.driven,
+        "sa_id": command.sa_id,
+        "created_at": report.steps[0].at,
+        "expires_at": command.expires_at,
+    }
+
+
+def _load(
+    connection: Connection, query: Select[tuple[object, ...]], values: Mapping[str, Any] | None = None
+) -> list[StoredCommand]:
+    rows = connection.execute(query, values).mappings().all()
+    steps: dict[str, list[CommandStep]] = {row["id"]: [] for row in rows}
+    found = connection.execute(_STEPS, {"commands": list(steps)}).mappings() if rows else ()
+    for command, step in readable(found, _step, lambda row: f"a step of command {row['command']}"):
+        steps[command].append(step)
+    return list(
+        readable(rows, lambda row: _stored(row, steps[row["id"]]), lambda row: f"command {row['id']}")
+    )
+
+
+def _stored(row: Mapping[Any, Any], steps: list[CommandStep]) -> StoredCommand:
+    return StoredCommand(
+        CommandReport(
+            command=row["id"],
+            robot=row["robot"],
+            op=row["op"],
+            params=_params(row["params"]),
+            operator=row["operator"],
+            state=CommandState(row["state"]),
+            steps=steps,
+            deviation=row["deviation"],
+            stood=_stood(row["stood_x"], row["stood_y"], row["stood_theta"]),
+        ),
+        sa_id=row["sa_id"],
+        driven=row["driven"],
+        expires_at=row["expires_at"],
+    )
+
+
+def _step(row: Mapping[Any, Any]) -> tuple[str, CommandStep]:
+    return row["command"], CommandStep(CommandState(row["state"]), row["at"], row["by"], row["reason"])
+
+
+def _params(text: str) -> dict[str, Any]:
+    params = decode_json(text)
+    if not isinstance(params, dict):
+        raise TypeError(f"params is {type(params).__name__}")
+    return params
+
+
+def _stood(x: float | None, y: float | None, theta: float | None) -> tuple[float, float, float] | None:
+    return None if x is None or y is None or theta is None else (x, y, theta)
+
+
+def _add_steps(connection: Connection, steps: Sequence[tuple[str, CommandStep]]) -> None:
+    connection.execute(
+        _ADD_STEPS,
+        [
+            {
+                "command": command,
+                "state": step.state.value,
+                "at": step.at,
+                "by": step.by,
+                "reason": step.reason,
+            }
+            for command, step in steps
+        ],
+    )
+
+
+# --- Where the track of a robot begins and ends, from the commands that it was given ---
+
+
+class GivenTrack(NamedTuple):
+    """What a robot was given, and what became of it."""
+
+    op: str
+    params: dict[str, Any]
+    state: CommandState
+
+
+def last_given_track(connection: Connection, robot: str, ops: Sequence[str]) -> GivenTrack | None:
+    """Return the robot's newest command of ``ops``."""
+    query = (
+        select(commands.c.op, commands.c.params, commands.c.state)
+        .where(commands.c.robot == robot, commands.c.op.in_(ops))
+        .order_by(commands.c.created_at.desc(), commands.c.sa_id.desc())
+        .limit(1)
+    )
+    row = connection.execute(query).one_or_none()
+    return None if row is None else GivenTrack(row[0], decode_json(row[1]), CommandState(row[2]))

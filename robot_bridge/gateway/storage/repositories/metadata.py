@@ -1,0 +1,62 @@
+"""Metadata of the database: its id, the chosen site, the newest time in it."""
+
+from __future__ import annotations
+
+import uuid
+
+from sqlalchemy import Connection, delete, func, insert, select
+
+from ..schema import audit, bridge, commands, observations, robots, trajectories
+
+# --- Facts about the database itself ---
+
+ID = "id"
+"""The name of the fact that tells the database from every other."""
+_SITE = "site"
+
+
+def database_id(connection: Connection) -> str:
+    """Return what tells this database from every other; one that has none yet is given it."""
+    found = connection.scalar(select(bridge.c.value).where(bridge.c.name == ID))
+    if found is None:
+        found = str(uuid.uuid4())
+        connection.execute(insert(bridge).values(name=ID, value=found))
+    return str(found)
+
+
+def chosen_site(connection: Connection) -> str | None:
+    """Return the name of the folder of the site that a supervisor chose, None if none did."""
+    found: str | None = connection.scalar(select(bridge.c.value).where(bridge.c.name == _SITE))
+    return found
+
+
+def choose_site(connection: Connection, folder: str) -> None:
+    """Note which site a supervisor chose."""
+    forget_site(connection)
+    connection.execute(insert(bridge).values(name=_SITE, value=folder))
+
+
+def forget_site(connection: Connection) -> None:
+    """Forget which site a supervisor chose."""
+    connection.execute(delete(bridge).where(bridge.c.name == _SITE))
+
+
+# --- When something was stored last ---
+
+# Each but the few robots has an index.
+_TIMES = (
+    trajectories.c.received_at,
+    commands.c.created_at,
+    observations.c.received_at,
+    audit.c.at,
+    robots.c.received_at,
+)
+
+
+def newest_time(connection: Connection) -> float | None:
+    """Return the newest time of a position, command, observation, robot or entry of the audit log.
+
+    Seconds since 1970 by the gateway's clock of then; None where nothing is stored.
+    """
+    found = [connection.scalar(select(func.max(column))) for column in _TIMES]
+    return max((float(at) for at in found if at is not None), default=None)

@@ -1,0 +1,222 @@
+"""Queues of tasks: each change is written only if the queue still is as whoever changes it saw it."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any, NamedTuple
+
+import msgspec
+from sqlalchemy import Connection, Select, bindparam, exists, insert, or_, select, update
+
+from ....core.errors import RefusedError
+from ....core.json_decoder import decode_json
+from ....core.messages import QueueState, QueueTask, TaskState, to_json
+from ...model.task_queue import ENDS, Queue, QueuedTask, Whereabouts
+from ..rows import beside_the_time, delete_oldest, readable
+from ..schema import queue_tasks, queues
+
+_ENDED = [state.value for state in ENDS]
+_OPEN = [state.value for state in TaskState if state not in ENDS]
+
+
+class ChangedError(RefusedError):
+    """The queue is not as it was taken for: somebody else changed it in between."""
+
+
+class QueueHold(NamedTuple):
+    """Why a robot's queue is to be paused, by whom and when."""
+
+    robot: str
+    reason: str
+    by: str
+    at: float
+
+
+def load(connection: Connection, robots: Sequence[str] | None = None) -> dict[str, Queue]:
+    """Return the queues of some robots, or of all, with their open tasks."""
+    wanted = select(queues)
+    open_tasks = select(queue_tasks).where(queue_tasks.c.state.in_(_OPEN))
+    if robots is not None:
+        wanted = wanted.where(queues.c.robot.in_(robots))
+        open_tasks = open_tasks.where(queue_tasks.c.robot.in_(robots))
+    tasks: dict[str, list[QueuedTask]] = {}
+    rows = connection.execute(open_tasks.order_by(queue_tasks.c.place)).mappings()
+    for robot, task in readable(rows, lambda row: (row["robot"], _task(row)), _name_of_task):
+        tasks.setdefault(robot, []).append(task)
+    found = connection.execute(wanted).mappings()
+    read = readable(found, lambda row: _queue(row, tasks), lambda row: f"the queue of robot {row['robot']}")
+    return {queue.robot: queue for queue in read}
+
+
+def _queue(row: Any, tasks: Mapping[str, Sequence[QueuedTask]]) -> Queue:
+    return Queue(
+        robot=row["robot"],
+        revision=row["revision"],
+        state=QueueState(row["state"]),
+        tasks=tuple(tasks.get(row["robot"], ())),
+        reason=row["reason"],
+        by=row["by"],
+        at=row["at"],
+    )
+
+
+def newest_ended(connection: Connection, robot: str, limit: int) -> list[QueuedTask]:
+    """Return the tasks of a robot that ended, newest first."""
+    c = queue_tasks.c
+    query = select(queue_tasks).where(c.robot == robot, beside_the_time(c.state).in_(_ENDED))
+    return _tasks(connection, query.order_by(c.ended_at.desc(), c.place.desc()).limit(limit))
+
+
+def whereabouts(connection: Connection, tasks: Sequence[str]) -> dict[str, Whereabouts]:
+    """Return where those of some tasks are that were given before."""
+    c = queue_tasks.c
+    found: dict[str, Whereabouts] = {}
+    for begin in range(0, len(tasks), 500):
+        query = select(c.id, c.robot, c.state).where(c.id.in_(tasks[begin : begin + 500]))
+        found.update(
+            {row.id: Whereabouts(row.robot, TaskState(row.state)) for row in connection.execute(query)}
+        )
+    return found
+
+
+def save(connection: Connection, before: Queue, after: Queue, ended: Iterable[QueuedTask] = ()) -> None:
+    """Write what ``after`` and the tasks that ``ended`` have other than ``before``.
+
+    :raises ChangedError: when the stored queue is not ``before`` any more; nothing is to be written then.
+    """
+    _save_queue(connection, before, after)
+    old = {task.id: task for task in before.tasks}
+    _save_tasks(connection, after.robot, old, [*after.tasks, *ended])
+
+
+def save_many(connection: Connection, changes: Sequence[tuple[Queue, Queue]]) -> None:
+    """Write several queues between which tasks have moved; raises ChangedError as :func:`save`."""
+    old = {task.id: task for before, _ in changes for task in before.tasks}
+    owner = {task.id: before.robot for before, _ in changes for task in before.tasks}
+    for before, after in changes:
+        _save_queue(connection, before, after)
+        came = {task.id for task in after.tasks if owner.get(task.id) != after.robot}
+        statement = update(queue_tasks).where(queue_tasks.c.id == bindparam("key"))
+        if came:
+            rows = [{"key": id, "to": after.robot} for id in sorted(came)]
+            connection.execute(statement.values(robot=bindparam("to")), rows)
+        _save_tasks(connection, after.robot, old, after.tasks)
+
+
+def hold(connection: Connection, holds: Sequence[QueueHold]) -> None:
+    """Pause the queues of robots that are ordered about beside them; those with nothing to do stay."""
+    if not holds:
+        return
+    # No IN: it cannot be used where a statement is done for many rows.
+    is_open = or_(*(queue_tasks.c.state == state for state in _OPEN))
+    waiting = exists().where(queue_tasks.c.robot == queues.c.robot, is_open)
+    statement = (
+        update(queues)
+        .where(queues.c.robot == bindparam("of"), queues.c.state == QueueState.RUNNING.value, waiting)
+        .values(
+            state=QueueState.PAUSED.value,
+            revision=queues.c.revision + 1,
+            reason=bindparam("why"),
+            by=bindparam("who"),
+            at=bindparam("since"),
+        )
+    )
+    rows = [{"of": hold.robot, "why": hold.reason, "who": hold.by, "since": hold.at} for hold in holds]
+    connection.execute(statement, rows)
+
+
+def forget(connection: Connection, before: float, limit: int) -> int:
+    """Delete at most ``limit`` tasks that ended before a time; return how many."""
+    c = queue_tasks.c
+    has_ended = beside_the_time(c.state).in_(_ENDED)
+    return len(delete_oldest(connection, c.id, c.ended_at, before, limit, has_ended))
+
+
+def _save_queue(connection: Connection, before: Queue, after: Queue) -> None:
+    row = {
+        "revision": after.revision,
+        "state": after.state.value,
+        "reason": after.reason,
+        "by": after.by,
+        "at": after.at,
+    }
+    of = queues.c.robot == after.robot
+    if before.revision == 0 and connection.execute(select(queues.c.robot).where(of)).first() is None:
+        connection.execute(insert(queues).values(robot=after.robot, **row))
+        return
+    # Asked for, since MariaDB does not count a row that it was told nothing new about.
+    found = connection.execute(select(queues.c.revision, queues.c.state).where(of)).first()
+    if found is None or (found.revision, found.state) != (before.revision, before.state.value):
+        raise ChangedError(f"the queue of robot {after.robot!r} was changed meanwhile; look at it again")
+    if (before.revision, before.state) != (after.revision, after.state):
+        connection.execute(update(queues).where(of).values(row))
+
+
+def _save_tasks(
+    connection: Connection, robot: str, old: dict[str, QueuedTask], tasks: Iterable[QueuedTask]
+) -> None:
+    changed = [task for task in tasks if old.get(task.id) != task]
+    new = [task for task in changed if task.id not in old]
+    if new:
+        rows = [{"robot": robot, "id": task.id, **_content(task), **_row(task)} for task in new]
+        connection.execute(insert(queue_tasks), rows)
+    known = [task for task in changed if task.id in old]
+    # What the operator gave holds a path, and is written only if it is another one.
+    _update(connection, [(task.id, _row(task)) for task in known if task.task == old[task.id].task])
+    other = [task for task in known if task.task != old[task.id].task]
+    _update(connection, [(task.id, {**_row(task), **_content(task)}) for task in other])
+
+
+def _update(connection: Connection, changes: Sequence[tuple[str, dict[str, Any]]]) -> None:
+    if not changes:
+        return
+    values: dict[str, Any] = {name: bindparam(f"new_{name}") for name in changes[0][1]}
+    statement = update(queue_tasks).where(queue_tasks.c.id == bindparam("key")).values(values)
+    rows = [{"key": id, **{f"new_{name}": v for name, v in row.items()}} for id, row in changes]
+    connection.execute(statement, rows)
+
+
+def _content(task: QueuedTask) -> dict[str, Any]:
+    return {"content": json.dumps(to_json(task.task))}
+
+
+def _row(task: QueuedTask) -> dict[str, Any]:
+    return {
+        "place": task.place,
+        "state": task.state.value,
+        "leg": task.leg,
+        "attempts": task.attempts,
+        "command": task.command,
+        "added_by": task.added_by,
+        "added_at": task.added_at,
+        "began_at": task.began_at,
+        "ended_at": task.ended_at,
+        "reason": task.reason,
+        "deviation": task.deviation,
+    }
+
+
+def _tasks(connection: Connection, query: Select[Any]) -> list[QueuedTask]:
+    return list(readable(connection.execute(query).mappings(), _task, _name_of_task))
+
+
+def _name_of_task(row: Any) -> str:
+    return f"task {row['id']} of the queue of robot {row['robot']}"
+
+
+def _task(row: Any) -> QueuedTask:
+    return QueuedTask(
+        task=msgspec.convert(decode_json(row["content"]), QueueTask),
+        added_by=row["added_by"],
+        added_at=row["added_at"],
+        state=TaskState(row["state"]),
+        place=row["place"],
+        leg=row["leg"],
+        attempts=row["attempts"],
+        command=row["command"],
+        began_at=row["began_at"],
+        ended_at=row["ended_at"],
+        reason=row["reason"],
+        deviation=row["deviation"],
+    )

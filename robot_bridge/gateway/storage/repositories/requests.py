@@ -1,0 +1,275 @@
+"""Rows of requests of robots and of the answers to them."""
+
+from __future__ import annotations
+
+import json
+from collections import Counter
+from collections.abc import Callable, Sequence
+from typing import NamedTuple
+
+from sqlalchemy import (
+    Connection,
+    LargeBinary,
+    Text,
+    and_,
+    bindparam,
+    case,
+    cast,
+    delete,
+    func,
+    insert,
+    or_,
+    select,
+    update,
+)
+
+from ....core.json_decoder import SHORT, DecodingError, decode_json
+from ....core.messages import COMMANDS, Abort, Answer, SetMap, to_json
+from ....core.messages.validation import LARGEST_MESSAGE
+from ..rows import TOGETHER, Row, add_messages, delete_messages
+from ..schema import rr, sa
+
+# --- Table RR: robots insert, the gateway reads and deletes ---
+
+AT_ONCE = 500
+LONGEST_ACK = SHORT.length
+"""characters; of what is longer no stop is to wait until it is decoded."""
+MOST_ACKS = 1000
+"""OpAcks of one robot that are looked at for a stop; a robot that works has a few."""
+_LONGEST_NAME = 64
+"""characters of a robot's name and of an operation that are read; every right one is shorter."""
+
+# SQLite keeps bytes in a text column as bytes, and one row of them must not hold up the others.
+# SQLite holds no column to its length: what is longer than may be is cut, or left out, before it is fetched.
+_PARAMS = cast(rr.c.params, Text)
+_SIZE = func.length(_PARAMS)
+_ROW = (
+    rr.c.id,
+    func.substr(cast(rr.c.robot, Text), 1, _LONGEST_NAME),
+    func.substr(cast(rr.c.op, Text), 1, _LONGEST_NAME),
+    case((_SIZE <= LARGEST_MESSAGE, _PARAMS)),
+    _SIZE,
+)
+# Built once: SQLAlchemy takes longer to build a statement than the database to do it.
+_READ_REQUESTS = select(*_ROW).order_by(rr.c.id).limit(AT_ONCE)
+_ACKS = select(cast(rr.c.robot, Text), _PARAMS).where(
+    rr.c.robot.in_(bindparam("robots", expanding=True)),
+    rr.c.op == "OpAck",
+    rr.c.id <= bindparam("newest"),
+    _SIZE <= LONGEST_ACK,
+)
+_ANY = 2**63 - 1
+
+
+class RequestRow(NamedTuple):
+    """A row of RR as it was written, not yet understood."""
+
+    id: int
+    robot: str
+    op: str
+    params: str | None
+    size: int | None = None
+    """characters of ``params``, which is None where they are too many."""
+
+
+def read_requests(connection: Connection) -> list[RequestRow]:
+    """Return the oldest requests, :data:`AT_ONCE` at most."""
+    return [RequestRow(*row) for row in connection.execute(_READ_REQUESTS)]
+
+
+def backlog(connection: Connection, robots: Sequence[str]) -> tuple[int, dict[str, set[int]]]:
+    """Return the id of the newest request, 0 without one, and :func:`acknowledged` of ``robots`` up to it."""
+    newest = connection.scalar(select(func.max(rr.c.id))) or 0
+    return newest, acknowledged(connection, robots, newest)
+
+
+def acknowledged(connection: Connection, robots: Sequence[str], newest: int = _ANY) -> dict[str, set[int]]:
+    """Return of each of ``robots`` the messages whose OpAcks wait to be read, up to request ``newest``.
+
+    Nothing is read of any other robot. An OpAck that cannot be understood, or is so long that it is none, is
+    left out, and so is what a robot has beyond :data:`MOST_ACKS`: emergency stops wait for this.
+    """
+    found: dict[str, set[int]] = {robot: set() for robot in robots}
+    seen: Counter[str] = Counter()
+    for begin in range(0, len(robots), AT_ONCE):
+        some = {"robots": robots[begin : begin + AT_ONCE], "newest": newest}
+        for robot, params in connection.execute(_ACKS, some):
+            # MariaDB takes names for the same that differ in capitals.
+            if robot not in found or seen[robot] >= MOST_ACKS:
+                continue
+            seen[robot] += 1
+            if (id := _message_id(params)) is not None:
+                found[robot].add(id)
+    return found
+
+
+def _message_id(params: str | None) -> int | None:
+    try:
+        acknowledgement = decode_json(params or "{}", SHORT)
+    except DecodingError:
+        return None
+    id = acknowledgement.get("id") if isinstance(acknowledgement, dict) else None
+    # For Python true is a whole number as well, and would be message 1.
+    return id if type(id) is int else None
+
+
+def payload(connection: Connection, id: int, check_size: Callable[[int], None]) -> bytes | None:
+    """Return the payload of a request, if it has one; ``check_size`` may refuse it before it is read."""
+    size = connection.scalar(select(func.length(rr.c.payload)).where(rr.c.id == id))
+    if size is None:
+        return None
+    check_size(size)
+    # SQLite gives text that somebody wrote into it back as text.
+    return bytes(
+        connection.execute(select(cast(rr.c.payload, LargeBinary)).where(rr.c.id == id)).scalar_one()
+    )
+
+
+def remove_requests(connection: Connection, ids: Sequence[int]) -> None:
+    """Delete requests that have been dealt with."""
+    delete_messages(connection, rr, ids)
+
+
+def add_requests(connection: Connection, rows: Sequence[tuple[str, str, str, bytes | None]]) -> None:
+    """Write requests (robot, op, params, payload), as a robot does: it may not read what it inserted."""
+    add_messages(connection, rr, ("robot", "op", "params", "payload"), rows)
+
+
+# --- Table SA: the gateway inserts; a robot reads and deletes its own rows. The outbox of every robot ---
+
+ORDERS = tuple(op for op in COMMANDS if op != Abort.__name__)
+"""What sets a robot in motion, or tells it where it is: it has to know the map before."""
+
+# Built once: SQLAlchemy takes longer to build a statement than the database to do it.
+_LATER = or_(
+    and_(sa.c.urgent == 0, sa.c.id > bindparam("after")),
+    and_(sa.c.urgent > 0, sa.c.id > bindparam("after_urgent")),
+)
+_READ_ANSWERS = (
+    select(sa.c.id, sa.c.op, sa.c.params, sa.c.payload, sa.c.urgent)
+    .where(sa.c.robot == bindparam("of"), _LATER)
+    .order_by(sa.c.urgent.desc(), sa.c.id)
+)
+_UNFILLED_MAPS = select(sa.c.id).where(
+    sa.c.robot == bindparam("of"), sa.c.op == SetMap.__name__, sa.c.payload.is_(None)
+)
+_FILL = update(sa).where(sa.c.id == bindparam("one")).values(payload=bindparam("content"))
+_NAMES = ("robot", "op", "params", "payload", "urgent")
+_REMOVE_OWN = delete(sa).where(sa.c.robot == bindparam("of"), sa.c.id == bindparam("one"))
+_REMOVE_ONE = delete(sa).where(sa.c.id == bindparam("one"))
+_WAITING = select(sa.c.id).where(sa.c.id.in_(bindparam("ids", expanding=True)))
+# Found first, and then deleted by their ids: a deletion that looks for its rows waits at those of others.
+_KINDS = select(sa.c.id).where(sa.c.op.in_(bindparam("ops", expanding=True)))
+_LAST_ORDER = select(func.max(sa.c.id)).where(sa.c.robot == bindparam("of"), sa.c.op.in_(ORDERS))
+_MAPS_BEHIND_ORDERS = select(sa.c.id).where(
+    sa.c.robot == bindparam("of"),
+    sa.c.op == SetMap.__name__,
+    sa.c.id > func.coalesce(_LAST_ORDER.scalar_subquery(), 0),
+)
+
+
+class AnswerRow(NamedTuple):
+    """A row of SA. A SetMap without a payload is the map of the whole site, as it is when it is sent."""
+
+    id: int
+    op: str
+    params: str | None
+    payload: bytes | None
+    urgent: bool = False
+
+
+def add(connection: Connection, robot: str, answer: Answer) -> int:
+    """Write an answer for ``robot``; return its id."""
+    key = connection.execute(insert(sa), _named(robot, answer)).inserted_primary_key
+    assert key is not None
+    return int(key[0])
+
+
+def add_answers(connection: Connection, rows: Sequence[tuple[str, Answer]]) -> None:
+    """Write many answers, each with its robot."""
+    add_messages(connection, sa, _NAMES, [_row(robot, answer) for robot, answer in rows])
+
+
+def add_numbered(connection: Connection, rows: Sequence[tuple[str, Answer]]) -> list[int]:
+    """Write many answers, each with its robot; return their ids in the same order."""
+    if not rows:
+        return []
+    ids = insert(sa).returning(sa.c.id, sort_by_parameter_order=True)
+    return list(connection.scalars(ids, [_named(robot, answer) for robot, answer in rows]))
+
+
+def _named(robot: str, answer: Answer) -> dict[str, object]:
+    return dict(zip(_NAMES, _row(robot, answer), strict=True))
+
+
+def _row(robot: str, answer: Answer) -> Row:
+    payload = (answer.map or None) if isinstance(answer, SetMap) else None
+    urgent = int(isinstance(answer, Abort) and answer.emergency)
+    return robot, type(answer).__name__, json.dumps(to_json(answer)), payload, urgent
+
+
+def read_answers(
+    connection: Connection, robot: str, after: int = 0, after_urgent: int = 0
+) -> list[AnswerRow]:
+    """Return the robot's answers, the urgent ones first, then the oldest first.
+
+    Of the urgent ones those with an id above ``after_urgent``, of the others those above ``after``: an urgent
+    one overtakes others that are older.
+    """
+    found = connection.execute(_READ_ANSWERS, {"of": robot, "after": after, "after_urgent": after_urgent})
+    return [AnswerRow(*row[:4], urgent=bool(row[4])) for row in found]
+
+
+def remove_answers(connection: Connection, ids: Sequence[int]) -> None:
+    """Delete answers that were delivered, or that are void."""
+    delete_messages(connection, sa, ids)
+
+
+def remove_own(connection: Connection, robot: str, id: int) -> None:
+    """Delete answer ``id`` if it is the robot's own."""
+    connection.execute(_REMOVE_OWN, {"of": robot, "one": id})
+
+
+def take_back(connection: Connection, ids: Sequence[int]) -> set[int]:
+    """Delete those of some answers that nobody has read and deleted before; return their ids.
+
+    One by one: only of a single deletion does every server tell whether it found its row, after waiting for
+    a robot that is about to commit.
+    """
+    return {id for id in ids if connection.execute(_REMOVE_ONE, {"one": id}).rowcount}
+
+
+def remove_kinds(connection: Connection, robot: str, ops: Sequence[str]) -> None:
+    """Delete the robot's answers of the kinds ``ops``."""
+    remove_answers(connection, list(connection.scalars(_KINDS.where(sa.c.robot == robot), {"ops": ops})))
+
+
+def remove_maps(connection: Connection, robot: str) -> None:
+    """Delete the robot's maps, but for those that something waits behind which needs a map first."""
+    remove_answers(connection, list(connection.scalars(_MAPS_BEHIND_ORDERS, {"of": robot})))
+
+
+def fill_maps(connection: Connection, robot: str, content: bytes) -> None:
+    """Write ``content`` into those of the robot's maps that only say that they are of the whole site."""
+    for id in list(connection.scalars(_UNFILLED_MAPS, {"of": robot})):
+        connection.execute(_FILL, {"one": id, "content": content})
+
+
+def remove_unlocked(connection: Connection, robots: Sequence[str], ops: Sequence[str]) -> None:
+    """Delete the answers of the kinds ``ops`` for ``robots`` but for those that a robot is just reading."""
+    for begin in range(0, len(robots), TOGETHER):
+        some = sa.c.robot.in_(robots[begin : begin + TOGETHER])
+        found = connection.scalars(_KINDS.where(some).with_for_update(skip_locked=True), {"ops": ops})
+        remove_answers(connection, list(found))
+
+
+def remove_everywhere(connection: Connection, ops: Sequence[str]) -> None:
+    """Delete the answers of the kinds ``ops``, whoever they are for."""
+    remove_answers(connection, list(connection.scalars(_KINDS, {"ops": ops})))
+
+
+def waiting(connection: Connection, ids: Sequence[int]) -> set[int]:
+    """Return those of ``ids`` that still wait to be read."""
+    if not ids:
+        return set()
+    return set(connection.scalars(_WAITING, {"ids": ids}))

@@ -1,0 +1,120 @@
+"""The robots as they were last known."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Mapping, Sequence, Set
+from typing import Any
+
+import msgspec
+from sqlalchemy import Connection, delete, func, select, update
+
+from ....core.json_decoder import decode_json
+from ....core.messages import Abort, PathDeclaration, SendPos
+from ...model.robots import Robot
+from ..rows import Row, put_rows, readable
+from ..schema import robots
+from . import requests
+
+_ENCODER = msgspec.json.Encoder()
+
+LONGEST_POSE = 16_000
+"""characters; a longer one has a status that its column does not hold everywhere, and is stored without."""
+NAMES = ("name", "magic", "link", "received_at", "ended_in_order", "pose", "pose_at", "paths", "abilities")
+
+
+def row(robot: Robot) -> Row:
+    """Return what is stored of a robot as it is now."""
+    pose = None if robot.pose is None else _ENCODER.encode(robot.pose).decode()
+    if robot.pose is not None and pose is not None and len(pose) > LONGEST_POSE:
+        pose = _ENCODER.encode(dataclasses.replace(robot.pose, status=None)).decode()
+    seen = robot.link, robot.received_at, int(robot.ended_in_order), pose, robot.pose_at
+    return robot.name, robot.magic, *seen, robot.paths, robot.abilities
+
+
+def save(connection: Connection, rows: Sequence[Row]) -> None:
+    """Write what is known of robots, in place of what was."""
+    put_rows(connection, robots, NAMES, rows)
+
+
+def note_run(connection: Connection, robot: Robot, magic: int) -> bool:
+    """Write that a robot starts anew as ``magic``; return false where it is stored with that number already.
+
+    Its pose stays as it is stored: positions that are earlier may wait to be stored still.
+    """
+    number = connection.scalar(select(robots.c.magic).where(robots.c.name == robot.name))
+    if number == magic:
+        return False
+    if number is None:
+        save(connection, [row(dataclasses.replace(robot, magic=magic, pose=None, pose_at=None))])
+    else:
+        connection.execute(update(robots).where(robots.c.name == robot.name).values(magic=magic))
+    return True
+
+
+def load(connection: Connection) -> list[Robot]:
+    """Return the robots that an earlier gateway knew."""
+    return [_robot(row) for row in connection.execute(select(robots)).mappings()]
+
+
+def _robot(row: Mapping[Any, Any]) -> Robot:
+    pose = _pose(row["name"], row["pose"])
+    return Robot(
+        name=row["name"],
+        magic=row["magic"],
+        link=row["link"],
+        received_at=row["received_at"],
+        ended_in_order=bool(row["ended_in_order"]),
+        pose=pose,
+        pose_at=None if pose is None else row["pose_at"],
+        paths=_paths(row["name"], row["paths"]),
+        abilities=row["abilities"],
+    )
+
+
+def _paths(robot: str, text: str | None) -> PathDeclaration | None:
+    """Return what a robot declared of paths; None if that cannot be read, until it says Ready again."""
+    if text is None:
+        return None
+    return next(readable([text], _read_paths, lambda _text: f"what robot {robot} declared of paths"), None)
+
+
+def _read_paths(text: str) -> PathDeclaration:
+    declared: PathDeclaration = msgspec.convert(text, PathDeclaration)
+    return declared
+
+
+def _pose(robot: str, text: str | None) -> SendPos | None:
+    """Return where a robot was; None if that cannot be read: it is a robot of the fleet all the same."""
+    if not text:
+        return None
+    return next(readable([text], _read_pose, lambda _text: f"the place of robot {robot}"), None)
+
+
+def _read_pose(text: str) -> SendPos:
+    return SendPos(**decode_json(text))
+
+
+def names(connection: Connection) -> list[str]:
+    """Return the names of the robots that an earlier gateway knew, sorted."""
+    return sorted(connection.scalars(select(robots.c.name)))
+
+
+def missing(connection: Connection, stored: Set[str]) -> set[str]:
+    """Return those of the robots ``stored`` that are not there any more."""
+    # Asked every second, and the answer nearly always: none.
+    if connection.scalar(select(func.count()).select_from(robots)) == len(stored):
+        return set()
+    return set(stored).difference(names(connection))
+
+
+def forget_all(connection: Connection, names: Sequence[str]) -> None:
+    """Know these robots no more; the next that each of them reads is that it has to abort."""
+    requests.add_answers(connection, [(name, Abort()) for name in names])
+    for name in names:
+        forget(connection, name)
+
+
+def forget(connection: Connection, name: str) -> bool:
+    """Know a robot no more; return whether it was known."""
+    return connection.execute(delete(robots).where(robots.c.name == name)).rowcount > 0

@@ -1,0 +1,28 @@
+"""Which kind of accounts a database has."""
+
+from __future__ import annotations
+
+from sqlalchemy import Connection
+
+from .mariadb import MariaDbRoles
+from .postgresql import PostgreSqlRoles
+from .role_manager import AccountError, RoleManager
+
+_KINDS: dict[str, type[RoleManager]] = {
+    "postgresql": PostgreSqlRoles,
+    "mysql": MariaDbRoles,
+    "mariadb": MariaDbRoles,
+}
+
+
+def has_accounts(backend: str) -> bool:
+    """Tell whether a kind of database (sqlite, postgresql, mariadb) has accounts."""
+    return backend in _KINDS
+
+
+def role_manager_on(connection: Connection) -> RoleManager:
+    """Return who makes the accounts of the database behind ``connection``; raises AccountError for SQLite."""
+    kind = _KINDS.get(connection.dialect.name)
+    if kind is None:
+        raise AccountError("SQLite has no accounts: robots elsewhere come in over WebSocket, with a token")
+    return kind(connection)

@@ -1,0 +1,140 @@
+"""Rows in bulk: thousands written or read at once, old ones deleted a few at a time."""
+
+from __future__ import annotations
+
+import itertools
+import json
+import logging
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from functools import lru_cache
+from typing import Any, TypeVar
+
+from msgspec import ValidationError
+from sqlalchemy import Column, ColumnElement, Connection, Table, delete, select
+
+# --- Many rows into a table or out of it at once: thousands come a second, and drivers take them as they are
+
+log = logging.getLogger(__name__)
+
+TOGETHER = 100
+"""rows in one statement: what the driver and the interpreter do for each is then done for all of them."""
+
+_DELETE_BY_KEY = (
+    "DELETE {table} FROM JSON_TABLE(%s, '$[*]' COLUMNS (id BIGINT PATH '$')) AS gone "
+    "STRAIGHT_JOIN {table} ON {table}.id = gone.id"
+)
+
+Row = tuple[Any, ...]
+T = TypeVar("T")
+R = TypeVar("R")
+
+
+def readable(rows: Iterable[R], read: Callable[[R], T], name: Callable[[R], str]) -> Iterator[T]:
+    """Yield what ``read`` makes of each row; one that it cannot read is logged by its ``name`` and left out.
+
+    A row that somebody damaged must not keep the gateway from all others, nor from its start.
+    """
+    for row in rows:
+        try:
+            yield read(row)
+        except (ValueError, TypeError, LookupError, ArithmeticError, ValidationError) as error:
+            log.error("%s cannot be read in the database and is left out: %s", name(row), error)
+
+
+def add_rows(connection: Connection, table: Table, names: Sequence[str], rows: Sequence[Row]) -> None:
+    """Insert ``rows``; each holds the values of the columns ``names``.
+
+    All other columns keep their default in the database.
+    """
+    for some in _pieces(rows):
+        text = _insert(table.name, tuple(names), len(some), _mark(connection))
+        connection.exec_driver_sql(text, tuple(value for row in some for value in row))
+
+
+def add_messages(connection: Connection, table: Table, names: Sequence[str], rows: Sequence[Row]) -> None:
+    """Insert ``rows`` in their order; those with a ``payload`` each by itself.
+
+    A server takes no statement of any size, and a map may be of megabytes.
+    """
+    payload = names.index("payload")
+    for large, some in itertools.groupby(rows, lambda row: row[payload] is not None):
+        for together in ([row] for row in some) if large else [list(some)]:
+            add_rows(connection, table, names, together)
+
+
+def put_rows(connection: Connection, table: Table, names: Sequence[str], rows: Sequence[Row]) -> None:
+    """Insert ``rows`` in place of those with the same value in the first of the columns ``names``."""
+    _delete_rows(connection, table, names[0], [row[0] for row in rows])
+    add_rows(connection, table, names, rows)
+
+
+def delete_messages(connection: Connection, table: Table, ids: Sequence[int]) -> None:
+    """Delete the rows of RR or SA that have one of ``ids``, and wait for no other row.
+
+    For ``id in (...)`` MariaDB goes through the whole of a small table, and waits at every row that a robot
+    has not committed. Told to begin with the ids it takes each from the primary key.
+    """
+    if connection.dialect.name != "mariadb":
+        _delete_rows(connection, table, "id", ids)
+    elif ids:
+        connection.exec_driver_sql(_DELETE_BY_KEY.format(table=table.name), (json.dumps(list(ids)),))
+
+
+def _delete_rows(connection: Connection, table: Table, name: str, values: Sequence[Any]) -> None:
+    for some in _pieces(values):
+        text = _delete(table.name, name, len(some), _mark(connection))
+        connection.exec_driver_sql(text, tuple(some))
+
+
+def _pieces(rows: Sequence[T]) -> Iterator[Sequence[T]]:
+    return (rows[begin : begin + TOGETHER] for begin in range(0, len(rows), TOGETHER))
+
+
+@lru_cache
+def _insert(table: str, names: tuple[str, ...], rows: int, mark: str) -> str:
+    row = f"({_marks(mark, len(names))})"
+    return f"INSERT INTO {table} ({', '.join(names)}) VALUES {', '.join([row] * rows)}"
+
+
+@lru_cache
+def _delete(table: str, name: str, rows: int, mark: str) -> str:
+    return f"DELETE FROM {table} WHERE {name} IN ({_marks(mark, rows)})"
+
+
+def _mark(connection: Connection) -> str:
+    return "?" if connection.dialect.paramstyle == "qmark" else "%s"
+
+
+def _marks(mark: str, number: int) -> str:
+    return ", ".join([mark] * number)
+
+
+# --- Deleting what is old: a few rows at a time, so that nobody waits for the database ---
+
+
+def delete_oldest(
+    connection: Connection,
+    key: Column[Any],
+    at: Column[Any],
+    before: float,
+    limit: int,
+    *only: ColumnElement[bool],
+) -> list[Any]:
+    """Delete at most ``limit`` rows whose time ``at`` is before ``before``, oldest first; return their keys.
+
+    ``only`` are further conditions; see :func:`beside_the_time` for those on columns with an index. Two
+    statements: MariaDB deletes by no limited selection.
+    """
+    query = select(key).where(at < before, *only).order_by(at).limit(limit)
+    found = list(connection.scalars(query))
+    if found:
+        connection.execute(delete(key.table).where(key.in_(found)))
+    return found
+
+
+def beside_the_time(column: Column[str]) -> ColumnElement[str]:
+    """Return a text column for a condition beside that on the time, which the database is to go by.
+
+    By the index of a state it would have to read nearly every row to see how old that is.
+    """
+    return column.concat("")

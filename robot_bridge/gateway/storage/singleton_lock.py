@@ -1,0 +1,328 @@
+"""One gateway at a time on a database: a lock that ends with the process that holds it.
+
+SQLite: a lock on a file beside the database. PostgreSQL: a lock on table ``bridge``; MariaDB: a lock on a row
+of it; each in a transaction that stays open and changes nothing, so that it is in nobody's way. Advisory
+locks would do as well if robots' accounts could not take them.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import json
+import logging
+import os
+import socket
+import time
+import uuid
+from collections.abc import AsyncIterator
+from pathlib import Path
+from typing import Any, Protocol
+
+from sqlalchemy import URL, Connection, Engine, insert, inspect, select, text, update
+from sqlalchemy.exc import DBAPIError, SQLAlchemyError
+
+from ...core.errors import BridgeError, FatalError, StoreError
+from ...core.json_decoder import SHORT, DecodingError, decode_json
+from .database import open_engine, shown
+from .dialects import Dialect, SQLite, sqlite_file_of
+from .schema import bridge
+
+log = logging.getLogger(__name__)
+
+PING_INTERVAL = 2.0
+GHOST_S = 15
+"""seconds after which a server takes the lock from a gateway that it does not hear of any more."""
+PATIENCE_AT_START = 2.0
+"""seconds for a server to notice that the gateway before was killed."""
+GATEWAY = "gateway"
+"""What a gateway says that it does."""
+RUN, ROW = "gateway", "gateway_lock"
+"""The rows of ``bridge`` that say which gateway runs, and that is locked."""
+
+_TAKEN = {"55P03", 1205}
+"""What PostgreSQL and MariaDB answer when somebody else holds the lock."""
+
+
+class GatewayLock(Protocol):
+    """A lock of one kind of database; all of it waits, so it is called in a thread."""
+
+    def take(self) -> bool:
+        """Take the lock; return false when somebody else holds it."""
+
+    def ping(self) -> None:
+        """Raise StoreError when the lock is not held any more."""
+
+    def write(self, run: dict[str, Any]) -> None:
+        """Write down which gateway runs."""
+
+    def read(self) -> dict[str, Any]:
+        """Return which gateway wrote itself down last."""
+
+    def release(self) -> None:
+        """Give the lock back."""
+
+
+class SingletonLock:
+    """Sees to it that this is the only gateway on its database.
+
+    ``does`` says what else holds it: work under which no gateway may run.
+    """
+
+    def __init__(self, url: URL, does: str = GATEWAY) -> None:
+        self._where = shown(url)
+        self._lock: GatewayLock = FileLock(url) if url.get_backend_name() == "sqlite" else ServerLock(url)
+        self._does = does
+        self._run = {
+            "run": uuid.uuid4().hex,
+            "does": does,
+            "host": socket.gethostname(),
+            "process": os.getpid(),
+            "since": round(time.time()),
+        }
+
+    async def take(self) -> None:
+        """Take the database; raises BridgeError when another gateway runs on it."""
+        until = time.monotonic() + PATIENCE_AT_START
+        while not await asyncio.to_thread(self._lock.take):
+            if time.monotonic() > until:
+                other = await asyncio.to_thread(self._lock.read)
+                raise BridgeError(f"database {self._where}: {_taken(self._does, other)}")
+            await asyncio.sleep(0.1)
+        await asyncio.to_thread(self._lock.write, self._run)
+
+    async def hold(self) -> None:
+        """Keep the database until cancelled.
+
+        :raises FatalError: when another gateway has taken it over while this one was cut off from it.
+        """
+        while True:
+            await asyncio.sleep(PING_INTERVAL)
+            try:
+                await asyncio.to_thread(self._lock.ping)
+            except StoreError as error:
+                log.error("%s; its lock is taken anew as soon as it is back", error)
+                await self._take_again()
+
+    async def release(self) -> None:
+        """Give the database back."""
+        await asyncio.to_thread(self._lock.release)
+
+    async def _take_again(self) -> None:
+        while True:
+            try:
+                taken = await asyncio.to_thread(self._lock.take)
+                other = await asyncio.to_thread(self._lock.read)
+            except StoreError:
+                await asyncio.sleep(PING_INTERVAL)
+                continue
+            if other.get("run") != self._run["run"]:
+                raise FatalError(
+                    f"database {self._where}: another gateway{_named(other)} took it over while this one was "
+                    "cut off from it; this one ends"
+                )
+            if taken:
+                return
+            # The server has not noticed yet that the connection before is gone.
+            await asyncio.sleep(PING_INTERVAL)
+
+
+@contextlib.asynccontextmanager
+async def no_gateway(url: URL, does: str) -> AsyncIterator[None]:
+    """Keep gateways off a database as long as a command ``does`` its work there.
+
+    What it does must leave table ``bridge`` itself alone, which is locked.
+
+    :raises BridgeError: when a gateway runs on it; StoreError when the database cannot be used.
+    """
+    if not await asyncio.to_thread(_has_lock, url):
+        yield
+        return
+    sole = SingletonLock(url, does)
+    await sole.take()
+    try:
+        yield
+    finally:
+        await sole.release()
+
+
+class FileLock:
+    """A lock on a file beside an SQLite database; the system ends it with the process."""
+
+    def __init__(self, url: URL) -> None:
+        self._url = url
+        self._file: int | None = None
+
+    def take(self) -> bool:
+        """Take the lock; a database in memory has none, as nobody else can open it."""
+        import fcntl
+
+        path = self._path()
+        if path is None:
+            return True
+        try:
+            file = os.open(path, os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o600)
+        except OSError as error:
+            raise StoreError(
+                f"the lock {path} cannot be written: {error.strerror}; check the folder's rights"
+            ) from error
+        try:
+            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except OSError:
+            os.close(file)
+            return False
+        self._file = file
+        return True
+
+    def ping(self) -> None:
+        """Do nothing: the lock is held as long as the process lives."""
+
+    def write(self, run: dict[str, Any]) -> None:
+        """Write down which gateway runs."""
+        if self._file is not None:
+            os.ftruncate(self._file, 0)
+            os.pwrite(self._file, json.dumps(run).encode(), 0)
+
+    def read(self) -> dict[str, Any]:
+        """Return which gateway wrote itself down last."""
+        path = self._path()
+        with contextlib.suppress(OSError):
+            return _run_in(path.read_text(encoding="utf-8") if path else None)
+        return {}
+
+    def release(self) -> None:
+        """Give the lock back; its file stays, since somebody may wait for it already."""
+        if self._file is not None:
+            os.close(self._file)
+            self._file = None
+
+    def _path(self) -> Path | None:
+        with _explained(self._url, SQLite()):
+            file = sqlite_file_of(self._url)
+        return None if file is None else Path(f"{file}.gateway")
+
+
+class ServerLock:
+    """A lock in a transaction of its own connection, which the server ends when it hears no more of it."""
+
+    def __init__(self, url: URL) -> None:
+        self._url = url
+        self._engine, self._dialect = open_engine(url)
+        self._statements = _LOCKING[self._dialect.name]
+        self._connection: Connection | None = None
+
+    def take(self) -> bool:
+        """Take the lock."""
+        self.release()
+        with _explained(self._url, self._dialect):
+            _make_row(self._engine)
+            connection = self._engine.connect()
+            try:
+                for statement in self._statements:
+                    connection.execute(text(statement))
+            except DBAPIError as error:
+                connection.close()
+                if _codes(error) & _TAKEN:
+                    return False
+                raise
+        self._connection = connection
+        return True
+
+    def ping(self) -> None:
+        """Use the connection, so that the server knows that somebody is there."""
+        with _explained(self._url, self._dialect):
+            assert self._connection is not None
+            self._connection.execute(text("select 1"))
+
+    def write(self, run: dict[str, Any]) -> None:
+        """Write down which gateway runs."""
+        with _explained(self._url, self._dialect), self._engine.begin() as connection:
+            connection.execute(update(bridge).where(bridge.c.name == RUN).values(value=json.dumps(run)))
+
+    def read(self) -> dict[str, Any]:
+        """Return which gateway wrote itself down last."""
+        with _explained(self._url, self._dialect), self._engine.connect() as connection:
+            return _run_in(connection.scalar(select(bridge.c.value).where(bridge.c.name == RUN)))
+
+    def release(self) -> None:
+        """Give the lock back."""
+        connection, self._connection = self._connection, None
+        if connection is not None:
+            with contextlib.suppress(SQLAlchemyError):
+                connection.close()
+
+
+_LOCKING = {
+    "postgresql": (
+        f"set idle_in_transaction_session_timeout = {GHOST_S * 1000}",
+        # Shuts out itself, and changes of the table; neither readers nor writers.
+        "lock table bridge in share update exclusive mode nowait",
+    ),
+    "mariadb": (
+        f"set session wait_timeout = {GHOST_S}",
+        f"select name from bridge where name = '{ROW}' for update nowait",
+    ),
+}
+
+
+def _has_lock(url: URL) -> bool:
+    """Tell whether gateways lock this database; those of version 0.1.0 did not."""
+    if url.get_backend_name() == "sqlite":
+        return True
+    engine, dialect = open_engine(url)
+    with _explained(url, dialect), engine.connect() as connection:
+        return inspect(connection).has_table(bridge.name)
+
+
+def _make_row(engine: Engine) -> None:
+    with engine.begin() as connection:
+        known = set(connection.scalars(select(bridge.c.name)))
+        for name in (RUN, ROW):
+            if name not in known:
+                connection.execute(insert(bridge).values(name=name, value="{}"))
+
+
+def _codes(error: DBAPIError) -> set[object]:
+    return {getattr(error.orig, "sqlstate", None), *getattr(error.orig, "args", ())[:1]}
+
+
+@contextlib.contextmanager
+def _explained(url: URL, dialect: Dialect) -> Any:
+    try:
+        yield
+    except SQLAlchemyError as error:
+        raise StoreError(f"database {shown(url)}: {dialect.cause(error)}; {dialect.advice}") from error
+
+
+def _run_in(text: str | None) -> dict[str, Any]:
+    try:
+        run = decode_json(text or "{}", SHORT)
+    except DecodingError:
+        return {}
+    return run if isinstance(run, dict) else {}
+
+
+def _taken(does: str, other: dict[str, Any]) -> str:
+    """Return in words who has the database, and what is to be done by whoever ``does`` something there."""
+    found = other.get("does", GATEWAY)
+    if found != GATEWAY:
+        return f"'{found}' is under way on it{_named(other)}; wait for its end, then try again"
+    cut_off = f"(where that one's computer was cut off, wait {GHOST_S} s)"
+    if does == GATEWAY:
+        return (
+            f"another gateway runs on it{_named(other)}; end that one first, or give this one a database of "
+            f"its own {cut_off}"
+        )
+    return (
+        f"a gateway runs on it{_named(other)}; end it there, as a service with 'systemctl stop "
+        f"robot-bridge', then run '{does}' again {cut_off}"
+    )
+
+
+def _named(run: dict[str, Any]) -> str:
+    if not {"host", "process", "since"} <= run.keys():
+        return ""
+    with contextlib.suppress(ValueError, TypeError, OverflowError):
+        since = time.strftime("%Y-%m-%d %H:%M:%S UTC", time.gmtime(run["since"]))
+        return f": process {run['process']} on {run['host']}, since {since}"
+    return ""

@@ -1,0 +1,432 @@
+"""Closures of roads, and detours of robots round them."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import logging
+import time
+import uuid
+from collections import deque
+from collections.abc import AsyncIterator, Callable, Collection, Sequence
+from functools import partial
+from typing import Any, Protocol
+
+import numpy as np
+from sqlalchemy import Connection
+
+from ...core.errors import BridgeError, RefusedError, StoreError, UncertainError
+from ...core.messages import (
+    AbortTask,
+    CloseRoad,
+    ClosureReport,
+    Closures,
+    Command,
+    CommandReport,
+    MessageError,
+    OpenRoad,
+    QueueTask,
+    ReplannedRobot,
+    RoadClosed,
+    SetPath,
+    SetPosEnd,
+    path_to_end,
+    to_json,
+)
+from ..commands.active_command import NOTHING, CommandOrder, because
+from ..commands.persistence import Also, AlsoOf
+from ..commands.requests import CommandRequests
+from ..commands.service import CommandService
+from ..model.planner import Point
+from ..storage.database import Database
+from ..storage.repositories import closures, requests
+from ..storage.repositories.closures import ClosureRow
+from .road_planning import RoadPlanner
+from .robot_paths import DrivenTask, RobotPath, RobotPaths
+from .site_roads import ClosedRoads, RoadStretch
+
+# --- Another way for robots whose road was closed; where there is none they stop, or operators are told
+
+log = logging.getLogger(__name__)
+
+
+class DetourQueues(Protocol):
+    """The robots' queues, as far as another way concerns them.
+
+    ``waits_for`` is asked whom a robot is to let pass before it is sent a task of its queue.
+    """
+
+    waits_for: Callable[[str, str], str | None]
+
+    async def redirect(self, robot: str, path: SetPath, operator: str, reason: str) -> CommandReport | None:
+        """Send a task of a queue by another path; None where the robot's task is none of a queue."""
+
+    async def stop_over(
+        self, robot: str, first: list[Point], rest: list[Point], other: str, by: str, also: AlsoOf
+    ) -> str:
+        """Send the robot along ``first``, and along ``rest`` for its task once ``other`` has passed."""
+
+    def current(self, robot: str) -> QueueTask | None:
+        """Return the task of its queue that the robot does, None where it does none of it."""
+
+    def to_the_end(self, task: QueueTask, left: list[Point]) -> list[Point]:
+        """Return what is ``left`` of the path that was sent for a task, up to the task's place."""
+
+    def look(self, robot: str) -> None:
+        """Look soon whether a robot's queue has something to send."""
+
+
+class Detours:
+    """Finds and sends other ways; ``stops`` tells whether a robot without another way is to stop."""
+
+    def __init__(
+        self,
+        ways: RobotPaths,
+        roads: RoadPlanner | None,
+        orders: CommandRequests,
+        queues: DetourQueues,
+        book: CommandService,
+        stops: Callable[[], bool],
+    ) -> None:
+        self._ways = ways
+        self._roads = roads
+        self._orders = orders
+        self.queues = queues
+        self._book = book
+        self._stops = stops
+        self._later: set[str] = set()
+
+    def restore(self) -> None:
+        """Have all robots led round later: nobody knows which of them an earlier gateway has come to."""
+        self._later = set(self._ways.names())
+
+    def placed(self) -> set[str]:
+        """Return the robots that were to be led round later and can be now; each of them once."""
+        placed = {robot for robot in self._later if self._ways.is_placed(robot)}
+        self._later -= placed
+        return placed
+
+    async def around(
+        self, closure: str, reason: str | None, operator: str, only: Collection[str] | None = None
+    ) -> list[ReplannedRobot]:
+        """Send every robot, or ``only`` some, whose way leads along the road of ``closure`` another way.
+
+        The road is closed by now. A robot of which it is not known where it is now is led round later, as
+        :meth:`placed` tells: another way from where it was would lead it back.
+        """
+        if self._roads is None:
+            return []
+        underway = [one for one in self._ways.all() if only is None or one.robot in only]
+        self._later.update(one.robot for one in underway if not self._ways.is_placed(one.robot))
+        concerned = await asyncio.to_thread(self._concerned, self._roads, closure, underway)
+        why = because("a road was closed", reason)
+        found = await asyncio.gather(*(self._lead(way, why, operator) for way in concerned))
+        return sorted(found, key=lambda robot: robot.robot)
+
+    def queued(self, way: RobotPath) -> QueueTask | None:
+        """Return the task of the robot's queue whose path this way is, None where it is no such path."""
+        return self.queues.current(way.robot) if isinstance(way.task, SetPath) else None
+
+    def goal(self, way: RobotPath) -> Point:
+        """Return where the robot's task ends."""
+        task = self.queued(way)
+        return way.points[-1] if task is None else (task.x, task.y)
+
+    async def send(
+        self, way: RobotPath, path: SetPath, operator: str, reason: str, also: AlsoOf | None = None
+    ) -> str:
+        """Send a robot along ``path``; return the id of the command that it then carries out.
+
+        A target stays the task that it is: the robot is told the way to it as if it had asked. ``also`` is
+        written in the same transaction. Raises RefusedError, as when the robot was told otherwise in the
+        meantime or is to stop, and StoreError.
+        """
+        if isinstance(way.task, SetPosEnd) and way.command != NOTHING:
+            more = None if also is None else also(way.command)
+            await self._book.lead(way.robot, way.command, path, partial(_tell, way.robot, path, more))
+            self._ways.told(way.robot, way.task, path)
+            return way.command
+        done = await self.queues.redirect(way.robot, path, operator, reason)
+        if done is None:
+            order = CommandOrder(str(uuid.uuid4()), way.robot, path, operator, reason, instead_of=way.command)
+            (done,) = await self._book.issue([order], None if also is None else also(order.command))
+        return done.command
+
+    async def stop(self, robot: str, reason: str, operator: str) -> str:
+        """Tell a robot to give up its task; return the id of the command."""
+        report = await self._orders.abort(AbortTask(str(uuid.uuid4()), robot, reason=reason), operator)
+        return report.command
+
+    def _concerned(self, roads: RoadPlanner, closure: str, underway: list[DrivenTask]) -> list[RobotPath]:
+        found = []
+        for way in (one.way() for one in underway):
+            points = way.points
+            if not way.known:
+                # It may have its own idea; the shortest way along the roads is the likeliest.
+                planned = roads.path_with_open(closure, points[0], points[-1])
+                points = points if planned is None else list(planned.points)
+            if roads.closed.along(points, [closure]) or roads.closed.at(points[-1]) == closure:
+                found.append(way)
+        return found
+
+    async def _lead(self, way: RobotPath, why: str, operator: str) -> ReplannedRobot:
+        if way.robot in self._later:
+            text = f"{way.robot} is sent another way when it has said where it is now: {why}. Look after it."
+            return ReplannedRobot(way.robot, "later", text)
+        try:
+            points, none = await asyncio.to_thread(self._other_way, way)
+            if points is None:
+                return await self._without_way(way, f"{why}; {none}", operator)
+            path = path_to_end(way.task, points)
+            command = await self.send(way, path, operator, why[:500])
+            text = f"{way.robot} was sent another way: {why}"
+            return ReplannedRobot(way.robot, "another way", text, command)
+        except StoreError as error:
+            self._later.add(way.robot)
+            text = f"{way.robot} is sent another way when that can be stored: {why}; {error}. Look after it."
+            return ReplannedRobot(way.robot, "later", text)
+        except (BridgeError, MessageError) as error:
+            log.error("robot %s, whose road was closed: %s", way.robot, error)
+            text = f"{way.robot} was NOT sent another way: {why}; {error}. Look after it."
+            return ReplannedRobot(way.robot, "failed", text)
+
+    def _other_way(self, way: RobotPath) -> tuple[list[Point] | None, str]:
+        assert self._roads is not None
+        try:
+            planned = self._roads.path(way.points[0], self.goal(way))
+        except RefusedError as error:
+            return None, str(error)
+        # Straight over the fields is no other way.
+        return (None, planned.note) if planned.note else (list(planned.points), "")
+
+    async def _without_way(self, way: RobotPath, why: str, operator: str) -> ReplannedRobot:
+        if not self._stops():
+            text = f"{way.robot} drives on as it was told, though {why}. Look after it."
+            return ReplannedRobot(way.robot, "told only", text)
+        command = await self.stop(way.robot, f"no other way: {why}"[:500], operator)
+        return ReplannedRobot(way.robot, "stopped", f"{way.robot} was stopped: {why}", command)
+
+
+def _tell(robot: str, path: SetPath, more: Also | None, connection: Connection) -> None:
+    requests.add_answers(connection, [(robot, path)])
+    if more is not None:
+        more(connection)
+
+
+# --- Roads that operators closed: stored, kept closed for every way that is found, opened again in time
+
+GATEWAY = "gateway"
+MOST_CONSIDERED = 16
+"""paths that are remembered until they are sent."""
+
+
+class ClosureService:
+    """Every closure that is in force. ``roads`` is None where the gateway plans without roads.
+
+    ``announce`` tells every operator; a closure is stored before anybody is told, and in force before any
+    robot is sent another way.
+    """
+
+    def __init__(
+        self,
+        database: Database,
+        clock: Callable[[], float],
+        roads: RoadPlanner | None,
+        detours: Detours,
+        announce: Callable[[str, str, dict[str, Any]], None],
+    ) -> None:
+        self._database = database
+        self._clock = clock
+        self._roads = roads
+        self._detours = detours
+        self._announce_news = announce
+        self._rows: dict[str, ClosureRow] = {}
+        self._edges: dict[str, int] = {}
+        self._considered: deque[tuple[SetPath, ClosedRoads, str | None]] = deque(maxlen=MOST_CONSIDERED)
+        self._lock = asyncio.Lock()
+        self._doubtful = False
+        """whether a closure may be stored, or ended, without being known here."""
+
+    async def restore(self) -> None:
+        """Close what an earlier gateway left closed."""
+        self._rows = {row.id: row for row in await self._database.run(closures.in_force)}
+        self._detours.restore()
+        await self._enforce()
+
+    async def site_changed(self) -> None:
+        """Find the closed roads on the network of the new publication."""
+        if self._roads is None:
+            return
+        async with self._lock:
+            self._edges = await asyncio.to_thread(self._roads.renew)
+            for id, edges in self._edges.items():
+                if not edges:
+                    log.warning("closure %s: the site, as it is published now, has no such road", id)
+        self._announce()
+
+    def report(self) -> Closures:
+        """Return the roads that are closed."""
+        return Closures([self._reported(row) for row in self._rows.values()])
+
+    async def close(self, request: CloseRoad, operator: str) -> RoadClosed:
+        """Close a road and send the robots that it concerns another way; the same again changes nothing.
+
+        :raises RefusedError: when no road is there; StoreError when it cannot be stored, and is not closed.
+        """
+        roads = self._need_roads()
+        async with self._looked_up():
+            known = await self._database.run(closures.find, request.closure)
+            if known is not None:
+                return RoadClosed(self._reported(known))
+            line, level = await asyncio.to_thread(roads.stretch, (request.x, request.y), request.reach)
+            now = self._clock()
+            row = ClosureRow(
+                request.closure,
+                [(round(x, 3), round(y, 3)) for x, y in line.tolist()],
+                level,
+                now,
+                operator,
+                request.reason,
+                None if request.seconds is None else now + request.seconds,
+            )
+            await self._run(closures.add, row)
+            await self._put([row])
+        return RoadClosed(self._reported(row), await self._lead_round(row))
+
+    async def catch_up(self) -> None:
+        """Lead those robots round that could not be led when their road was closed, as Detours tells."""
+        placed = self._detours.placed()
+        if not placed:
+            return
+        for row in list(self._rows.values()):
+            await self._lead_round(row, only=placed)
+
+    async def open(self, request: OpenRoad, operator: str) -> ClosureReport:
+        """Open a road; the same again changes nothing.
+
+        :raises RefusedError: when it was never closed; StoreError when it cannot be stored, and stays closed.
+        """
+        async with self._looked_up():
+            known = await self._database.run(closures.find, request.closure)
+            if known is None:
+                raise RefusedError(f"no road was closed as {request.closure!r}; see get_closures")
+            if known.opened_at is not None:
+                return self._reported(known)
+            return await self._open(known, operator)
+
+    async def expire(self) -> None:
+        """Open the roads that were closed until now."""
+        now = self._clock()
+        async with self._looked_up():
+            for row in [row for row in self._rows.values() if row.until is not None and row.until <= now]:
+                await self._open(row, GATEWAY)
+
+    async def consider(self, message: Command) -> None:
+        """Find out in a thread what :meth:`check` asks about a path: for a long one that takes a while."""
+        if self._roads is not None and self._rows and isinstance(message, SetPath):
+            closed = self._roads.closed
+            found = await asyncio.to_thread(_on_the_way, closed, message)
+            self._considered.append((message, closed, found))
+
+    def check(self, message: Command) -> None:
+        """Raise RefusedError for a message that sends a robot onto or along a closed road."""
+        if self._roads is None or not self._rows:
+            return
+        if isinstance(message, SetPath):
+            found = self._known_of(message, self._roads.closed)
+        elif isinstance(message, SetPosEnd):
+            found = self._roads.closed.at((message.x, message.y))
+        else:
+            return
+        if found is not None and (row := self._rows.get(found)) is not None:
+            raise RefusedError(
+                f"it leads along a road that {row.closed_by} closed at {_clock(row.closed_at)}"
+                f"{f' ({row.reason})' if row.reason else ''}; choose another way, or open the road first"
+            )
+
+    def _known_of(self, path: SetPath, closed: ClosedRoads) -> str | None:
+        for message, then, found in self._considered:
+            if message is path and then is closed:
+                return found
+        return _on_the_way(closed, path)
+
+    @contextlib.asynccontextmanager
+    async def _looked_up(self) -> AsyncIterator[None]:
+        """Hold the lock, with the closures as they are stored; raises StoreError."""
+        async with self._lock:
+            if self._doubtful:
+                stored = {row.id: row for row in await self._database.run(closures.in_force)}
+                new = [row for id, row in stored.items() if id not in self._rows]
+                self._rows = {id: row for id, row in self._rows.items() if id in stored}
+                self._doubtful = False
+                await self._put(new)
+                for row in new:
+                    await self._lead_round(row)
+            yield
+
+    async def _put(self, rows: Sequence[ClosureRow]) -> None:
+        """Keep roads closed whose closures are stored, and tell of all that are."""
+        self._rows.update({row.id: row for row in rows})
+        await self._enforce()
+        self._announce()
+        for row in rows:
+            log.warning("%s closed a road%s", row.closed_by, f" ({row.reason})" if row.reason else "")
+
+    async def _lead_round(self, row: ClosureRow, only: Collection[str] | None = None) -> list[ReplannedRobot]:
+        robots = await self._detours.around(row.id, row.reason, row.closed_by, only)
+        for robot in robots:
+            self._announce_news("replanned", robot.robot, to_json(robot))
+        return robots
+
+    async def _run(self, work: Callable[..., None], *arguments: Any) -> None:
+        try:
+            await self._database.run(work, *arguments)
+        except UncertainError:
+            self._doubtful = True
+            raise
+
+    async def _open(self, row: ClosureRow, by: str) -> ClosureReport:
+        at = self._clock()
+        await self._run(closures.end, row.id, at, by)
+        self._rows.pop(row.id, None)
+        await self._enforce()
+        self._announce()
+        return self._reported(row._replace(opened_at=at, opened_by=by))
+
+    async def _enforce(self) -> None:
+        if self._roads is None:
+            return
+        stretches = {row.id: RoadStretch(np.array(row.line), row.level) for row in self._rows.values()}
+        self._edges = await asyncio.to_thread(self._roads.set_closures, stretches)
+
+    def _need_roads(self) -> RoadPlanner:
+        if self._roads is None:
+            raise RefusedError("this gateway plans without roads; publish a site with road centrelines")
+        return self._roads
+
+    def _reported(self, row: ClosureRow) -> ClosureReport:
+        return ClosureReport(
+            closure=row.id,
+            line=row.line,
+            closed_at=row.closed_at,
+            closed_by=row.closed_by,
+            level=row.level,
+            edges=self._edges.get(row.id, 0),
+            reason=row.reason,
+            until=row.until,
+            opened_at=row.opened_at,
+            opened_by=row.opened_by,
+        )
+
+    def _announce(self) -> None:
+        self._announce_news("closures", "closures", to_json(self.report()))
+
+
+def _on_the_way(closed: ClosedRoads, path: SetPath) -> str | None:
+    """Return the closure whose road ``path`` leads along, or ends on."""
+    along = closed.along(path.points)
+    return along[0] if along else closed.at(path.points[-1])
+
+
+def _clock(at: float) -> str:
+    return time.strftime("%H:%M:%S UTC", time.gmtime(at))

@@ -1,0 +1,195 @@
+"""Paths that robots are on, and the snapshot of all their movements."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+
+from ...core.geometry import Polyline
+from ...core.messages import ConflictReport, HoldReport, SetPath, SetPosEnd
+from ...core.sites.settings_tables import RouteSettings
+from ..commands.service import CommandService
+from ..model.planner import Floats, Point, remaining_line
+from ..model.robots import Robots
+from ..storage.repositories.closures import HoldRow
+from .conflicts import Conflict, Movement, driving_movement, standing_movement
+
+# --- The ways that robots are on now, as far as the gateway knows them ---
+
+
+class RobotPath(NamedTuple):
+    """What is left of a robot's task: ``points`` from where it is to its goal.
+
+    ``known`` is false where the robot has a target and finds the way itself: the points are a straight line.
+    ``command`` is the task's, NOTHING where the robot only stands where it is to go on from.
+    """
+
+    robot: str
+    command: str
+    task: SetPosEnd | SetPath
+    points: list[Point]
+    known: bool
+
+
+@dataclass(frozen=True)
+class ReportedPath:
+    """The way to a target that a robot was told."""
+
+    path: SetPath
+
+    @cached_property
+    def line(self) -> Polyline:
+        """The way as a line, made once: of kilometres that takes longer than all that is asked of it."""
+        return Polyline(self.path.points)
+
+
+class DrivenTask(NamedTuple):
+    """A robot's task, where it is, the metres it has driven of a path, and the way that it was told last.
+
+    ``line`` is the task's path once the robot has taken that on.
+    """
+
+    robot: str
+    command: str
+    task: SetPosEnd | SetPath
+    place: Point
+    driven: float
+    told: ReportedPath | None
+    line: Polyline | None = None
+
+    @property
+    def known(self) -> bool:
+        """Whether the gateway knows the way; else the robot finds it itself."""
+        return isinstance(self.task, SetPath) or self.told is not None
+
+    def way(self) -> RobotPath:
+        """Return what is left; takes as long as the path has points, and may be called in any thread."""
+        points = [(x, y) for x, y in self.points().tolist()]
+        return RobotPath(self.robot, self.command, self.task, points, self.known)
+
+    def points(self) -> Floats:
+        """Return the points of what is left, (n, 2), as quickly as can be."""
+        if isinstance(self.task, SetPath):
+            return remaining_line(self.line or Polyline(self.task.points), self.place, self.driven)
+        if self.told is not None:
+            # Nothing counts the metres of it that are driven, so that the robot is looked for on all of it.
+            station, off = self.told.line.feet(*self.place)
+            return remaining_line(self.told.line, self.place, float(station[int(off.argmin())]))
+        return np.array([self.place, (self.task.x, self.task.y)])
+
+
+class RobotPaths:
+    """Remembers what GetPath was answered with, and knows what was commanded."""
+
+    def __init__(self, robots: Robots, book: CommandService) -> None:
+        self._robots = robots
+        self._book = book
+        self._told: dict[str, tuple[SetPosEnd, ReportedPath]] = {}
+
+    def is_placed(self, robot: str) -> bool:
+        """Tell whether it is known where a robot is now, so that its way can be changed from there."""
+        return self._robots.is_placed(robot)
+
+    def told(self, robot: str, task: SetPosEnd | SetPath, way: SetPath) -> None:
+        """Note the way to ``task`` that a robot was told."""
+        if isinstance(task, SetPosEnd):
+            self._told[robot] = task, ReportedPath(way)
+
+    def of(self, robot: str) -> DrivenTask | None:
+        """Return what a robot is doing, None for one that has no task or has not said where it is."""
+        given, command = self._book.task(robot), self._book.busy_with(robot)
+        pose = self._robots.get(robot).pose if robot in self._robots else None
+        if given is None or command is None or pose is None:
+            return None
+        task, driven = given
+        told = self._told.get(robot)
+        known_way = told[1] if told is not None and told[0] == task else None
+        line = self._book.line(robot)
+        return DrivenTask(robot, command, task, (pose.x, pose.y), driven, known_way, line)
+
+    def names(self) -> list[str]:
+        """Return the names of all robots."""
+        return self._robots.names()
+
+    def all(self) -> list[DrivenTask]:
+        """Return what all robots are doing that have a task."""
+        underway = (self.of(robot) for robot in self._robots.names())
+        return [one for one in underway if one is not None]
+
+
+# --- All robots at one moment, as movements: what conflicts are looked for in; no I/O ---
+
+
+class TrafficSnapshot(NamedTuple):
+    """All that movements are made of: ``places`` says where each robot is and how fast it drives.
+
+    Those in ``placed`` are there now; the others were there, and may have driven on unseen.
+    """
+
+    now: float
+    settings: RouteSettings
+    underway: list[DrivenTask]
+    places: dict[str, tuple[Point, float]]
+    holds: dict[str, HoldRow]
+    placed: frozenset[str]
+
+    @property
+    def on_the_way(self) -> set[str]:
+        """The robots that have a task or wait on the way of one: the others move as they please."""
+        return {one.robot for one in self.underway} | set(self.holds)
+
+    def movements(self) -> dict[str, Movement]:
+        """Return how every robot moves that has said where it is, if all goes on as it is planned."""
+        ways = {one.robot: one.points() for one in self.underway}
+        return {name: self._movement(name, ways.get(name)) for name in self.places}
+
+    def _movement(self, robot: str, way: Floats | None) -> Movement:
+        place, speed = self.places[robot]
+        radius = self.settings.radius_m
+        hold = self.holds.get(robot)
+        if hold is None:
+            if way is None:
+                return standing_movement(robot, place, self.now, radius)
+            return driving_movement(robot, way, speed, self.now, radius)
+        to_hold = np.array([place]) if way is None else way
+        rest = np.array(SetPath(**hold.rest).points)
+        joined = np.concatenate([to_hold, rest])
+        moving = driving_movement(robot, joined, speed, self.now, radius)
+        there = float(np.hypot(*np.diff(joined[: len(to_hold) + 1], axis=0).T).sum())
+        return moving.waiting(there, max(hold.until - moving.time_at(there), 0.0))
+
+
+def split_path(points: list[Point], station: float) -> tuple[list[Point], list[Point]]:
+    """Return a way up to ``station`` metres along it, and the rest of it."""
+    line = np.asarray(points, dtype=np.float64)
+    along = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(line, axis=0).T))])
+    x, y = (round(float(np.interp(station, along, line[:, k])), 3) for k in (0, 1))
+    before = [point for point, at in zip(points, along.tolist(), strict=True) if at < station - 1e-3]
+    after = [point for point, at in zip(points, along.tolist(), strict=True) if at > station + 1e-3]
+    return [*before, (x, y)], [(x, y), *after]
+
+
+def conflict_report(conflict: Conflict, clearance: float) -> ConflictReport:
+    """Return a conflict as operators are told it; ``clearance`` is metres between two robots' middles."""
+    return ConflictReport(
+        robot=conflict.robot,
+        other=conflict.other,
+        kind=conflict.kind,  # type: ignore[arg-type]
+        begins=round(conflict.begins, 1),
+        ends=None if math.isinf(conflict.ends) else round(conflict.ends, 1),
+        nearest_at=round(conflict.nearest_at, 1),
+        metres=round(conflict.metres, 2),
+        x=round(conflict.place[0], 2),
+        y=round(conflict.place[1], 2),
+        clearance=round(clearance, 2),
+    )
+
+
+def hold_report(row: HoldRow) -> HoldReport:
+    """Return a robot that waits as operators are told it."""
+    x, y = SetPath(**row.rest).points[0]
+    return HoldReport(row.robot, row.other, x, y, round(row.until, 1), row.by, row.command)

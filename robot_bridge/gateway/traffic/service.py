@@ -1,0 +1,345 @@
+"""Traffic control: conflicts found, reported and resolved, with all parts of road traffic put together."""
+
+from __future__ import annotations
+
+import asyncio
+import math
+import time
+from collections.abc import Callable, Iterable
+from typing import Any, NamedTuple
+
+from ...core.errors import RefusedError
+from ...core.messages import (
+    CommandReport,
+    ConflictResolved,
+    Conflicts,
+    GetWaysOut,
+    ResolveConflict,
+    WayOut,
+    WaysOut,
+    path_to_end,
+    to_json,
+)
+from ...core.sites.site import Site
+from ..commands.requests import CommandRequests
+from ..commands.service import CommandService
+from ..model.planner import Point
+from ..model.robots import Robots
+from ..monitoring.tasks import Steps
+from ..site.places import ServedSite
+from ..storage.database import Database
+from .closures import ClosureService, DetourQueues, Detours
+from .conflicts import Movement, conflicts_with, driving_movement, find_conflicts
+from .road_planning import RoadPlanner, RouteOptions
+from .robot_paths import RobotPath, RobotPaths, TrafficSnapshot, conflict_report, split_path
+from .yielding import REACH, YieldManager, yield_beside_path, yield_on_path
+
+# --- Robots in each other's way: found, told to operators, and resolved when one of them asks for it ---
+
+SLOWEST = 0.3
+"""A robot at less than this share of the usual speed starts or ends, and will not go on so."""
+SHARE = 0.1
+"""The share of one processor that looking for conflicts may take."""
+SHORTEST = 0.5
+"""Metres of a way below which a robot cannot be sent on to wait: it would have to stop where it is."""
+
+
+class YieldPlan(NamedTuple):
+    """How a robot gets out of the way: it waits at ``station`` of its way, or drives ``points``.
+
+    ``later`` is the seconds that it arrives later than it would, ``until`` when its waiting ends.
+    """
+
+    way: RobotPath
+    points: list[Point]
+    later: float
+    station: float = 0.0
+    until: float | None = None
+
+
+class TrafficControl:
+    """Looks for conflicts about once a second, and resolves one when an operator says who gives way."""
+
+    def __init__(
+        self,
+        clock: Callable[[], float],
+        robots: Robots,
+        ways: RobotPaths,
+        roads: RoadPlanner | None,
+        detours: Detours,
+        waiting: YieldManager,
+        site: Callable[[], Site],
+        announce: Callable[[str, str, dict[str, Any]], None],
+    ) -> None:
+        self._clock = clock
+        self._robots = robots
+        self._ways = ways
+        self._roads = roads
+        self._detours = detours
+        self._waiting = waiting
+        self._site = site
+        self._announce = announce
+        self._lock = asyncio.Lock()
+        self._told = False
+        self._next = 0.0
+
+    async def conflicts(self) -> Conflicts:
+        """Return the conflicts of all robots as they are on their ways now."""
+        seen = self.situation()
+        found = await asyncio.to_thread(_found, seen)
+        return Conflicts(seen.now, found, self._waiting.report())
+
+    async def watch(self, *, listened_to: bool) -> None:
+        """Send on who has waited long enough; tell operators, if they are ``listened_to``, of conflicts."""
+        async with self._lock:
+            await self._waiting.catch_up()
+            if self._waiting:
+                await self._waiting.see_to(self.situation())
+        if not listened_to or time.monotonic() < self._next:
+            return
+        seen, began = self.situation(), time.monotonic()
+        found = await asyncio.to_thread(_found, seen) if seen.underway else []
+        self._next = time.monotonic() + (time.monotonic() - began) / SHARE
+        report = Conflicts(seen.now, found, self._waiting.report())
+        something = bool(report.conflicts or report.waiting)
+        if something or self._told:
+            self._announce("conflicts", "conflicts", to_json(report))
+        self._told = something
+
+    async def ways_out(self, request: GetWaysOut) -> WaysOut:
+        """Return what each of two robots in each other's way can do; nothing is done, nobody is told."""
+        return await asyncio.to_thread(self._ways_out, self.situation(), request, self._site())
+
+    async def resolve(self, request: ResolveConflict, operator: str) -> ConflictResolved:
+        """Let ``robot`` wait for ``other``, or send it another way.
+
+        :raises RefusedError: when there is no such conflict, or it cannot be resolved so; nothing is changed.
+        """
+        async with self._lock:
+            plan = await asyncio.to_thread(self._plan, self.situation(), request)
+            if plan.until is None:
+                return await self._send_round(request, plan, operator)
+            return await self._let_wait(request, plan, operator)
+
+    def situation(self, names: Iterable[str] | None = None) -> TrafficSnapshot:
+        """Return what is known now of the robots called ``names``, without them of all that take commands.
+
+        Of what is only seen nobody knows the way: :mod:`...nearness` tells of that.
+        """
+        settings, places = self._site().settings.routes, {}
+        for name in self._robots.commanded() if names is None else names:
+            pose = self._robots.get(name).pose
+            if pose is not None:
+                usual = abs(pose.v) >= SLOWEST * settings.speed_ms
+                places[name] = (pose.x, pose.y), abs(pose.v) if usual else settings.speed_ms
+        placed = frozenset(name for name in places if self._robots.is_placed(name))
+        return TrafficSnapshot(
+            self._clock(), settings, self._ways.all(), places, self._waiting.rows(), placed
+        )
+
+    def _ways_out(self, seen: TrafficSnapshot, request: GetWaysOut, site: Site) -> WaysOut:
+        pairs = (request.robot, request.other), (request.other, request.robot)
+        ways = [self._giving_way(seen, *pair) for pair in pairs]
+        ways += [_aside(seen, site, *pair) for pair in pairs]
+        return WaysOut(seen.now, request.robot, request.other, ways)
+
+    def _giving_way(self, seen: TrafficSnapshot, robot: str, other: str) -> WayOut:
+        try:
+            plan = self._plan(seen, ResolveConflict(robot, other))
+        except RefusedError as error:
+            return WayOut(robot, "give way", False, str(error))
+        if plan.until is None:
+            text = f"{robot} takes another way and arrives about {plan.later:.0f} s later"
+            return WayOut(robot, "give way", True, text)
+        x, y = split_path(plan.points, plan.station)[0][-1]
+        text = f"{robot} waits at ({x:.1f}, {y:.1f}) for {other}, about {plan.later:.0f} s"
+        return WayOut(robot, "give way", True, text)
+
+    def _plan(self, seen: TrafficSnapshot, request: ResolveConflict) -> YieldPlan:
+        """Return how the robot is out of the way soonest; raises RefusedError where it cannot be."""
+        movements = seen.movements()
+        for robot in (request.robot, request.other):
+            if robot not in movements:
+                raise RefusedError(f"it is not known where robot {robot!r} is, so nothing can be planned")
+        if request.robot not in seen.placed:
+            raise RefusedError(
+                f"it is not known where {request.robot} is now, and another way might lead it back to where "
+                "it was; try again when it is heard"
+            )
+        mine, margin = movements[request.robot], seen.settings.margin_m
+        if not conflicts_with(mine, [movements[request.other]], margin, seen.now):
+            raise RefusedError(
+                f"{request.robot} and {request.other} are not in each other's way now; nothing was done"
+            )
+        underway = next((one for one in seen.underway if one.robot == request.robot), None)
+        if underway is None or request.robot in seen.holds:
+            raise RefusedError(
+                f"{request.robot} has no task or waits already, so it cannot give way; "
+                f"let {request.other} do it, or send {request.robot} aside"
+            )
+        way = underway.way()
+        plans = []
+        if request.by != "route":
+            plans.append(_waiting(way, movements, seen))
+        if request.by != "waiting":
+            plans.append(self._round(way, movements, seen))
+        good = [plan for plan in plans if plan is not None]
+        if not good:
+            moves = any(one.robot == request.other for one in seen.underway)
+            raise RefusedError(_unresolved(request, moves))
+        return min(good, key=lambda plan: plan.later)
+
+    def _round(
+        self, way: RobotPath, movements: dict[str, Movement], seen: TrafficSnapshot
+    ) -> YieldPlan | None:
+        """Return another way on which the robot meets nobody, None where there is none."""
+        if self._roads is None:
+            return None
+        mine, margin = movements[way.robot], seen.settings.margin_m
+        others = [movement for name, movement in movements.items() if name != way.robot]
+        found = conflicts_with(mine, others, margin, seen.now)
+        met = {name for one in found for name in (one.robot, one.other)}
+        avoid = [movements[name].points.tolist() for name in met - {way.robot}]
+        try:
+            goal = self._detours.goal(way)
+            route = self._roads.route(way.points[0], goal, RouteOptions(avoid=avoid))
+        except RefusedError:
+            return None
+        movement = driving_movement(way.robot, route.points, seen.places[way.robot][1], seen.now, mine.radius)
+        if route.note or conflicts_with(movement, others, margin, seen.now):
+            return None
+        return YieldPlan(way, route.points, max(movement.ends - mine.ends, 0.0))
+
+    async def _send_round(self, request: ResolveConflict, plan: YieldPlan, operator: str) -> ConflictResolved:
+        robot, reason = plan.way.robot, f"out of the way of {request.other}"
+        path = path_to_end(plan.way.task, plan.points)
+        command = await self._detours.send(plan.way, path, operator, reason)
+        text = f"{robot} was sent another way, {reason}, and arrives about {plan.later:.0f} s later"
+        return ConflictResolved(robot, "another way", text, command, round(plan.later, 1))
+
+    async def _let_wait(self, request: ResolveConflict, plan: YieldPlan, operator: str) -> ConflictResolved:
+        assert plan.until is not None
+        robot = plan.way.robot
+        first, rest = split_path(plan.points, plan.station)
+        command = await self._waiting.send(plan.way, first, rest, request.other, plan.until, operator)
+        x, y = first[-1]
+        text = f"{robot} waits at ({x:.1f}, {y:.1f}) for {request.other}, about {plan.later:.0f} s"
+        return ConflictResolved(robot, "waits", text, command, round(plan.later, 1))
+
+
+def _found(seen: TrafficSnapshot) -> list[Any]:
+    movements, settings = list(seen.movements().values()), seen.settings
+    clearance = 2 * settings.radius_m + settings.margin_m
+    return [conflict_report(one, clearance) for one in find_conflicts(movements, settings.margin_m, seen.now)]
+
+
+def _aside(seen: TrafficSnapshot, site: Site, robot: str, other: str) -> WayOut:
+    """Return where a robot that stands goes so that it is in nobody's way, or why it cannot."""
+    movements = seen.movements()
+    why = ""
+    if robot not in seen.placed:
+        why = f"it is not known where {robot} is now"
+    elif any(one.robot == robot for one in seen.underway) or robot in seen.holds:
+        why = f"{robot} has a task or waits; let it give way, or stop it"
+    elif other not in movements:
+        why = f"it is not known where {other} is"
+    if why:
+        return WayOut(robot, "aside", False, f"{robot} cannot go aside: {why}")
+    others = [movement for name, movement in movements.items() if name != robot]
+    points = yield_beside_path(
+        movements[robot], others, site, seen.places[robot][1], seen.settings.margin_m, seen.now
+    )
+    if points is None:
+        why = f"no free place within {REACH:g} m that it could reach before others come; stop {other}"
+        return WayOut(robot, "aside", False, f"{robot} cannot go aside: {why}")
+    x, y = points[-1]
+    text = f"{robot} goes {math.dist(*points):.1f} m aside, to ({x:.1f}, {y:.1f})"
+    return WayOut(robot, "aside", True, text, points)
+
+
+def _waiting(way: RobotPath, movements: dict[str, Movement], seen: TrafficSnapshot) -> YieldPlan | None:
+    """Return where and how long the robot waits, None where that does not help or is where it is now."""
+    mine = movements[way.robot]
+    others = [movement for name, movement in movements.items() if name != way.robot]
+    wait = yield_on_path(mine, others, seen.settings.margin_m, seen.now) if way.known else None
+    if wait is None or wait.station < SHORTEST or math.isinf(wait.movement.ends):
+        return None
+    until = mine.time_at(wait.station) + wait.seconds
+    return YieldPlan(way, way.points, wait.seconds, wait.station, until)
+
+
+def _unresolved(request: ResolveConflict, other_moves: bool) -> str:
+    """Return why a robot cannot give way, and what can be done: a robot that stands can only go aside."""
+    how = {
+        "waiting": "waiting does not resolve it, or it is too late for that",
+        "route": "no other way on the roads meets nobody",
+        "either": "neither waiting nor another way resolves it",
+    }[request.by]
+    other = f"Let {request.other} give way" if other_moves else f"Send {request.other} aside"
+    return (
+        f"{request.robot} cannot give way to {request.other}: {how}. {other}, stop {request.robot}, "
+        "or draw a route"
+    )
+
+
+# --- Roads and traffic at work, put together: ways found, roads kept closed, robots led round one another
+
+
+class RoadTraffic:
+    """The ways that robots are on, the roads that are closed to them, and who waits for whom.
+
+    ``planner`` is None where the gateway plans without roads. ``announce`` tells every operator.
+    """
+
+    def __init__(
+        self,
+        site: ServedSite,
+        robots: Robots,
+        commands: CommandService,
+        orders: CommandRequests,
+        queues: DetourQueues,
+        database: Database,
+        clock: Callable[[], float],
+        planner: RoadPlanner | None,
+        announce: Callable[[str, str, dict[str, Any]], None],
+    ) -> None:
+        self.planner = planner
+        self._steps = Steps("roads")
+        self.ways = RobotPaths(robots, commands)
+        detours = Detours(
+            self.ways, planner, orders, queues, commands, lambda: site.settings.routes.no_way == "stop"
+        )
+        self.closures = ClosureService(database, clock, planner, detours, announce)
+        self.waiting = YieldManager(database, commands, detours)
+        self.traffic = TrafficControl(
+            clock,
+            robots,
+            self.ways,
+            planner,
+            detours,
+            self.waiting,
+            lambda: site.site,
+            announce,
+        )
+
+    async def restore(self) -> None:
+        """Go on with the closed roads and the waiting robots that an earlier gateway left."""
+        await self.closures.restore()
+        await self.waiting.restore()
+
+    def note_step(self, command: CommandReport) -> None:
+        """Note a step of a command; called with each."""
+        self.waiting.note_step(command)
+
+    async def watch(self, *, listened_to: bool) -> None:
+        """Open roads that were closed until now; see to robots on closed ones, and in each other's way.
+
+        Conflicts are looked for only while operators are ``listened_to`` be told of them.
+        """
+        await self._steps.run(
+            {
+                "closed roads": self.closures.expire,
+                "detours": self.closures.catch_up,
+                "traffic": lambda: self.traffic.watch(listened_to=listened_to),
+            }
+        )

@@ -1,0 +1,389 @@
+"""Yielding: where a robot waits for another, and when it goes on."""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import partial
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...core.errors import BridgeError, RefusedError, UncertainError
+from ...core.logs import log_unforeseen
+from ...core.messages import CommandReport, CommandState, HoldReport, SetPath, path_to_end, to_json
+from ...core.roads.surface_index import NOWHERE
+from ...core.sites.fences import TOUCH_M, FencedAreas
+from ...core.sites.site import Site
+from ..commands.active_command import NOTHING
+from ..commands.persistence import Also, AlsoOf
+from ..commands.service import CommandService
+from ..model.planner import Floats, Point
+from ..storage.database import Database
+from ..storage.repositories import closures as stored
+from ..storage.repositories.closures import HoldRow
+from .closures import Detours
+from .conflicts import Movement, OtherMovements, conflicts_with, driving_movement
+from .robot_paths import RobotPath, TrafficSnapshot, hold_report
+
+# --- Giving way: where and how long a robot waits so that others, who go on as they are, pass first ---
+# Prioritised planning (Erdmann and Lozano-Pérez, 1987): who comes first is planned first and then fixed,
+# and
+# who comes after is planned around it.
+
+LONGEST_WAIT = 900.0
+"""seconds."""
+_BACK = 2.0
+"""Metres between the places on its way at which a robot might wait."""
+_PLACES = 12
+"""How many of them are tried at most, further apart on a long way."""
+_STEP = 0.5
+"""Seconds by which a wait is made longer at least, as long as it is too short."""
+_HALVINGS = 5
+"""How often the last step is halved to find the shortest wait."""
+
+
+@dataclass(frozen=True)
+class YieldWait:
+    """``movement`` waits ``seconds`` at ``station`` metres along its way and meets nobody."""
+
+    movement: Movement
+    station: float
+    seconds: float
+
+
+def yield_on_path(
+    movement: Movement,
+    others: Sequence[Movement],
+    margin: float,
+    now: float,
+    longest: float = LONGEST_WAIT,
+) -> YieldWait | None:
+    """Return the wait that lets ``movement`` pass ``others`` as early as can be; None where none does.
+
+    The robot drives as near to the conflict as it can wait there without being in anyone's way. Nothing has
+    to be waited for where there is no conflict.
+    """
+    around = OtherMovements(others, margin, now)
+    found = around.conflicts(movement)
+    if not found:
+        return YieldWait(movement, 0.0, 0.0)
+    first = min(found, key=lambda one: one.begins)
+    met = first.stations[0] if first.robot == movement.robot else first.stations[1]
+    best: YieldWait | None = None
+    for station in _places(met):
+        wait = _wait_at(movement, station, around, longest)
+        if wait is not None and (best is None or wait.movement.ends < best.movement.ends - 1.0):
+            best = wait
+    return best
+
+
+def _places(met: float) -> list[float]:
+    count = min(math.ceil(met / _BACK), _PLACES)
+    places = [met - (k + 1) * met / count for k in range(count)] if count else []
+    return [*(place for place in places if place > 1e-6), 0.0]
+
+
+def _wait_at(movement: Movement, station: float, around: OtherMovements, longest: float) -> YieldWait | None:
+    """Return the wait at ``station`` metres, as short as can be within a tenth of a second or so."""
+    short, seconds = 0.0, 0.0
+    arrives = movement.time_at(station)
+    # Once everybody stands nothing changes any more.
+    longest = min(longest, around.ends - arrives + 2 * _STEP)
+    while True:
+        found = around.conflicts(movement.waiting(station, seconds))
+        if not found:
+            break
+        if any(math.isinf(one.ends) or one.begins < arrives + seconds for one in found):
+            # Nobody moves out of the way by being waited for, and here the robot is itself in the way.
+            return None
+        short = seconds
+        seconds += max(max(one.ends - one.begins for one in found) / 2, _STEP)
+        if seconds > longest:
+            return None
+    for _ in range(_HALVINGS):
+        middle = (short + seconds) / 2
+        if around.conflicts(movement.waiting(station, middle)):
+            short = middle
+        else:
+            seconds = middle
+    return YieldWait(movement.waiting(station, seconds), station, seconds)
+
+
+# --- The nearest free place that a standing robot can go to, off the ways of all others; no I/O ---
+
+REACH = 25.0
+"""Metres from where the robot stands within which a place is looked for."""
+STEP = 0.5
+"""Metres between the circles on which places are tried."""
+DIRECTIONS = 32
+"""Places on each circle."""
+MOST_TRIED = 400
+"""Places that are held against the others' movements, one after the other."""
+SETS_OUT_AFTER = 3.0
+"""Seconds until the robot sets out: an operator looks at the way before sending it."""
+
+Bools = NDArray[np.bool_]
+
+
+def yield_beside_path(
+    robot: Movement, others: Sequence[Movement], site: Site, speed: float, margin: float, now: float
+) -> list[Point] | None:
+    """Return the straight way to the nearest place where ``robot``, which stands, is in nobody's way.
+
+    ``others`` move as planned; ``speed`` is metres a second, ``margin`` metres between two robots. The place
+    lies on the site, on a road surface where the robot stands on one, and the robot's circle touches neither
+    a keepout nor an obstacle there, nor on the way but for those that it is at already. None where none is.
+    """
+    start: Point = (float(robot.points[0, 0]), float(robot.points[0, 1]))
+    places = _on_site(_around(start), site, robot.radius)
+    places = places[_is_on_surface(places, start, site)]
+    for areas in (site.fences.keepouts, site.fences.obstacles):
+        places = places[_is_clear(places, start, areas, robot.radius)]
+    places = places[_is_off_ways(places, others, robot.radius + margin)]
+    around = OtherMovements(others, margin, now)
+    for x, y in places[:MOST_TRIED].tolist():
+        moving = driving_movement(robot.robot, [start, (x, y)], speed, now, robot.radius)
+        if not around.conflicts(moving.waiting(0.0, SETS_OUT_AFTER)):
+            return [start, (round(x, 3), round(y, 3))]
+    return None
+
+
+def _around(start: Point) -> Floats:
+    """Return the places to try, (n, 2), the nearest first."""
+    radii = np.arange(1, round(REACH / STEP) + 1) * STEP
+    turns = np.arange(DIRECTIONS) * 2 * math.pi / DIRECTIONS
+    unit = np.column_stack([np.cos(turns), np.sin(turns)])
+    offsets: Floats = (radii[:, None, None] * unit).reshape(-1, 2)
+    places: Floats = offsets + np.array(start)
+    return places
+
+
+def _on_site(places: Floats, site: Site, radius: float) -> Floats:
+    x_min, y_min, x_max, y_max = site.bounds
+    low, high = np.array([x_min, y_min]) + radius, np.array([x_max, y_max]) - radius
+    inside: Floats = places[((places >= low) & (places <= high)).all(axis=1)]
+    return inside
+
+
+def _is_on_surface(places: Floats, start: Point, site: Site) -> Bools:
+    """Tell which places are on a road surface; all where the robot itself stands on none."""
+    index = site.surface_index
+    if index.at(*start) == NOWHERE:
+        return np.ones(len(places), dtype=bool)
+    on: Bools = index.at_many(places) != NOWHERE
+    return on
+
+
+def _is_clear(places: Floats, start: Point, areas: FencedAreas, radius: float) -> Bools:
+    """Tell which places, and the legs to them, are clear of areas; a robot may leave those that it is at."""
+    clear = np.ones(len(places), dtype=bool)
+    clear[areas.near(places, radius)[0]] = False
+    for metres in (radius, TOUCH_M):
+        here = areas.near(np.array([start]), metres)[1]
+        leg, area = areas.near_legs(start, places, metres)
+        clear[leg[~np.isin(area, here)]] = False
+    return clear
+
+
+def _is_off_ways(places: Floats, others: Sequence[Movement], clearance: float) -> Bools:
+    """Tell which places are off the ways of others, whenever they drive them, and of where they stand."""
+    off = np.ones(len(places), dtype=bool)
+    for other in others:
+        low, high = other.points.min(axis=0) - REACH, other.points.max(axis=0) + REACH
+        if ((places >= low) & (places <= high)).all(axis=1).any():
+            off &= _metres_to(other.points, places) >= clearance + other.radius
+    return off
+
+
+def _metres_to(line: Floats, places: Floats) -> Floats:
+    """Return how far each of ``places`` is from a line through points, or from its only point."""
+    nearest: Floats = np.hypot(*(places - line[0]).T)
+    begin, step = line[:-1], np.diff(line, axis=0)
+    square = np.maximum((step * step).sum(axis=1), 1e-12)
+    # Leg by leg: all at once a long way would take as much memory as points times places.
+    for origin, along, length in zip(begin, step, square, strict=True):
+        share = np.clip(((places - origin) @ along) / length, 0.0, 1.0)
+        foot = origin + share[:, None] * along
+        nearest = np.minimum(nearest, np.hypot(*(places - foot).T))
+    return nearest
+
+
+# --- Robots that wait for others to pass: sent to where they wait, and on from there when the way is free
+
+log = logging.getLogger(__name__)
+
+ENDING = ("Abort", "SetPosEnd", "SetPath")
+NEAR = 1.0
+"""Metres within which a robot is where it is to wait."""
+
+
+class YieldManager:
+    """Every robot that waits. What it drives afterwards is stored, so that it is sent on after a restart."""
+
+    def __init__(self, database: Database, book: CommandService, detours: Detours) -> None:
+        self._database = database
+        self._book = book
+        self._detours = detours
+        self._rows: dict[str, HoldRow] = {}
+        self._doubtful = False
+        """whether a robot may be stored as one that waits without being known here."""
+        book.drafting.waits = self.waits
+        detours.queues.waits_for = self.waits_for
+
+    def __len__(self) -> int:
+        return len(self._rows)
+
+    def rows(self) -> dict[str, HoldRow]:
+        """Return who waits, by name."""
+        return dict(self._rows)
+
+    def row_of(self, robot: str) -> HoldRow | None:
+        """Return how a robot waits, None for one that does not."""
+        return self._rows.get(robot)
+
+    def report(self) -> list[HoldReport]:
+        """Return who waits as operators are told it."""
+        return [hold_report(row) for row in self._rows.values()]
+
+    async def restore(self) -> None:
+        """Take up the robots that wait since an earlier gateway."""
+        self._rows = {row.robot: row for row in await self._database.run(stored.held)}
+
+    async def catch_up(self) -> None:
+        """Take up robots that were stored as waiting without that being known; raises StoreError."""
+        if self._doubtful:
+            await self._book.look_up()
+            await self.restore()
+            self._doubtful = False
+
+    async def send(
+        self, way: RobotPath, first: list[Point], rest: list[Point], other: str, until: float, operator: str
+    ) -> str:
+        """Send a robot along ``first`` and let it wait there for ``other`` until ``until`` at least.
+
+        Then it is sent along ``rest``; the path of a queue's task goes on as that task. Return the id of the
+        command that it carries out; raises as :meth:`.Detours.send`.
+        """
+        task, queues = self._detours.queued(way), self._detours.queues
+        if task is not None:
+            rest = queues.to_the_end(task, rest)
+        after = to_json(path_to_end(way.task, rest))
+        row = HoldRow(way.robot, other, "", after, until, operator, None if task is None else task.task)
+
+        def also(command: str) -> Also:
+            return partial(stored.hold, row=row._replace(command=command))
+
+        try:
+            command = await self._send(way, first, row, rest, also)
+        except UncertainError:
+            self._doubtful = True
+            raise
+        self._rows[way.robot] = row._replace(command=command)
+        return command
+
+    async def _send(
+        self, way: RobotPath, first: list[Point], row: HoldRow, rest: list[Point], also: AlsoOf
+    ) -> str:
+        if row.task is None:
+            reason = f"waits for {row.other}"
+            return await self._detours.send(way, SetPath(first), row.by, reason, also)
+        return await self._detours.queues.stop_over(way.robot, first, rest, row.other, row.by, also)
+
+    def waits(self, robot: str) -> bool:
+        """Tell whether a robot waits."""
+        return robot in self._rows
+
+    def waits_for(self, robot: str, task: str) -> str | None:
+        """Return whom a robot is to let pass before a task of its queue goes on, None for nobody."""
+        row = self._rows.get(robot)
+        return None if row is None or row.task != task else row.other
+
+    def note_step(self, report: CommandReport) -> None:
+        """Note a command: whoever is told anything else waits no longer, and is sent on by nobody."""
+        row = self._rows.get(report.robot)
+        ends = report.state is CommandState.QUEUED and report.op in ENDING
+        # What leads it to where it waits may be written for it once more.
+        if ends and row is not None and row.command != report.command:
+            del self._rows[report.robot]
+            log.warning("robot %s was told %s, and waits no longer", report.robot, report.op)
+
+    def check(self, robot: str) -> None:
+        """Raise RefusedError for a robot that asks for its way while it is to wait."""
+        row = self._rows.get(robot)
+        if row is not None and self._book.busy_with(robot) == row.command:
+            raise RefusedError(
+                f"GetPath: robot {robot!r} waits for {row.other!r}; it is told its way when that has passed"
+            )
+
+    async def see_to(self, seen: TrafficSnapshot) -> None:
+        """Send on who waits no longer: the time is over and nobody is in the way.
+
+        Of a robot of which it is not known where it is now nothing is decided yet.
+        """
+        for row in [row for row in self._rows.values() if row.robot in seen.placed]:
+            try:
+                await self._see_to(row, seen)
+            except BridgeError as error:
+                log.warning("robot %s, which waits for %s, is not sent on: %s", row.robot, row.other, error)
+            except Exception:
+                log_unforeseen(log, f"robot {row.robot}, which waits for {row.other}")
+
+    async def _see_to(self, row: HoldRow, seen: TrafficSnapshot) -> None:
+        task = self._book.busy_with(row.robot)
+        if not self._goes_on(row, task, seen):
+            log.warning("robot %s has been told otherwise, or gave up; it waits no longer", row.robot)
+            await self._forget(row.robot)
+            return
+        if seen.now < row.until:
+            return
+        rest = SetPath(**row.rest)
+        if not await asyncio.to_thread(_is_free, row, seen):
+            return
+        if row.task is not None:
+            await self._forget(row.robot)
+            self._detours.queues.look(row.robot)
+            return
+        given = self._book.task(row.robot)
+        target = given[0] if given is not None else rest
+        points = _from_here(seen, row.robot, rest)
+        way = RobotPath(row.robot, task or NOTHING, target, points, True)
+        path = path_to_end(rest, points)
+
+        def also(_command: str) -> Also:
+            return partial(stored.release, robot=row.robot)
+
+        await self._detours.send(way, path, row.by, f"{row.other} has passed", also)
+        self._rows.pop(row.robot, None)
+
+    def _goes_on(self, row: HoldRow, task: str | None, seen: TrafficSnapshot) -> bool:
+        """Tell whether the robot still does what it was told to, or stands where it was to wait."""
+        if task is not None:
+            return task == row.command
+        place, _ = seen.places[row.robot]
+        return math.dist(place, SetPath(**row.rest).points[0]) <= NEAR
+
+    async def forget(self, robot: str) -> None:
+        """Let a robot wait no longer, and send it nowhere; raises StoreError."""
+        if robot in self._rows:
+            await self._forget(robot)
+
+    async def _forget(self, robot: str) -> None:
+        await self._database.run(stored.release, robot)
+        self._rows.pop(robot, None)
+
+
+def _is_free(row: HoldRow, seen: TrafficSnapshot) -> bool:
+    """Tell whether the robot meets nobody on the rest of its way if it goes on now."""
+    movements = seen._replace(holds={**seen.holds, row.robot: row._replace(until=seen.now)}).movements()
+    mine = movements.pop(row.robot)
+    return not conflicts_with(mine, movements.values(), seen.settings.margin_m, seen.now)
+
+
+def _from_here(seen: TrafficSnapshot, robot: str, rest: SetPath) -> list[tuple[float, float]]:
+    way = next((one.way() for one in seen.underway if one.robot == robot), None)
+    before = [seen.places[robot][0]] if way is None else way.points[:-1]
+    return [*before, *rest.points]

@@ -1,0 +1,342 @@
+"""Recording of trajectories: positions thinned, stored without loss, and read in pages."""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+import math
+from collections import deque
+from collections.abc import Callable, Iterable, Sequence, Set
+from typing import Any, NamedTuple
+
+from sqlalchemy import Connection
+
+from ...core.errors import DataRefusedError
+from ...core.messages import GetTrajectory, SendPos, Trajectory, TrajectoryPlace
+from ...core.messages.records import mark_text
+from ...core.sites.settings_tables import TrajectorySettings
+from ..model.arrival import standing
+from ..model.robots import RobotPose, Robots
+from ..storage.database import Database, to_its_end
+from ..storage.repositories import robots as stored_robots
+from ..storage.repositories import trajectories
+from ..storage.repositories.trajectories import Fix, PackedFix, PageMark, TrajectoryQuery, pack
+from ..storage.rows import Row
+
+# --- Which of a robot's positions are worth storing; no I/O ---
+
+
+class PositionThinning:
+    """Keeps what a robot's track needs: where it moved or turned, where it came to stand, and a sign of life.
+
+    The last position of each robot that was not worth it is remembered, so that a robot that falls silent
+    is found where it was last.
+    """
+
+    def __init__(self) -> None:
+        self._kept: dict[str, Fix] = {}
+        self._passed: dict[str, Fix] = {}
+
+    def keeps(self, fix: Fix, settings: TrajectorySettings) -> bool:
+        """Tell whether ``fix`` is to be stored; fixes of a robot come in the order of their time."""
+        last = self._kept.get(fix.robot)
+        if last is None or _worth_it(last, fix, settings):
+            self._kept[fix.robot] = fix
+            self._passed.pop(fix.robot, None)
+            return True
+        self._passed[fix.robot] = fix
+        return False
+
+    def silent(self, before: float = math.inf) -> list[Fix]:
+        """Return, once, the last fixes passed over of robots that said nothing since ``before``."""
+        found = [fix for fix in self._passed.values() if fix.received_at < before]
+        for fix in found:
+            self._kept[fix.robot] = self._passed.pop(fix.robot)
+        return found
+
+
+def _worth_it(last: Fix, fix: Fix, settings: TrajectorySettings) -> bool:
+    elapsed = fix.received_at - last.received_at
+    # A clock that was set back must not end the recording until it has caught up.
+    if elapsed >= settings.max_interval_s or elapsed < 0:
+        return True
+    if elapsed < settings.min_interval_s:
+        return False
+    return _moved(last.pose, fix.pose, settings) or (standing(fix.pose) and not standing(last.pose))
+
+
+def _moved(last: SendPos, pose: SendPos, settings: TrajectorySettings) -> bool:
+    if math.hypot(pose.x - last.x, pose.y - last.y) >= settings.min_distance_m:
+        return True
+    turn = abs(math.remainder(pose.theta - last.theta, math.tau))
+    return turn >= math.radians(settings.min_turn_deg)
+
+
+# --- Positions on their way into the database: thinned, kept while it is away or slow ---
+
+log = logging.getLogger(__name__)
+
+BATCH = 5000
+"""positions in one transaction: a few hundredths of a second of the database's thread."""
+LOOK_INTERVAL = 1.0
+"""seconds between two looks for robots that have fallen silent."""
+
+
+class TrajectoryRecorder:
+    """Collects positions and hands them out in batches; ``settings`` is asked each time, so it may change.
+
+    Where more than ``largest_backlog`` of them wait, the database is away or takes them more slowly than they
+    come: the oldest are given up, which is logged once and counted.
+    """
+
+    def __init__(self, settings: Callable[[], TrajectorySettings]) -> None:
+        self._settings = settings
+        self._thinning = PositionThinning()
+        self._waiting: deque[PackedFix] = deque()
+        self._told = False
+        self._looked_at = 0.0
+        self.given_up = 0
+
+    @property
+    def waiting(self) -> int:
+        """Return how many positions wait to be stored."""
+        return len(self._waiting)
+
+    def observe(self, fixes: Sequence[Fix]) -> None:
+        """Take in where robots are."""
+        settings = self._settings()
+        kept = [pack(fix) for fix in fixes if self._thinning.keeps(fix, settings)]
+        if kept:
+            self._waiting.extend(kept)
+            if len(self._waiting) > settings.largest_backlog:
+                self._give_up_the_oldest()
+
+    def take(self, now: float) -> list[PackedFix]:
+        """Return the oldest positions to be stored; what cannot be stored is handed to :meth:`give_back`."""
+        # Not each time: it looks at every robot, and this is called for every few requests.
+        if not 0 <= now - self._looked_at < LOOK_INTERVAL:
+            self._looked_at = now
+            self._wait(self._thinning.silent(now - self._settings().max_interval_s))
+        self._told = self._told and len(self._waiting) > self._settings().largest_backlog / 2
+        return [self._waiting.popleft() for _ in range(min(BATCH, len(self._waiting)))]
+
+    def finish(self) -> None:
+        """Let the last position of every robot be stored, however near the one before: no more will come."""
+        self._wait(self._thinning.silent())
+
+    def give_back(self, fixes: Sequence[PackedFix]) -> None:
+        """Keep positions that could not be stored; they are the oldest."""
+        self._waiting.extendleft(reversed(fixes))
+        self._give_up_the_oldest()
+
+    def _wait(self, fixes: Iterable[Fix]) -> None:
+        self._waiting.extend(map(pack, fixes))
+        self._give_up_the_oldest()
+
+    def _give_up_the_oldest(self) -> None:
+        too_many = len(self._waiting) - self._settings().largest_backlog
+        if too_many <= 0:
+            return
+        for _ in range(too_many):
+            self._waiting.popleft()
+        if not self._told:
+            log.error(
+                "positions are given up, the oldest first: more than %d wait to be stored, since the "
+                "database is away or takes them more slowly than they come "
+                "(trajectories.largest_backlog of site.toml)",
+                len(self._waiting),
+            )
+        self._told = True
+        self.given_up += too_many
+
+
+# --- Where robots are and have been, on its way into the database, in an order in which nothing is lost
+
+
+class WrittenRobots(NamedTuple):
+    """What came of storing robots: which somebody has removed, and which the database refused."""
+
+    removed: set[str]
+    refused: set[str]
+
+
+class TrajectoryWriter:
+    """Stores positions, and then where robots are.
+
+    In this order: a stored pose makes older ones late, and a request that is dealt with again tells one. So
+    where robots are is written only when no position waits, and none is on its way.
+    """
+
+    def __init__(
+        self, database: Database, robots: Robots, recorder: TrajectoryRecorder, clock: Callable[[], float]
+    ) -> None:
+        self._database = database
+        self._robots = robots
+        self._recorder = recorder
+        self._clock = clock
+        self._unsaved: set[str] = set()
+        self._stored: set[str] = set()
+        """robots that are stored, unless somebody has removed them from there."""
+        self._removed: set[str] = set()
+        self._jotted: list[tuple[int, list[PackedFix]]] = []
+        """what a server may still forget, with the session in which it was written."""
+        self._complained: set[str] = set()
+        """robots of which the log was told that something cannot be stored."""
+        self._writing = asyncio.Lock()
+
+    def begin(self, robots: Iterable[str]) -> None:
+        """Go on with ``robots``, which an earlier gateway stored."""
+        self._stored.update(robots)
+
+    def take_removed(self) -> set[str]:
+        """Return the robots that somebody has removed from the database since the last call."""
+        removed, self._removed = self._removed, set()
+        return removed
+
+    def observe(self, now: float, poses: Sequence[RobotPose]) -> None:
+        """Have the places of robots stored."""
+        self._unsaved.update([robot for robot, _ in poses])
+        self._recorder.observe([Fix(robot, now, pose) for robot, pose in poses])
+
+    def touch(self, robot: str) -> None:
+        """Have what is known of a robot stored anew."""
+        self._unsaved.add(robot)
+
+    async def save(self, *robots: str) -> None:
+        """Store where robots have been and are, those of ``robots`` in any case; raises StoreError.
+
+        Whoever waits meanwhile for robots of his own has them stored together with all others.
+        """
+        self._unsaved.update(robots)
+        await to_its_end(self._save(robots))
+
+    async def jot_with(self, work: Callable[..., None], *arguments: Any) -> None:
+        """Do ``work(connection, *arguments, positions)`` in one transaction with the positions that wait.
+
+        A power cut may undo it; the positions are then stored again. Raises StoreError.
+        """
+        await to_its_end(self._jot_with(work, arguments))
+
+    async def _jot_with(self, work: Callable[..., None], arguments: tuple[Any, ...]) -> None:
+        async with self._writing:
+            fixes, session = self._recorder.take(self._clock()), self._database.session
+            try:
+                await self._database.jot(work, *arguments, fixes)
+            except DataRefusedError:
+                # One of the positions is refused, or something of the work: each is stored by itself.
+                await self._write_or_give_back(fixes)
+                fixes = []
+                await self._database.jot(work, *arguments, fixes)
+            except Exception:
+                self._recorder.give_back(fixes)
+                raise
+            if fixes:
+                self._jotted.append((session, fixes))
+
+    async def _save(self, robots: Sequence[str]) -> None:
+        async with self._writing:
+            if robots and self._unsaved.isdisjoint(robots):
+                # Stored by whoever had the turn before.
+                return
+            self._take_back()
+            while True:
+                fixes = self._recorder.take(self._clock())
+                last, unsaved = not self._recorder.waiting, set[str]()
+                if last:
+                    unsaved, self._unsaved = self._unsaved, set()
+                try:
+                    # As they are now: by the time they are written they may be further on than is stored.
+                    known = [
+                        stored_robots.row(self._robots.get(name)) for name in unsaved if name in self._robots
+                    ]
+                    written = await self._write(known, fixes)
+                except Exception:
+                    self._recorder.give_back(fixes)
+                    self._unsaved |= unsaved
+                    raise
+                self._removed |= written.removed
+                self._stored.update(row[0] for row in known if row[0] not in written.refused)
+                self._stored -= written.removed
+                taken_back = self._take_back()
+                # Now that this is stored for good, so is what was jotted down before in the same session.
+                self._jotted.clear()
+                if last and not taken_back:
+                    return
+
+    async def _write(self, known: Sequence[Row], fixes: Sequence[PackedFix]) -> WrittenRobots:
+        """Store robots and positions; of what the database refuses as data only that is left out."""
+        try:
+            return WrittenRobots(await self._database.run(_write, known, fixes, self._stored), set())
+        except DataRefusedError as error:
+            halves = _halves(known, fixes)
+            if halves is None:
+                robot = str((known or fixes)[0][0])
+                if robot not in self._complained:
+                    log.error("what is to be stored of robot %s is left out: %s", robot, error)
+                self._complained.add(robot)
+                return WrittenRobots(set(), {row[0] for row in known})
+        first, second = [await self._write(*half) for half in halves]
+        return WrittenRobots(first.removed | second.removed, first.refused | second.refused)
+
+    async def _write_or_give_back(self, fixes: Sequence[PackedFix]) -> None:
+        try:
+            await self._write([], fixes)
+        except Exception:
+            self._recorder.give_back(fixes)
+            raise
+
+    def _take_back(self) -> bool:
+        """Have that stored again which was jotted down in a session that has ended; tell whether any was.
+
+        The server may have died, and have forgotten it.
+        """
+        session = self._database.session
+        forgotten = [fixes for number, fixes in self._jotted if number != session]
+        self._jotted = [(number, fixes) for number, fixes in self._jotted if number == session]
+        for fixes in reversed(forgotten):
+            self._recorder.give_back(fixes)
+        return bool(forgotten)
+
+
+def _halves(
+    known: Sequence[Row], fixes: Sequence[PackedFix]
+) -> list[tuple[Sequence[Row], Sequence[PackedFix]]] | None:
+    """Return robots and positions in two parts; None for what cannot be parted."""
+    if known and fixes:
+        return [(known, []), ([], fixes)]
+    if len(known) > 1:
+        half = len(known) // 2
+        return [(known[:half], []), (known[half:], [])]
+    if len(fixes) > 1:
+        half = len(fixes) // 2
+        return [([], fixes[:half]), ([], fixes[half:])]
+    return None
+
+
+def _write(
+    connection: Connection, robots: Sequence[Row], fixes: Sequence[PackedFix], stored: Set[str]
+) -> set[str]:
+    """Write robots and positions; return those of the robots ``stored`` that are there no more.
+
+    They are not written anew: somebody has removed them.
+    """
+    removed = stored_robots.missing(connection, stored)
+    stored_robots.save(connection, [row for row in robots if row[0] not in removed])
+    trajectories.add(connection, fixes)
+    return removed
+
+
+# --- A page of where robots have been, as an operator asks for it ---
+
+
+async def get_trajectory(database: Database, request: GetTrajectory) -> Trajectory:
+    """Return the page of stored positions that ``request`` asks for; raises StoreError."""
+    wanted = TrajectoryQuery(tuple(request.robots), request.since, request.until, request.bounds)
+    mark = request.mark()
+    after = None if mark is None else PageMark(*mark)
+    places = await database.run(trajectories.read, wanted, request.limit, after)
+    more = len(places) == request.limit
+    return Trajectory(
+        places=[TrajectoryPlace(*place[1:]) for place in places],
+        next=mark_text(places[-1].received_at, places[-1].id) if more else None,
+    )

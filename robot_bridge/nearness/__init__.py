@@ -1,1 +1,0 @@
-"""People and vehicles that are only seen, near robots or about to be: found, and told to operators."""

@@ -1,1 +1,0 @@
-"""Cones as they were placed, on their way out of the database."""

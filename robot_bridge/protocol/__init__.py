@@ -1,0 +1,1 @@
+"""What both ends of a WebSocket share: codec, JSON-RPC frames, credentials, schemas."""

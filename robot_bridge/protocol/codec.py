@@ -1,0 +1,247 @@
+"""From JSON to messages: decoding and checking for every wire that the gateway and the robot listen on."""
+
+from __future__ import annotations
+
+import base64
+import binascii
+import dataclasses
+import logging
+from collections.abc import Sequence
+from typing import Any, Literal, cast
+
+import msgspec
+
+from ..core.errors import (
+    BusyError,
+    ForbiddenError,
+    NotReadyError,
+    OutdatedError,
+    OverridableError,
+    StoreError,
+)
+from ..core.json_decoder import DecodingError, decode_json, has_few_brackets
+from ..core.messages import (
+    ANSWERS,
+    COMMANDS,
+    DESK_REQUESTS,
+    PAYLOADS,
+    REQUESTS,
+    Abort,
+    Answer,
+    Command,
+    DeskRequest,
+    EmergencyStop,
+    MessageError,
+    Request,
+    Send,
+    SendImage,
+    SendPos,
+    refuse_unknown_keys,
+    to_json,
+    unknown_keys,
+)
+from . import jsonrpc
+
+log = logging.getLogger(__name__)
+
+
+class UnknownOperationError(MessageError):
+    """An operation code or method that is in no table."""
+
+
+def decode_request(op: str, params: Any, payload: bytes | None = None) -> Request:
+    """Return the robot's request ``op`` with its parameters (a dict of JSON values, or None for none).
+
+    What is binary in it comes as ``payload``, or as base64 text among the parameters.
+    """
+    return cast("Request", _convert(REQUESTS, "operation", op, params, payload))
+
+
+def decode_answer(op: str, params: Any, payload: bytes | None = None) -> Answer:
+    """Return the server's answer ``op``; ``params`` and ``payload`` as in :func:`decode_request`.
+
+    Parameters that are not known are passed over: a newer gateway may give more.
+    """
+    return cast("Answer", _convert(ANSWERS, "operation", op, params, payload, strict=False))
+
+
+def decode_command(op: str, params: Any) -> Command:
+    """Return what an operator wants a robot to be told, ``op`` with its parameters."""
+    return cast("Command", _convert(COMMANDS, "operation", op, params))
+
+
+def decode_desk_request(method: str, params: Any) -> DeskRequest:
+    """Return the operator's request ``method`` with its parameters."""
+    return cast("DeskRequest", _convert(DESK_REQUESTS, "method", method, params))
+
+
+def _convert(
+    table: dict[str, Any],
+    kind: str,
+    name: str,
+    params: Any,
+    payload: bytes | None = None,
+    *,
+    strict: bool = True,
+) -> Any:
+    cls = table.get(name)
+    if cls is None:
+        raise UnknownOperationError(f"unknown {kind} {name!r}; known are {', '.join(table)}")
+    if cls is EmergencyStop:
+        understood = EmergencyStop.understood(params)
+        if understood != params:
+            log.warning("%s: what cannot be understood of it is passed over: to stop is never refused", name)
+        params = understood
+    if params is not None and not isinstance(params, dict):
+        raise MessageError(f"{name}: params is {type(params).__name__}; give an object with named parameters")
+    if name in PAYLOADS:
+        params = _with_payload(name, params or {}, payload)
+    try:
+        message = msgspec.convert(params or {}, cls)
+    except msgspec.ValidationError as error:
+        raise MessageError(f"{name}: {error}") from None
+    if strict and params:
+        _check_keys(name, message, params)
+    return message
+
+
+def _check_keys(name: str, message: Any, params: dict[str, Any]) -> None:
+    """Refuse parameters that are not known; raises MessageError. What stops a robot is done all the same."""
+    cls = type(message)
+    if getattr(cls, "stops", False) or (isinstance(message, Send) and message.op == Abort.__name__):
+        for key in unknown_keys(cls, params):
+            log.warning("%s: %s is no parameter of it, and passed over: to stop is never refused", name, key)
+        return
+    try:
+        refuse_unknown_keys(cls, params)
+    except MessageError as error:
+        raise MessageError(f"{name}: {error}") from None
+
+
+def _with_payload(op: str, params: dict[str, Any], payload: bytes | None) -> dict[str, Any]:
+    name = PAYLOADS[op]
+    if payload is not None:
+        return {**params, name: payload}
+    if name not in params:
+        raise MessageError(f"{op} came without its payload; its {name} is missing")
+    try:
+        return {**params, name: base64.b64decode(params[name], validate=True)}
+    except (TypeError, ValueError, binascii.Error):
+        raise MessageError(f"{op}: {name} is not base64 text") from None
+
+
+class _Position(msgspec.Struct, forbid_unknown_fields=True):
+    """A notification of SendPos, as nearly every frame of a robot is."""
+
+    jsonrpc: Literal["2.0"]
+    method: Literal["SendPos"]
+    params: SendPos
+
+
+_POSITIONS = msgspec.json.Decoder(_Position)
+# A dataclass passes over keys that it does not know, and a struct does not.
+_KEYS = msgspec.json.Decoder(
+    msgspec.defstruct(
+        "_PositionKeys",
+        [
+            ("jsonrpc", Any),
+            ("method", Any),
+            (
+                "params",
+                msgspec.defstruct(
+                    "_Keys",
+                    [(field.name, Any, None) for field in dataclasses.fields(SendPos)],
+                    forbid_unknown_fields=True,
+                ),
+            ),
+        ],
+    )
+)
+
+
+def decode_position(frame: str | bytes) -> SendPos | None:
+    """Return the pose in a notification of SendPos; None for any other frame, and for one that is wrong.
+
+    In one step, and so several times faster than :func:`.jsonrpc.decode` and :func:`decode_request`, which
+    say what is wrong. What is nested, as no position is, is left to them.
+    """
+    if not has_few_brackets(frame):
+        return None
+    try:
+        pose = _POSITIONS.decode(frame).params
+        _KEYS.decode(frame)
+        return pose
+    except (msgspec.DecodeError, UnicodeDecodeError):
+        return None
+
+
+class _Head(msgspec.Struct):
+    """What says which message a frame is; the rest is not looked at."""
+
+    id: int | str | None = None
+    method: str | None = None
+
+
+_HEADS = msgspec.json.Decoder(_Head)
+
+
+def check_size(frame: str | bytes, largest: int, exempt: Sequence[str] = (SendImage.__name__,)) -> None:
+    """Raise FrameError for a frame of more than ``largest`` bytes, unless its method is ``exempt``.
+
+    It is told without decoding what it holds.
+    """
+    if len(frame) <= largest:
+        return
+    try:
+        # Into what is nested nobody looks, not even for a name.
+        head = _HEADS.decode(frame) if has_few_brackets(frame) else _Head()
+    except (msgspec.DecodeError, UnicodeDecodeError):
+        head = _Head()
+    if head.method in exempt:
+        return
+    what = f"{head.method:.40}" if head.method else "the frame"
+    text = f"{what} has {len(frame)} bytes; at most {largest} are taken, but for {', '.join(exempt)}"
+    raise jsonrpc.FrameError(jsonrpc.INVALID_REQUEST, text, head.id)
+
+
+def error_code(error: Exception) -> int:
+    """Return the JSON-RPC code under which ``error`` is told to whoever asked."""
+    codes = {
+        UnknownOperationError: jsonrpc.METHOD_NOT_FOUND,
+        MessageError: jsonrpc.INVALID_PARAMS,
+        NotReadyError: jsonrpc.NOT_READY,
+        ForbiddenError: jsonrpc.FORBIDDEN,
+        OutdatedError: jsonrpc.OUTDATED,
+        OverridableError: jsonrpc.OVERRIDABLE,
+        BusyError: jsonrpc.TOO_MANY,
+        StoreError: jsonrpc.INTERNAL_ERROR,
+    }
+    return next((code for kind, code in codes.items() if isinstance(error, kind)), jsonrpc.REFUSED)
+
+
+def parse_params(op: str, text: str | bytes | None) -> Any:
+    """Return the JSON value in a row's ``params`` column; an empty one means no parameters."""
+    if not text:
+        return None
+    try:
+        return decode_json(text)
+    except DecodingError as error:
+        raise MessageError(f"{op}: params is not JSON ({error}): {str(text)[:80]!r}") from None
+
+
+def payload_of(message: Request | Answer) -> bytes | None:
+    """Return what is binary in ``message``: the payload of its row."""
+    name = PAYLOADS.get(type(message).__name__)
+    return None if name is None else cast("bytes", getattr(message, name))
+
+
+def with_base64(op: str, params: dict[str, Any], payload: bytes | None) -> dict[str, Any]:
+    """Return the parameters of a message with its payload among them, as it travels inside JSON."""
+    if payload is None or op not in PAYLOADS:
+        return params
+    return {**params, PAYLOADS[op]: base64.b64encode(payload).decode("ascii")}
+
+
+def params_of(message: Request | Answer) -> dict[str, Any]:
+    """Return all of a message as JSON values."""
+    return with_base64(type(message).__name__, to_json(message), payload_of(message))

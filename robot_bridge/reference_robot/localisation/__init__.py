@@ -1,0 +1,1 @@
+"""Localisation on the robot's own map: sensors, ray casting, particle filter, experiments."""

@@ -1,0 +1,363 @@
+"""Where the robot takes itself to be, found beside its driving: nobody waits for the filter."""
+
+from __future__ import annotations
+
+import logging
+import math
+from concurrent.futures import Executor, Future
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from ...core.robotmap.model import RobotMap
+from ..body import before_border
+from .particle_filter import FIX_LASTS, ParticleFilter
+from .segments import distances
+from .sensors import (
+    BodyReach,
+    Motion,
+    SensorReading,
+    TruePose,
+    motion_fault,
+    moved,
+    scan_fault,
+    without_negatives,
+)
+from .settings import FilterSettings, LaserSettings, ReferenceRobotError
+from .world import Walls, walls_of
+
+log = logging.getLogger(__name__)
+
+LATE = 1.0
+"""seconds by which the filter may be behind the sensors."""
+STANDS = 1e-3, 1e-3
+"""metres and radians between two scans: less is standing."""
+STANDING_SCANS = 10
+"""Of a robot that stands and knows its place every so many scans are weighed: they all see the same."""
+JITTER = 0.01, 0.005
+"""metres and radians by which the particles of a robot that stands are spread before each such scan."""
+STANDING_WORTH = 0.1
+"""metres of driving that a scan of a standing robot counts for until it knows its place for sure."""
+WHERE_EXPECTED = 3.0
+"""metres from where its wheels have it, or a GPS position: there alone a robot that stands finds itself.
+
+Elsewhere it may be in any of several places that look alike until it drives, or is told where it is.
+"""
+LOST_ACCURACY = 2.0
+"""metres: the least accuracy of a robot that has lost itself, as wide as what counts as one place."""
+SEES = 3
+"""beams with an echo: a scan with no more may see nothing of the map."""
+BORDER = 2.0
+"""metres from the border of a map of a part of the site, nearer than which a robot stands."""
+
+_FRAME = ("crs", "origin", "rotation")
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """What the filter believed after reading ``number``; ``accuracy`` is a standard deviation in metres."""
+
+    number: int
+    pose: TruePose
+    accuracy: float
+    lost: bool
+    agreement: float
+    particles: int = 0
+    sees_nothing: bool = False
+
+
+@dataclass(frozen=True)
+class InitialBelief:
+    """Where the robot takes itself to be when it is switched on; ``deviation`` metres and radians."""
+
+    pose: TruePose
+    deviation: tuple[float, float] = (0.1, 0.05)
+    unknown: bool = False
+
+
+@dataclass(frozen=True)
+class LocaliserSettings:
+    """The laser, the filter, and what the body can do; ``fix_noise`` is the GPS receiver's, metres."""
+
+    laser: LaserSettings
+    filter: FilterSettings
+    reach: BodyReach
+    fix_noise: float = 1.5
+    compiled: bool | None = field(default=None)
+
+
+class Localiser:
+    """Hands readings to a particle filter that works on ``executor``, one after the other.
+
+    :attr:`pose` is the newest belief, moved on by what was measured since. :attr:`trouble` says why it is not
+    to be driven by. Call all methods from one thread.
+    """
+
+    def __init__(
+        self, settings: LocaliserSettings, start: InitialBelief, rng: np.random.Generator, executor: Executor
+    ) -> None:
+        self._settings = settings
+        self._start: InitialBelief | None = start
+        self._rng = rng
+        self._executor = executor
+        self._filter: ParticleFilter | None = None
+        """Touched by work on the executor alone."""
+        self._quiet_scans = 0
+        self._expected: TruePose | None = None
+        """Where the wheels have it since it knew its place last; this too is the executor's."""
+        self._fixed: tuple[float, float] | None = None
+        self._fixed_for = 0.0
+        """Metres driven since the newest GPS position."""
+        self._walls: Walls | None = None
+        self._work: Future[Estimate] | None = None
+        self._work_t = 0.0
+        self._next_map: RobotMap | None = None
+        """What the filter is to use from its next reading on."""
+        self._tried: tuple[RobotMap | None, InitialBelief | None] = None, None
+        self._owed: list[Motion] = []
+        """What the filter has not been told yet, because it was busy."""
+        self._number = 0
+        self._since: list[tuple[int, Motion]] = []
+        """Motions by the number of their reading, that the newest estimate does not know of."""
+        self._estimate = Estimate(0, start.pose, start.deviation[0], True, 0.0)
+        self._fault: str | None = None
+        self._failure: str | None = None
+        self._missed = False
+        self._last_t: float | None = None
+        self._done_t: float | None = None
+        self._worst = 0.0
+        self.map: RobotMap | None = None
+
+    @property
+    def pose(self) -> TruePose:
+        """Where the robot takes itself to be, as of the newest reading."""
+        pose = self._estimate.pose
+        for _, motion in self._since:
+            pose = moved(pose, motion)
+        return pose
+
+    @property
+    def lost(self) -> bool:
+        """Tell whether the robot does not know its place."""
+        return self._estimate.lost
+
+    @property
+    def accuracy(self) -> float:
+        """The standard deviation of the position in metres; of a lost robot the worst so far."""
+        return max(self._estimate.accuracy, self._worst)
+
+    @property
+    def agreement(self) -> float:
+        """The share of the newest scan's beams that are where the map has something."""
+        return self._estimate.agreement
+
+    @property
+    def particles(self) -> int:
+        """How many particles there are."""
+        return self._estimate.particles
+
+    @property
+    def trouble(self) -> str | None:
+        """Why the robot is not to drive, None when it knows where it is."""
+        self._collect()
+        if self.map is None:
+            return "it has no map yet"
+        if self._failure is not None:
+            return self._failure
+        if self._fault is not None:
+            return self._fault
+        if self._is_late():
+            return f"the filter is more than {LATE:g} s behind the sensors; give it more processor time"
+        if self._estimate.sees_nothing:
+            return "nothing of its map is within the reach of its laser; lead it to where something is"
+        if self._estimate.lost:
+            fits = 100 * self._estimate.agreement
+            return (
+                f"it does not know its place ({fits:.0f} % of its scan fits the map); tell it where it is "
+                "by a start position, or wait"
+            )
+        x, y, _ = self.pose
+        if before_border(self.map, x, y) < BORDER:
+            return "it is at the border of its map, and was not sent the next one yet"
+        return None
+
+    def use_map(self, robot_map: RobotMap) -> None:
+        """Go on with another map, or begin with the first one.
+
+        :raises ReferenceRobotError: for a map of another frame, one that does not hold the robot's place, and
+            one without anything that the laser can see; the old one is kept.
+        """
+        self._check(robot_map)
+        self.map = robot_map
+        self._next_map = robot_map
+
+    def place(self, start: InitialBelief) -> None:
+        """Take the robot to be where it is told that it is."""
+        self._start = start
+        self._estimate = Estimate(self._number, start.pose, start.deviation[0], True, 0.0)
+        self._since, self._owed, self._worst = [], [], 0.0
+
+    def observe(self, reading: SensorReading) -> None:
+        """Hand a reading to the filter, now or, while that is busy, with the next one."""
+        self._collect()
+        before, self._last_t = self._last_t, reading.t
+        if self._done_t is None:
+            self._done_t = reading.t
+        fault = motion_fault(reading, before, self._settings.reach)
+        if fault is not None:
+            # What the robot did meanwhile nobody knows: the filter is to doubt, and is not told.
+            self._fault, self._missed, self._done_t = fault, True, reading.t
+            return
+        self._number += 1
+        self._since.append((self._number, reading.motion))
+        self._owed.append(reading.motion)
+        self._fault = scan_fault(reading, self._settings.laser.beams)
+        if self._fault is not None or self.map is None:
+            self._done_t = reading.t
+            return
+        if self._work is None:
+            self._begin_work(reading)
+
+    def _begin_work(self, reading: SensorReading) -> None:
+        motions, missed = self._owed, self._missed
+        self._tried = self._next_map, self._start
+        self._next_map, self._owed, self._start, self._missed = None, [], None, False
+        self._work_t = reading.t
+        self._work = self._executor.submit(self._update, self._number, *self._tried, motions, reading, missed)
+        self._collect()
+
+    def _collect(self) -> None:
+        """Take over what the filter has come to, if it has."""
+        work = self._work
+        if work is None or not work.done():
+            return
+        self._work, self._done_t = None, self._work_t
+        error = work.exception()
+        if error is not None:
+            log.error("localisation: %s", error, exc_info=error)
+            self._failure, self._missed = f"localisation failed: {error}", True
+            robot_map, start = self._tried
+            self._next_map, self._start = self._next_map or robot_map, self._start or start
+            return
+        self._failure = None
+        if self._start is not None:
+            # It was told another place meanwhile.
+            return
+        estimate = self._estimate = work.result()
+        self._worst = max(self._worst, estimate.accuracy, LOST_ACCURACY) if estimate.lost else 0.0
+        self._since = [(number, motion) for number, motion in self._since if number > estimate.number]
+
+    def _is_late(self) -> bool:
+        return self._last_t is not None and self._done_t is not None and self._last_t - self._done_t > LATE
+
+    def _check(self, robot_map: RobotMap) -> None:
+        known = self.map
+        name = robot_map.meta.get("id", "without id")
+        for key in _FRAME if known is not None else ():
+            assert known is not None
+            here, there = known.meta.get(key), robot_map.meta.get(key)
+            if here != there:
+                raise ReferenceRobotError(
+                    f"map {name}: its {key} is {there}, that of the robot's map {here}: it is "
+                    "of another site; the robot keeps the map that it has"
+                )
+        if not len(walls_of(robot_map).higher_than(self._settings.laser.height)):
+            raise ReferenceRobotError(
+                f"map {name}: nothing on it is higher than the laser, {self._settings.laser.height} m; "
+                "ask for a larger map, or one of this place"
+            )
+        x, y, _ = self.pose
+        unknown = self._start is not None and self._start.unknown
+        if not unknown and not (known is not None and self.lost) and not robot_map.border.holds(x, y):
+            raise ReferenceRobotError(
+                f"map {name}: the robot takes itself to be at ({x:.1f}, {y:.1f}), which is not on it; "
+                "ask for the map around there"
+            )
+
+    # What follows is done on the executor.
+
+    def _update(
+        self,
+        number: int,
+        robot_map: RobotMap | None,
+        start: InitialBelief | None,
+        motions: list[Motion],
+        reading: SensorReading,
+        missed: bool,
+    ) -> Estimate:
+        if robot_map is not None:
+            self._exchange_map(robot_map)
+        tracking = self._filter
+        assert tracking is not None
+        ranges = without_negatives(reading.ranges)
+        if start is not None:
+            self._begin(tracking, start, motions, ranges)
+        else:
+            self._follow(tracking, motions, ranges, missed)
+        if reading.fix is not None:
+            self._fixed, self._fixed_for = reading.fix, 0.0
+            tracking.observe_fix(*reading.fix, self._settings.fix_noise)
+        belief = tracking.belief
+        if not belief.lost:
+            self._expected = belief.pose
+        accuracy = max(belief.accuracy, belief.spread) if belief.lost else belief.accuracy
+        count = len(tracking.particles)
+        nothing = self._fixed is None and self._sees_nothing(belief.pose, ranges)
+        return Estimate(number, belief.pose, accuracy, belief.lost, belief.agreement, count, nothing)
+
+    def _sees_nothing(self, pose: TruePose, ranges: Any) -> bool:
+        """Tell whether neither the scan nor the map has anything there: all places are alike then."""
+        reach = self._settings.laser.reach
+        if np.count_nonzero(ranges < reach) > SEES or self._walls is None:
+            return False
+        return bool(distances(np.array(pose[:2]), self._walls.a, self._walls.b).min() > reach)
+
+    def _begin(
+        self, tracking: ParticleFilter, start: InitialBelief, motions: list[Motion], ranges: Any
+    ) -> None:
+        self._quiet_scans, self._fixed = 0, None
+        if start.unknown:
+            self._expected = None
+            tracking.search(ranges)
+            return
+        self._expected = start.pose
+        tracking.place(start.pose, start.deviation)
+        for motion in motions:
+            tracking.move(motion)
+        tracking.observe(ranges)
+
+    def _follow(self, tracking: ParticleFilter, motions: list[Motion], ranges: Any, missed: bool) -> None:
+        for motion in motions:
+            tracking.move(motion)
+            if self._expected is not None:
+                self._expected = moved(self._expected, motion)
+        if missed:
+            tracking.doubt()
+        if any(abs(m.distance) > STANDS[0] or abs(m.turn) > STANDS[1] for m in motions):
+            self._quiet_scans = 0
+            self._fixed_for += sum(abs(motion.distance) for motion in motions)
+            self._fixed = self._fixed if self._fixed_for < FIX_LASTS else None
+            tracking.observe(ranges)
+            return
+        self._quiet_scans += 1
+        lost = tracking.belief.lost
+        if lost or self._quiet_scans % STANDING_SCANS == 0:
+            tracking.jitter(*JITTER)
+            tracking.observe(ranges)
+        if lost and self._is_expected(tracking.belief.pose):
+            tracking.settle(STANDING_WORTH)
+
+    def _is_expected(self, pose: TruePose) -> bool:
+        places = (self._expected, self._fixed)
+        return any(one is not None and math.dist(pose[:2], one[:2]) < WHERE_EXPECTED for one in places)
+
+    def _exchange_map(self, robot_map: RobotMap) -> None:
+        self._walls = walls_of(robot_map).higher_than(self._settings.laser.height)
+        if self._filter is not None:
+            self._filter.use_map(robot_map)
+            return
+        settings = self._settings
+        self._filter = ParticleFilter(
+            robot_map, settings.laser, settings.filter, self._rng, settings.compiled
+        )

@@ -1,0 +1,352 @@
+"""Simulated robot that knows its place by its sensors alone, its world, and an executor for fast time."""
+
+from __future__ import annotations
+
+import math
+import secrets
+from collections.abc import Callable, Sequence
+from concurrent.futures import Executor, Future
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, ParamSpec, TypeVar
+
+import msgspec
+import numpy as np
+from numpy.typing import NDArray
+
+from ...core.messages import Observed, SendImage, SetObject
+from ...core.robotmap.model import RobotMap
+from ..body import Body, BodyLimits, Pose
+from .avoidance import Avoidance, Discs, MovingObstacles, ObstacleShape, ranges_to
+from .localiser import InitialBelief, Localiser, LocaliserSettings
+from .map_doubts import Doubt, MapDoubts
+from .map_gaps import FoundObject, MapGaps
+from .segments import distances
+from .sensors import (
+    BodyReach,
+    Motion,
+    SensorReading,
+    SimulatedGps,
+    SimulatedGyroscope,
+    SimulatedLaser,
+    SimulatedOdometry,
+    TruePose,
+    motion_between,
+    moved,
+)
+from .settings import LocalisedRobotSettings, ReferenceRobotError, settings_tables
+from .world import Walls, changed, inside_solids, walls_of
+
+# --- An executor that works at once, in the thread that asks: for time that runs faster than the clock
+
+P = ParamSpec("P")
+T = TypeVar("T")
+
+
+class InlineExecutor(Executor):
+    """Has done its work when it returns; errors are kept in the future, as other executors do."""
+
+    def submit(self, fn: Callable[P, T], /, *args: P.args, **kwargs: P.kwargs) -> Future[T]:
+        """Call ``fn``."""
+        future: Future[T] = Future()
+        try:
+            future.set_result(fn(*args, **kwargs))
+        except Exception as error:
+            future.set_exception(error)
+        return future
+
+
+# --- A simulated body that knows its place by its sensors alone: it drives in a world, and believes in a map
+
+BLOCKED_SAID = 1.0
+"""seconds after which a robot says that something is in its way."""
+LASER_UP = 0.1
+"""metres above its laser: as high at least is what that sees."""
+FIX_EVERY = 1.0
+"""seconds between two positions of a GPS receiver."""
+
+
+@dataclass(frozen=True, eq=False)
+class SimulatedWorld:
+    """What is really there: ``walls`` as the laser meets them, ``sky`` as GPS does, and what moves."""
+
+    walls: Walls
+    sky: Walls
+    surroundings: MovingObstacles = field(default_factory=MovingObstacles)
+
+
+@dataclass(frozen=True)
+class LocalisedSettings:
+    """The robot: its sensors and filter, limits, ``scans`` a second, and with ``gps`` a receiver.
+
+    ``start`` is where it takes itself to be, ``truth`` where it is. All that is random comes from ``seed``.
+    """
+
+    robot: LocalisedRobotSettings
+    limits: BodyLimits
+    truth: TruePose
+    start: InitialBelief
+    scans: float = 5.0
+    gps: bool = False
+    seed: int = 1
+    shape: ObstacleShape = field(default_factory=ObstacleShape)
+    compiled: bool | None = None
+
+
+class LocalisedBody:
+    """Moves as asked while it knows its place and its way is free; its pose is what it believes.
+
+    ``executor`` is where the filter works. ``driven`` is metres by the wheels.
+    """
+
+    def __init__(self, settings: LocalisedSettings, world: SimulatedWorld, executor: Executor) -> None:
+        self._settings = settings
+        self._world = world
+        self._body = Body(settings.truth, settings.limits)
+        robot = settings.robot
+        senses, mind = (np.random.default_rng([settings.seed, part]) for part in (1, 2))
+        self._laser = SimulatedLaser(world.walls, robot.laser, senses)
+        self._wheels = SimulatedOdometry(robot.odometry, senses)
+        self._gyroscope = SimulatedGyroscope(robot.gyroscope, senses)
+        self._receiver = SimulatedGps(world.sky, robot.gps_receiver, senses) if settings.gps else None
+        self.avoidance = Avoidance(self._laser.bearings, settings.shape)
+        limits = settings.limits
+        localising = LocaliserSettings(
+            robot.laser,
+            robot.filter,
+            BodyReach(limits.speed, limits.turn_rate),
+            robot.gps_receiver.noise,
+            settings.compiled,
+        )
+        self.localiser = Localiser(localising, settings.start, mind, executor)
+        self.odometry = settings.start.pose
+        """Where the wheels alone would have it."""
+        self._felt = Motion(0.0, 0.0)
+        """What was measured since the newest scan."""
+        self._partial: list[Motion] = []
+        self._wanted = 0.0, 0.0
+        self._t = 0.0
+        self._next_scan = 0.0
+        self._next_fix = 0.0
+        self._gaps: MapGaps | None = None
+        self._doubts: MapDoubts | None = None
+        self._found: list[FoundObject] = []
+        self._doubted: list[Doubt] = []
+        self._told, self._run = 0, secrets.token_hex(3)
+        self.readings = 0
+        """How many scans there have been."""
+        world.surroundings.add(self, lambda: self.discs)
+
+    @property
+    def truth(self) -> TruePose:
+        """Where the robot really is."""
+        return self._body.pose
+
+    @property
+    def pose(self) -> TruePose:
+        """Where the robot takes itself to be."""
+        pose = self.localiser.pose
+        for motion in self._partial:
+            pose = moved(pose, motion)
+        return pose
+
+    @property
+    def v(self) -> float:
+        """Its speed by the wheels, m/s."""
+        return self._body.v
+
+    @property
+    def driven(self) -> float:
+        """Metres since the start."""
+        return self._body.driven
+
+    @property
+    def accuracy(self) -> float | None:
+        """The standard deviation of its position, metres; None before it has a map."""
+        return None if self.localiser.map is None else self.localiser.accuracy
+
+    @property
+    def hindrance(self) -> str | None:
+        """Why it must not drive, None when it knows its place."""
+        return self.localiser.trouble
+
+    @property
+    def remark(self) -> str | None:
+        """What keeps it from driving on although it knows its place."""
+        if not self.avoidance.waits or self.avoidance.blocked_for < BLOCKED_SAID:
+            return None
+        return f"waits: something is in its way, {self.avoidance.free_ahead(0.0):.1f} m ahead"
+
+    @property
+    def blocked_for(self) -> float:
+        """For how many seconds something has been in its way."""
+        return self.avoidance.blocked_for
+
+    @property
+    def discs(self) -> Discs:
+        """Itself, as others see it: (1, 3)."""
+        x, y, _ = self._body.pose
+        return np.array([[x, y, self._settings.shape.radius]])
+
+    def place(self, pose: TruePose) -> None:
+        """Take itself to be at ``pose``, as a robot that is told where it stands."""
+        if self.localiser.map is None:
+            # It is switched on there.
+            self._body.place(pose)
+        self.odometry, self._partial = pose, []
+        self.localiser.place(InitialBelief(pose, (0.5, math.radians(10))))
+
+    def use_map(self, robot_map: RobotMap) -> str | None:
+        """Go on with another map; return why not, or None."""
+        try:
+            self.localiser.use_map(robot_map)
+        except ReferenceRobotError as error:
+            return str(error)
+        if self._gaps is None or self._doubts is None:
+            laser, bearings = self._settings.robot.laser, self._laser.bearings
+            self._gaps = MapGaps(robot_map, laser, bearings)
+            self._doubts = MapDoubts(robot_map, laser, bearings)
+        else:
+            self._gaps.use_map(robot_map)
+            self._doubts.use_map(robot_map)
+        return None
+
+    def observations(self) -> Sequence[Observed]:
+        """Return what it saw again and again where its map has nothing, an object and an image of it.
+
+        And what of its map it looks through again and again.
+        """
+        found, self._found = self._found, []
+        doubted, self._doubted = self._doubted, []
+        observed: list[Observed] = []
+        for doubt in doubted:
+            if len(doubt.source) > SetObject.texts["doubts"]:
+                continue
+            self._told += 1
+            name, source = f"missing-{self._run}-{self._told}", f"{self._run}-{self._told}"
+            observed.append(
+                SetObject(
+                    doubt.x,
+                    doubt.y,
+                    name,
+                    doubt.semantics[: SetObject.texts["label"]] or None,
+                    radius=min(doubt.radius, SetObject.ranges["radius"][1]),
+                    source=source,
+                    doubts=doubt.source,
+                )
+            )
+        for thing in found:
+            self._told += 1
+            name, source = f"seen-{self._run}-{self._told}", f"{self._run}-{self._told}"
+            height = self._settings.robot.laser.height
+            observed.append(
+                SetObject(thing.x, thing.y, name, "obstacle", height + LASER_UP, thing.radius, source=source)
+            )
+            observed.append(SendImage(thing.image, thing.x, thing.y, name, "image/png", source=f"{source}i"))
+        return observed
+
+    def drive(self, v: float, turn_rate: float) -> None:
+        """Ask for a motion, m/s and rad/s; it stands where it must not drive, and keeps off what it sees."""
+        if self.localiser.trouble is not None:
+            v = turn_rate = 0.0
+        self._wanted = v, turn_rate
+
+    def step(self, dt: float) -> None:
+        """Let ``dt`` seconds pass, and scan when it is time."""
+        self._body.drive(*self.avoidance.adjusted(*self._wanted, dt))
+        before = self._body.pose
+        self._body.step(dt)
+        true = motion_between(before, self._body.pose)
+        wheels = self._wheels.measure(true)
+        self.odometry = moved(self.odometry, wheels)
+        motion = Motion(wheels.distance, self._gyroscope.measure(true.turn, dt))
+        self._partial.append(motion)
+        self._felt = Motion(self._felt.distance + motion.distance, self._felt.turn + motion.turn)
+        self.avoidance.move(motion)
+        self._t += dt
+        if self._t >= self._next_scan - 1e-9:
+            self._next_scan = self._t + 1 / self._settings.scans
+            self._scan()
+
+    def _scan(self) -> None:
+        pose = self._body.pose
+        nearer = ranges_to(self._world.surroundings.around(self), pose, self._laser.bearings)
+        ranges = self._laser.scan(pose, nearer)
+        self.readings += 1
+        motion, self._felt, self._partial = self._felt, Motion(0.0, 0.0), []
+        self.avoidance.observe(ranges, Motion(0.0, 0.0))
+        self.localiser.observe(self.measured(SensorReading(self._t, motion, ranges, self._fix())))
+        if self._gaps is not None and self._doubts is not None and self.localiser.trouble is None:
+            self._found += self._gaps.observe(self.localiser.pose, ranges)
+            self._doubted += self._doubts.observe(self.localiser.pose, ranges)
+
+    def measured(self, reading: SensorReading) -> SensorReading:
+        """Return what the sensors say of what is; a place for tests to let them fail."""
+        return reading
+
+    def _fix(self) -> tuple[float, float] | None:
+        if self._receiver is None or self._t < self._next_fix:
+            return None
+        self._next_fix = self._t + FIX_EVERY
+        return self._receiver.fix(self._body.pose)
+
+    def carry(self, pose: TruePose) -> None:
+        """Put the body elsewhere; neither its wheels nor its gyroscope notice."""
+        self._body.place(pose)
+
+    def clearance(self) -> float:
+        """Return how far the body really is from all that it could hit, metres; below 0 it has hit it."""
+        x, y, _ = self._body.pose
+        walls = self._world.walls
+        found: list[NDArray[Any]] = [distances(np.array([x, y]), walls.a, walls.b)]
+        others = self._world.surroundings.around(self)
+        found.append(np.hypot(others[:, 0] - x, others[:, 1] - y) - others[:, 2])
+        return float(np.concatenate(found).min(initial=math.inf)) - self._settings.shape.radius
+
+
+# --- A world made of a site's map, and robots in it that know their place by their sensors alone ---
+
+MAP_MARGIN = 20.0
+"""metres from the border of its map at which such a robot asks for the next one."""
+
+
+def read_robot_settings(file: Path) -> LocalisedRobotSettings:
+    """Return what a robot and its world are set to by a TOML ``file``; raises ReferenceRobotError."""
+    try:
+        return msgspec.convert(settings_tables(file), LocalisedRobotSettings)
+    except msgspec.ValidationError as error:
+        raise ReferenceRobotError(f"settings {file}: {error}; see docs/experiments.md") from None
+
+
+def simulated_world(robot_map: RobotMap, settings: LocalisedRobotSettings, seed: int) -> SimulatedWorld:
+    """Return the world of which ``robot_map`` is the map; another one for each ``seed``."""
+    seen = walls_of(robot_map).higher_than(settings.laser.height)
+    return SimulatedWorld(
+        changed(seen, settings.world, np.random.default_rng([seed, 0])), walls_of(robot_map)
+    )
+
+
+def localised_robot(
+    robot_map: RobotMap,
+    settings: LocalisedRobotSettings,
+    limits: BodyLimits,
+    pose: Pose,
+    executor: Executor,
+    *,
+    knows_pose: bool = True,
+    gps: bool = False,
+    seed: int = 1,
+) -> LocalisedBody:
+    """Return a robot at ``pose`` of a world made of ``robot_map``, whose filter works on ``executor``.
+
+    :raises ReferenceRobotError: for a place that is not in that world, or in something solid.
+    """
+    x, y, _ = pose
+    if not robot_map.border.holds(x, y) or inside_solids(robot_map, np.array([[x, y]]))[0]:
+        raise ReferenceRobotError(
+            f"pose ({x:.1f}, {y:.1f}) is not on the map of world {robot_map.meta.get('id', 'without id')}, "
+            "or in something solid there; choose a place that is free"
+        )
+    belief = InitialBelief(pose, unknown=not knows_pose)
+    robot = LocalisedSettings(settings, limits, pose, belief, gps=gps, seed=seed)
+    return LocalisedBody(robot, simulated_world(robot_map, settings, seed), executor)

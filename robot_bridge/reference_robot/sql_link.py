@@ -1,0 +1,144 @@
+"""The reference robot's SQL: it inserts into RR, reads its own rows of SA and deletes them."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import json
+import logging
+from collections.abc import Sequence
+
+from sqlalchemy import URL, Connection
+
+from ..core.errors import StoreError
+from ..core.messages import Alive, MessageError, OpAck, Ready, Request, SendPos, to_json
+from ..gateway.storage.database import Database
+from ..gateway.storage.repositories import requests as answers
+from ..gateway.storage.repositories.requests import AnswerRow
+from ..gateway.storage.wakeups import robot_channel
+from ..protocol.codec import decode_answer, parse_params, payload_of
+from .agent import Agent
+
+log = logging.getLogger(__name__)
+
+WRITE_INTERVAL = 0.02
+RETRY_AFTER = 1.0
+
+
+class RobotSqlLink:
+    """Writes what the agent says as it says it, and hands it what is answered as soon as it is there."""
+
+    def __init__(self, database: str | URL, robot: str) -> None:
+        self._database = Database(database)
+        self._robot = robot
+        self._outgoing: list[Request] = []
+        self._magic: int | None = None
+        """The number of this run, once it has said Ready."""
+
+    def say(self, request: Request) -> None:
+        """Write a request at the next turn."""
+        if isinstance(request, Ready):
+            self._magic = request.magic
+        self._outgoing.append(request)
+
+    async def run(self, agent: Agent) -> None:
+        """Carry messages until cancelled."""
+        agent.greet()
+        try:
+            async with asyncio.TaskGroup() as tasks:
+                tasks.create_task(self._read(agent))
+                tasks.create_task(self._write())
+        finally:
+            with contextlib.suppress(StoreError):
+                await self._flush([])
+            await self._database.close()
+
+    async def _read(self, agent: Agent) -> None:
+        wakeup = self._database.wakeup(robot_channel(self._robot))
+        try:
+            while True:
+                try:
+                    await wakeup.wait(found=await self._turn(agent))
+                except StoreError as error:
+                    await self._wait_for_the_database(error)
+        finally:
+            await wakeup.close()
+
+    async def _write(self) -> None:
+        while True:
+            await asyncio.sleep(WRITE_INTERVAL)
+            try:
+                await self._flush([])
+            except StoreError as error:
+                await self._wait_for_the_database(error)
+
+    async def _wait_for_the_database(self, error: StoreError) -> None:
+        log.warning("%s; trying again in %g s", error, RETRY_AFTER)
+        await asyncio.sleep(RETRY_AFTER)
+
+    async def _turn(self, agent: Agent) -> bool:
+        rows = await self._database.read(answers.read_answers, self._robot)
+        read, is_behind = [], False
+        for row in rows:
+            own, ack = self._receive(agent, row)
+            if own:
+                read.append(row.id)
+            is_behind |= not own
+            if ack is not None:
+                # Behind what the agent said about the message.
+                self._outgoing.append(ack)
+            if own and is_behind and row.op == OpAck.__name__:
+                # It may have let the robot in: what stands before it, such as an Abort, is done first.
+                break
+        await self._flush(read)
+        return bool(read)
+
+    def _receive(self, agent: Agent, row: AnswerRow) -> tuple[bool, OpAck | None]:
+        """Hand a row to the agent; return whether it was the agent's own, and how to acknowledge it."""
+        try:
+            answer = decode_answer(row.op, parse_params(row.op, row.params), row.payload)
+        except MessageError as error:
+            return True, OpAck(id=row.id, ok=False, reason=str(error))
+        if not agent.concerns(answer):
+            return False, None
+        if isinstance(answer, OpAck) and not answer.ok:
+            log.error("the gateway refused request %s: %s", answer.id, answer.reason)
+        return True, agent.receive(answer, row.id)
+
+    async def _flush(self, read: list[int]) -> None:
+        outgoing, self._outgoing = self._outgoing, []
+        if not (outgoing or read):
+            return
+        try:
+            await self._database.jot(_exchange, self._robot, self._magic, read, outgoing)
+        except StoreError:
+            self._outgoing = [*_still_to_say(outgoing), *self._outgoing]
+            raise
+
+
+def _still_to_say(requests: Sequence[Request]) -> list[Request]:
+    """Return what is to be said again, each once; of positions where the robot was when it answered."""
+    kept: list[Request] = []
+    position = None
+    for request in requests:
+        if isinstance(request, SendPos):
+            position = request
+        elif not isinstance(request, Alive) and request not in kept:
+            if isinstance(request, OpAck) and position is not None:
+                kept.append(position)
+                position = None
+            kept.append(request)
+    return kept
+
+
+def _exchange(
+    connection: Connection, robot: str, magic: int | None, read: list[int], outgoing: list[Request]
+) -> None:
+    answers.remove_answers(connection, read)
+    answers.add_requests(connection, [_row(robot, magic, request) for request in outgoing])
+
+
+def _row(robot: str, magic: int | None, request: Request) -> tuple[str, str, str, bytes | None]:
+    """Return the row of a request, with the number of the run that says it."""
+    params = {**to_json(request), "magic": magic} if magic is not None else to_json(request)
+    return robot, type(request).__name__, json.dumps(params), payload_of(request)

@@ -1,0 +1,171 @@
+"""The reference robot's WebSocket: connects, connects again, and carries messages both ways."""
+
+from __future__ import annotations
+
+import asyncio
+import itertools
+import logging
+import random
+from urllib.parse import quote
+
+from websockets.asyncio.client import ClientConnection, connect
+from websockets.exceptions import ConnectionClosed, InvalidHandshake, InvalidStatus, InvalidURI
+
+from ..core.errors import BridgeError
+from ..core.messages import MessageError, Observed, OpAck, Ready, Request, to_json
+from ..protocol import jsonrpc
+from ..protocol.codec import decode_answer, params_of
+from ..protocol.credentials import ClientCredentials
+from .agent import Agent
+
+log = logging.getLogger(__name__)
+
+FIRST_WAIT = 0.5
+LONGEST_WAIT = 10.0
+SAY_AGAIN = 1.0
+"""seconds after which an observation that the gateway could not store is said once more."""
+REPLACED = 4001
+"""Close code of a gateway to which another robot has connected under the same name."""
+Frame = str
+LARGEST_FRAME = 64 << 20
+"""bytes; a whole city's map comes in one frame."""
+
+
+class RobotWebSocketLink:
+    """Carries what the agent says while connected; what it says in between is dropped as out of date.
+
+    Observations are kept, and said again after the next Ready, until the gateway has acknowledged them.
+    """
+
+    def __init__(self, url: str, robot: str, credentials: ClientCredentials | None = None) -> None:
+        self._credentials = credentials or ClientCredentials()
+        self._url = f"{url}{'&' if '?' in url else '?'}robot={quote(robot)}"
+        self._outgoing: asyncio.Queue[Request | Frame] = asyncio.Queue()
+        """What is to be sent, in order: a reply does not overtake what was said before it."""
+        self._connected = False
+        self._ids = itertools.count(1)
+        self._untold: list[Observed] = []
+        self._asked: dict[int, Request] = {}
+
+    @property
+    def unacknowledged_observations(self) -> int:
+        """How many observations the gateway has not acknowledged yet."""
+        return len(self._untold)
+
+    def say(self, request: Request) -> None:
+        """Send a request, if connected."""
+        if isinstance(request, Observed):
+            self._untold.append(request)
+        if not self._connected:
+            return
+        self._outgoing.put_nowait(request)
+        if isinstance(request, Ready):
+            for observed in self._untold:
+                self._outgoing.put_nowait(observed)
+
+    async def run(self, agent: Agent) -> None:
+        """Carry messages until cancelled; raises BridgeError for a URL that cannot be right."""
+        wait = FIRST_WAIT
+        while True:
+            try:
+                options = self._credentials.options(self._url)
+                async with connect(
+                    self._url, max_size=LARGEST_FRAME, close_timeout=1, **options
+                ) as connection:
+                    wait = FIRST_WAIT
+                    await self._carry(connection, agent)
+                reason = "the gateway closed the connection"
+            except InvalidURI as error:
+                raise BridgeError(f"{error}; write the URL as ws://127.0.0.1:8765/robot") from None
+            except ConnectionClosed as error:
+                if error.rcvd is not None and error.rcvd.code == REPLACED:
+                    raise BridgeError(
+                        f"{self._url}: another robot has connected under this name; give each its own --name"
+                    ) from None
+                reason = str(error)
+            except (OSError, InvalidHandshake) as error:
+                reason = _reason(error)
+            log.warning("%s: %s; trying again in %.1f s", self._url, reason, wait)
+            await asyncio.sleep(wait * random.uniform(0.8, 1.2))
+            wait = min(wait * 2, LONGEST_WAIT)
+
+    async def _carry(self, connection: ClientConnection, agent: Agent) -> None:
+        self._outgoing = asyncio.Queue()
+        self._asked = {}
+        sending = asyncio.create_task(self._send_all(connection))
+        try:
+            async for frame in connection:
+                self._receive(agent, frame)
+        finally:
+            self._connected = False
+            sending.cancel()
+
+    async def _send_all(self, connection: ClientConnection) -> None:
+        try:
+            while True:
+                request = await self._outgoing.get()
+                if isinstance(request, str):
+                    await connection.send(request)
+                    continue
+                id = next(self._ids) if request.acknowledged else None
+                if id is not None:
+                    self._asked[id] = request
+                await connection.send(jsonrpc.call(type(request).__name__, params_of(request), id))
+        except ConnectionClosed:
+            return
+
+    def _receive(self, agent: Agent, frame: str | bytes) -> None:
+        try:
+            message = jsonrpc.decode(frame)
+        except jsonrpc.FrameError as error:
+            log.error("%s: %s", self._url, error)
+            return
+        if isinstance(message, jsonrpc.Reply):
+            self._receive_reply(agent, message)
+            return
+        # Nothing is said before the gateway's Start.
+        self._connected = True
+        id = message.id if isinstance(message.id, int) else None
+        try:
+            ack = agent.receive(decode_answer(message.method, message.params), id)
+        except MessageError as error:
+            self._outgoing.put_nowait(jsonrpc.error(message.id, jsonrpc.INVALID_PARAMS, str(error)))
+            return
+        if message.id is not None:
+            self._outgoing.put_nowait(_reply(message.id, ack or OpAck(id=id)))
+
+    def _receive_reply(self, agent: Agent, reply: jsonrpc.Reply) -> None:
+        asked = self._asked.pop(reply.id, None) if isinstance(reply.id, int) else None
+        ack = _acknowledgement(reply)
+        if isinstance(asked, Observed) and reply.code == jsonrpc.INTERNAL_ERROR:
+            # What could not be stored just now is said again; what is wrong is not.
+            asyncio.get_running_loop().call_later(SAY_AGAIN, self._outgoing.put_nowait, asked)
+        elif isinstance(asked, Observed) and asked in self._untold:
+            self._untold.remove(asked)
+        if not ack.ok:
+            log.error("the gateway refused %s: %s", type(asked).__name__, ack.reason)
+        agent.receive(ack, None)
+
+
+def _acknowledgement(reply: jsonrpc.Reply) -> OpAck:
+    if reply.error is not None:
+        return OpAck(ok=False, reason=reply.error)
+    try:
+        answer = decode_answer("OpAck", reply.result)
+    except MessageError as error:
+        return OpAck(ok=False, reason=f"its answer cannot be read: {error}")
+    return answer if isinstance(answer, OpAck) else OpAck()
+
+
+def _reply(id: int | str, ack: OpAck) -> str:
+    if ack.ok:
+        return jsonrpc.result(id, to_json(ack))
+    return jsonrpc.error(id, jsonrpc.REFUSED, ack.reason or "no reason given")
+
+
+def _reason(error: OSError | InvalidHandshake) -> str:
+    """Return why there is no connection, in the gateway's own words where it gave some."""
+    if isinstance(error, InvalidStatus):
+        said = bytes(error.response.body).decode("utf-8", "replace").strip()
+        return f"the gateway refuses (HTTP {error.response.status_code}): {said[:300]}"
+    return str(error)

@@ -1,1 +1,0 @@
-"""Ways to find the cheapest way through a directed graph; all give the same answers."""

@@ -1,1 +1,0 @@
-"""How robots connect: each link turns its wire into requests for the fleet, and the outbox into its wire."""

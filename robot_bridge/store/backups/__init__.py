@@ -1,1 +1,0 @@
-"""Backups: what a database holds in one file, and back."""
