@@ -142,7 +142,7 @@ class FleetController(QObject):
             lambda robot: self.picture.view(robot, self.clock()),
             self,
         )
-        self.checks = ValidationRunner(self.drafts, self._rules.look, self)
+        self.checks = ValidationRunner(self.drafts, self._rules.check_command, self)
         self.checks.found.connect(self._found)
         self.drafts.changed.connect(self._drafted)
         self._rules.changed.connect(self.checks.begin_anew)
@@ -224,7 +224,7 @@ class FleetController(QObject):
 
     def _take_in(self) -> None:
         self._pulled_at = self.clock()
-        news = self.connection.take()
+        news = self.connection.collect_updates()
         if news.link != self.link:
             self.link = news.link
             self.link_changed.emit()
@@ -348,7 +348,7 @@ class FleetController(QObject):
         if changed:
             self._rules.take_targets(report.robot for report in changed)
             self.commands_changed.emit(changed)
-        self.roads.take(news.roads)
+        self.roads.apply_updates(news.roads)
         if news.geofence is not None:
             self.geofence.update(news.geofence)
         if news.nearness is not None:
@@ -403,7 +403,7 @@ class FleetController(QObject):
 
         :raises FleetError: when there is no site or a layer cannot be read; what was on the map stays then.
         """
-        self.checks.put(self.target_ways.begun(draft))
+        self.checks.set_command(self.target_ways.begun(draft))
 
     def _drafted(self) -> None:
         if self.drafts.draft is None:

@@ -240,7 +240,7 @@ class KeepoutCheck:
         """Yield what of a draft is looked at: all of it."""
         return legs(draft)
 
-    def look(
+    def check_paths(
         self, layer: QgsVectorLayer, tracks: Sequence[CheckedPath], placement: SiteToMapTransform
     ) -> Steps[dict[int, list[str]]]:
         """Find the names of the keepouts in ``layer`` by the numbers of the tracks that enter them."""
@@ -301,7 +301,7 @@ class ObstacleCheck:
         """Yield what of a draft is looked at: what was drawn by hand."""
         return drawn_by_hand(draft)
 
-    def look(
+    def check_paths(
         self, layer: QgsVectorLayer, tracks: Sequence[CheckedPath], placement: SiteToMapTransform
     ) -> Steps[dict[int, list[Hit]]]:
         """Find the obstacles in ``layer`` by the numbers of the tracks that are too near to them.
@@ -395,7 +395,7 @@ class SurfaceCheck:
         yield from stops(draft)
         yield from (track for track in drawn_by_hand(draft) if len(track) > 1)
 
-    def look(
+    def check_paths(
         self, layer: QgsVectorLayer, tracks: Sequence[CheckedPath], placement: SiteToMapTransform
     ) -> Steps[dict[int, list[Share]]]:
         """Find what surfaces of ``layer`` hold of the tracks, by the tracks' numbers."""

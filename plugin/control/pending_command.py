@@ -259,7 +259,7 @@ class PendingCommandModel(QObject):
         self._before: list[PendingCommand | None] = []
         self._after: list[PendingCommand | None] = []
 
-    def put(self, draft: PendingCommand | None) -> None:
+    def set_command(self, draft: PendingCommand | None) -> None:
         """Make ``draft`` the one, None for no draft."""
         if draft is not None or self.draft is not None:
             self._before = [*self._before, self.draft][-MOST_STEPS:]
@@ -271,7 +271,7 @@ class PendingCommandModel(QObject):
         self._show(draft, cursor=self.cursor)
 
     def drag(self, draft: PendingCommand) -> None:
-        """Show ``draft`` as it becomes while the mouse drags it; :meth:`renew` or :meth:`put` ends that."""
+        """Show ``draft`` as the mouse drags it; :meth:`renew` or :meth:`set_command` ends it."""
         self._show(draft, is_dragged=True)
 
     def done(self) -> None:

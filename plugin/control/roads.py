@@ -51,7 +51,7 @@ class RoadStatus(QObject):
         self.closures: tuple[ClosureReport, ...] = ()
         self.conflicts = Conflicts(0.0)
 
-    def take(self, news: RoadUpdates) -> None:
+    def apply_updates(self, news: RoadUpdates) -> None:
         """Take in what the gateway told."""
         if news.closures is not None and self.closures != tuple(news.closures.closures):
             self.closures = tuple(news.closures.closures)

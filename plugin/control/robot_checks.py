@@ -187,7 +187,7 @@ class TargetCheck:
         self._targets: list[OtherTarget] = []
         self._places: npt.NDArray[np.float64] = np.empty((0, 2))
 
-    def take(self, robots: Iterable[str]) -> None:
+    def mark_changed(self, robots: Iterable[str]) -> None:
         """Take in that something new is known of what these robots have to do."""
         self._with_news.update(robots)
 
@@ -197,7 +197,7 @@ class TargetCheck:
         self._with_news.clear()
         self._targets, self._places = [], np.empty((0, 2))
 
-    def look(self, draft: PendingCommand) -> Findings:
+    def check_command(self, draft: PendingCommand) -> Findings:
         """Find the targets of other robots that a draft ends too near to."""
         if draft.kind == START:
             return Findings()

@@ -297,7 +297,7 @@ class CommandSender(QObject):
     def _refused(self, text: str, draft: PendingCommand | None, topics: tuple[Topic, ...] = ()) -> None:
         if draft is not None and self._drafts.draft is None:
             # Nothing the operator drew is lost because a gateway refused it.
-            self._drafts.put(draft)
+            self._drafts.set_command(draft)
         self._fail(text, draft, topics)
 
     def _fail(self, text: str, draft: PendingCommand | None, topics: tuple[Topic, ...] = ()) -> None:

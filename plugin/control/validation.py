@@ -97,7 +97,7 @@ class LayerCheck(QObject):
         """Watch no layer any longer."""
         self._watch.remove()
 
-    def look(
+    def check_command(
         self, draft: PendingCommand, placement: SiteToMapTransform, afresh: bool = False
     ) -> Steps[Findings]:
         """Find what touches a keepout or an obstacle, warn of what leaves the road; ``afresh`` all of it.
@@ -139,7 +139,9 @@ class LayerCheck(QObject):
                 yield 0.0
         missing = list(new)
         for number, layer in enumerate(layers if missing else ()):
-            hits = yield from scaled_progress(check.look(layer, missing, placement), number, len(layers))
+            hits = yield from scaled_progress(
+                check.check_paths(layer, missing, placement), number, len(layers)
+            )
             for place, found in hits.items():
                 new[missing[place]] += found
         found_for: list[tuple[CheckedPath, list[Any]]] = []
@@ -276,7 +278,7 @@ class CommandChecks(QObject):
         self._layers.changed.connect(self.changed)
         self._targets = TargetCheck(book, queues)
 
-    def look(self, draft: PendingCommand, afresh: bool) -> Steps[PendingCommand]:
+    def check_command(self, draft: PendingCommand, afresh: bool) -> Steps[PendingCommand]:
         """Look at a draft, all of it ``afresh`` or only what is new; return it with what was found.
 
         An override holds for what was found when it was given: it is gone when something else is found.
@@ -285,10 +287,10 @@ class CommandChecks(QObject):
         """
         placement = self._placement()
         found = check_bounds(draft.points, placement.site) + check_map(placement)
-        found += yield from self._layers.look(draft, placement, afresh)
+        found += yield from self._layers.check_command(draft, placement, afresh)
         found += _approach_findings(draft)
         # At the end, so that nobody is sent there meanwhile.
-        found += self._targets.look(draft)
+        found += self._targets.check_command(draft)
         robot = self._view(draft.robot)
         found += check_heard(draft, robot) + check_abilities(draft, robot)
         found += check_orders(draft, self._book.task_of(draft.robot), self._operator())
@@ -298,7 +300,7 @@ class CommandChecks(QObject):
 
     def take_targets(self, robots: Iterable[str]) -> None:
         """Take in that something new is known of what these robots have to do."""
-        self._targets.take(robots)
+        self._targets.mark_changed(robots)
 
     def forget_targets(self) -> None:
         """Forget what every robot has to do."""
@@ -371,17 +373,17 @@ class ValidationRunner(QObject):
         """How much of the check is done, 0 to 1."""
         return self._slices.share
 
-    def put(self, draft: PendingCommand) -> None:
+    def set_command(self, draft: PendingCommand) -> None:
         """Make ``draft`` the one on the board; a small one has been checked when this returns.
 
         :raises FleetError: when it cannot be checked; what was on the board stays then.
         """
-        self._put(draft, self._board.put)
+        self._put(draft, self._board.set_command)
 
     def amend(self, draft: PendingCommand) -> None:
         """Put ``draft`` in place of the one on the board, whose way is another by now; check it as by put.
 
-        :raises FleetError: as :meth:`put`.
+        :raises FleetError: as :meth:`set_command`.
         """
         self._put(draft, self._board.renew)
 

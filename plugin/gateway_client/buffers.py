@@ -85,7 +85,7 @@ class RequestOutbox:
     def __len__(self) -> int:
         return len(self._waiting)
 
-    def put(self, order: OperatorRequest) -> bool:
+    def add(self, order: OperatorRequest) -> bool:
         """Keep ``order`` until it is answered; false when the same order waits already."""
         if order.key in self._waiting:
             return False
@@ -191,7 +191,7 @@ class ObservationUpdates:
 
     observations: dict[int, ObservationReport] = field(default_factory=dict)
 
-    def take(self, reports: Iterable[ObservationReport]) -> None:
+    def add(self, reports: Iterable[ObservationReport]) -> None:
         """Take in what was told."""
         self.observations.update({report.observation: report for report in reports})
 
@@ -217,7 +217,7 @@ class PlacedConeUpdates:
 
     placements: dict[int, PlacementReport] = field(default_factory=dict)
 
-    def take(self, reports: Iterable[PlacementReport]) -> None:
+    def add(self, reports: Iterable[PlacementReport]) -> None:
         """Take in what was told."""
         self.placements.update({report.placement: report for report in reports})
 
@@ -239,7 +239,7 @@ class QueueUpdates:
     queues: dict[str, QueueReport] = field(default_factory=dict)
     every: bool = False
 
-    def take(self, report: QueueReport) -> None:
+    def add(self, report: QueueReport) -> None:
         """Take in how a robot's queue stands."""
         self.queues[report.robot] = report
 
@@ -272,7 +272,7 @@ class RoadUpdates:
     conflicts: Conflicts | None = None
     replanned: list[ReplannedRobot] = field(default_factory=list)
 
-    def take(self, method: str, params: dict[str, Any]) -> None:
+    def add(self, method: str, params: dict[str, Any]) -> None:
         """Take in one notification; raises ValueError, KeyError or TypeError for what is none."""
         if method == "closures":
             self.closures = closures_report(params)
@@ -369,7 +369,7 @@ class UpdateBuffer:
     def put_roads(self, method: str, params: dict[str, Any]) -> None:
         """Leave what was told of roads."""
         with self._lock:
-            self._news.roads.take(method, params)
+            self._news.roads.add(method, params)
 
     def put_geofence(self, report: Geofence) -> None:
         """Leave which robots are in keepouts and at obstacles."""
@@ -384,7 +384,7 @@ class UpdateBuffer:
     def put_queue(self, report: QueueReport) -> None:
         """Leave how a robot's queue stands."""
         with self._lock:
-            self._news.queues.take(report)
+            self._news.queues.add(report)
 
     def put_every_queue(self, reports: Iterable[QueueReport]) -> None:
         """Leave how every queue stands: there are no others."""
@@ -394,19 +394,19 @@ class UpdateBuffer:
     def put_placements(self, reports: Iterable[PlacementReport]) -> None:
         """Leave which cones were put down or collected."""
         with self._lock:
-            self._news.placements.take(reports)
+            self._news.placements.add(reports)
 
     def put_observations(self, reports: Iterable[ObservationReport]) -> None:
         """Leave what robots saw, and what became of it."""
         with self._lock:
-            self._news.observations.take(reports)
+            self._news.observations.add(reports)
 
     def put_answer(self, answer: RequestResult) -> None:
         """Leave what became of an order; every one of them is kept."""
         with self._lock:
             self._news.answers.append(answer)
 
-    def take(self) -> StateUpdate:
+    def collect(self) -> StateUpdate:
         """Return all that arrived since the last call and begin anew; the link's state stays."""
         with self._lock:
             news, self._news = self._news, StateUpdate(self._news.link)

@@ -230,7 +230,7 @@ CANCEL_WITHIN = 0.3
 class ConnectionThread(QObject):
     """The link to a gateway as the window sees it. No method waits for the network.
 
-    Nothing is signalled message by message: a timer of the window calls :meth:`take`.
+    Nothing is signalled message by message: a timer of the window calls :meth:`collect_updates`.
     """
 
     def __init__(self, parent: QObject | None = None):
@@ -285,10 +285,10 @@ class ConnectionThread(QObject):
         if self._worker is None or not self._worker.submit(order):
             raise NotSentError(tr("The desk is not connected to a gateway. Press Connect first."))
 
-    def take(self) -> StateUpdate:
+    def collect_updates(self) -> StateUpdate:
         """Return what arrived since the last call."""
         self._forget_ended()
-        news = self._mailbox.take()
+        news = self._mailbox.collect()
         if self._worker is None:
             # The worker that is ending may still have said that it will try again.
             news.link = ConnectionStatus(ConnectionPhase.CLOSED)

@@ -96,7 +96,7 @@ class GatewayProtocol:
 
     def submit(self, order: OperatorRequest) -> list[str]:
         """Return the texts to send now for a new order: none while the link is not ready."""
-        if not self._outbox.put(order) or not self.ready:
+        if not self._outbox.add(order) or not self.ready:
             return []
         return [self._request(order)]
 

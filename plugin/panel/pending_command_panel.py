@@ -350,7 +350,7 @@ class PendingCommandActions(QObject):
         if not isinstance(self._desk.canvas.mapTool(), DrawingTool):
             self._actions.cone.trigger()
         tool: DrawingTool = self._desk.canvas.mapTool()
-        tool.take((x, y))
+        tool.add_point((x, y))
         self._try(lambda: self._show(((x, y),)))
 
     def _send_maps(self) -> None:

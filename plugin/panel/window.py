@@ -138,7 +138,7 @@ class FleetWindow(QObject):
             action.triggered.connect(lambda _, tool=tool: tool.action().setChecked(True))
         actions.connect.triggered.connect(self._connect_or_not)
         actions.send.triggered.connect(desk.sending.send)
-        actions.cancel.triggered.connect(lambda: desk.drafts.put(None))
+        actions.cancel.triggered.connect(lambda: desk.drafts.set_command(None))
         actions.follow.toggled.connect(lambda on: self._follow(FollowMode.SELECTED, on))
         actions.follow_all.toggled.connect(lambda on: self._follow(FollowMode.ALL, on))
         actions.abort.triggered.connect(desk.abort_selected)

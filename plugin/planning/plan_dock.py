@@ -347,7 +347,7 @@ class PlanDock(ActionDock):
     def _clear(self) -> None:
         self._desk.messages.end(PLAN_ASKED)
         self.driven.clear()
-        self.drafts.put(None)
+        self.drafts.set_proposal(None)
 
     def _ask_for_placements(self) -> None:
         self._try(lambda: self._desk.ask(GetPlacements(limit=MOST_ASKED), tr("Placed cones")))

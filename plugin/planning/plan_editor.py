@@ -92,7 +92,7 @@ class PlanEditor(QObject):
         """Let nobody serve ``target``."""
         self._edit(lambda plan, travel_of: plan_changes.remove_target(plan, travel_of, target))
 
-    def put(self, draft: PlanProposal | None) -> None:
+    def set_proposal(self, draft: PlanProposal | None) -> None:
         """Show another plan, None for none."""
         self.cancel()
         self.draft = draft

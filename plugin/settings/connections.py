@@ -282,7 +282,7 @@ class Connections:
         values = (str(settings.value(f"{_group(name)}/{key}", "") or "") for key in _KEYS)
         return GatewayConnection(name, *values)
 
-    def put(self, connection: GatewayConnection, instead_of: str = "") -> None:
+    def store(self, connection: GatewayConnection, instead_of: str = "") -> None:
         """Keep a connection, in place of one of that name and of the one called ``instead_of``."""
         if instead_of and instead_of != connection.name:
             was_last = self.last == instead_of

@@ -56,7 +56,7 @@ class ResultLabel(QLabel):
         self.setTextFormat(Qt.TextFormat.PlainText)
         self.setTextInteractionFlags(Qt.TextInteractionFlag.TextSelectableByMouse)
 
-    def tell(self, good: bool, text: str) -> None:
+    def show_verdict(self, good: bool, text: str) -> None:
         """Show how it ended."""
         self.setText(f"{GOOD if good else BAD} {text}")
 
@@ -100,7 +100,7 @@ class ConnectionTest(QObject):
         self._connection.shut_down()
 
     def _look(self) -> None:
-        news = self._connection.take()
+        news = self._connection.collect_updates()
         self._site = news.site or self._site
         if not self._connection.is_open:
             # The thread of a trial that is over ends within a moment: it is looked after until then.
@@ -160,7 +160,7 @@ class ConnectionDialog(QDialog):
         self._ca.lineEdit().setToolTip(hint)
         self._verdict = ResultLabel()
         self._trial = ConnectionTest(self)
-        self._trial.told.connect(self._verdict.tell)
+        self._trial.told.connect(self._verdict.show_verdict)
         self.finished.connect(self._trial.end)
         self._lay_out()
 
@@ -184,9 +184,9 @@ class ConnectionDialog(QDialog):
                 OperatorCredentials(token, made.ca_file).check(made.url)
                 made = self._with_token(made, token)
         except FleetError as error:
-            self._verdict.tell(False, str(error))
+            self._verdict.show_verdict(False, str(error))
             return
-        self._connections.put(made, self._before.name)
+        self._connections.store(made, self._before.name)
         self.kept.emit(made)
         super().accept()
 
@@ -207,7 +207,7 @@ class ConnectionDialog(QDialog):
             if not token and made.auth:
                 token = self._store.token_in(made.auth)
         except FleetError as error:
-            self._verdict.tell(False, str(error))
+            self._verdict.show_verdict(False, str(error))
             return
         self._trial.begin(
             made.url, made.operator or tr("connection test"), OperatorCredentials(token, made.ca_file)
@@ -277,7 +277,7 @@ class ConnectionsWidget(QWidget):
         self._list.setColumnWidth(1, 260)
         self._verdict = ResultLabel()
         self._trial = ConnectionTest(self)
-        self._trial.told.connect(self._verdict.tell)
+        self._trial.told.connect(self._verdict.show_verdict)
         self._buttons = {
             name: self._button(name, text, action)
             for name, text, action in (
@@ -349,7 +349,7 @@ class ConnectionsWidget(QWidget):
                 self._store.token_in(connection.auth) if connection.auth else self._store.read(connection.url)
             )
         except FleetError as error:
-            self._verdict.tell(False, str(error))
+            self._verdict.show_verdict(False, str(error))
             return
         credentials = OperatorCredentials(token, connection.ca_file)
         self._trial.begin(connection.url, connection.operator or tr("connection test"), credentials)
@@ -359,10 +359,10 @@ class ConnectionsWidget(QWidget):
         try:
             found = connections_in(Path(file).read_text(encoding="utf-8"), file)
         except (OSError, UnicodeDecodeError) as error:
-            self._verdict.tell(False, tr("{file} cannot be read: {error}", file=file, error=error))
+            self._verdict.show_verdict(False, tr("{file} cannot be read: {error}", file=file, error=error))
             return
         except FleetError as error:
-            self._verdict.tell(False, str(error))
+            self._verdict.show_verdict(False, str(error))
             return
         replaced = 0
         for connection in found:
@@ -371,12 +371,12 @@ class ConnectionsWidget(QWidget):
             # A file carries no tokens: the one that is here stays, unless it is for another gateway.
             auth = known.auth if known is not None and known.url == connection.url else ""
             values = (connection.name, connection.url, connection.operator, connection.ca_file)
-            self._connections.put(GatewayConnection(*values, auth))
+            self._connections.store(GatewayConnection(*values, auth))
         self.show_all()
         text = tr_count(len(found), "1 connection from {file}.", "%n connections from {file}.", file=file)
         if replaced:
             text += " " + tr("Replaced: {replaced}.", replaced=replaced)
-        self._verdict.tell(True, text)
+        self._verdict.show_verdict(True, text)
 
     def write_file(self, file: str) -> None:
         """Write the selected connections, or all when none is selected, without their tokens."""
@@ -385,7 +385,7 @@ class ConnectionsWidget(QWidget):
         try:
             Path(file).write_text(connections_text(chosen), encoding="utf-8")
         except OSError as error:
-            self._verdict.tell(False, tr("{file} cannot be written: {error}", file=file, error=error))
+            self._verdict.show_verdict(False, tr("{file} cannot be written: {error}", file=file, error=error))
             return
         text = tr_count(
             len(chosen),
@@ -393,7 +393,7 @@ class ConnectionsWidget(QWidget):
             "%n connections in {file}, without tokens.",
             file=file,
         )
-        self._verdict.tell(True, text)
+        self._verdict.show_verdict(True, text)
 
     def end(self) -> None:
         """Give up a test that is under way."""

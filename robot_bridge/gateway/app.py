@@ -184,7 +184,7 @@ class Gateway:
         self._fleet.repeated.summarise()
 
     async def _age(self) -> None:
-        if (step := self._clock_watch.look()) is not None:
+        if (step := self._clock_watch.measure_step()) is not None:
             way = "forward" if step.by > 0 else "back"
             log.warning("the clock of this computer was set %s by %.0f s", way, abs(step.by))
             self._fleet.robots.clock_was_set(step)
@@ -263,7 +263,7 @@ async def run(settings: GatewaySettings, signals: Signals, started: Callable[[st
         stack.push_async_callback(database.close, CLOSE_WITHIN)
         await database.open()
         sole = SingletonLock(settings.database)
-        await sole.take()
+        await sole.acquire()
         stack.push_async_callback(sole.release)
         # After the database: a city takes a while to read, and a wrong address is told at once.
         site = await asyncio.to_thread(read_site, settings.site)

@@ -88,7 +88,7 @@ class Retention:
                 log.info("deleted %d %s, older than %g days", removed, kind.name, kind.days)
 
     def _trusts_clock(self) -> bool:
-        step = self._clock_watch.look()
+        step = self._clock_watch.measure_step()
         if step is not None and step.by > LARGEST_STEP:
             self.doubt_clock()
             log.warning(

@@ -54,9 +54,9 @@ class SiteWatch:
         while True:
             with contextlib.suppress(TimeoutError):
                 await asyncio.wait_for(self._reload.wait(), LOOK_INTERVAL)
-            await self.look(asked=self._reload.is_set())
+            await self.refresh(asked=self._reload.is_set())
 
-    async def look(self, *, asked: bool = False) -> None:
+    async def refresh(self, *, asked: bool = False) -> None:
         """Look once; ``asked``: read the site even if it looks the same."""
         self._reload.clear()
         async with self._reading:

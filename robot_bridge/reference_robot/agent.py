@@ -200,7 +200,7 @@ class Agent:
             if self._greet_in <= 0:
                 self.greet()
             return
-        self._sightings.look(self._body.pose)
+        self._sightings.observe(self._body.pose)
         for observed in self._body.observations():
             self._say(observed)
         self._ask_in -= dt

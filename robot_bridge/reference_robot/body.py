@@ -273,7 +273,7 @@ class ScriptedObjects:
         self._say = say
         self._count = 0
 
-    def look(self, pose: Pose) -> None:
+    def observe(self, pose: Pose) -> None:
         """Say what is seen from ``pose``."""
         for thing in [thing for thing in self._unseen if _sees(pose, thing)]:
             self._unseen.remove(thing)

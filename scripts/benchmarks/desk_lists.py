@@ -33,7 +33,7 @@ def lists(data: str, number: int) -> None:
 
     def look() -> None:
         now = time.monotonic()
-        alarms.look(looking.at(now, alarms.limits), now, time.time())
+        alarms.evaluate(looking.at(now, alarms.limits), now, time.time())
 
     def search() -> None:
         table.robots.text = SEARCH

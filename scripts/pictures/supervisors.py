@@ -82,7 +82,7 @@ def connected(url: str, tokens: dict[str, str]) -> Iterator[tuple[Any, Any]]:
     desk = part("plugin.control.fleet_controller").FleetController(QgsMapCanvas(), QgsProject.instance())
     try:
         ben.open(url, "Ben", credentials(tokens["Ben"]))
-        wait(lambda: ben.take().link.operator == "Ben", "Ben's link")
+        wait(lambda: ben.collect_updates().link.operator == "Ben", "Ben's link")
         desk.open_link(url, "Ada", credentials(tokens["Ada"]))
         yield desk, QWidget()
     finally:

@@ -22,17 +22,8 @@ FOREIGN = {
     "websockets",
     "zstandard",
 }
-BRIDGE = (
-    "robotmap",
-    "messages",
-    "liveness",
-    "compass",
-    "roads",
-    "layouts",
-    "assignment",
-    "sites",
-    "steady_time",
-)
+CORE = "fleet_supervisor.robot_bridge.core"
+"""What the plugin uses of the bridge."""
 
 
 class NothingForeign:
@@ -45,10 +36,8 @@ class NothingForeign:
 
 def import_everything():
     """Import every module of the plugin and of what it may use; return how many."""
-    prefix = "fleet_supervisor.robot_bridge."
-    packages = ["fleet_supervisor.plugin", *(prefix + part for part in BRIDGE)]
     count = 0
-    for name in packages:
+    for name in ("fleet_supervisor.plugin", CORE):
         module = importlib.import_module(name)
         inside = pkgutil.walk_packages(getattr(module, "__path__", []), f"{name}.")
         for found in (found for found in inside if ".vendor" not in found.name):
@@ -66,7 +55,7 @@ def connect(url):
     try:
         until = time.monotonic() + 40
         while time.monotonic() < until:
-            news = connection.take()
+            news = connection.collect_updates()
             if news.site is not None:
                 return news
             time.sleep(0.05)

@@ -34,15 +34,15 @@ def clock() -> Clock:
 def test_a_clock_that_was_set_is_noticed_once(clock, by):
     watch = clock.watch()
     clock.pass_by(0.25)
-    assert watch.look() is None
+    assert watch.measure_step() is None
     clock.pass_by(0.1)
     clock.now += by
     clock.pass_by(0.15)
-    step = watch.look()
+    step = watch.measure_step()
     assert step.by == pytest.approx(by)
     assert (step.since, step.now) == pytest.approx((clock.now - 0.25, clock.now))
     clock.pass_by(0.25)
-    assert watch.look() is None
+    assert watch.measure_step() is None
 
 
 def test_a_clock_that_is_corrected_little_by_little_was_not_set(clock):
@@ -50,7 +50,7 @@ def test_a_clock_that_is_corrected_little_by_little_was_not_set(clock):
     for _ in range(100):
         clock.pass_by(60)
         clock.now += 0.03
-        assert watch.look() is None
+        assert watch.measure_step() is None
 
 
 def test_a_time_noted_after_the_clock_was_set_stays():
@@ -67,12 +67,12 @@ def test_the_times_since_robots_were_heard_stay(clock, by):
     clock.pass_by(5.0)
     robots.observe("heard", SendPos(1.0, 2.0, 0.0, 0.0), "websocket", clock.now)
     robots.age(clock.now)
-    assert watch.look() is None
+    assert watch.measure_step() is None
     clock.now += by
     clock.pass_by(0.1)
     robots.observe("heard", SendPos(2.0, 2.0, 0.0, 0.0), "websocket", clock.now)
     clock.pass_by(0.1)
-    robots.clock_was_set(watch.look())
+    robots.clock_was_set(watch.measure_step())
     robots.age(clock.now)
     told = {report.robot: report for report in robots.reports(clock.now)}
     assert (told["silent"].state, told["heard"].state) == (RobotState.STALE, RobotState.FRESH)

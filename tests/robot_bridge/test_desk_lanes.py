@@ -67,7 +67,7 @@ class Operator:
         """Ask one after the other; each is begun that can be."""
         for request in requests:
             async with asyncio.timeout(5):
-                await self.lanes.take(asked(request, size))
+                await self.lanes.submit(asked(request, size))
                 await rest()
 
     def refusals(self):
@@ -174,7 +174,7 @@ async def test_of_emergency_stops_that_are_not_done_so_many_are_begun_and_then_t
     operator = Operator(held=(EmergencyStop,))
     stops = [EmergencyStop(f"stop-{k:04}") for k in range(5)]
     await operator.ask(*stops[:4])
-    last = asyncio.ensure_future(operator.lanes.take(asked(stops[4])))
+    last = asyncio.ensure_future(operator.lanes.submit(asked(stops[4])))
     await rest()
     assert operator.begun == stops and not last.done()
     operator.may.set()
@@ -194,8 +194,8 @@ async def test_the_connection_goes_on_as_soon_as_one_of_them_is_done(monkeypatch
     lanes = RequestScheduler(settle)
     first, second = (asked(EmergencyStop(id)) for id in gates)
     async with asyncio.timeout(5):
-        await lanes.take(first)
-        last = asyncio.ensure_future(lanes.take(second))
+        await lanes.submit(first)
+        last = asyncio.ensure_future(lanes.submit(second))
         await rest()
         assert not last.done()
         gates["stop-0000"].set()
@@ -310,7 +310,7 @@ async def test_one_stop_that_goes_wrong_keeps_no_other_from_being_waited_for():
 
     lanes = RequestScheduler(settle)
     for request in (PauseRobot("r1"), PauseRobot("broken")):
-        await lanes.take(asked(request))
+        await lanes.submit(asked(request))
     finishing = asyncio.ensure_future(lanes.finish())
     await rest()
     assert not finishing.done()

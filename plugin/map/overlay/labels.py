@@ -146,7 +146,7 @@ class LabelPlacer:
         stride = self._lines + 2
         return self._robots.take(right * stride + line) == self._robots.take(left * stride + line)
 
-    def take(self, cells: Cells) -> list[int]:
+    def place_labels(self, cells: Cells) -> list[int]:
         """Take one place after the other unless a text has a part of it; return the indices of those."""
         found = []
         for index, (line, left, right) in enumerate(cells.T.tolist()):
@@ -308,7 +308,7 @@ class NamesPainter:
         possible = np.flatnonzero((rank < 4) | room.without_robots(cells))
         order = possible[np.argsort(rank[possible], kind="stable")]
         order = order[_first_of_each_spot(corner.take(order, axis=0))]
-        return seen[order[room.take(cells.take(order, axis=1))]]
+        return seen[order[room.place_labels(cells.take(order, axis=1))]]
 
 
 def texts(robots: RobotArrays, row: int) -> list[str]:

@@ -132,7 +132,7 @@ class DrawingTool(QgsMapTool):
                 self.desk.sending.send()
             event.accept()
         elif event.key() == Qt.Key.Key_Escape:
-            self.desk.drafts.put(None)
+            self.desk.drafts.set_command(None)
             event.ignore()
         elif self.key(event):
             # An ignored event tells QGIS that the tool took it; else it deletes the selected features.
@@ -175,17 +175,17 @@ class DrawingTool(QgsMapTool):
 
     def back(self) -> None:
         """Take back the last click."""
-        self.desk.drafts.put(None)
+        self.desk.drafts.set_command(None)
 
     def paste(self) -> None:
         """Take what the clipboard holds, ``lat, lon`` in WGS 84, for a click there."""
         self._try(lambda: self._place(self._pasted))
 
-    def take(self, point: Point) -> None:
+    def add_point(self, point: Point) -> None:
         """Take a point of the site frame, from wherever, for a click there."""
         self._try(lambda: self._place(lambda: point))
 
-    def put(self, draft: PendingCommand) -> None:
+    def set_command(self, draft: PendingCommand) -> None:
         """Check a draft and make it the one.
 
         :raises FleetError: when it cannot be checked.

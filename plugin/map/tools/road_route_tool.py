@@ -258,7 +258,7 @@ class RoadRouteTool(RouteTool):
         following, self._clicks = self._clicks[1:], []
         draft = self.draft or PendingCommand(question.robot, ROUTE, ())
         points = route.points if question.start is None else route.points[1:]
-        self.put(draft.with_leg(tuple(points), route_in_words(route, question.wishes)))
+        self.set_command(draft.with_leg(tuple(points), route_in_words(route, question.wishes)))
         self._clicks = following
         if following:
             self._lead_on()

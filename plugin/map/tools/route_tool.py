@@ -216,7 +216,7 @@ class RouteTool(DrawingTool):
             return
         self._pressed_at = None
         if changed is not None:
-            self._try(lambda: self.put(changed))
+            self._try(lambda: self.set_command(changed))
 
     def hovered(self, event: QgsMapMouseEvent) -> None:
         if self.draft is None or self._is_finished:
@@ -246,7 +246,7 @@ class RouteTool(DrawingTool):
         if event.text() in (*BACKWARD, *FORWARD):
             self._step(draft, -1 if event.text() in BACKWARD else 1)
         elif event.key() == Qt.Key.Key_R:
-            self._try(lambda: self.put(pending_command.turned_round(draft)))
+            self._try(lambda: self.set_command(pending_command.turned_round(draft)))
         elif vertex is None:
             return super().key(event)
         elif event.key() == Qt.Key.Key_Delete:
@@ -277,14 +277,14 @@ class RouteTool(DrawingTool):
         if draft is None:
             draft = PendingCommand(self.desk.selected, ROUTE, ())
         if self.is_for_selected(draft):
-            self.put(draft.with_leg((point,)))
+            self.set_command(draft.with_leg((point,)))
 
     def back(self) -> None:
         draft = self.draft
         if draft is not None:
             self._put_or_end(draft.without_last_leg())
         else:
-            self.desk.drafts.put(None)
+            self.desk.drafts.set_command(None)
 
     def is_for_selected(self, draft: PendingCommand) -> bool:
         """Tell whether the draft is for the robot that is selected; say so where it is for another."""
@@ -302,9 +302,9 @@ class RouteTool(DrawingTool):
 
     def _put_or_end(self, draft: PendingCommand | None) -> None:
         if draft is None:
-            self.desk.drafts.put(None)
+            self.desk.drafts.set_command(None)
         else:
-            self.put(draft)
+            self.set_command(draft)
 
     def _take_hold(self, event: QgsMapMouseEvent) -> None:
         draft = self.draft
@@ -344,12 +344,12 @@ class RouteTool(DrawingTool):
                 tr("This is the first vertex: another is put before one that comes later.")
             )
             return
-        self._try(lambda: self.put(pending_command.inserted(draft, vertex, middle(draft, vertex))))
+        self._try(lambda: self.set_command(pending_command.inserted(draft, vertex, middle(draft, vertex))))
         self._hold_again(vertex)
 
     def _nudge(self, event: QKeyEvent, draft: PendingCommand, vertex: int) -> None:
         def nudge() -> None:
-            self.put(
+            self.set_command(
                 pending_command.moved(draft, vertex, moved_by_arrow(event, self.desk, draft.points[vertex]))
             )
 

@@ -56,7 +56,9 @@ class ConeTool(DrawingTool):
                 )
             )
             return
-        self.put(PendingCommand(self.desk.selected or other.robot, CONE, (point,), is_direct=self._is_direct))
+        self.set_command(
+            PendingCommand(self.desk.selected or other.robot, CONE, (point,), is_direct=self._is_direct)
+        )
 
     def key(self, event: QKeyEvent) -> bool:
         draft = self.draft
@@ -64,7 +66,7 @@ class ConeTool(DrawingTool):
             return super().key(event)
         is_direct = draft.is_direct
         self._try(
-            lambda: self.put(
+            lambda: self.set_command(
                 PendingCommand(
                     draft.robot,
                     CONE,
@@ -121,4 +123,4 @@ class StartTool(DrawingTool):
                     in_words=other.in_words(),
                 )
             )
-        self.put(PendingCommand(self.desk.selected or other.robot, START, (place,), theta=theta))
+        self.set_command(PendingCommand(self.desk.selected or other.robot, START, (place,), theta=theta))

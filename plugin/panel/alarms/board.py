@@ -278,7 +278,7 @@ class AlarmBoard:
         """Return the alarms that a robot is part of, pressing ones first."""
         return [alarm for alarm in self.alarms() if robot in (alarm.robot, alarm.other)]
 
-    def look(self, now: AlarmSnapshot, moment: float, at: float) -> list[AlarmEvent]:
+    def evaluate(self, now: AlarmSnapshot, moment: float, at: float) -> list[AlarmEvent]:
         """Judge a situation and return what changed by it."""
         events = []
         for kind, rule in RULES.items():

@@ -308,12 +308,12 @@ class AlarmWatch(QObject):
             texts.append(tr("Off the road is not watched: {why}.", why=why))
         return " ".join(texts)
 
-    def look(self) -> None:
+    def evaluate(self) -> None:
         """Judge what is known now."""
         if self._desk.link.phase is ConnectionPhase.CONNECTED and self._desk.site is not None:
             moment = self._desk.clock()
             situation = self._situations.at(moment, self.board.limits)
-            self._tell(self.board.look(situation, moment, time.time()))
+            self._tell(self.board.evaluate(situation, moment, time.time()))
             self._take_reported(moment)
         self._tell_of_watching()
 
@@ -349,7 +349,7 @@ class AlarmWatch(QObject):
             self.board.clear()
             self.changed.emit()
         if self._turn.has_come(1 if len(self._desk.picture) <= MANY else 2):
-            self.look()
+            self.evaluate()
 
     def _drop(self, gone: RemovedRobots) -> None:
         self.board.drop(gone)

@@ -361,11 +361,11 @@ class LayoutAction:
         for kind in LAYOUTS.values():
             entry = self._layouts.addAction(layout_in_words(kind))
             entry.setObjectName(f"fleet_cone_layout_{kind.NAME}")
-            entry.triggered.connect(lambda _=False, kind=kind: self.take(remembered(kind)))
+            entry.triggered.connect(lambda _=False, kind=kind: self.start_tool(remembered(kind)))
         self.action.setMenu(self._layouts)
         iface.addPluginToMenu(menu, self.action)
 
-    def take(self, layout: Layout) -> None:
+    def start_tool(self, layout: Layout) -> None:
         """Put the tool into the operator's hand, with ``layout`` and its dimensions to be changed."""
         self._iface.mapCanvas().setMapTool(self.tool)
         self.tool.show_layout(layout)

@@ -107,13 +107,13 @@ class RequestScheduler:
         self._aside = _Lane(settle)
         self._stopping: set[asyncio.Task[None]] = set()
 
-    async def take(self, asked: ScheduledRequest) -> None:
+    async def submit(self, asked: ScheduledRequest) -> None:
         """See to a request; returns at once, or when one that cannot be taken has been refused."""
         if asked.stops:
             await self._stop(asked)
         elif isinstance(asked.request, SLOW):
             await self._ask_aside(asked)
-        elif not self._turn.put(asked, MOST_WAITING):
+        elif not self._turn.submit(asked, MOST_WAITING):
             await self._settle(asked, _too_many(asked))
 
     async def finish(self) -> None:
@@ -137,7 +137,7 @@ class RequestScheduler:
     async def _ask_aside(self, asked: ScheduledRequest) -> None:
         for older in self._aside.withdraw(lambda waiting: _is_renewed(waiting, asked)):
             await self._settle(older, RefusedError("get_route: it was asked again before this was begun"))
-        if not self._aside.put(asked, MOST_ASIDE):
+        if not self._aside.submit(asked, MOST_ASIDE):
             await self._settle(asked, _too_many(asked))
 
 
@@ -149,7 +149,7 @@ class _Lane:
         self._waiting: deque[ScheduledRequest] = deque()
         self._task: asyncio.Task[None] | None = None
 
-    def put(self, asked: ScheduledRequest, most: int) -> bool:
+    def submit(self, asked: ScheduledRequest, most: int) -> bool:
         """Take a request; false when too much waits."""
         waiting = sum(one.size for one in self._waiting)
         if len(self._waiting) >= most or (self._waiting and waiting + asked.size > MOST_BYTES):
@@ -276,7 +276,7 @@ class OperatorSession:
         if isinstance(asked.request, OWN):
             await self._settle(asked, None)
         else:
-            await self._lanes.take(asked)
+            await self._lanes.submit(asked)
 
     async def _settle(self, asked: ScheduledRequest, refusal: Exception | None) -> None:
         """Do what is asked, unless it is refused, and tell what came of it."""

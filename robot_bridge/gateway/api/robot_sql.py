@@ -84,7 +84,7 @@ class SqlInterface:
         if self._waited_up_to is None:
             self._waited_up_to = await self._fleet.mailboxes.take_up()
         found = False
-        while rows := await self._fleet.mailboxes.look(NAME):
+        while rows := await self._fleet.mailboxes.read_requests(NAME):
             found = True
             await self._deal_with_all(rows)
             if len(rows) < AT_ONCE:

@@ -436,7 +436,7 @@ class WebSocketInterface:
         """Let ``session`` be the connection of its robot, and end the one before."""
         former = self._holders.get(session.robot)
         self._holders[session.robot] = session
-        self._fleet.reception.holds.take(session.robot, session)
+        self._fleet.reception.holds.claim(session.robot, session)
         if former is not None and former is not session:
             former.replace()
 

@@ -128,14 +128,14 @@ class LinkedRobotChannel:
 
     def count(self) -> bool:
         """Count a message of the robot, and tell whether it is dealt with: it may have said too much."""
-        return len(self._waiting) < MOST_WAITING and self._messages.take()
+        return len(self._waiting) < MOST_WAITING and self._messages.consume()
 
     def count_reply(self) -> bool:
         """As :meth:`count`, of a reply: what the robot says of its place keeps no acknowledgement out.
 
         One that is kept out is asked for again.
         """
-        is_room = len(self._waiting) < MOST_WAITING and self._replies.take()
+        is_room = len(self._waiting) < MOST_WAITING and self._replies.consume()
         if not is_room:
             self.session.ask_again()
         return is_room

@@ -32,7 +32,7 @@ class RateLimit:
         self._rate, self._burst, self._clock = rate, burst, clock
         self._left, self._at = burst, clock()
 
-    def take(self) -> bool:
+    def consume(self) -> bool:
         """Take one, if there is one to take."""
         now = self._clock()
         self._left = min(self._burst, self._left + (now - self._at) * self._rate)
@@ -161,7 +161,7 @@ class FastPath:
         if request.find(END_OF_REQUEST) == len(request) - len(END_OF_REQUEST):
             self._edges = FrameParser()
 
-    def take(self, data: bytes, messages: RateLimit) -> int:
+    def handle_messages(self, data: bytes, messages: RateLimit) -> int:
         """Deal with the messages at the beginning of ``data``, each one of ``messages``.
 
         Return where that begins which has to go the long way; :meth:`pass_over` is to be called with it.
@@ -169,7 +169,7 @@ class FastPath:
         start, edges = 0, self._edges
         if self.handler is None or edges is None or not edges.between or self.on_the_long_way:
             return 0
-        while (found := short_text(data, start)) is not None and messages.take():
+        while (found := short_text(data, start)) is not None and messages.consume():
             message, end = found
             if not self.handler(message):
                 messages.give_back()
@@ -301,7 +301,7 @@ class ClientConnection(ServerConnection):
     def _deal_with(self, data: bytes) -> int:
         if self.protocol.state is not OPEN or self.protocol.current_size is not None or self._expelled:
             return 0
-        start = self.short_cut.take(data, self._messages)
+        start = self.short_cut.handle_messages(data, self._messages)
         if start:
             self._heard_at = self.loop.time()
         return start
@@ -312,9 +312,9 @@ class ClientConnection(ServerConnection):
             if self._expelled:
                 return
             self._heard_at = self.loop.time()
-            if self._messages.take():
+            if self._messages.consume():
                 yield frame
-            elif self._patience.take():
+            elif self._patience.consume():
                 if not await self._refuse(frame):
                     yield frame
             else:
@@ -336,7 +336,7 @@ class ClientConnection(ServerConnection):
 
     def process_event(self, event: Any) -> None:
         """Take in one frame; pings and empty pieces of messages are counted, since nobody waits for them."""
-        if isinstance(event, Frame) and _is_idle_talk(event) and not self._control.take():
+        if isinstance(event, Frame) and _is_idle_talk(event) and not self._control.consume():
             log.warning("%s from %s: too many control frames; cut off", self.who, self.address)
             self.transport.abort()
             return

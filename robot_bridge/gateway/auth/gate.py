@@ -64,7 +64,7 @@ class ConnectionRegistry:
         # Whoever has asked for something is about to be let in or refused.
         oldest = next((one for one in pending if one.request is None), next(iter(pending)))
         self._forget_pending(oldest)
-        if self._shed_lines.take():
+        if self._shed_lines.consume():
             log.warning(
                 "%s has more than %s that have not said what they want; the oldest are ended",
                 visitor.address,
@@ -231,11 +231,11 @@ class AuthGate:
         while True:
             await asyncio.sleep(LOOK_INTERVAL)
             try:
-                await self.look()
+                await self.refresh()
             except StoreError as error:
                 raise StoreError(f"{error}; accounts stay as they were last read") from error
 
-    async def look(self) -> None:
+    async def refresh(self) -> None:
         """Take over changed accounts, and end what does not hold any more; raises StoreError."""
         await self.book.refresh()
         for visitor, identity in self._guests:
@@ -399,7 +399,7 @@ class AuthGate:
     def _refuse(self, visitor: ClientConnection, kind: TokenKind, who: str, fault: str) -> Response:
         # Whoever knocks with wrong tokens is to fill neither the log nor the disk.
         failures = self._failures_of(visitor.address)
-        if not failures.take():
+        if not failures.consume():
             text = "Too many refused logins came from this address."
             return _later(visitor, http.HTTPStatus.TOO_MANY_REQUESTS, text, failures.wait() + 1)
         self._note_refusal(visitor, who, f"{PATHS[kind]}: {fault}")

@@ -360,7 +360,7 @@ class ActiveCommands:
         mine = self._by_robot.get(robot)
         return list(mine.values()) if mine else []
 
-    def put(self, command: ActiveCommand) -> None:
+    def add(self, command: ActiveCommand) -> None:
         """Take in a command, in place of what was known of it."""
         report = command.report
         former = self._by_id.get(report.command)

@@ -94,7 +94,7 @@ class CommandService(CommandReader):
     async def restore(self) -> None:
         """Take up the commands that an earlier gateway left open."""
         for stored in await self._database.run(commands.still_open):
-            self._open.put(self._restored(stored))
+            self._open.add(self._restored(stored))
 
     async def issue(self, orders: list[CommandOrder], also: Also | None = None) -> list[CommandReport]:
         """Store new commands with their messages, all or none, and ``also`` more; return them as stored.
@@ -400,7 +400,7 @@ class CommandService(CommandReader):
 
     def _apply(self, command: ActiveCommand) -> None:
         if is_open(command.report.state):
-            self._open.put(command)
+            self._open.add(command)
         else:
             self._open.remove(command.report.command)
         with log_and_continue(log, f"telling of command {command.report.command}"):

@@ -203,7 +203,7 @@ class RobotOutboxes:
                 self._commands.await_again(robot, id)
         return newest
 
-    async def look(self, link: str) -> list[answers.RequestRow]:
+    async def read_requests(self, link: str) -> list[answers.RequestRow]:
         """Return the oldest requests in RR, which stay there until :meth:`finish`; note what was read."""
         sent = self._undelivered(link)
         rows, waiting = await self._database.read(read_requests, sorted(sent))

@@ -39,7 +39,7 @@ class ConnectionClaims:
     def __init__(self) -> None:
         self._holds: dict[str, ConnectionClaim] = {}
 
-    def take(self, robot: str, hold: ConnectionClaim) -> None:
+    def claim(self, robot: str, hold: ConnectionClaim) -> None:
         """Note that ``robot`` is at the other end of ``hold``, and of no other."""
         self._holds[robot] = hold
 

@@ -114,7 +114,7 @@ class ClockWatch:
         self._clock, self._steady = clock, steady
         self._seen = clock(), steady()
 
-    def look(self) -> ClockStep | None:
+    def measure_step(self) -> ClockStep | None:
         """Return how the clock was set since the last look, None where it was not."""
         (then, steady_then), self._seen = self._seen, (self._clock(), self._steady())
         now, steady_now = self._seen

@@ -56,7 +56,7 @@ async def keep_going(name: str, work: Work, tally: Counters) -> None:
             raise
         except Exception as error:
             tally.failures[name] += 1
-            pause = trouble.take(error, lasted=time.monotonic() - began)
+            pause = trouble.record_failure(error, lasted=time.monotonic() - began)
         await asyncio.sleep(pause)
 
 
@@ -69,7 +69,7 @@ class RetryState:
         self._unforeseen = 0
         self._told = ("", 0.0)
 
-    def take(self, error: Exception, lasted: float) -> float:
+    def record_failure(self, error: Exception, lasted: float) -> float:
         """Log ``error`` and return the seconds to wait; ``lasted`` is how long the work went well before it.
 
         :raises FatalError: when it has failed too often for a reason nobody foresaw.

@@ -247,7 +247,7 @@ class QueueRunner:
         """robots that are back after nobody had heard them for long."""
         self.waits_for: Callable[[str, str], str | None] = lambda _robot, _task: None
         """Tells whom a robot is to let pass before it is sent a task, None for nobody."""
-        context.book.due = self.look
+        context.book.due = self.schedule
         context.robots.is_back = self._is_back
 
     async def run(self) -> None:
@@ -260,7 +260,7 @@ class QueueRunner:
                 self.look_at_all()
             await self.advance()
 
-    def look(self, robot: str) -> None:
+    def schedule(self, robot: str) -> None:
         """Look at a robot's queue soon."""
         self._due.add(robot)
         self._event.set()
@@ -273,7 +273,7 @@ class QueueRunner:
             return
         if report.command == head.command:
             if not is_open(report.state):
-                self.look(report.robot)
+                self.schedule(report.robot)
         elif report.state is CommandState.QUEUED and self._is_beside(queue, report):
             # It has paused the queue in its own transaction.
             self._book.doubt(report.robot)
@@ -283,7 +283,7 @@ class QueueRunner:
         for robot in self._book.names():
             queue = self._book.get(robot)
             if self._book.is_doubtful(robot):
-                self.look(robot)
+                self.schedule(robot)
             if not queue.tasks:
                 self._told.pop(robot, None)
                 continue
@@ -292,7 +292,7 @@ class QueueRunner:
                 self._told[robot] = state
                 self._book.announce(robot)
             if queue.running or queue.current is not None:
-                self.look(robot)
+                self.schedule(robot)
 
     async def advance(self) -> None:
         """Do what is due now: settle what has ended, send what comes next."""
@@ -360,7 +360,7 @@ class QueueRunner:
                 await self._hold_back(self._book.get(robot))
                 await self._go_on(self._book.get(robot))
         except OutdatedError:
-            self.look(robot)
+            self.schedule(robot)
         except StoreError as error:
             log.error("queue of %s: %s; it is looked at again", robot, error)
         except Exception:
@@ -371,7 +371,7 @@ class QueueRunner:
         queue = self._book.get(robot)
         if away > self._longest_silence and queue.running and queue.tasks:
             self._returned.add(robot)
-            self.look(robot)
+            self.schedule(robot)
 
     @property
     def _longest_silence(self) -> float:

@@ -47,7 +47,7 @@ _TAKEN = {"55P03", 1205}
 class GatewayLock(Protocol):
     """A lock of one kind of database; all of it waits, so it is called in a thread."""
 
-    def take(self) -> bool:
+    def acquire(self) -> bool:
         """Take the lock; return false when somebody else holds it."""
 
     def ping(self) -> None:
@@ -81,10 +81,10 @@ class SingletonLock:
             "since": round(time.time()),
         }
 
-    async def take(self) -> None:
+    async def acquire(self) -> None:
         """Take the database; raises BridgeError when another gateway runs on it."""
         until = time.monotonic() + PATIENCE_AT_START
-        while not await asyncio.to_thread(self._lock.take):
+        while not await asyncio.to_thread(self._lock.acquire):
             if time.monotonic() > until:
                 other = await asyncio.to_thread(self._lock.read)
                 raise BridgeError(f"database {self._where}: {_taken(self._does, other)}")
@@ -111,7 +111,7 @@ class SingletonLock:
     async def _take_again(self) -> None:
         while True:
             try:
-                taken = await asyncio.to_thread(self._lock.take)
+                taken = await asyncio.to_thread(self._lock.acquire)
                 other = await asyncio.to_thread(self._lock.read)
             except StoreError:
                 await asyncio.sleep(PING_INTERVAL)
@@ -139,7 +139,7 @@ async def no_gateway(url: URL, does: str) -> AsyncIterator[None]:
         yield
         return
     sole = SingletonLock(url, does)
-    await sole.take()
+    await sole.acquire()
     try:
         yield
     finally:
@@ -153,7 +153,7 @@ class FileLock:
         self._url = url
         self._file: int | None = None
 
-    def take(self) -> bool:
+    def acquire(self) -> bool:
         """Take the lock; a database in memory has none, as nobody else can open it."""
         import fcntl
 
@@ -211,7 +211,7 @@ class ServerLock:
         self._statements = _LOCKING[self._dialect.name]
         self._connection: Connection | None = None
 
-    def take(self) -> bool:
+    def acquire(self) -> bool:
         """Take the lock."""
         self.release()
         with _explained(self._url, self._dialect):

@@ -72,7 +72,7 @@ class DetourQueues(Protocol):
     def to_the_end(self, task: QueueTask, left: list[Point]) -> list[Point]:
         """Return what is ``left`` of the path that was sent for a task, up to the task's place."""
 
-    def look(self, robot: str) -> None:
+    def schedule(self, robot: str) -> None:
         """Look soon whether a robot's queue has something to send."""
 
 

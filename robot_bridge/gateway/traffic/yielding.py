@@ -345,7 +345,7 @@ class YieldManager:
             return
         if row.task is not None:
             await self._forget(row.robot)
-            self._detours.queues.look(row.robot)
+            self._detours.queues.schedule(row.robot)
             return
         given = self._book.task(row.robot)
         target = given[0] if given is not None else rest

@@ -111,7 +111,7 @@ class TrajectoryRecorder:
             if len(self._waiting) > settings.largest_backlog:
                 self._give_up_the_oldest()
 
-    def take(self, now: float) -> list[PackedFix]:
+    def next_batch(self, now: float) -> list[PackedFix]:
         """Return the oldest positions to be stored; what cannot be stored is handed to :meth:`give_back`."""
         # Not each time: it looks at every robot, and this is called for every few requests.
         if not 0 <= now - self._looked_at < LOOK_INTERVAL:
@@ -219,7 +219,7 @@ class TrajectoryWriter:
 
     async def _jot_with(self, work: Callable[..., None], arguments: tuple[Any, ...]) -> None:
         async with self._writing:
-            fixes, session = self._recorder.take(self._clock()), self._database.session
+            fixes, session = self._recorder.next_batch(self._clock()), self._database.session
             try:
                 await self._database.jot(work, *arguments, fixes)
             except DataRefusedError:
@@ -240,7 +240,7 @@ class TrajectoryWriter:
                 return
             self._take_back()
             while True:
-                fixes = self._recorder.take(self._clock())
+                fixes = self._recorder.next_batch(self._clock())
                 last, unsaved = not self._recorder.waiting, set[str]()
                 if last:
                     unsaved, self._unsaved = self._unsaved, set()

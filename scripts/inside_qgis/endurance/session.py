@@ -95,7 +95,7 @@ class Endurance:
         from fleet_supervisor.plugin.settings.connections import Connections, GatewayConnection
 
         kept = GatewayConnection(CONNECTION, self._plan["gateway"], self._plan["operator"])
-        Connections().put(kept)
+        Connections().store(kept)
 
     def _connected(self) -> Until:
         wanted = len(self._plan["robots"])

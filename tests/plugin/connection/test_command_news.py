@@ -78,4 +78,4 @@ def test_every_way_on_which_commands_come_packs_them():
     mailbox = UpdateBuffer()
     protocol = GatewayProtocol("anna", 10.0, "ws://here/desk", mailbox, lambda: 0.0)
     protocol.receive(json.dumps({"jsonrpc": "2.0", "method": "command", "params": told()}))
-    assert isinstance(mailbox.take().commands["c1"].params["points"], PathPoints)
+    assert isinstance(mailbox.collect().commands["c1"].params["points"], PathPoints)

@@ -74,7 +74,11 @@ def connection():
 
 def link_when(connection, wait, phase):
     links = []
-    wait(lambda: links.append(connection.take().link) or links[-1].phase is phase, 10, what=str(phase))
+    wait(
+        lambda: links.append(connection.collect_updates().link) or links[-1].phase is phase,
+        10,
+        what=str(phase),
+    )
     return links[-1]
 
 
@@ -326,7 +330,7 @@ def test_each_role_reaches_as_far_as_it_may_and_is_told_where_it_ends(
     def draw_and_send():
         desk.select("nobody")
         window.actions.cone.trigger()
-        iface.canvas.mapTool().take((100.0, 80.0))
+        iface.canvas.mapTool().add_point((100.0, 80.0))
         wait(lambda: not desk.checks.is_under_way)
         window.actions.send.trigger()
 

@@ -56,7 +56,7 @@ def test_no_button_moves_whatever_is_reported(panel, gateway, make_robot, wait, 
             ),
         ),
     ):
-        desk.drafts.put(draft)
+        desk.drafts.set_command(draft)
         watched.check(words)
     desk.drafts.undo()
     watched.check("a draft is taken back")

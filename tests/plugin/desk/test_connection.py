@@ -27,14 +27,14 @@ def connection(qgis_app):
 
 
 def phase_of(connection):
-    return connection.take().link.phase
+    return connection.collect_updates().link.phase
 
 
 def reason_when(connection, wait, phase):
     found = []
 
     def there():
-        link = connection.take().link
+        link = connection.collect_updates().link
         found.append(link)
         return link.phase is phase
 
@@ -48,7 +48,7 @@ def test_a_gateway_is_greeted_and_its_site_and_robots_arrive(connection, gateway
     robots, sites = {}, []
 
     def arrived():
-        news = connection.take()
+        news = connection.collect_updates()
         robots.update({name: news.robots.report(row) for row, name in enumerate(news.robots.names)})
         sites.extend([news.site] if news.site else [])
         return robots
@@ -206,7 +206,7 @@ def test_a_killed_gateway_is_found_again_on_its_port(connection, gateway, make_r
     robots = set()
 
     def again():
-        news = connection.take()
+        news = connection.collect_updates()
         robots.update(news.robots.names)
         return news.link.phase is ConnectionPhase.CONNECTED and "r9" in robots
 
@@ -226,7 +226,7 @@ def test_an_unanswered_order_is_repeated_with_its_id_and_done_once(connection, g
     gateway.mute.clear()
     gateway.start()
     answers = []
-    wait(lambda: answers.extend(connection.take().answers) or answers, 6, what="the answer")
+    wait(lambda: answers.extend(connection.collect_updates().answers) or answers, 6, what="the answer")
     assert [params["command"] for params in gateway.asked("send")] == ["command-1", "command-1"]
     assert list(gateway.commands) == ["command-1"]
     assert answers[0].result["state"] == "queued"
@@ -238,7 +238,7 @@ def test_an_answered_order_is_not_repeated_on_the_next_link(connection, gateway,
     params = {"command": "command-1", "robot": "r1", "op": "Abort", "params": {}}
     connection.submit(OperatorRequest("command-1", "send", params, steady_time()))
     answers = []
-    wait(lambda: answers.extend(connection.take().answers) or answers)
+    wait(lambda: answers.extend(connection.collect_updates().answers) or answers)
     gateway.stop()
     wait(lambda: phase_of(connection) is ConnectionPhase.RETRYING, 3)
     gateway.start()
@@ -257,7 +257,7 @@ def test_an_order_that_became_old_without_a_link_is_handed_back_and_not_sent(con
     wait(lambda: phase_of(connection) is ConnectionPhase.RETRYING, 3)
     gateway.start()
     answers = []
-    wait(lambda: answers.extend(connection.take().answers) or answers, 6)
+    wait(lambda: answers.extend(connection.collect_updates().answers) or answers, 6)
     assert "it was not repeated" in answers[0].error
     assert len(gateway.asked("send")) == 1
 
@@ -271,7 +271,7 @@ def test_closing_hands_back_what_was_not_answered(connection, gateway, wait):
     wait(lambda: gateway.asked("send"))
     connection.close()
     answers = []
-    wait(lambda: answers.extend(connection.take().answers) or answers)
+    wait(lambda: answers.extend(connection.collect_updates().answers) or answers)
     assert "whether it arrived is not known" in answers[0].error
 
 
@@ -289,7 +289,7 @@ def test_a_slow_reader_gets_the_newest_state_and_no_queue(connection, gateway, m
     heard = []
 
     def newest():
-        if found := connection.take().robots:
+        if found := connection.collect_updates().robots:
             heard.append((len(found), found.report(0).x))
         return heard and heard[-1][1] == 1999.0
 
@@ -342,7 +342,7 @@ def test_every_thread_has_ended_after_shut_down(connection, gateway, wait):
 
 def test_a_link_that_is_cut_off_because_it_does_not_close_leaves_no_socket_behind(connection, gateway, wait):
     connection.open(gateway.url, "anna")
-    wait(lambda: connection.take().link.phase is ConnectionPhase.CONNECTED)
+    wait(lambda: connection.collect_updates().link.phase is ConnectionPhase.CONNECTED)
     release = threading.Event()
     gc.collect()  # what earlier tests left is not told of here
     with warnings.catch_warnings(record=True) as told:

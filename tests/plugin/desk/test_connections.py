@@ -93,7 +93,7 @@ def test_a_new_connection_is_tested_and_kept(widget, gateway, wait):
 
 
 def test_a_gateway_that_is_not_there_is_told_with_what_to_do(widget, wait):
-    Connections().put(GatewayConnection("Yard", "ws://127.0.0.1:9/desk"))
+    Connections().store(GatewayConnection("Yard", "ws://127.0.0.1:9/desk"))
     widget.show_all("Yard")
     press(widget, "fleet_connections_test")
     wait(lambda: verdict(widget).startswith("✘"), 8)
@@ -111,7 +111,7 @@ def test_a_gateway_that_is_not_there_is_told_with_what_to_do(widget, wait):
 )
 def test_what_cannot_be_is_refused_and_the_dialog_stays(widget, texts, says):
     for name in ("Other", "Yard"):
-        Connections().put(GatewayConnection(name, "ws://127.0.0.1:8765/desk"))
+        Connections().store(GatewayConnection(name, "ws://127.0.0.1:8765/desk"))
     widget.show_all("Yard")
     press(widget, "fleet_connections_edit")
     dialog = widget.findChild(ConnectionDialog)
@@ -175,7 +175,7 @@ def test_a_connection_is_picked_in_the_panel_and_is_there_next_time(plugin, gate
     from fleet_supervisor.plugin.ui.actions import Actions
 
     for name, who in (("Yard", "anna"), ("Track", "bob")):
-        Connections().put(GatewayConnection(name, gateway.url, who, f"/{name}.pem"))
+        Connections().store(GatewayConnection(name, gateway.url, who, f"/{name}.pem"))
     panel = plugin.window.dock.connection_panel
     menu_of(panel).findChild(QAction, "fleet_connection_Track").trigger()
     assert (panel.url(), panel.operator(), panel.credentials().ca_file) == (gateway.url, "bob", "/Track.pem")
@@ -213,8 +213,8 @@ def test_what_stands_in_the_fields_is_kept_under_a_name(plugin, gateway, iface):
 def test_export_and_import_hand_connections_on_without_tokens(widget, tmp_path, gateway):
     file = tmp_path / "gateways.json"
     kept = GatewayConnection("Yard", gateway.url, "anna", "/ca.pem", "abc1234")
-    Connections().put(kept)
-    Connections().put(GatewayConnection("Track", gateway.url))
+    Connections().store(kept)
+    Connections().store(GatewayConnection("Track", gateway.url))
     widget.show_all()
     widget.write_file(str(file))
     assert [one["name"] for one in json.loads(file.read_text())["connections"]] == ["Track", "Yard"]
@@ -227,7 +227,7 @@ def test_export_and_import_hand_connections_on_without_tokens(widget, tmp_path, 
 
 
 def test_one_connection_is_told_as_one(widget, tmp_path):
-    Connections().put(GatewayConnection("Yard", "ws://127.0.0.1:8765/desk"))
+    Connections().store(GatewayConnection("Yard", "ws://127.0.0.1:8765/desk"))
     widget.show_all()
     for work in (widget.write_file, widget.read_file):
         work(str(tmp_path / "one.json"))
@@ -236,14 +236,14 @@ def test_one_connection_is_told_as_one(widget, tmp_path):
 
 def test_only_what_is_selected_is_exported(widget, tmp_path):
     for name in ("Track", "Yard"):
-        Connections().put(GatewayConnection(name, "ws://127.0.0.1:8765/desk"))
+        Connections().store(GatewayConnection(name, "ws://127.0.0.1:8765/desk"))
     widget.show_all("Yard")
     widget.write_file(str(tmp_path / "one.json"))
     assert [one["name"] for one in json.loads((tmp_path / "one.json").read_text())["connections"]] == ["Yard"]
 
 
 def test_a_file_that_is_none_changes_nothing_and_says_so(widget, tmp_path):
-    Connections().put(GatewayConnection("Yard", "ws://127.0.0.1:8765/desk"))
+    Connections().store(GatewayConnection("Yard", "ws://127.0.0.1:8765/desk"))
     (tmp_path / "other.json").write_text("{}")
     for file, says in (("other.json", "holds no connections"), ("none.json", "cannot be read")):
         widget.read_file(str(tmp_path / file))
@@ -253,7 +253,7 @@ def test_a_file_that_is_none_changes_nothing_and_says_so(widget, tmp_path):
 
 def test_removing_takes_what_is_selected_and_leaves_the_rest(widget):
     for name in ("Track", "Yard"):
-        Connections().put(GatewayConnection(name, "ws://127.0.0.1:8765/desk"))
+        Connections().store(GatewayConnection(name, "ws://127.0.0.1:8765/desk"))
     widget.show_all()
     assert not widget.findChild(QPushButton, "fleet_connections_remove").isEnabled()
     take(widget, "Track")

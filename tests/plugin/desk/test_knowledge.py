@@ -58,8 +58,8 @@ def test_desks_do_not_come_back_in_the_same_moment():
 
 def test_the_same_order_is_kept_once_and_answered_once():
     outbox = RequestOutbox()
-    assert outbox.put(OperatorRequest("a", "send"))
-    assert not outbox.put(OperatorRequest("a", "send"))
+    assert outbox.add(OperatorRequest("a", "send"))
+    assert not outbox.add(OperatorRequest("a", "send"))
     assert outbox.answered("a").key == "a"
     assert outbox.answered("a") is None
 
@@ -67,7 +67,7 @@ def test_the_same_order_is_kept_once_and_answered_once():
 def test_orders_are_repeated_in_the_order_in_which_they_were_asked():
     outbox = RequestOutbox()
     for number in range(5):
-        outbox.put(OperatorRequest(f"order {number}", "send", asked_at=float(number)))
+        outbox.add(OperatorRequest(f"order {number}", "send", asked_at=float(number)))
     again, too_old = outbox.renew(now=32.5)
     assert [order.key for order in again] == ["order 3", "order 4"]
     assert [order.key for order in too_old] == ["order 0", "order 1", "order 2"]
@@ -167,11 +167,11 @@ def test_a_window_that_does_not_look_costs_a_bounded_memory(make_robot):
     for number in range(3 * MOST_COMMANDS):
         mailbox.put_commands([command(command=f"command-{number}")])
         mailbox.put_robots(sighting(make_robot(x=float(number)), float(number)))
-    news = mailbox.take()
+    news = mailbox.collect()
     assert len(news.robots) == 1
     assert list(news.commands)[-1] == f"command-{3 * MOST_COMMANDS - 1}"
     assert len(news.commands) == MOST_COMMANDS
-    assert len(mailbox.take().robots) == 0
+    assert len(mailbox.collect().robots) == 0
 
 
 def greeted(site):
@@ -191,15 +191,15 @@ def test_after_the_greeting_the_desk_subscribes_and_asks_for_commands(site):
         ("get_closures", {}),
         ("get_queue", {"paths": False, "ended": 10}),
     ]
-    assert mailbox.take().site == site
+    assert mailbox.collect().site == site
 
 
 def test_another_version_of_the_site_is_taken_over_when_the_gateway_tells_of_it(site):
     protocol, mailbox, _ = greeted(site)
-    mailbox.take()
+    mailbox.collect()
     newer = replace(site, version=2, stale_after=1.0)
     assert protocol.receive(json.dumps({"jsonrpc": "2.0", "method": "site", "params": to_json(newer)})) == []
-    assert mailbox.take().site == newer
+    assert mailbox.collect().site == newer
 
 
 def test_commands_come_newest_first_and_are_kept_oldest_first(site):
@@ -207,7 +207,7 @@ def test_commands_come_newest_first_and_are_kept_oldest_first(site):
     newest_first = [to_json(command(command=f"command-{n}")) for n in (3, 2, 1)]
     answer = {"jsonrpc": "2.0", "id": sent[1]["id"], "result": {"commands": newest_first}}
     protocol.receive(json.dumps(answer))
-    assert list(mailbox.take().commands) == ["command-1", "command-2", "command-3"]
+    assert list(mailbox.collect().commands) == ["command-1", "command-2", "command-3"]
 
 
 @pytest.mark.parametrize(
@@ -225,7 +225,7 @@ def test_positions_that_are_none_are_refused_in_words(site, params):
     protocol, mailbox, _ = greeted(site)
     with pytest.raises(GatewayLinkError, match="ws://here/desk"):
         protocol.receive(json.dumps({"jsonrpc": "2.0", "method": "positions", "params": params}))
-    assert len(mailbox.take().robots) == 0
+    assert len(mailbox.collect().robots) == 0
 
 
 def test_what_a_newer_gateway_says_besides_is_passed_over(site):
@@ -258,19 +258,19 @@ def test_queues_and_placed_cones_are_taken_from_news_answers_and_refusals(site):
     protocol, mailbox, sent = greeted(site)
     (every,) = [one["id"] for one in sent if one["method"] == "get_queue"]
     told(protocol, id=every, result={"queues": [queue("r1"), queue("r2")]})
-    news = mailbox.take()
+    news = mailbox.collect()
     assert news.queues.every and set(news.queues.queues) == {"r1", "r2"}
     told(protocol, method="queue", params=queue("r1", 2))
     told(protocol, method="placement", params=placement(7))
     told(protocol, id=answer_to(protocol, "set_queue"), result=queue("r2", 5))
     told(protocol, id=answer_to(protocol, "take_over"), result={"queues": [queue("r3", 6)]})
     told(protocol, id=answer_to(protocol, "get_placements"), result={"placements": [placement(8)]})
-    news = mailbox.take()
+    news = mailbox.collect()
     assert {name: one.revision for name, one in news.queues.queues.items()} == {"r1": 2, "r2": 5, "r3": 6}
     assert set(news.placements.placements) == {7, 8} and not news.queues.every
     refusal = {"code": -32006, "message": "look again", "data": queue("r1", 9)}
     told(protocol, id=answer_to(protocol, "add_tasks"), error=refusal)
-    news = mailbox.take()
+    news = mailbox.collect()
     assert news.queues.queues["r1"].revision == 9
     assert news.answers[-1].outdated and news.answers[-1].error == "look again"
 
@@ -289,6 +289,6 @@ def test_a_robot_without_a_queue_has_revision_0_and_one_that_is_gone_is_forgotte
 def test_of_very_many_placed_cones_the_newest_are_kept(monkeypatch):
     monkeypatch.setattr("fleet_supervisor.plugin.gateway_client.report_caches.MOST_PLACEMENTS", 3)
     book, news = PlacedConeCache(), PlacedConeUpdates()
-    news.take([placement_report(placement(number)) for number in (4, 1, 5, 2)])
+    news.add([placement_report(placement(number)) for number in (4, 1, 5, 2)])
     assert book.merge(news) == [4, 1, 5, 2]
     assert sorted(one.placement for one in book) == [2, 4, 5]

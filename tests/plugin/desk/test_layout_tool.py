@@ -50,7 +50,7 @@ def entry(iface):
 
 @pytest.fixture
 def slalom(entry, iface):
-    entry.take(LAYOUTS["slalom"].of({"spacing": 5, "count": 3}))
+    entry.start_tool(LAYOUTS["slalom"].of({"spacing": 5, "count": 3}))
     return entry.tool
 
 
@@ -70,11 +70,11 @@ def test_the_dimensions_leave_the_middle_of_the_map_free_and_stay_where_they_are
     window.resize(1280, 800)
     QApplication.processEvents()
     slalom = LAYOUTS["slalom"].of({})
-    entry.take(slalom)
+    entry.start_tool(slalom)
     assert not entry.dimensions.geometry().contains(window.geometry().center())
     entry.dimensions.move(300, 200)
     entry.dimensions.hide()
-    entry.take(slalom)
+    entry.start_tool(slalom)
     assert entry.dimensions.pos() == QPoint(300, 200)
 
 

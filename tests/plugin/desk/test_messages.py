@@ -131,14 +131,14 @@ def test_what_says_that_a_stop_is_in_force_goes_when_it_is_cleared(at_desk, gate
 def test_a_refusal_goes_with_its_draft(at_desk, gateway, iface, wait):
     send_refused(at_desk, gateway, iface, wait)
     assert at_desk.desk.drafts.draft is not None
-    at_desk.desk.drafts.put(PendingCommand("r1", CONE, ((31.0, 30.0),)))
+    at_desk.desk.drafts.set_command(PendingCommand("r1", CONE, ((31.0, 30.0),)))
     assert is_gone(iface, wait, SEND_REFUSED)
 
 
 def test_with_nothing_to_send_that_is_said_until_there_is_something(at_desk, iface, wait):
     at_desk.desk.sending.send()
     assert is_told(iface, "There is nothing to send")
-    at_desk.desk.drafts.put(PendingCommand("r1", CONE, ((31.0, 30.0),)))
+    at_desk.desk.drafts.set_command(PendingCommand("r1", CONE, ((31.0, 30.0),)))
     assert is_gone(iface, wait, "There is nothing to send")
 
 

@@ -148,7 +148,7 @@ def test_what_arrives_between_two_looks_counts_in_its_order(messages, left):
     picture.merge(told("a", "b", "c"))
     for message in messages:
         mailbox.put_robots(message)
-    picture.merge(mailbox.take().robots)
+    picture.merge(mailbox.collect().robots)
     assert set(picture.arrays(0.0).names) == left
 
 

@@ -14,7 +14,7 @@ def told(desk, *robots):
     mailbox.put_link(desk.link)
     frame = {"jsonrpc": "2.0", "method": "suspensions", "params": {"robots": list(robots)}}
     GatewayProtocol("Ada", 1.0, "ws://gateway/desk", mailbox, lambda: 0.0).receive(json.dumps(frame))
-    desk._take_news(mailbox.take())
+    desk._take_news(mailbox.collect())
 
 
 def test_what_is_locked_hangs_there_until_it_is_unlocked(at_desk):

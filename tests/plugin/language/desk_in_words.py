@@ -240,7 +240,7 @@ def look_at_panel(show: Show, window, desk_window, gateway, desk_tests) -> None:
     if window.canvas.width() < MAP_AT_LEAST:
         show.faults["map"] = [f"the fleet panel leaves {window.canvas.width()} pixels for the map"]
     found = Findings(overridable=("A cone target of r2 is 0.3 m from it",), warnings=("It is off the road",))
-    desk.drafts.put(PendingCommand("r1", CONE, ((60.0, 50.0),), found))
+    desk.drafts.set_command(PendingCommand("r1", CONE, ((60.0, 50.0),), found))
     dock.connection_panel._more.setChecked(True)
     show.look("panel_with_draft_and_access", window)
     desk.drafts.done()

@@ -57,7 +57,7 @@ def dialogs(window, desk_window) -> Dialogs:
 
 def _of_connections(window) -> Dialogs:
     site = GatewayConnection("Proving ground", "wss://gateway.example.org:8765/desk", "anna")
-    Connections().put(site)
+    Connections().store(site)
     yield "connection", ConnectionDialog(site, Connections(), window)
     yield "connection_new", ConnectionDialog(GatewayConnection("", ""), Connections(), window)
     yield "connections", ConnectionsDialog(window)

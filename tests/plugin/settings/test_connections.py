@@ -23,14 +23,14 @@ def connection(name, **more):
 
 def test_what_is_kept_is_there_for_everybody(connections):
     kept = connection("Yard", operator="anna", ca_file="/ca.pem", auth="abc1234")
-    connections.put(kept)
+    connections.store(kept)
     assert Connections().get("Yard") == kept
     assert Connections().all() == [kept]
 
 
 @pytest.mark.parametrize("name", ["a/b", "50 %", "Győr", "last", "ünnep\\x"])
 def test_any_name_will_do(connections, name):
-    connections.put(connection(name))
+    connections.store(connection(name))
     assert connections.names() == [name]
     assert connections.get(name).name == name
     connections.remove(name)
@@ -38,15 +38,15 @@ def test_any_name_will_do(connections, name):
 
 
 def test_a_new_name_takes_the_place_of_the_old_one_and_stays_the_last(connections):
-    connections.put(connection("Yard"))
+    connections.store(connection("Yard"))
     connections.last = "Yard"
-    connections.put(connection("North yard"), "Yard")
+    connections.store(connection("North yard"), "Yard")
     assert connections.names() == ["North yard"]
     assert connections.last == "North yard"
 
 
 def test_one_that_is_removed_is_not_the_last_any_more(connections):
-    connections.put(connection("Yard"))
+    connections.store(connection("Yard"))
     connections.last = "Yard"
     connections.remove("Yard")
     assert connections.last == ""
@@ -55,7 +55,7 @@ def test_one_that_is_removed_is_not_the_last_any_more(connections):
 
 def test_they_come_by_name_whatever_the_letters(connections):
     for name in ("b", "C", "a"):
-        connections.put(connection(name))
+        connections.store(connection(name))
     assert connections.names() == ["a", "b", "C"]
 
 

@@ -44,15 +44,15 @@ def plenty():
 
 def test_short_messages_are_taken_up_to_the_first_that_is_not(short_cut, taken, plenty):
     data = text("p1") + text("p2") + text("other") + text("p3")
-    assert short_cut.take(data, plenty) == 2 * len(text("p1"))
+    assert short_cut.handle_messages(data, plenty) == 2 * len(text("p1"))
     assert taken == ["p1", "p2"]
 
 
 def test_nothing_overtakes_what_is_on_the_long_way(short_cut, taken, plenty):
     short_cut.on_the_long_way = 1
-    assert short_cut.take(text("p1"), plenty) == 0
+    assert short_cut.handle_messages(text("p1"), plenty) == 0
     short_cut.on_the_long_way = 0
-    assert short_cut.take(text("p1"), plenty) == len(text("p1"))
+    assert short_cut.handle_messages(text("p1"), plenty) == len(text("p1"))
     assert taken == ["p1"]
 
 
@@ -60,9 +60,9 @@ def test_nothing_is_taken_out_of_the_middle_of_a_frame(short_cut, taken, plenty)
     frame = Frame(Opcode.BINARY, b"x" * 30 + text("p1")).serialize(mask=False)
     head = len(frame) - len(text("p1"))
     short_cut.pass_over(frame[:head])
-    assert short_cut.take(frame[head:], plenty) == 0
+    assert short_cut.handle_messages(frame[head:], plenty) == 0
     short_cut.pass_over(frame[head:])
-    assert short_cut.take(text("p2"), plenty) > 0
+    assert short_cut.handle_messages(text("p2"), plenty) > 0
     assert taken == ["p2"]
 
 
@@ -70,18 +70,18 @@ def test_frames_behind_the_request_leave_no_short_cut(taken, plenty):
     way = FastPath()
     way.handler = taken
     way.begin(REQUEST + text("a message whose edges nobody followed")[:9])
-    assert way.take(text("p1"), plenty) == 0
+    assert way.handle_messages(text("p1"), plenty) == 0
 
 
 def test_every_message_counts_once(short_cut, taken):
     bucket = RateLimit(1e-9, 3.0)
     data = text("p1") + text("other")
-    assert short_cut.take(data, bucket) == len(text("p1"))
-    assert [bucket.take(), bucket.take(), bucket.take()] == [True, True, False]
+    assert short_cut.handle_messages(data, bucket) == len(text("p1"))
+    assert [bucket.consume(), bucket.consume(), bucket.consume()] == [True, True, False]
 
 
 def test_what_is_too_much_is_left_to_be_refused(short_cut, taken):
     bucket = RateLimit(1e-9, 2.0)
     data = b"".join(text(f"p{number}") for number in range(5))
-    assert len(data) - short_cut.take(data, bucket) == 3 * len(text("p0"))
+    assert len(data) - short_cut.handle_messages(data, bucket) == 3 * len(text("p0"))
     assert taken == ["p0", "p1"]

@@ -49,12 +49,12 @@ def test_only_a_bearers_token_is_read(header, token):
 
 def test_a_bucket_lets_a_burst_through_and_then_its_rate(clock):
     bucket = RateLimit(10.0, 3, clock)
-    assert [bucket.take() for _ in range(4)] == [True, True, True, False]
+    assert [bucket.consume() for _ in range(4)] == [True, True, True, False]
     assert bucket.wait() == pytest.approx(0.1)
     clock.now += 0.11
-    assert [bucket.take(), bucket.take()] == [True, False]
+    assert [bucket.consume(), bucket.consume()] == [True, False]
     clock.now += 1000
-    assert [bucket.take() for _ in range(4)] == [True, True, True, False]
+    assert [bucket.consume() for _ in range(4)] == [True, True, True, False]
 
 
 @pytest.mark.parametrize("host", ["127.0.0.1", "::1", "localhost", "127.9.9.9"])

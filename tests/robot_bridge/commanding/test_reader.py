@@ -21,7 +21,7 @@ BEGIN = SetPosIni(1.0, 2.0)
 def reader(*commands):
     found = ActiveCommands()
     for one in commands:
-        found.put(one)
+        found.add(one)
     return CommandReader(found)
 
 

@@ -28,7 +28,7 @@ async def say_ready(yard, magic, link):
 @pytest.mark.parametrize("link", ["sql", "websocket"])
 async def test_a_second_robot_is_refused_while_the_first_is_there(yard, link):
     await say_ready(yard, 1, link)
-    yard.fleet.reception.holds.take("r1", Held(True))
+    yard.fleet.reception.holds.claim("r1", Held(True))
     yard.now += 2.9
     outcome = await say_ready(yard, 2, link)
     assert (outcome.ack.ok, outcome.ack.id, outcome.ack.magic) == (False, 5, 2)
@@ -41,7 +41,7 @@ async def test_a_second_robot_is_refused_while_the_first_is_there(yard, link):
 @pytest.mark.parametrize("link", ["sql", "websocket"])
 async def test_a_refused_robot_does_not_keep_the_silent_one_alive(yard, link):
     await say_ready(yard, 1, link)
-    yard.fleet.reception.holds.take("r1", Held(True))
+    yard.fleet.reception.holds.claim("r1", Held(True))
     for _ in range(2):
         yard.now += 1.4
         assert not (await say_ready(yard, 2, link)).admitted
@@ -59,13 +59,13 @@ async def test_on_sql_one_that_said_stopped_is_followed_at_once(yard):
 async def test_on_websocket_one_whose_connection_is_gone_is_followed_at_once(yard, held):
     await say_ready(yard, 1, "websocket")
     if held is not None:
-        yard.fleet.reception.holds.take("r1", held)
+        yard.fleet.reception.holds.claim("r1", held)
     assert (await say_ready(yard, 2, "websocket")).admitted
 
 
 async def test_a_robot_on_one_link_keeps_its_name_from_the_other(yard):
     await say_ready(yard, 1, "websocket")
-    yard.fleet.reception.holds.take("r1", Held(True))
+    yard.fleet.reception.holds.claim("r1", Held(True))
     assert not (await say_ready(yard, 2, "sql")).admitted
     assert yard.fleet.robots.get("r1").link == "websocket"
     await yard.ready("r2", link="sql")
@@ -84,8 +84,8 @@ async def test_a_refusal_throws_away_nothing_that_waits_for_the_first(yard):
 
 async def test_a_hold_is_freed_by_who_has_it_only(yard):
     first, second = Held(True), Held(True)
-    yard.fleet.reception.holds.take("r1", first)
-    yard.fleet.reception.holds.take("r1", second)
+    yard.fleet.reception.holds.claim("r1", first)
+    yard.fleet.reception.holds.claim("r1", second)
     yard.fleet.reception.holds.free("r1", first)
     assert await yard.fleet.reception.holds.answers("r1")
     yard.fleet.reception.holds.free("r1", second)

@@ -147,7 +147,7 @@ async def test_rows_that_take_a_while_leave_turns_to_whatever_stops(driven, monk
             await asyncio.sleep(0)
 
     counting = asyncio.create_task(count())
-    rows = await driven.fleet.mailboxes.look("sql")
+    rows = await driven.fleet.mailboxes.read_requests("sql")
     before = len(turns)
     await driven.link._deal_with_robot(rows)
     counting.cancel()

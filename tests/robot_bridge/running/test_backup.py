@@ -231,7 +231,7 @@ def test_nothing_is_restored_under_a_running_gateway(address, tmp_path):
     file = tmp_path / "backup"
     back_up(address, file)
     gateway = SingletonLock(address)
-    asyncio.run(gateway.take())
+    asyncio.run(gateway.acquire())
     try:
         with pytest.raises(BridgeError, match="a gateway runs on it: process"):
             put_back(address, file, replace=True)

@@ -20,7 +20,7 @@ import asyncio, sys
 from robot_bridge.gateway.storage.database import read_address
 from robot_bridge.gateway.storage.singleton_lock import SingletonLock
 async def main():
-    await SingletonLock(read_address(sys.argv[1])).take()
+    await SingletonLock(read_address(sys.argv[1])).acquire()
     print("taken", flush=True)
     await asyncio.sleep(60)
 asyncio.run(main())
@@ -44,7 +44,7 @@ def held_elsewhere(url):
 
 async def test_a_second_gateway_is_refused_and_told_which_one_runs(address, held_elsewhere):
     with pytest.raises(BridgeError) as caught:
-        await SingletonLock(address).take()
+        await SingletonLock(address).acquire()
     assert f"another gateway runs on it: process {held_elsewhere.pid} on " in str(caught.value)
     assert "end that one first, or give this one a database of its own" in str(caught.value)
 
@@ -52,22 +52,22 @@ async def test_a_second_gateway_is_refused_and_told_which_one_runs(address, held
 async def test_the_next_one_takes_over_when_the_first_is_killed(address, held_elsewhere):
     held_elsewhere.send_signal(signal.SIGKILL)
     gateway = SingletonLock(address)
-    await gateway.take()
+    await gateway.acquire()
     await gateway.release()
 
 
 async def test_the_next_one_takes_over_when_the_first_ends(address):
     first, second = SingletonLock(address), SingletonLock(address)
-    await first.take()
+    await first.acquire()
     await first.release()
-    await second.take()
+    await second.acquire()
     await second.release()
 
 
 async def test_the_lock_is_in_nobodys_way(address, kind):
     """Others write the table that is locked, and the rows beside the one that is."""
     gateway = SingletonLock(address)
-    await gateway.take()
+    await gateway.acquire()
     database = Database(address)
     try:
         await database.run(lambda c: c.execute(insert(bridge).values(name="fact", value="1")))
@@ -91,7 +91,7 @@ def often(monkeypatch):
 
 
 async def holding(gateway):
-    await gateway.take()
+    await gateway.acquire()
     return asyncio.create_task(gateway.hold())
 
 
@@ -109,7 +109,7 @@ async def test_the_lock_is_taken_again_when_the_server_comes_back(address, serve
         except (BridgeError, AssertionError):
             continue
     with pytest.raises(BridgeError, match="another gateway runs on it"):
-        await SingletonLock(address).take()
+        await SingletonLock(address).acquire()
     assert not hold.done()
     assert "its lock is taken anew as soon as it is back" in caplog.text
     hold.cancel()

@@ -96,22 +96,22 @@ def recorder():
 def test_what_could_not_be_stored_waits_in_its_order(recorder):
     for n in range(3):
         recorder.observe([fix(n, x=n)])
-    taken = recorder.take(3.0)
+    taken = recorder.next_batch(3.0)
     recorder.observe([fix(3, x=3.0)])
     assert recorder.waiting == 1
     recorder.give_back(taken)
-    assert recorder.take(4.0) == [pack(fix(n, x=n)) for n in range(4)]
+    assert recorder.next_batch(4.0) == [pack(fix(n, x=n)) for n in range(4)]
 
 
 def test_what_waits_is_bounded_and_the_newest_stay(recorder, caplog):
     for n in range(1000):
         recorder.observe([fix(n, x=n)])
     for n in range(1000, 1200):
-        taken = recorder.take(n)
+        taken = recorder.next_batch(n)
         recorder.observe([fix(n, x=n)])
         recorder.give_back(taken)
     assert (recorder.waiting, recorder.given_up) == (1000, 200)
-    assert recorder.take(1200.0)[0] == pack(fix(200, x=200))
+    assert recorder.next_batch(1200.0)[0] == pack(fix(200, x=200))
     assert [record.levelname for record in caplog.records] == ["ERROR"]
     assert "trajectories.largest_backlog of site.toml" in caplog.text
 
@@ -121,7 +121,7 @@ def test_what_waits_is_bounded_where_the_database_is_slow_and_nothing_fails(reco
     for n in range(1200):
         recorder.observe([fix(n, x=n)])
     assert (recorder.waiting, recorder.given_up) == (1000, 200)
-    assert recorder.take(1200.0)[0] == pack(fix(200, x=200))
+    assert recorder.next_batch(1200.0)[0] == pack(fix(200, x=200))
     assert "takes them more slowly than they come" in caplog.text
 
 
@@ -129,7 +129,7 @@ def test_what_is_given_up_later_is_told_again(recorder, caplog):
     for begin in (0, 2000):
         for n in range(begin, begin + 1100):
             recorder.observe([fix(n, x=n)])
-        while recorder.take(begin + 1100.0):
+        while recorder.next_batch(begin + 1100.0):
             continue
     assert recorder.given_up == 200
     assert [record.levelname for record in caplog.records] == ["ERROR", "ERROR"]
@@ -138,7 +138,7 @@ def test_what_is_given_up_later_is_told_again(recorder, caplog):
 def test_what_waits_is_nothing_that_pythons_search_for_garbage_has_to_look_at(recorder):
     recorder.observe([fix(0)])
     gc.collect()
-    assert not any(map(gc.is_tracked, recorder.take(1.0)))
+    assert not any(map(gc.is_tracked, recorder.next_batch(1.0)))
 
 
 def test_a_position_that_waits_takes_less_than_200_bytes():
@@ -151,20 +151,20 @@ def test_a_batch_is_limited(recorder, monkeypatch):
     monkeypatch.setattr(recording, "BATCH", 2)
     for n in range(3):
         recorder.observe([fix(n, x=n)])
-    assert [len(recorder.take(3.0)) for _ in range(3)] == [2, 1, 0]
+    assert [len(recorder.next_batch(3.0)) for _ in range(3)] == [2, 1, 0]
 
 
 def test_at_the_end_the_actual_place_is_stored(recorder):
     recorder.observe([fix(0)])
     recorder.observe([fix(1, x=0.3)])
-    assert len(recorder.take(1.0)) == 1
+    assert len(recorder.next_batch(1.0)) == 1
     recorder.finish()
-    assert recorder.take(1.0) == [pack(fix(1, x=0.3))]
+    assert recorder.next_batch(1.0) == [pack(fix(1, x=0.3))]
 
 
 def test_the_last_place_of_a_silent_robot_is_stored_after_the_longest_interval(recorder):
     recorder.observe([fix(100)])
     recorder.observe([fix(101, x=0.3)])
-    assert recorder.take(101.5) == [pack(fix(100))]
-    assert recorder.take(105.9) == []
-    assert recorder.take(107.0) == [pack(fix(101, x=0.3))]
+    assert recorder.next_batch(101.5) == [pack(fix(100))]
+    assert recorder.next_batch(105.9) == []
+    assert recorder.next_batch(107.0) == [pack(fix(101, x=0.3))]

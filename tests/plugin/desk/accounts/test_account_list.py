@@ -49,7 +49,7 @@ def test_it_is_in_the_menu_of_the_connections_too(at_accounts, plugin):
 def test_while_connected_no_other_connection_can_be_picked(at_accounts, plugin):
     from fleet_supervisor.plugin.settings.connections import Connections, GatewayConnection
 
-    Connections().put(GatewayConnection("Track", "ws://127.0.0.1:1/desk"))
+    Connections().store(GatewayConnection("Track", "ws://127.0.0.1:1/desk"))
     menu = plugin.window.dock.connection_panel.menu.menu
     menu.aboutToShow.emit()
     for name in ("fleet_connection_Track", "fleet_keep_connection"):

@@ -193,7 +193,7 @@ def test_two_robots_are_one_alarm_whichever_of_them_is_told_first(at_alarms, gat
     roads = at_alarms.desk.roads
     wait(lambda: roads.conflicts.conflicts[0].robot == "r2", what="the news of it")
     watch = at_alarms.dock.findChild(QTableView, "fleet_alarms").parent()._watch
-    watch.look()
+    watch.evaluate()
     assert [(alarm.robot, alarm.other, alarm.times) for alarm in watch.board.alarms()] == [("r1", "r2", 1)]
 
 
@@ -311,14 +311,14 @@ def test_alarms_are_judged_told_and_listed_in_pieces_between_which_the_window_lo
     at_alarms, gateway, make_robot, wait, monkeypatch
 ):
     told, watch, events = [], watch_of(at_alarms), QTimer()
-    look = watch.board.look
+    look = watch.board.evaluate
 
     def judge(*now):
         found = look(*now)
         told.extend(["judged"] if found else [])
         return found
 
-    monkeypatch.setattr(watch.board, "look", judge)
+    monkeypatch.setattr(watch.board, "evaluate", judge)
     watch.happened.connect(lambda _: told.append("told"))
     watch.changed.connect(lambda: told.append("listed"))
     events.timeout.connect(lambda: told.append("events"))
@@ -488,7 +488,7 @@ def test_of_ten_thousand_robots_the_two_that_are_close_are_found(at_desk, gatewa
     gateway.show(make_robot("r1", None, None), make_robot("r2", None, None))
     gateway.show(*crowd, near)
     wait(lambda: len(at_desk.desk.picture) == 10_003, 30)
-    panel._watch.look()
+    panel._watch.evaluate()
     assert {(alarm.robot, alarm.other) for alarm in panel._watch.board.alarms()} == {("n7777", "n10000")}
 
 

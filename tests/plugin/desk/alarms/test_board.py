@@ -49,7 +49,7 @@ class Looking:
         events = []
         for _ in range(round(seconds / 0.5)):
             self.now += 0.5
-            events += self.board.look(now, self.now, 1_700_000_000 + self.now)
+            events += self.board.evaluate(now, self.now, 1_700_000_000 + self.now)
         return [(event.change, event.alarm.kind, robots_of(event.alarm)) for event in events]
 
 

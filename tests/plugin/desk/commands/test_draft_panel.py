@@ -11,7 +11,7 @@ def test_the_buttons_for_changes_stay_and_are_usable_while_there_is_something_to
     undo = at_desk.dock.findChild(QToolButton, "fleet_undo_button")
     assert undo.isVisible() and not undo.isEnabled()
     for x in (60.0, 61.0):
-        drafts.put(PendingCommand("r1", CONE, ((x, 50.0),), Findings()))
+        drafts.set_command(PendingCommand("r1", CONE, ((x, 50.0),), Findings()))
     assert undo.isVisible() and undo.isEnabled()
     drafts.done()
     assert undo.isVisible() and not undo.isEnabled()

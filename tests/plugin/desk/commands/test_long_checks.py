@@ -34,13 +34,13 @@ def looked_at(monkeypatch):
     seen = []
 
     def counting(check):
-        look = check.look
+        look = check.check_paths
 
         def counted(self, layer, tracks, placement):
             seen.append((check.__name__, len(tracks)))
             return look(self, layer, tracks, placement)
 
-        monkeypatch.setattr(check, "look", counted)
+        monkeypatch.setattr(check, "check_paths", counted)
 
     for check in (KeepoutCheck, ObstacleCheck, SurfaceCheck):
         counting(check)

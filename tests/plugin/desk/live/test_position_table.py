@@ -76,7 +76,7 @@ def test_the_words_of_a_day_do_not_pile_up():
         robots.assign("r2", f"target-{minute}")
         frame = made.after(EVERYTHING, form=PositionForm.COLUMNS).frame
         mailbox.put_robots(table_from_frame(frame, float(minute)))
-        known.merge(mailbox.take().robots)
+        known.merge(mailbox.collect().robots)
         assert len(known._words) <= SPARE_WORDS + 6
     assert known.told(2)["command"] == f"target-{SPARE_WORDS + 98}"
     assert known.told(1)["status"] == "docking"

@@ -57,7 +57,7 @@ def test_texts_are_taken_in_their_order_unless_one_before_has_a_cell_of_theirs()
             taken |= cells
             expected.append(index)
     room = LabelPlacer(SCREEN, NOBODY)
-    assert room.take(room.cells(corner, width)) == expected
+    assert room.place_labels(room.cells(corner, width)) == expected
     assert 5 < len(expected) < 300
 
 
@@ -67,4 +67,4 @@ def test_what_is_there_already_leaves_room_only_beside_it():
     )
     above, below, left, right, over = (60.0, 36.0), (60.0, 78.0), (24.0, 60.0), (120.0, 60.0), (100.0, 50.0)
     corners = np.array([over, (0.0, 0.0), (260.0, 182.0), above, below, left, right])
-    assert room.take(room.cells(corners, np.full(7, 29.0))) == [3, 4, 5, 6]
+    assert room.place_labels(room.cells(corners, np.full(7, 29.0))) == [3, 4, 5, 6]

@@ -143,6 +143,6 @@ def test_a_window_that_looks_seldom_finds_the_newest_of_every_robot():
     mailbox = UpdateBuffer()
     for second in range(5):
         mailbox.put_robots(table_from_rows([told(f"r{second % 2}", x=float(second))], float(second)))
-    taken = mailbox.take().robots
+    taken = mailbox.collect().robots
     assert {name: taken.report(row).x for row, name in enumerate(taken.names)} == {"r0": 4.0, "r1": 3.0}
-    assert len(mailbox.take().robots) == 0
+    assert len(mailbox.collect().robots) == 0

@@ -43,7 +43,7 @@ class Planner:
 
     def place_layout(self, name, dimensions, x, y):
         tool = next(part for part in self.plugin._parts if type(part).__name__ == "LayoutAction")
-        tool.take(LAYOUTS[name].of(dimensions))
+        tool.start_tool(LAYOUTS[name].of(dimensions))
         self.operator.click_site(x, y)
         layers = QgsProject.instance().mapLayers().values()
         return next(layer for layer in layers if layer.customProperty(MARK))

@@ -43,9 +43,9 @@ def test_the_newest_of_each_is_kept_until_the_window_looks(protocol, mailbox):
     hear(protocol, told(1))
     hear(protocol, told(2))
     hear(protocol, told(1, "rejected", reviewed_by="bob"))
-    found = mailbox.take().observations.observations
+    found = mailbox.collect().observations.observations
     assert {number: one.state.value for number, one in found.items()} == {1: "rejected", 2: "pending"}
-    assert mailbox.take().observations.observations == {}
+    assert mailbox.collect().observations.observations == {}
 
 
 def test_what_is_no_observation_ends_the_link_with_its_text(protocol):
@@ -57,7 +57,7 @@ def book_of(mailbox, protocol, *all_told):
     book = ObservationCache()
     for one in all_told:
         hear(protocol, one)
-    return book, book.merge(mailbox.take().observations)
+    return book, book.merge(mailbox.collect().observations)
 
 
 def test_those_that_wait_come_first_and_the_newest_of_them(mailbox, protocol):
@@ -67,7 +67,7 @@ def test_those_that_wait_come_first_and_the_newest_of_them(mailbox, protocol):
     assert [one.observation for one in book.ordered()] == [3, 1, 4, 2]
     assert book.pending == 2
     hear(protocol, told(3))
-    assert book.merge(mailbox.take().observations) == []
+    assert book.merge(mailbox.collect().observations) == []
 
 
 def test_of_very_many_reviewed_ones_the_oldest_are_forgotten_and_none_that_waits(

@@ -58,7 +58,7 @@ class Desk(QObject):
 
     def tell(self, *numbers):
         news = ObservationUpdates()
-        news.take([reviewed(number) for number in numbers])
+        news.add([reviewed(number) for number in numbers])
         self.observations_changed.emit(self.observations.merge(news))
 
 

@@ -140,7 +140,7 @@ def test_a_plan_that_took_the_place_of_another_is_left_alone_by_what_was_found_o
 ):
     planned(far_cones, wait)
     close_road(far_cones, gateway, wait)
-    far_cones.drafts.put(None)
+    far_cones.drafts.set_proposal(None)
     held.let_go()
     wait(lambda: not held.under_way, 5)
     assert far_cones.drafts.draft is None
