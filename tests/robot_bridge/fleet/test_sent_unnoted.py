@@ -10,8 +10,9 @@ from queue_line import PLACES, placed, task
 
 from robot_bridge.core.errors import StoreError, UncertainError
 from robot_bridge.core.messages import AbortTask, EmergencyStop
-from robot_bridge.gateway.api import robot_session
-from robot_bridge.gateway.api.robot_session import Delivery, RobotChannel
+from robot_bridge.gateway.api import delivery
+from robot_bridge.gateway.api.delivery import Delivery
+from robot_bridge.gateway.api.robot_session import RobotChannel
 from robot_bridge.gateway.commands.persistence import write_steps
 
 CONE = PLACES["a"]
@@ -119,7 +120,7 @@ async def test_what_is_no_commands_message_is_sent_as_it_is(line):
 async def test_a_target_is_sent_when_its_delivery_is_noted_however_often_that_fails(
     line, wire, lose, monkeypatch, done, error
 ):
-    monkeypatch.setattr(robot_session, "RETRY_AFTER", 0.0)
+    monkeypatch.setattr(delivery, "RETRY_AFTER", 0.0)
     await line.yard.send("target")
     lose(line.yard, write_steps, done=done, error=error)
     wire.delivery.begin()
@@ -133,7 +134,7 @@ async def test_a_target_is_sent_when_its_delivery_is_noted_however_often_that_fa
 async def test_an_abort_waits_neither_until_it_is_noted_nor_until_what_is_before_it_is(
     line, wire, lose, monkeypatch, error
 ):
-    monkeypatch.setattr(robot_session, "RETRY_AFTER", 0.0)
+    monkeypatch.setattr(delivery, "RETRY_AFTER", 0.0)
     await line.yard.send("place", "SetPosIni", x=20.0, y=40.0)
     await abort(line.yard)
     if error is not None:

@@ -11,8 +11,9 @@ import pytest
 from websockets.exceptions import ConnectionClosedOK
 
 from robot_bridge.core.errors import StoreError
-from robot_bridge.gateway.api import robot_session
-from robot_bridge.gateway.api.robot_session import Delivery, RobotChannel
+from robot_bridge.gateway.api import delivery
+from robot_bridge.gateway.api.delivery import Delivery
+from robot_bridge.gateway.api.robot_session import RobotChannel
 from robot_bridge.gateway.storage.repositories.requests import AnswerRow
 
 TARGET = '{"x": 1.0, "y": 2.0}'
@@ -159,7 +160,7 @@ async def test_what_is_urgent_waits_for_no_turn_and_what_a_stop_overtakes_in_its
     line, monkeypatch
 ):
     frame = len('{"jsonrpc":"2.0","method":"SetPosEnd","params":{"x":1.0,"y":2.0},"id":1}')
-    monkeypatch.setattr(robot_session, "LARGE", frame)
+    monkeypatch.setattr(delivery, "LARGE", frame)
     channel = SharedChannel(line.connection)
     line.delivery = Delivery(line.fleet, channel, "r1")
     await line.put(row(1), row(2, "SetPosEnd", '{"x": 1.0, "y": 22.0}'), row(3, "Abort", "{}", urgent=True))
@@ -202,8 +203,8 @@ async def test_the_bytes_of_a_map_go_out_as_text(line):
 
 @pytest.mark.parametrize("more", [0, 1, 2])
 async def test_the_bytes_of_a_large_map_are_the_same_whatever_they_are_cut_into(line, monkeypatch, more):
-    monkeypatch.setattr(robot_session, "LARGE", 10)
-    monkeypatch.setattr(robot_session, "PIECE", 6)
+    monkeypatch.setattr(delivery, "LARGE", 10)
+    monkeypatch.setattr(delivery, "PIECE", 6)
     content = bytes(range(24 + more))
     await line.put(row(1, "SetMap", '{"map": "what comes with the row"}', content), row(2))
     await line.put(row(3, "Alive", "{}", bytes(100)), row(4))
@@ -275,7 +276,7 @@ async def test_a_connection_that_is_closed_ends_its_delivery(line):
 
 
 async def test_a_database_that_is_away_is_asked_again(line, caplog, monkeypatch):
-    monkeypatch.setattr(robot_session, "RETRY_AFTER", 0.0)
+    monkeypatch.setattr(delivery, "RETRY_AFTER", 0.0)
     line.boxes.fails = 2
     await line.put(row(1))
     line.delivery.begin()
@@ -287,7 +288,7 @@ async def test_a_database_that_is_away_is_asked_again(line, caplog, monkeypatch)
 
 
 async def test_what_nobody_foresaw_keeps_back_nothing_that_comes_after_it(line, caplog, monkeypatch):
-    monkeypatch.setattr(robot_session, "RETRY_AFTER", 0.0)
+    monkeypatch.setattr(delivery, "RETRY_AFTER", 0.0)
     line.boxes.fails, line.boxes.fault = 1, KeyError("robot")
     line.delivery.begin()
     await line.put(row(1, "Abort", "{}", urgent=True))
@@ -296,7 +297,7 @@ async def test_what_nobody_foresaw_keeps_back_nothing_that_comes_after_it(line, 
 
 
 async def test_a_database_that_is_away_is_not_asked_without_a_pause(line, monkeypatch):
-    monkeypatch.setattr(robot_session, "RETRY_AFTER", 60.0)
+    monkeypatch.setattr(delivery, "RETRY_AFTER", 60.0)
     line.boxes.fails = 1
     line.delivery.begin()
     await line.put(row(1))
@@ -317,7 +318,7 @@ async def test_begun_again_it_sends_all_again_and_only_once(line):
 
 
 async def test_begun_later_it_sends_all_again_after_a_pause(line, monkeypatch):
-    monkeypatch.setattr(robot_session, "RETRY_AFTER", 0.02)
+    monkeypatch.setattr(delivery, "RETRY_AFTER", 0.02)
     await line.put(row(1))
     line.delivery.begin()
     await rest()
