@@ -48,7 +48,9 @@ def crs_of_place(given: Any, of_layer: Any) -> QgsCoordinateReferenceSystem:
 
 # --- The expression function ``distance_to_robot(robot, geometry, crs)`` ---
 
-DISTANCE_TO_ROBOT, DISTANCE_GROUP = "distance_to_robot", tr("Fleet")
+GROUP = tr("Fleet")
+"""Where QGIS lists the functions."""
+DISTANCE_TO_ROBOT = "distance_to_robot"
 _DISTANCE_HELP = tr_page("""
 <h3>function distance_to_robot</h3>
 <p>Returns how far a robot is from a feature or a geometry, in metres of the site.</p>
@@ -82,7 +84,7 @@ class DistanceToRobot(QgsExpressionFunction):
         parameters = [parameter("robot"), parameter("geometry", True), parameter("crs", True)]
         # Handles NULL itself: an argument that is left out comes as NULL, too.
         super().__init__(
-            DISTANCE_TO_ROBOT, parameters, DISTANCE_GROUP, _DISTANCE_HELP, lazyEval=False, handlesNull=True
+            DISTANCE_TO_ROBOT, parameters, GROUP, _DISTANCE_HELP, lazyEval=False, handlesNull=True
         )
         self._fleet = fleet
 
@@ -165,7 +167,7 @@ def _is_null(value: Any) -> bool:
 
 # --- The expression function ``road_surface(x, y, layer, crs)`` ---
 
-ROAD_SURFACE_FUNCTION, ROAD_SURFACE_GROUP = "road_surface", tr("Fleet")
+ROAD_SURFACE_FUNCTION = "road_surface"
 _ROAD_SURFACE_HELP = tr_page("""
 <h3>function road_surface</h3>
 <p>Returns the class of the road surface at a place, such as 'asphalt', or NULL where there is none.</p>
@@ -201,7 +203,7 @@ class RoadSurface(QgsExpressionFunction):
         super().__init__(
             ROAD_SURFACE_FUNCTION,
             parameters,
-            ROAD_SURFACE_GROUP,
+            GROUP,
             _ROAD_SURFACE_HELP,
             lazyEval=False,
             handlesNull=True,
@@ -281,7 +283,6 @@ def _named(layer: Any) -> str:
 
 # --- The expression functions ``robot_state``, ``robot_battery`` and ``robot_age`` ---
 
-ROBOT_GROUP = tr("Fleet")
 _STATE_HELP = tr_page("""
 <h3>function robot_state</h3>
 <p>Returns how far what is known of a robot can be trusted: 'fresh', 'stale', 'lost' or 'offline'.</p>
@@ -335,7 +336,7 @@ class RobotValue(QgsExpressionFunction):
     def __init__(
         self, name: str, help_text: str, fleet: SnapshotHolder, value: Callable[[RobotSnapshot, str], object]
     ):
-        super().__init__(name, [QgsExpressionFunction.Parameter("robot")], ROBOT_GROUP, help_text)
+        super().__init__(name, [QgsExpressionFunction.Parameter("robot")], GROUP, help_text)
         self._fleet, self._value = fleet, value
 
     def isStatic(
