@@ -10,6 +10,7 @@ from qgis.core import QgsProject
 from qgis.gui import QgsMapCanvas
 from qgis.PyQt.QtCore import QObject, QTimer, pyqtSignal
 
+from ...robot_bridge.core.clock import steady_time
 from ...robot_bridge.core.messages import (
     EmergencyReport,
     EmergencyStop,
@@ -20,7 +21,6 @@ from ...robot_bridge.core.messages import (
     Suspensions,
     to_json,
 )
-from ...robot_bridge.core.steady_time import steady_time
 from ..gateway_client.buffers import OperatorRequest, StateUpdate
 from ..gateway_client.command_cache import CommandCache
 from ..gateway_client.connection import ConnectionThread

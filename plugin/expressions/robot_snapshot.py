@@ -9,7 +9,7 @@ import numpy.typing as npt
 from qgis.core import QgsCoordinateReferenceSystem, QgsPointXY
 from qgis.PyQt.QtCore import QObject
 
-from ...robot_bridge.core.steady_time import steady_time
+from ...robot_bridge.core.clock import steady_time
 from ..control.fleet_controller import FleetController
 from ..gateway_client.robot_table import STATES
 from ..layers.site_transform import frame_of

@@ -11,7 +11,7 @@ from typing import Any
 
 from qgis.PyQt.QtCore import QObject, QThread
 
-from ...robot_bridge.core.steady_time import steady_time
+from ...robot_bridge.core.clock import steady_time
 from ..ui.errors import AddressError, GatewayLinkError, NotSentError
 from ..ui.language import tr
 from .buffers import OperatorRequest, StateUpdate, UpdateBuffer

@@ -9,8 +9,8 @@ from typing import NamedTuple
 
 from sqlalchemy import Connection
 
+from ..core.clock import steady_time
 from ..core.sites.settings import SiteSettings
-from ..core.steady_time import steady_time
 from .auth import audit
 from .model.clocks import ClockWatch
 from .storage.database import Database

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from ...core.steady_time import steady_time
+from ...core.clock import steady_time
 
 # --- Which pose of a robot is newest: by the time of its fix, else by the robot's clock, else as they come
 

@@ -8,7 +8,7 @@ from types import SimpleNamespace
 import pytest
 from fleet_supervisor.plugin.gateway_client import connection
 from fleet_supervisor.plugin.gateway_client.robot_table import STATES
-from fleet_supervisor.robot_bridge.core import steady_time as clock_module
+from fleet_supervisor.robot_bridge.core import clock as clock_module
 from fleet_supervisor.robot_bridge.core.messages import RobotState, to_json
 from qgis.PyQt.QtWidgets import QToolButton
 
@@ -48,7 +48,7 @@ def states(window):
 def test_the_clock_counts_sleep_where_the_system_has_one_that_does():
     if not hasattr(time, "CLOCK_BOOTTIME"):
         pytest.skip("only Linux has a clock that counts sleep beside one that does not")
-    assert clock_module._GOES_ON_ASLEEP == time.CLOCK_BOOTTIME
+    assert clock_module._COUNTS_SLEEP == time.CLOCK_BOOTTIME
     assert clock_module.steady_time() == pytest.approx(time.clock_gettime(time.CLOCK_BOOTTIME), abs=60.0)
 
 
