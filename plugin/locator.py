@@ -17,8 +17,6 @@ from .gateway_client.state_texts import ROBOT_STATES
 from .ui.glyphs import state_icon
 from .ui.language import tr
 
-# --- Robots in QGIS's locator: ``rb name`` goes there and selects ---
-
 NAME = "fleet_robots"
 MOST = 50
 """Results: nobody reads more, and the list is made anew with each letter."""
@@ -137,8 +135,6 @@ def rank_robots(wanted: str, names: list[str]) -> list[tuple[float, str]]:
             found.append((1.0 if same else 0.9 if at == 0 else 0.6, name))
     return sorted(found, key=lambda one: (-one[0], len(one[1]), one[1]))
 
-
-# --- Puts the filter for robots into QGIS's locator and takes it out again ---
 
 PREFIX = "rb"
 PREFIX_KEY = f"locator-filters/items/{NAME}/prefix"

@@ -18,8 +18,6 @@ from .ui.actions import ICONS
 from .ui.language import tr
 from .ui.scheduling import PULL_EVERY_MS
 
-# --- The page: connections, what the map shows, alarms ---
-
 
 class OptionsPage(QgsOptionsPageWidget):
     """Shows what is kept; OK and Apply of the options keep what stands in the fields.
@@ -72,8 +70,6 @@ def _page(widget: QWidget, *, stretch: bool = True) -> QWidget:
         rows.addStretch()
     return page
 
-
-# --- Puts the page into QGIS's options, and what is set there to work ---
 
 TITLE = "Fleet Supervisor"
 

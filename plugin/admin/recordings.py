@@ -23,7 +23,7 @@ from qgis.PyQt.QtWidgets import (
 
 from ...robot_bridge.core.messages import PlaybackReport, SetPlayback
 from ..control.fleet_controller import FleetController
-from ..gateway_client.link import ConnectionPhase
+from ..gateway_client.connection_status import ConnectionPhase
 from ..help import RECORDINGS, show_help
 from ..panel.connection_panel import ConnectionMenu
 from ..ui.dialogs import WrappingLabel

@@ -18,8 +18,6 @@ from ..ui.language import tr, tr_count
 from ..ui.tables import TextModel
 from .supervisor_dialog import DialogAction, SupervisorDialog, fit_columns
 
-# --- The sites that a gateway may serve, as rows of a table ---
-
 COLUMNS = (tr("Site"), tr("Folder"), tr("Version"), tr("State"))
 SERVED = tr("served now")
 READY = tr("can be chosen")
@@ -43,9 +41,6 @@ def state_in_words(offer: SiteOffer) -> str:
     return SERVED if offer.served else offer.refusal or READY
 
 
-# --- Asks whether another site is really to be served ---
-
-
 def confirm_site_choice(offer: SiteOffer, parent: QWidget, then: Callable[[], object]) -> QMessageBox:
     """Say what serving a site means for robots; ``then`` is done when it is to be."""
     name = offer.name or offer.site
@@ -67,8 +62,6 @@ def confirm_site_choice(offer: SiteOffer, parent: QWidget, then: Callable[[], ob
     box.setTextFormat(Qt.TextFormat.PlainText)
     return box
 
-
-# --- The sites that lie beside the one that is served, of which a supervisor chooses ---
 
 LIST = tr("Sites")
 WIDEST = ("0" * 24, "sample_site_00", "0000", READY)
@@ -118,9 +111,6 @@ class SiteChoiceDialog(SupervisorDialog):
         # Also when another supervisor chose.
         if self.isVisible() and self._desk.site is not None:
             self._ask_rows()
-
-
-# --- The menu entry that opens the choice of the site ---
 
 
 class SiteChoiceAction(DialogAction):

@@ -23,7 +23,7 @@ from qgis.PyQt.QtWidgets import (
 from ...robot_bridge.core.messages import Role
 from ..control.fleet_controller import FleetController
 from ..gateway_client.buffers import RequestResult
-from ..gateway_client.link import ConnectionPhase, ConnectionStatus, role_in_words
+from ..gateway_client.connection_status import ConnectionPhase, ConnectionStatus, role_in_words
 from ..help import HelpTopic, show_help
 from ..panel.connection_panel import ConnectionMenu
 from ..ui.actions import ICONS
@@ -31,8 +31,6 @@ from ..ui.dialogs import WrappingLabel, push_button
 from ..ui.errors import FleetError
 from ..ui.language import tr
 from ..ui.tables import RowModel, fit_headers
-
-# --- What a window asks the gateway, and who gets the answer when it comes ---
 
 Take = Callable[[dict[str, Any]], None]
 
@@ -84,9 +82,6 @@ class PendingQueries(QObject):
             )
 
 
-# --- A menu entry that opens a window, in the plugin's menu and in that of the connections ---
-
-
 class DialogAction:
     """An entry of ``menu`` and of ``connections``, and the window. :meth:`remove` undoes the constructor."""
 
@@ -124,8 +119,6 @@ class DialogAction:
         self._iface.removePluginMenu(self._menu, self.action)
         self.action.deleteLater()
 
-
-# --- A window over one table of what only supervisors may see and change ---
 
 ASKING = tr("Asking the gateway …")
 SIZE = (940, 420)

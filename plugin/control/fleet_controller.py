@@ -24,7 +24,7 @@ from ...robot_bridge.core.messages import (
 from ..gateway_client.buffers import OperatorRequest, StateUpdate
 from ..gateway_client.command_cache import CommandCache
 from ..gateway_client.connection import ConnectionThread
-from ..gateway_client.link import ConnectionPhase, ConnectionStatus, OperatorCredentials
+from ..gateway_client.connection_status import ConnectionPhase, ConnectionStatus, OperatorCredentials
 from ..gateway_client.report_caches import (
     GeofenceState,
     NearnessState,

@@ -28,7 +28,6 @@ from ..ui.times import time_of_day
 from .pending_command import PendingCommandModel
 from .roads import RoadStatus
 
-# --- What the operator is told in QGIS's message bar, and what makes each message untrue ---
 # A message is posted with topics. When the condition that a topic names has ended, all messages with it are
 # withdrawn: what is no longer true hides nothing that is.
 
@@ -295,8 +294,6 @@ def _suspended(suspension: Suspension) -> str:
         time=time_of_day(suspension.until),
     )
 
-
-# --- The one place where what went wrong becomes a text in QGIS's message bar ---
 
 TITLE = "Fleet Supervisor"
 LEVELS = {

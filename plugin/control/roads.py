@@ -23,8 +23,6 @@ from ..ui.dialogs import QuestionDialog
 from ..ui.language import tr
 from .pending_command import Point
 
-# --- The desk's roads: which are closed, which robots are in each other's way, and what is asked about them
-
 SILENT_AFTER = 10.0
 """Seconds without news of them after which conflicts are not known any more."""
 
@@ -119,8 +117,6 @@ class RoadStatus(QObject):
         else:
             self.failed.emit(robot.text, robot.robot)
 
-
-# --- What an operator wants of the ways that *Route on roads* leads, and how that is asked ---
 
 ROUTE_CRITERIA = ((tr("the shortest"), False), (tr("the fastest"), True))
 WIDEST_ROAD = 50.0

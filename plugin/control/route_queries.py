@@ -26,8 +26,6 @@ from .request_tracker import SLOW_AFTER
 from .roads import SHORTEST, RoutePreferences
 from .validation import ValidationRunner
 
-# --- The way along the roads to where the mouse is: asked of the gateway, one at a time and newest first
-
 UNANSWERED_AFTER = 3.0
 """Seconds after which a question that follows the mouse is taken to be lost, so that the next is asked."""
 
@@ -207,8 +205,6 @@ def route_in_words(route: RouteReport, wishes: RoutePreferences, apart: str = ";
         text += apart + tr("corners tighter than the robot turns: {tight}", tight=len(route.tight))
     return text + apart + route.note if route.note else text
 
-
-# --- The way by which a robot comes to a target or route on the map: what is drawn, checked, and sent ---
 
 MOVED_M = 0.5
 """Metres that a robot moves before the way from where it is is found again."""

@@ -23,8 +23,6 @@ from .layer_checks import CheckedPath, KeepoutCheck, ObstacleCheck, SurfaceCheck
 from .pending_command import ROUTE, Findings, PendingCommand, PendingCommandModel, Point
 from .robot_checks import TargetCheck, check_abilities, check_heard, check_orders, has_ability
 
-# --- Whether a draft can be driven: inside the site, off keepouts and obstacles, on a road surface ---
-
 AT_ONCE = 500
 """Tracks that are gone through between two looks at the clock."""
 
@@ -247,9 +245,6 @@ def _listed(things: Iterable[T]) -> Steps[list[T]]:
     return found
 
 
-# --- All that a draft is held against: site, map, layers, other robots' targets, and what its robot is doing
-
-
 class CommandChecks(QObject):
     """Looks at drafts for the ``operator``, on the site as ``placement`` puts it on the map now.
 
@@ -320,8 +315,6 @@ def _approach_findings(draft: PendingCommand) -> Findings:
         return Findings(warnings=(way.note,), of_way=(way.note,))
     return Findings()
 
-
-# --- Has the draft on the map checked while the window lives on, and says when it may be sent ---
 
 Work = Callable[[PendingCommand, bool], Steps[PendingCommand]]
 """Takes a draft, and whether all of it is to be looked at afresh; returns the draft with what was found."""

@@ -14,8 +14,6 @@ from ..control.fleet_controller import FleetController
 from ..gateway_client.robot_table import STATES
 from ..layers.site_transform import frame_of
 
-# --- The robots as expressions see them: whatever thread they are evaluated in, one picture that is whole
-
 Numbers = npt.NDArray[np.float64]
 
 
@@ -69,8 +67,6 @@ class SnapshotHolder:
     def __init__(self) -> None:
         self.robots: RobotSnapshot | None = None
 
-
-# --- Passes the robots on to QGIS's expressions, twice a second ---
 
 _NAMES = np.array([state.value for state in STATES], dtype=object)
 

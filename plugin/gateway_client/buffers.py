@@ -34,10 +34,8 @@ from ...robot_bridge.core.messages import (
     queue_report,
     replanned_robot,
 )
-from .link import ConnectionPhase, ConnectionStatus
+from .connection_status import ConnectionPhase, ConnectionStatus
 from .robot_table import RobotTable
-
-# --- What the operator asked for and the gateway has not answered yet ---
 
 
 @dataclass(frozen=True)
@@ -111,9 +109,6 @@ class RequestOutbox:
         return left
 
 
-# --- The points of a path, in a tenth of the memory that they take as JSON gives them ---
-
-
 class PathPoints(Sequence[tuple[float, float]]):
     """Points that never change, x and y in metres in the site frame; numpy takes them as an (n, 2) array."""
 
@@ -155,8 +150,6 @@ def pack_points(points: object) -> object:
     return PathPoints(numbers)
 
 
-# --- What the gateway tells of commands, made so small that a desk can keep thousands ---
-
 COMMAND_METHOD = "command"
 
 
@@ -179,8 +172,6 @@ def commands_in(result: dict[str, Any]) -> list[CommandReport]:
         return [command_in(values) for values in reversed(result["commands"])]
     return [command_in(result)] if "command" in result and "op" in result else []
 
-
-# --- What the gateway tells of observations, and how it is kept until the window looks ---
 
 OBSERVATION_METHOD = "observation"
 
@@ -206,8 +197,6 @@ def observations_in(values: dict[str, Any]) -> list[ObservationReport]:
     return [observation_report(one) for one in values.get("observations") or ()]
 
 
-# --- What the gateway tells of placed cones, and how it is kept until the window looks ---
-
 PLACEMENT_METHOD = "placement"
 
 
@@ -226,8 +215,6 @@ def placements_in(values: dict[str, Any]) -> list[PlacementReport]:
     """Return the placed cones in an answer; raises KeyError or TypeError for what names itself one."""
     return [placement_report(placement) for placement in values.get("placements") or ()]
 
-
-# --- What the gateway tells of queues, and how it is kept until the window looks ---
 
 QUEUE_METHOD = "queue"
 
@@ -259,8 +246,6 @@ def queues_in(values: dict[str, Any]) -> list[QueueReport]:
     return [queue_report(queue) for queue in values.get("queues") or ()]
 
 
-# --- What the gateway tells of roads without being asked, and how it is kept until the window looks ---
-
 ROAD_METHODS = ("closures", "conflicts", "replanned")
 
 
@@ -282,7 +267,6 @@ class RoadUpdates:
             self.replanned.append(replanned_robot(params))
 
 
-# --- Where the connection's thread leaves what it learns, and the window's thread picks it up ---
 # Only the newest of each thing is kept, so that a window that is busy for a while costs no memory and then
 # paints what is true now, not what was.
 

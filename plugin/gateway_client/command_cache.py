@@ -13,8 +13,6 @@ from ...robot_bridge.core.messages import Abort, CommandReport, CommandState, Se
 from ..ui.language import tr
 from .state_texts import COMMAND_STATES
 
-# --- The commands that the desk knows of ---
-
 UNDER_WAY = (CommandState.QUEUED, CommandState.DELIVERED, CommandState.ACKNOWLEDGED)
 MOST_COMMANDS = 2000
 DRIVE_OPERATIONS = (SetPosEnd.__name__, SetPath.__name__)
@@ -162,8 +160,6 @@ def _metres(value: object) -> str:
     return f"{value:.2f}" if isinstance(value, (int, float)) else "?"
 
 
-# --- Whether a robot has come to its path yet: it drives to the first point, by a way that nobody prescribed
-
 ON_PATH_M = 1.0
 """Metres beside a path within which a robot has come to it."""
 AWAY_M = 1.0
@@ -185,8 +181,6 @@ class PathApproach:
         self.is_over = self.is_over or off <= ON_PATH_M or to_first > self.nearest + AWAY_M
         self.nearest = min(self.nearest, to_first)
 
-
-# --- How far a robot is from where it was told to be ---
 
 Floats = npt.NDArray[np.float64]
 

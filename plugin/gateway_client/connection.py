@@ -15,11 +15,9 @@ from ...robot_bridge.core.clock import steady_time
 from ..ui.errors import AddressError, GatewayLinkError, NotSentError
 from ..ui.language import tr
 from .buffers import OperatorRequest, StateUpdate, UpdateBuffer
-from .link import ConnectionPhase, ConnectionStatus, OperatorCredentials, check_address, explain
+from .connection_status import ConnectionPhase, ConnectionStatus, OperatorCredentials, check_address, explain
 from .protocol import GatewayProtocol
 from .websocket_library import websocket_library
-
-# --- How long to wait before the next attempt to reach the gateway ---
 
 
 class Backoff:
@@ -52,8 +50,6 @@ class Backoff:
         """Begin with short waits again, after a success."""
         self._attempts = 0
 
-
-# --- Keeps a link to the gateway up: connects, converses, and tries again when it breaks ---
 
 ANSWER_WITHIN = 5.0
 PING_EVERY = 2.0
@@ -220,8 +216,6 @@ class GatewayClient:
         for text in texts:
             self._outgoing.put_nowait(text)
 
-
-# --- The connection to the gateway: one worker thread, out of the window's way ---
 
 STOP_WITHIN_MS = 3000
 CANCEL_WITHIN = 0.3

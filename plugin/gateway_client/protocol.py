@@ -51,7 +51,7 @@ from .buffers import (
     placements_in,
     queues_in,
 )
-from .link import DEFAULT_URL
+from .connection_status import DEFAULT_URL
 from .robot_table import table_from_frame, table_from_rows
 
 Clock = Callable[[], float]

@@ -17,8 +17,6 @@ from ...robot_bridge.core.messages import (
 from ..ui.language import tr
 from .buffers import ObservationUpdates, PlacedConeUpdates, QueueUpdates
 
-# --- The queues of the robots, as the gateway told them last ---
-
 
 class QueueCache:
     """The newest report of each queue, by its robot."""
@@ -60,8 +58,6 @@ class QueueCache:
         self.queues.clear()
 
 
-# --- The cones that robots put down, as the gateway told them last ---
-
 MOST_PLACEMENTS = 20_000
 MOST_ASKED = 5000
 """As many as a gateway tells at once."""
@@ -91,8 +87,6 @@ class PlacedConeCache:
         """Forget everything: it is another site's."""
         self._reports.clear()
 
-
-# --- The observations that the desk knows of, as the gateway told them last ---
 
 MOST_REVIEWED = 1000
 """Reviewed ones that are kept; those that wait for their review are all kept."""
@@ -142,8 +136,6 @@ def is_pending(report: ObservationReport) -> bool:
     """Tell whether nobody has reviewed an observation yet."""
     return report.state is ObservationState.PENDING
 
-
-# --- What the gateway told last of robots in keepouts and at obstacles, and what it does not watch ---
 
 GEOFENCE_SILENT_AFTER = 10.0
 """Seconds without a word after which nothing is known: a gateway tells of them every few seconds."""
@@ -220,8 +212,6 @@ def _more(report: Geofence) -> str:
         return ""
     return tr("{more} more are in keepouts or at obstacles and not listed.", more=report.more)
 
-
-# --- What the gateway told last of people and vehicles near robots ---
 
 NEARNESS_SILENT_AFTER = 5.0
 """Seconds without a word after which nobody is near: as long as somebody is, it is told every second."""

@@ -13,8 +13,6 @@ import numpy.typing as npt
 from ...robot_bridge.core.messages import RobotReport, RobotState, robot_report
 from .robot_table import STATES, RobotTable
 
-# --- The order in which people look for names: r2 before r10, and capitals among small letters ---
-
 _NUMBER = re.compile(r"[0-9]+")
 _DIGITS = 20
 """To so many digits numbers within names are compared as numbers."""
@@ -25,8 +23,6 @@ def name_order(name: str) -> str:
     filled = _NUMBER.sub(lambda number: number[0].zfill(_DIGITS), name.casefold())
     return f"{filled}\0{name}"
 
-
-# --- What the desk knows of the robots, and how far it can be trusted as time goes on without news ---
 
 __all__ = ["STATES", "RemovedRobots", "RobotArrays", "RobotStates", "RobotView"]
 

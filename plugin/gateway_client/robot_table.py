@@ -19,11 +19,8 @@ from ...robot_bridge.core.messages import (
 )
 from ...robot_bridge.core.position_frame import split_frame
 
-# --- Robots as the gateway told them: a table of numbers, one row a robot ---
-# Ten thousand robots ten times a second are too many to make an object of each. A snapshot becomes columns
-# on
-# the connection's thread; the window's thread works on whole columns and makes a report only of the robot
-# that
+# Ten thousand robots ten times a second are too many to make an object of each. A snapshot becomes columns on
+# the thread of the connection; the window works on whole columns and makes a report only of the robot that
 # somebody looks at.
 
 STATES = (RobotState.FRESH, RobotState.STALE, RobotState.LOST, RobotState.OFFLINE)
@@ -170,9 +167,6 @@ class RobotTable:
         return np.fromiter(map(known.__getitem__, names), dtype=np.intp, count=len(names))
 
 
-# --- Which robots are there no more, as a message of positions tells ---
-
-
 def removed_robots(params: dict[str, Any]) -> dict[str, Any]:
     """Return ``removed`` and ``everything`` of a message, as :class:`RobotTable` has them.
 
@@ -190,8 +184,6 @@ def check_texts(name: str, values: Any) -> list[str]:
         raise ValueError(f"{name} is not a list of texts")
     return values
 
-
-# --- Positions that come as a JSON object for each robot, made into a table ---
 
 _STATE_CODES = {state.value: code for code, state in enumerate(STATES)}
 
@@ -265,9 +257,6 @@ def _state_code(state: Any) -> int:
     except (KeyError, TypeError):
         raise ValueError(f"{state!r} is not a robot's state; known are {', '.join(_STATE_CODES)}") from None
 
-
-# --- Positions that come as a table of numbers behind a JSON head: a binary frame, see ---
-# :mod:`~.robot_bridge.core.messages.operator_requests`.
 
 _KNOWN = {*POSITION_NUMBERS, *POSITION_FLAGS, *POSITION_TEXTS}
 

@@ -16,13 +16,11 @@ from ..layers.site_transform import SiteToMapTransform
 from ..ui.errors import MapTransformError
 from ..ui.language import tr
 from ..ui.scheduling import PULL_EVERY_MS
-from .layers import RobotLayer
-from .overlay.fleet_overlay import FleetOverlay
-from .overlay.hover_card import HoverTracker, card
-from .overlay.paths_painter import MANY
-from .overlay.scene import SceneTransformer, SiteScene, TaskPaths
-from .overlay.screen import FollowMode, keep_in_view, show_places
+from .overlay.fleet_overlay import FleetOverlay, HoverTracker, card
+from .overlay.scene import FollowMode, SceneTransformer, SiteScene, TaskPaths, keep_in_view, show_places
+from .overlay.task_painter import MANY
 from .overlay.trails import Trails
+from .reported_layers import RobotLayer
 
 FRAME_MS = 15
 """For what the operator does; what robots do is painted when it was pulled."""
@@ -227,7 +225,7 @@ class LiveView(QObject):
         except MapTransformError as error:
             self._desk.complained.emit(str(error))
             return
-        keep_in_view(self._desk.canvas, self.overlay.screen(), places)
+        keep_in_view(self._desk.canvas, self.overlay.scene(), places)
 
     def _scene(self) -> SiteScene:
         desk, now = self._desk, self._desk.clock()

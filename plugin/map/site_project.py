@@ -19,8 +19,6 @@ from ..layers.site_transform import frame_of
 from ..ui.errors import FleetError
 from ..ui.language import tr, tr_count
 
-# --- Is the open project that of the site the gateway serves? ---
-
 SAME_PLACE = 0.01
 """Metres up to which two origins are one."""
 SAME_ANGLE = 1e-6
@@ -71,8 +69,6 @@ def _is_one(a: SiteFrame, b: SiteFrame) -> bool:
     turned = math.remainder(a.rotation - b.rotation, math.tau)
     return crs[0] == crs[1] and math.dist(a.origin, b.origin) < SAME_PLACE and abs(turned) < SAME_ANGLE
 
-
-# --- A published site that is dropped onto the QGIS window is loaded, from QGIS's browser panel, too ---
 
 WHOLE = ("directory", "collection")
 """What the browser panel calls a folder, and a GeoPackage with all that is in it."""

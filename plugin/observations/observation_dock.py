@@ -25,7 +25,7 @@ from ...robot_bridge.core.messages import ObservationReport, ReviewObservation
 from ..control.fleet_controller import FleetController
 from ..control.messages import observation_topic
 from ..gateway_client.report_caches import is_pending
-from ..map.overlay.screen import show_places
+from ..map.overlay.scene import show_places
 from ..ui.actions import ActionDock, DockAction
 from ..ui.dialogs import push_button
 from ..ui.errors import FleetError
@@ -40,8 +40,6 @@ from .observation_views import (
     ObservationModel,
     Thumbnails,
 )
-
-# --- What an operator makes of one observation: its word on the map, height, radius, and why ---
 
 WORDS = ("traffic cone", "barrier", "bin", "bench", "column", "vehicle", "object")
 """Offered besides what robots said; anything may be written. In English: robots read them on their maps."""
@@ -216,8 +214,6 @@ def _metres(name: str, largest: float) -> QDoubleSpinBox:
     return box
 
 
-# --- The panel of observations: what robots saw, and its review ---
-
 SHOW_AFTER_MS = 250
 """News of a crowd of robots are shown together."""
 AROUND = 15.0
@@ -381,9 +377,6 @@ class ObservationDock(ActionDock):
         self.setWidget(body)
         self.setFocusProxy(self.list)
         self.list.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
-
-
-# --- The menu entry that shows the panel of observations ---
 
 
 class ObservationsAction(DockAction):

@@ -32,15 +32,13 @@ from ...robot_bridge.core.messages import (
 )
 from ..control.fleet_controller import FleetController
 from ..gateway_client.buffers import RequestResult
-from ..gateway_client.link import ConnectionPhase
+from ..gateway_client.connection_status import ConnectionPhase
 from ..gateway_client.report_caches import ObservationCache
 from ..layers.live_layers import RowLayer
 from ..panel.robot_details import DecodeTask
 from ..ui.errors import FleetError
 from ..ui.language import tr
 from ..ui.times import date_and_time, time_of_day
-
-# --- Small pictures of the images that robots sent, as files that layers and map tips show ---
 
 SIDE = 256
 """Pixels of the longer side of a picture."""
@@ -129,8 +127,6 @@ class ThumbnailTask(DecodeTask):
         self.image = None
         return small.save(str(self._file), "PNG")
 
-
-# --- Asks the gateway for observations and their images, and tells it what operators make of them ---
 
 PAGE = 500
 REVIEWED = 200
@@ -251,8 +247,6 @@ class ObservationFeed(QObject):
             self._without.clear()
 
 
-# --- Observations as an ordinary vector layer, with their images on the map and in the map tips ---
-
 FIELDS = (
     "observation:integer,state:string,robot:string,kind:string,object:string,label:string,height:double,"
     "radius:double,received:string,reviewed_by:string,reason:string,thumbnail:string"
@@ -362,8 +356,6 @@ def _picture() -> QgsMarkerSymbol:
     symbol.changeSymbolLayer(0, picture)
     return symbol
 
-
-# --- Observations as a list: what, by whom, when, in which state, with its image ---
 
 NUMBER = Qt.ItemDataRole.UserRole
 ICON = QSize(56, 42)

@@ -33,8 +33,6 @@ from ..ui.steady_widgets import ElidedText
 from ..ui.tables import TimeColumn, ZoomMenu, shrink_view, write_csv
 from .command_log_model import CSV_HEAD, PAGE, CommandChoice, CommandFilter, LogModel, csv_rows, summary
 
-# --- Commands of before this desk came: asked of the gateway, and what came of it told ---
-
 OLDER = 1000
 """Commands that are asked for at once."""
 MOST_ASKED = 20
@@ -151,8 +149,6 @@ def _in_words(wish: HistoryRequest) -> str:
         end = tr("The gateway knows no others.")
     return f"{came} {end}"
 
-
-# --- The log of commands with what is above it: whose, which, how many are open, and what to do with it
 
 EVERY_ROBOT, SELECTED = tr("All robots"), tr("Selected robots")
 COMMAND_CHOICES = {

@@ -38,8 +38,6 @@ from ..ui.errors import FleetError
 from ..ui.glyphs import WRONG_STYLE
 from ..ui.language import tr
 
-# --- Coordinates typed in, in any CRS, with where they come to on the site and by which way ---
-
 WGS84 = "EPSG:4326"
 
 
@@ -139,8 +137,6 @@ class CoordinatesDialog(QDialog):
         if self._place is not None:
             self.chosen.emit(*self._place)
 
-
-# --- Drafts made of what is selected in a layer: a point, a line, or many points ---
 
 NAME_FIELDS = ("id", "name", "label")
 

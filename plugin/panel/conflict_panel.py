@@ -25,8 +25,6 @@ from ..ui.steady_widgets import ElidedButton, ElidedText
 from ..ui.tables import shrink_view
 from ..ui.times import time_of_day
 
-# --- What two robots in each other's way can do about it, as the gateway reckons it again and again ---
-
 Pair = tuple[str, str]
 
 ASK_EVERY = 3.0
@@ -103,8 +101,6 @@ class ResolutionQuery(QObject):
             self._ways, self.why_not = ways, why_not
             self.changed.emit()
 
-
-# --- The robots that will be in each other's way, and who shall give way ---
 
 OVER_MS = 3000
 """For so long the row of a conflict that is over stays, disabled: what is below it does not move up under

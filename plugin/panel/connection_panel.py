@@ -24,15 +24,18 @@ from qgis.PyQt.QtWidgets import (
 )
 
 from ...robot_bridge.core.messages import SiteReport
-from ..gateway_client.link import DEFAULT_URL, ConnectionPhase, ConnectionStatus, OperatorCredentials
+from ..gateway_client.connection_status import (
+    DEFAULT_URL,
+    ConnectionPhase,
+    ConnectionStatus,
+    OperatorCredentials,
+)
 from ..settings.connections import Connections, GatewayConnection, TokenStore
 from ..settings.connections_widget import ConnectionDialog, ConnectionsDialog
 from ..ui.actions import ICONS
 from ..ui.dialogs import file_field
 from ..ui.language import tr
 from ..ui.steady_widgets import ScrollingText, SteadyButton
-
-# --- The operator's token and the CA file, for gateways that have accounts and TLS ---
 
 CA_KEY = "fleet_supervisor/ca_file"
 NONE_KEPT = tr("fleet_op_…, as it was printed when the account was made")
@@ -127,8 +130,6 @@ class AccessFields(QWidget):
         grid.addWidget(self._ca, 1, 1, 1, 2)
 
 
-# --- The menu beside the button that connects: the connections that are kept, and what can be done with them
-
 NONE_CHOSEN = tr("Connections that are kept under a name")
 
 
@@ -200,8 +201,6 @@ class ConnectionMenu(QObject):
         dialog.kept.connect(self.chosen)
         dialog.open()
 
-
-# --- Where the operator says which gateway and who, and sees how the link stands ---
 
 URL_KEY = "fleet_supervisor/url"
 OPERATOR_KEY = "fleet_supervisor/operator"

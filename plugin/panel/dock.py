@@ -32,8 +32,6 @@ from .queue import QueueEdits, QueuePanel
 from .robot_details import RobotDetails
 from .robot_table import RobotPanel, RobotTableView
 
-# --- How the parts of the fleet panel share its height, so that what comes and goes moves no button ---
-
 GAP = 4
 """Pixels between two parts."""
 SHARE = 0.45
@@ -122,8 +120,6 @@ class SharingSplitter(QSplitter):
     def _moved(self) -> None:
         self._share = (self.sizes()[0] - self._least()) / max(1, self._free())
 
-
-# --- The fleet panel: link, robots, what to do with them, and what was done ---
 
 STOP_STYLE = (
     "QPushButton { background: #C62828; color: white; font-weight: bold; border: 1px solid #8E0000;"

@@ -8,13 +8,11 @@ from qgis.PyQt.QtWidgets import QAction, QApplication, QFrame, QHBoxLayout, QToo
 
 from ...robot_bridge.core.messages import EmergencyReport
 from ..control.fleet_controller import FleetController
-from ..gateway_client.link import ConnectionPhase
+from ..gateway_client.connection_status import ConnectionPhase
 from ..ui.dialogs import QuestionDialog
 from ..ui.language import first_of, tr, tr_count
 from ..ui.steady_widgets import ScrollingText
 from ..ui.times import time_of_day
-
-# --- The key of the emergency stop over dialogs that block their window, QGIS's own among them ---
 
 
 class EmergencyKey(QObject):
@@ -34,8 +32,6 @@ class EmergencyKey(QObject):
         if dialog is not None and self._action not in dialog.actions():
             dialog.addAction(self._action)
 
-
-# --- The red banner of an emergency stop: asked for, in force, and who has stopped ---
 
 STYLE = (
     "QFrame#fleet_emergency_banner { background: #B00020; border: 2px solid #FFC400; border-radius: 4px; }"
@@ -155,8 +151,6 @@ def _counts(report: EmergencyReport) -> list[str]:
         )
     return lines
 
-
-# --- Asks whether an emergency stop is really to be cleared ---
 
 LONGEST_REASON = 500
 

@@ -26,8 +26,6 @@ from ..ui.steady_widgets import ScrollingText
 from .command_sources import CoordinatesDialog, command_from_layer
 from .queue import QueueEdits
 
-# --- What is drawn on the map and would be sent, with the buttons that change it, send it or take it away
-
 NOTHING = tr("Select a robot, choose Cone target or Draw route, and click on the map.")
 
 LINES = 3
@@ -191,8 +189,6 @@ def _in_words(draft: PendingCommand) -> str:
     return tr("{in_words}.{warnings} Enter or Send sends it.", in_words=draft.in_words(), warnings=warnings)
 
 
-# --- Asks why something is to be sent in spite of what the checks found ---
-
 LONGEST_WHY = 300
 """characters."""
 LONGEST = 1000
@@ -232,9 +228,6 @@ class OverrideDialog(QuestionDialog):
         found = self._found[: LONGEST - len(why) - 1]
         text = "".join(c if c.isprintable() else " " for c in f"{found} {why}")
         self.confirmed.emit(text)
-
-
-# --- What can be done with the draft by buttons, and where it can come from besides clicks ---
 
 
 class PendingCommandActions(QObject):

@@ -51,8 +51,6 @@ from ..ui.language import tr
 from ..ui.steady_widgets import ElidedText, SteadyButton
 from ..ui.tables import RowModel, ZoomMenu, shrink_view
 
-# --- What the operator changes in the robots' queues, from the press of a button to the gateway's answer
-
 QueueRequest = AddTasks | MoveTask | RemoveTask | MakeCurrent | PauseQueue | PauseRobot | ResumeQueue
 
 CHANGED_MEANWHILE = tr("Not done: the queue has changed since you saw it. This is how it stands now.")
@@ -173,9 +171,6 @@ class QueueEdits(QObject):
         self.changed.emit()
 
 
-# --- Robots that stand for a while and then go on: the actions *Pause robot* and *Continue* ---
-
-
 class PauseActions(QObject):
     """Wires both actions to the selected robots.
 
@@ -215,8 +210,6 @@ class PauseActions(QObject):
     def _enable(self, *_: object) -> None:
         self._go_on.setEnabled(bool(self._paused()))
 
-
-# --- The tasks of one queue in their order, to be dragged into another ---
 
 COLUMNS = ("", tr("Task"), tr("State"))
 MIME = "application/x-fleet-task"
@@ -368,9 +361,6 @@ class TaskList(QTreeView):
             Qt.Key.Key_End: count,
         }
         self.tasks.want_at(task, min(max(0, rows[key]), count))
-
-
-# --- The queue of the selected robot: what it is to do one after the other ---
 
 
 class QueuePanel(QWidget):

@@ -46,8 +46,6 @@ from ..ui.times import date_and_time, heard_in_words, time_of_day
 from .alarms.board import alarm_state_in_words
 from .alarms.rules import Alarm
 
-# --- What is known of one robot, as sections of names and values ---
-
 Row = tuple[str, str]
 TIMES = ("device_time", "fix_time")
 """Fields that are seconds since 1970, by the robot's own clock."""
@@ -127,8 +125,6 @@ def _value(name: str, value: Any) -> str:
     unit = f" {UNITS[name]}" if name in UNITS and isinstance(value, (int, float)) else ""
     return f"{value}{unit}"
 
-
-# --- The last image that a robot sent: asked for when somebody looks, decoded beside the window ---
 
 LOOKED_THROUGH = 200
 """Observations among which the newest image is looked for."""
@@ -254,8 +250,6 @@ def _image_of(content: bytes) -> QImage | None:
     image = reader.read()
     return None if image.isNull() else image
 
-
-# --- All that is known of the selected robot: a list in sections, and its last image ---
 
 NOW, ALARMS, RECEIVED, QUEUE, COMMANDS = SECTIONS = (
     tr("Now"),

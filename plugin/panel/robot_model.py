@@ -29,8 +29,6 @@ from ..ui.language import tr
 from ..ui.tables import TO_THE_RIGHT
 from ..ui.times import age_in_words, heard_in_words
 
-# --- The columns of the robot table: what stands in them, and what they are sorted by ---
-
 
 @dataclass(frozen=True)
 class Column:
@@ -125,8 +123,6 @@ def number_in_words(title: str, value: float) -> str:
         return f"{value:.2f} m" if value < 10 else f"{value:.1f} m"
     return age_in_words(value)
 
-
-# --- All robots at one moment, as the table shows, sorts and filters them: columns, not objects ---
 
 Floats = npt.NDArray[np.float64]
 Rows = npt.NDArray[np.intp]
@@ -296,7 +292,6 @@ def fleet_rows(
     return FleetRows(picture, book, deviations, robots.names, robots.state, robots.xy, numbers, paused)
 
 
-# --- The robots as a table model that sorts and filters by itself, on columns ---
 # Qt's own proxy asks for every cell of ten thousand robots whenever one has changed; this one asks numpy.
 
 ANSWERED_ROLES = frozenset(

@@ -36,8 +36,6 @@ from ..ui.steady_widgets import ElidedText
 from ..ui.tables import ZoomMenu, fit_headers, shrink_view
 from .robot_model import COLUMNS, TASK, TITLES, RobotChoice, RobotModel
 
-# --- The table of robots ---
-
 MANY = 500
 """With more robots the table is renewed half as often, with ten times as many four times as seldom."""
 HIDDEN_KEY = "fleet_supervisor/robot_table/hidden"
@@ -220,8 +218,6 @@ class RobotTableView(QTableView):
         self.selectionModel().select(wanted, flags.ClearAndSelect | flags.Rows)
         self._marking = False
 
-
-# --- The table of robots, and what narrows it: a search, which robots are listed, and which columns ---
 
 WGS84 = "EPSG:4326"
 AROUND_SEARCH = 40

@@ -10,12 +10,12 @@ from qgis.PyQt.QtWidgets import QAction, QMainWindow, QMenu, QToolBar
 from ..control.fleet_controller import FleetController
 from ..control.messages import OUTAGE, Level, MessageBar, request_topic
 from ..control.roads import RoutePreferencesDialog
-from ..gateway_client.link import ConnectionPhase
+from ..gateway_client.connection_status import ConnectionPhase
 from ..layers.road_surfaces import SurfaceStore
-from ..map.layers import RoadLayers, StandingCones
 from ..map.live_view import LiveView
-from ..map.overlay.screen import FollowMode
+from ..map.overlay.scene import FollowMode
 from ..map.overlay.task_painter import QueueMarks
+from ..map.reported_layers import RoadLayers, StandingCones
 from ..map.site_project import ProjectMatch
 from ..map.tools.closure_tool import ClosureTool
 from ..map.tools.road_route_tool import RoadRouteTool
@@ -33,8 +33,6 @@ from .dock import FleetDock
 from .emergency import ClearDialog, EmergencyKey
 from .pending_command_panel import PendingCommandActions
 from .queue import PauseActions, QueueEdits
-
-# --- Puts the desk into the QGIS window, and takes it out again without a trace ---
 
 MENU = "Fleet Supervisor"
 CONNECTING = request_topic("hello", "")
@@ -219,9 +217,6 @@ class FleetWindow(QObject):
             dialog = ClearDialog(report, self._iface.mainWindow())
             dialog.confirmed.connect(self.desk.clear_emergency)
             dialog.open()
-
-
-# --- The alarms in the QGIS window: watched, listed in the Fleet panel, counted in the message bar ---
 
 
 class WindowAlarms(QObject):

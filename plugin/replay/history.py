@@ -29,8 +29,6 @@ from ..ui.errors import FleetError
 from ..ui.language import tr
 from ..ui.scheduling import CooperativeTask, Steps
 
-# --- Commands as they were at a moment, and as marks on a time line ---
-
 AT_ONCE = 100
 """Commands that are looked through in one step of a slice."""
 STATES = tuple(CommandState)
@@ -180,9 +178,6 @@ def _ended_at(report: CommandReport) -> float:
     return next((step.at for step in report.steps if step.state not in UNDER_WAY), np.inf)
 
 
-# --- Keeps the commands of the desk in the order in which a replay asks for them ---
-
-
 class CommandSorter(QObject):
     """Looks through a book beside what else the window does, and again when there was news meanwhile."""
 
@@ -219,8 +214,6 @@ class CommandSorter(QObject):
             self.renew()
         self.done.emit(before)
 
-
-# --- Stored positions, and where every robot was at a moment; no I/O, no Qt ---
 
 SILENT_AFTER = 15.0
 """Seconds between stored positions after which a robot counts as silent: while it is heard of, a gateway
@@ -358,8 +351,6 @@ def _arrays(names: list[str], pose: Numbers, age: Numbers, silent: npt.NDArray[n
         age=age,
     )
 
-
-# --- Fetches a stretch of stored positions from the gateway, page by page ---
 
 PAGE = 1000
 """Positions taken in at once: a few milliseconds of the window's time."""

@@ -18,8 +18,6 @@ from .history import NO_MARKS, CommandSorter, HistoryDownload, PastCommands
 from .replay_map import ReplayLayer, ReplayMap
 from .time_controls import SPEEDS, ReplayClock, TimeLine, TimeRangeForm
 
-# --- The panel of the replay: a time is loaded, played and looked at, while the live map goes on ---
-
 BANNER = "background: #7B1FA2; color: white; font-weight: bold; padding: 0px 6px;"
 
 PLAY, PAUSE = "/temporal_navigation/forward.svg", "/temporal_navigation/pause.svg"
@@ -246,9 +244,6 @@ class ReplayDock(ActionDock):
         self.map.setMinimumHeight(100)
         self.setWidget(body)
         self.setFocusProxy(self.form.last)
-
-
-# --- The menu entry that shows the replay ---
 
 
 class ReplayAction(DockAction):

@@ -11,11 +11,9 @@ from urllib.parse import quote, unquote
 from qgis.core import QgsApplication, QgsAuthMethodConfig, QgsSettings
 
 from ...robot_bridge.core.json_decoder import decode_json
-from ..gateway_client.link import check_address
+from ..gateway_client.connection_status import check_address
 from ..ui.errors import FleetError
 from ..ui.language import tr
-
-# --- Where the operator's tokens are kept: encrypted, in the authentication manager of QGIS, or nowhere
 
 TITLE = "Fleet Supervisor"
 METHOD = "Basic"
@@ -155,8 +153,6 @@ def _token(config: QgsAuthMethodConfig) -> str:
     )
 
 
-# --- A gateway under a name, as operators keep it; and several of them as a file, to be handed on ---
-
 FORMAT = "fleet-supervisor-connections"
 VERSION = 1
 _LARGEST = 200_000
@@ -253,8 +249,6 @@ def _connection(row: Any, number: int, source: str) -> GatewayConnection:
             tr("{source}: connection {number}: {error}", source=source, number=number, error=error)
         ) from error
 
-
-# --- The connections that QGIS keeps, and which one was used last ---
 
 GROUP = "fleet_supervisor/connections"
 LAST = "fleet_supervisor/last_connection"

@@ -23,15 +23,13 @@ from qgis.PyQt.QtWidgets import (
 )
 
 from ..control.messages import MessageLabel
-from ..gateway_client.link import ConnectionPhase, OperatorCredentials
+from ..gateway_client.connection_status import ConnectionPhase, OperatorCredentials
 from ..panel.window import FleetWindow
 from ..settings.connections import GatewayConnection
 from ..ui.dialogs import push_button
 from ..ui.errors import FleetError
 from ..ui.language import tr
 from .practice_fleet import PracticeFleet
-
-# --- What the tour says, and at what it points ---
 
 PROJECT = "project"
 FLEET = "fleet"
@@ -136,8 +134,6 @@ STEPS = (
 )
 
 
-# --- A frame around the widget that the tour speaks of ---
-
 LOOK_MS = 50
 """How often it looks whether its widget has moved: docks are dragged and tabs are changed."""
 MARGIN = 4
@@ -190,8 +186,6 @@ class Spotlight(QWidget):
             self.framed = framed
             self.update()
 
-
-# --- The panel that leads through the tour: it lies in the window and lets everything else be used ---
 
 WIDTH = 400
 FROM_LEFT, FROM_TOP = 12, 48
@@ -332,8 +326,6 @@ def _button(name: str, text: str, pressed: Callable[[], object]) -> QPushButton:
     button.setAutoDefault(True)
     return button
 
-
-# --- The tour's place in the window: its menu entry, its offer at the first start, and what its buttons do
 
 OFFERED = "fleet_supervisor/tour_offered"
 PROJECT_FILE = Path(__file__).parents[2] / "resources" / "sample_site" / "sample_site.qgz"

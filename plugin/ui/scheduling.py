@@ -10,7 +10,7 @@ from qgis.PyQt.QtCore import QObject, QTimer
 
 from .errors import FleetError
 
-# --- Long work of the window's thread, done in slices between which the window paints and answers the mouse
+# Long work of the window's thread is done in slices between which the window paints and answers the mouse.
 # QGIS's own tasks are no help where a click waits for the result: in QGIS 3.22 they wait until the map is
 # drawn, and what they call of QGIS keeps Python to itself as long as it takes.
 
@@ -173,8 +173,6 @@ def scaled_progress(work: Steps[T], before: int, parts: int) -> Steps[T]:
             return end.value
         yield (before + share) / parts
 
-
-# --- The desk's beat, and the turns in which the parts of the window look at the robots ---
 
 PULL_EVERY_MS = 50
 PULLS_IN_HALF_A_SECOND = 500 // PULL_EVERY_MS

@@ -16,8 +16,6 @@ from .errors import FleetError
 from .language import tr
 from .times import short_time
 
-# --- A table with one row for each thing that it is given ---
-
 
 class RowModel(QAbstractTableModel):
     """Holds :attr:`rows` under ``heads``; what a cell shows is for ``data`` of whoever derives from it."""
@@ -65,9 +63,6 @@ class TextModel(RowModel):
         return None
 
 
-# --- What a model hands out for its cells: numbers, also where Qt 6 has enums for them ---
-
-
 def number_of(value: object) -> int:
     """Return the number of a Qt enum's member or flags, which are numbers themselves on Qt 5."""
     return int(getattr(value, "value", value))  # type: ignore[call-overload]
@@ -77,8 +72,6 @@ TO_THE_RIGHT = number_of(Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCe
 CHECKED = number_of(Qt.CheckState.Checked)
 UNCHECKED = number_of(Qt.CheckState.Unchecked)
 
-
-# --- Tables that have to fit into a narrow and low panel ---
 
 LOWEST = 44
 """Pixels that a table keeps on a low screen: its head and a row or two."""
@@ -93,8 +86,6 @@ def shrink_view(view: QAbstractItemView) -> None:
     for header in view.findChildren(QHeaderView):
         header.setFont(font)
 
-
-# --- Columns that are as wide as their heads need in the language of QGIS ---
 
 EDGES = 4
 """Pixels beside a head's words."""
@@ -127,8 +118,6 @@ def _fit(header: QHeaderView, column: int) -> None:
     header.resizeSection(column, max(header.sectionSize(column), wanted))
 
 
-# --- A column of times that is as wide as its widest time ---
-
 TODAY = "00:00:00"
 
 
@@ -147,8 +136,6 @@ class TimeColumn:
             self._letters = len(widest)
             self._view.setColumnWidth(0, self._view.fontMetrics().horizontalAdvance(widest) + self._beside)
 
-
-# --- Lists of things that have a place on the map ---
 
 ENTER = (Qt.Key.Key_Return, Qt.Key.Key_Enter)
 ALONE = (Qt.KeyboardModifier.NoModifier, Qt.KeyboardModifier.KeypadModifier)
@@ -177,8 +164,6 @@ class ZoomMenu(QObject):
             self._go(index)
         return True
 
-
-# --- Tables of the desk as CSV files ---
 
 _FORMULA = ("=", "+", "-", "@", "\t", "\r")
 

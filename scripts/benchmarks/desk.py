@@ -85,7 +85,7 @@ from benchmarks.desk_canvas import register
 register()
 from fleet_supervisor.plugin.gateway_client.connection import Connection
 from fleet_supervisor.plugin.ui.scheduling import PULL_EVERY_MS
-from fleet_supervisor.plugin.map.layers import AT_ONCE
+from fleet_supervisor.plugin.map.reported_layers import AT_ONCE
 from fleet_supervisor.plugin.ui.scheduling import SLICE_SECONDS
 lanes = pyogrio.read_info({lanes!r}, layer="lanes")["features"]
 slice_ms = 1000 * SLICE_SECONDS

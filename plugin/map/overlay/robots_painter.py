@@ -32,10 +32,7 @@ from .primitives import (
     robot_atlas,
     segments,
 )
-from .scene import InView, MapScene
-from .screen import Screen
-
-# --- Paints robots: what they are, which are selected, how fast they go and how sure their place is ---
+from .scene import InView, MapScene, Screen
 
 Points = npt.NDArray[np.float64]
 Rows = npt.NDArray[np.intp]
@@ -243,8 +240,6 @@ def _velocities(
         painter.setPen(flat(stroke))
         painter.drawLines(long_ones)
 
-
-# --- Points, at the border of the map, to the robots beyond it ---
 
 MARGIN = 14.0
 APART = 56.0

@@ -19,8 +19,6 @@ from ...control.pending_command import PendingCommand, Point
 from ...ui.errors import FleetError
 from ...ui.language import tr
 
-# --- Points moved by the arrow keys ---
-
 FINE_M, COARSE_M = 0.1, 1.0
 """Metres a key press, with Ctrl, and with Ctrl and Shift."""
 _ASIDE = {Qt.Key.Key_Left: (-1, 0), Qt.Key.Key_Right: (1, 0), Qt.Key.Key_Up: (0, -1), Qt.Key.Key_Down: (0, 1)}
@@ -51,8 +49,6 @@ def moved_by_arrow(event: QKeyEvent, desk: FleetController, point: Point) -> Poi
     step = (COARSE_M if coarse else FINE_M) / math.hypot(dx, dy)
     return point[0] + dx * step, point[1] + dy * step
 
-
-# --- What map tools that draw have in common: clicks draw, a right click ends it, Enter sends, Esc cancels
 
 SEND_KEYS = (Qt.Key.Key_Return, Qt.Key.Key_Enter)
 UNDO, REDO = QKeySequence.StandardKey.Undo, QKeySequence.StandardKey.Redo

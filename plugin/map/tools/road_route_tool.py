@@ -21,8 +21,6 @@ from ...ui.errors import FleetError, MapTransformError, NotSentError
 from ...ui.language import tr
 from .route_tool import RouteTool
 
-# --- The way along the roads to where the mouse is, drawn on the canvas with its length, time and surfaces
-
 ALONG, STRAIGHT = QColor(21, 101, 192, 210), QColor(198, 40, 40, 210)
 CASING = QColor(255, 255, 255, 90)
 """Beneath it: on the asphalt of a photograph the colour alone is lost."""
@@ -145,9 +143,6 @@ class RoutePreview(QObject):
         self._band.setLineStyle(Qt.PenStyle.DashLine)
         for number, (x, y) in enumerate(points.tolist(), 1):
             self._band.addPoint(QgsPointXY(x, y), number == len(points))
-
-
-# --- The map tool that leads a route along the roads ---
 
 
 class RoadRouteTool(RouteTool):

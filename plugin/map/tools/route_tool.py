@@ -18,8 +18,6 @@ from ...ui.errors import FleetError, MapTransformError
 from ...ui.language import tr
 from .drawing_tool import DrawingTool, is_arrow_move, moved_by_arrow
 
-# --- Where on the screen a route can be taken hold of ---
-
 REACH = 9.0
 """Pixels by which the mouse may miss a vertex or a leg."""
 MARK = QColor("#FFE14D")
@@ -99,9 +97,6 @@ def middle(draft: PendingCommand, vertex: int) -> tuple[float, float]:
     return (ax + bx) / 2, (ay + by) / 2
 
 
-# --- A vertex or a leg of a route that is dragged by the mouse; nothing of it is sent ---
-
-
 class RouteDrag:
     """What is dragged is shown as it would become; only letting go changes the route."""
 
@@ -163,8 +158,6 @@ class RouteDrag:
         if moved is not None and self._desk.drafts.draft is moved:
             self._desk.drafts.renew(before)
 
-
-# --- The map tool that draws a route ---
 
 BACKWARD, FORWARD = ("<", ","), (">", ".")
 

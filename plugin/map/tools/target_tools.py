@@ -16,8 +16,6 @@ from ...ui.language import tr
 from .drawing_tool import DrawingTool, is_arrow_move, moved_by_arrow
 from .road_route_tool import RoutePreview
 
-# --- The map tool that sets a cone target ---
-
 
 class ConeTool(DrawingTool):
     """A click puts the cone for the selected robot, another click moves it, as do Ctrl and the arrow keys.
@@ -76,9 +74,6 @@ class ConeTool(DrawingTool):
             )
         )
         return True
-
-
-# --- The map tool that tells a robot where it stands ---
 
 
 class StartTool(DrawingTool):

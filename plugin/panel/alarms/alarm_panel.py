@@ -30,8 +30,6 @@ from .rules import Alarm, AlarmEvent
 from .thresholds_form import ThresholdsDialog
 from .watch import AlarmWatch
 
-# --- The alarms as rows of a table ---
-
 ALARM_COLUMNS = (tr("Since"), tr("Alarm"), tr("State"))
 
 
@@ -81,8 +79,6 @@ def tip(alarm: Alarm) -> str:
         lines.append(tr("acknowledged {time} by {operator}", time=seen, operator=alarm.by))
     return "\n".join(lines)
 
-
-# --- The log of alarms: what began, ended and was acknowledged in this session ---
 
 LOG_COLUMNS = (tr("Time"), tr("What"), tr("Kind"), tr("Robot"), tr("Alarm"), tr("By"))
 CSV_HEAD = ("time", "change", "kind", "robot", "other", "x", "y", "alarm", "by")
@@ -176,9 +172,6 @@ def _csv_row(event: AlarmEvent) -> tuple[object, ...]:
         alarm.text,
         event.by,
     )
-
-
-# --- The panel of alarms: what is the matter now, seen or not, and what to do about it ---
 
 
 class AlarmPanel(QWidget):

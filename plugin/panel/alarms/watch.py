@@ -14,7 +14,7 @@ from ....robot_bridge.core.messages import CommandState
 from ....robot_bridge.core.roads.surface_index import NOWHERE
 from ...control.fleet_controller import FleetController
 from ...control.messages import TITLE
-from ...gateway_client.link import ConnectionPhase
+from ...gateway_client.connection_status import ConnectionPhase
 from ...gateway_client.robot_states import RemovedRobots, RobotArrays
 from ...layers.crs import transform_points_or_nan
 from ...layers.road_surfaces import SurfaceMap, SurfaceStore, SurfaceTask
@@ -36,8 +36,6 @@ from .rules import (
     read_thresholds,
     write_thresholds,
 )
-
-# --- Whether robots are on the road, by the project's layers of road surfaces ---
 
 AROUND = np.array([(np.cos(turn), np.sin(turn)) for turn in np.arange(8) * np.pi / 4])
 """Directions in which the margin is looked for."""
@@ -133,9 +131,6 @@ def _on_a_surface(xy: Floats, placement: SiteToMapTransform, surfaces: SurfaceMa
     return surfaces.index.at_many(transform_points_or_nan(placement.frame.to_crs(xy), way)) != NOWHERE
 
 
-# --- The desk's knowledge at one moment, as the rules look at it ---
-
-
 class SnapshotBuilder:
     """Makes one situation after the other; between two it sees how fast those move who do not say it."""
 
@@ -199,8 +194,6 @@ class SnapshotBuilder:
         return (None, None) if judged is None else judged
 
 
-# --- Alarms in QGIS's message log: only some of them, since QGIS keeps each line for as long as it is open
-
 MOST_LINES = 20
 """Alarms that are written within :data:`WITHIN`: a fleet that loses its radio again and again would otherwise
 take megabytes an hour. The log of alarms has all of them."""
@@ -252,8 +245,6 @@ def _count(more: int) -> None:
 def _write(text: str) -> None:
     QgsMessageLog.logMessage(text, TITLE, Qgis.MessageLevel.Warning, False)
 
-
-# --- Looks at the robots again and again, and tells of alarms ---
 
 FENCED = frozenset({AlarmKind.IN_KEEPOUT, AlarmKind.AT_OBSTACLE})
 NEARNESS = frozenset({AlarmKind.NEAR_ROBOT, AlarmKind.COMES_NEAR})

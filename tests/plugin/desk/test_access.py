@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 from fleet_supervisor.plugin.gateway_client.connection import ConnectionThread
-from fleet_supervisor.plugin.gateway_client.link import (
+from fleet_supervisor.plugin.gateway_client.connection_status import (
     ROLES,
     ConnectionPhase,
     ConnectionStatus,

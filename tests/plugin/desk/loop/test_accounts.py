@@ -6,7 +6,7 @@ import shutil
 from dataclasses import replace
 
 import pytest
-from fleet_supervisor.plugin.gateway_client.link import ConnectionPhase, OperatorCredentials
+from fleet_supervisor.plugin.gateway_client.connection_status import ConnectionPhase, OperatorCredentials
 from fleet_supervisor.robot_bridge.core.sites.site import read_site, write_site
 from qgis.PyQt.QtTest import QTest
 from qgis.PyQt.QtWidgets import QAction, QDialog, QLineEdit, QPushButton

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from fleet_supervisor.plugin.gateway_client import report_caches
 from fleet_supervisor.plugin.gateway_client.buffers import ObservationUpdates
-from fleet_supervisor.plugin.gateway_client.link import ConnectionPhase, ConnectionStatus
+from fleet_supervisor.plugin.gateway_client.connection_status import ConnectionPhase, ConnectionStatus
 from fleet_supervisor.plugin.gateway_client.report_caches import ObservationCache
 from fleet_supervisor.plugin.observations.observation_views import ObservationFeed, Thumbnails
 from fleet_supervisor.robot_bridge.core.messages import observation_report

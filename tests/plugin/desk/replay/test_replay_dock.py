@@ -7,7 +7,7 @@ import time
 from itertools import groupby, pairwise
 
 import pytest
-from fleet_supervisor.plugin.map.overlay import paths_painter
+from fleet_supervisor.plugin.map.overlay import task_painter
 from fleet_supervisor.plugin.replay import replay_map
 from fleet_supervisor.plugin.ui import scheduling
 from qgis.core import QgsProject
@@ -129,7 +129,7 @@ def test_while_time_is_held_the_map_goes_on_until_it_is_whole_and_follows_its_vi
     loaded, at_desk, gateway, wait, monkeypatch
 ):
     """Of many ways some are drawn in each frame; a moment that is held has no other frame."""
-    monkeypatch.setattr(paths_painter, "FILL_SECONDS", 0.0)
+    monkeypatch.setattr(task_painter, "FILL_SECONDS", 0.0)
     begun = loaded.clockwork.since
     for k in range(4):
         path = {"points": [[10.0, 20.0 * k], [90.0, 20.0 * k]]}
@@ -142,7 +142,7 @@ def test_while_time_is_held_the_map_goes_on_until_it_is_whole_and_follows_its_vi
     assert not loaded.map.overlay.is_whole
     wait(lambda: loaded.map.overlay.is_whole, what="all ways")
     loaded.map.zoomByFactor(0.5)
-    wait(lambda: ways._shown.screen == loaded.map.overlay.screen(), what="the ways in the new view")
+    wait(lambda: ways._shown.screen == loaded.map.overlay.scene(), what="the ways in the new view")
     wait(lambda: loaded.map.overlay.is_whole, what="all ways in the new view")
 
 

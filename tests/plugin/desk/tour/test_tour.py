@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 
 import pytest
-from fleet_supervisor.plugin.gateway_client.link import ConnectionPhase
+from fleet_supervisor.plugin.gateway_client.connection_status import ConnectionPhase
 from fleet_supervisor.plugin.panel.window import MENU, FleetWindow
 from fleet_supervisor.plugin.settings.connections import GatewayConnection
 from fleet_supervisor.plugin.tour.practice_fleet import PracticeFleet, find_program

@@ -59,8 +59,6 @@ from ..ui.glyphs import STATE_COLOURS
 from ..ui.language import tr
 from ..ui.times import date_and_time, time_of_day
 
-# --- Robots as features: their attributes, geometries, and how they look unless the user styles them ---
-
 NAME = tr("Robots (live)")
 FIELDS = (
     "robot:string",
@@ -185,8 +183,6 @@ def _renderer() -> QgsCategorizedSymbolRenderer:
         categories.append(QgsRendererCategory(state.value, symbol, ROBOT_STATES[state]))
     return QgsCategorizedSymbolRenderer("state", categories)
 
-
-# --- The robots as an ordinary vector layer: attribute table, identify, labels, styling, printing ---
 
 KIND = "robots"
 AT_ONCE = 100
@@ -375,8 +371,6 @@ def _is_only_age(feature: RobotFeature, changed: Iterable[int]) -> bool:
     return feature.values[STATE_AT] == RobotState.FRESH.value and set(changed) == {AGE_AT}
 
 
-# --- Closed roads and conflicts as ordinary vector layers: identify, attribute table, labels, printing
-
 LABEL_MM = 1.5
 CLOSED_FIELDS = "closure:string,reason:string,closed_by:string,closed_at:string,until:string,edges:integer"
 CONFLICT_FIELDS = (
@@ -460,8 +454,6 @@ def _style_conflicts(layer: QgsVectorLayer) -> None:
     words = "robot || ' × ' || other || ' ' || nearest_at"
     label(layer, words, QgsPalLayerSettings.Placement.OrderedPositionsAroundPoint, LABEL_MM)
 
-
-# --- The cones that robots put down, as an ordinary layer: what was reached stays on the map ---
 
 PLACED_CONE_FIELDS = "robot:string,label:string,placed_at:string,deviation_m:double"
 MOST = 2000
