@@ -374,7 +374,7 @@ class AccountsDialog(SupervisorDialog):
         self._show(operators_report(result))
 
     def _show(self, found: Operators) -> None:
-        self._show_rows(read_accounts(found.operators, self._sessions, self._desk.link.operator))
+        self._show_rows(read_accounts(found.operators, self._sessions, self._desk.state.link.operator))
         self._has_none = not found.operators
         if found.operators:
             self._say_once_known(tr_count(len(found.operators), "1 account", "%n accounts"))

@@ -111,7 +111,7 @@ class RobotRemoval:
     def ask(self) -> None:
         """Ask which robots are removed, or say why none can be."""
         gone = self._gone()
-        why = why_not(self._desk.link) or ("" if gone else tr("No robot is lost or offline."))
+        why = why_not(self._desk.state.link) or ("" if gone else tr("No robot is lost or offline."))
         if why:
             self._desk.complained.emit(tr("No robot was removed: {why}", why=why))
             return
@@ -129,7 +129,7 @@ class RobotRemoval:
         self.action.deleteLater()
 
     def _gone(self) -> list[str]:
-        views = self._desk.picture.views(self._desk.clock())
+        views = self._desk.state.robots.views(self._desk.clock.steady())
         return [view.name for view in views if view.state in GONE]
 
     def _remove(self, robots: list[str], reason: str) -> None:

@@ -78,7 +78,7 @@ class SiteChoiceDialog(SupervisorDialog):
         # Why a site cannot be chosen takes several lines.
         self.view.setWordWrap(True)
         self.view.verticalHeader().setSectionResizeMode(QHeaderView.ResizeMode.ResizeToContents)
-        desk.site_changed.connect(self._site_changed)
+        desk.state.site_changed.connect(self._site_changed)
         self._lay_out()
 
     def _ask_rows(self) -> None:
@@ -109,7 +109,7 @@ class SiteChoiceDialog(SupervisorDialog):
 
     def _site_changed(self) -> None:
         # Also when another supervisor chose.
-        if self.isVisible() and self._desk.site is not None:
+        if self.isVisible() and self._desk.state.site is not None:
             self._ask_rows()
 
 

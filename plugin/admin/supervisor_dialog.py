@@ -22,8 +22,8 @@ from qgis.PyQt.QtWidgets import (
 
 from ...robot_bridge.core.messages import Role
 from ..control.fleet_controller import FleetController
-from ..gateway_client.buffers import RequestResult
 from ..gateway_client.connection_status import ConnectionPhase, ConnectionStatus, role_in_words
+from ..gateway_client.requests import RequestResult
 from ..help import HelpTopic, show_help
 from ..panel.connection_panel import ConnectionMenu
 from ..ui.actions import ICONS
@@ -150,7 +150,7 @@ class SupervisorDialog(QDialog):
         self.view.selectionModel().selectionChanged.connect(self._renew)
         self._listing.refused.connect(self._not_listed)
         self._changing.refused.connect(self._not_changed)
-        desk.link_changed.connect(self._link_changed)
+        desk.state.link_changed.connect(self._link_changed)
         self.finished.connect(self._close_question)
 
     def selected(self) -> Any:
@@ -160,7 +160,7 @@ class SupervisorDialog(QDialog):
 
     def refresh(self) -> None:
         """Ask for the rows anew, or say why that cannot be."""
-        why = why_not(self._desk.link)
+        why = why_not(self._desk.state.link)
         if why:
             self._show_rows([])
             self.said.setText(why)
@@ -248,7 +248,7 @@ class SupervisorDialog(QDialog):
     def _changed(self, done: str) -> None:
         """Say what was changed, and ask for the rows as they are now unless that ended the link."""
         self.said.setText(done)
-        if self.isVisible() and not why_not(self._desk.link):
+        if self.isVisible() and not why_not(self._desk.state.link):
             self._ask_rows()
 
     def _not_changed(self, why: str) -> None:
@@ -258,7 +258,7 @@ class SupervisorDialog(QDialog):
 
     def _not_listed(self, why: str) -> None:
         # Without a link that is said already, and the rows are asked for when it is back.
-        if not why_not(self._desk.link):
+        if not why_not(self._desk.state.link):
             self.said.setText(f"✘ {why}")
 
     def _link_changed(self) -> None:
@@ -270,7 +270,7 @@ class SupervisorDialog(QDialog):
             self._show_rows([])
 
     def _renew(self) -> None:
-        can_ask = not why_not(self._desk.link)
+        can_ask = not why_not(self._desk.state.link)
         row = self.selected()
         can_change = can_ask and row is not None and self._can_change(row)
         for button, for_row in self._buttons:

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import uuid
-from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
 from qgis.PyQt.QtCore import QObject, pyqtSignal
 
+from ...robot_bridge.core.clock import Clock
 from ...robot_bridge.core.messages import (
     Abort,
     AbortAll,
@@ -18,13 +18,55 @@ from ...robot_bridge.core.messages import (
     Send,
     to_json,
 )
-from ..gateway_client.buffers import OperatorRequest, RequestResult
+from ..gateway_client.connection import ConnectionThread
+from ..gateway_client.connection_status import ConnectionPhase
+from ..gateway_client.fleet_state import FleetState
+from ..gateway_client.requests import OperatorRequest, RequestResult
 from ..ui.errors import NotSentError
 from ..ui.language import tr, tr_count
 from .messages import Topic, conflict_topic, request_topic
 from .pending_command import TARGETS, PendingCommand
 
 SLOW_AFTER = 5.0
+
+
+class RequestSender(QObject):
+    """Hands requests to the connection while there is a link; an emergency stop also before there is one."""
+
+    failed = pyqtSignal(str)
+    """An emergency stop waits for the link: the text, which must not go unseen."""
+    settled = pyqtSignal(str)
+    """What ``failed`` told with this text is over."""
+
+    def __init__(self, connection: ConnectionThread, state: FleetState, parent: QObject | None = None):
+        super().__init__(parent)
+        self._connection, self._state = connection, state
+        self._not_sent_yet = ""
+        """What was told of a stop that waits for the link."""
+        state.link_changed.connect(self._link_changed)
+
+    def submit(self, request: OperatorRequest) -> None:
+        """Send a request; raises NotSentError when it cannot be sent."""
+        if self._state.link.phase is ConnectionPhase.CONNECTED:
+            self._connection.submit(request)
+            return
+        if request.method != EmergencyStop.method or not self._connection.is_open:
+            raise NotSentError(
+                tr(
+                    "the desk is not connected to a gateway. Connect first; to stop a robot now use the "
+                    "robot's own emergency stop."
+                )
+            )
+        self._connection.submit(request)
+        self._not_sent_yet = tr(
+            "EMERGENCY STOP is NOT sent yet: the link is down. It is sent as soon as that is back; use "
+            "the robots' own emergency stops now."
+        )
+        self.failed.emit(self._not_sent_yet)
+
+    def _link_changed(self) -> None:
+        if self._state.link.phase is ConnectionPhase.CONNECTED:
+            self.settled.emit(self._not_sent_yet)
 
 
 @dataclass
@@ -56,12 +98,12 @@ class RequestTracker(QObject):
 
     def __init__(
         self,
-        submit: Callable[[OperatorRequest], None],
-        clock: Callable[[], float],
+        sender: RequestSender,
+        clock: Clock,
         parent: QObject | None = None,
     ):
         super().__init__(parent)
-        self._submit = submit
+        self._sender = sender
         self._clock = clock
         self._pending: dict[str, PendingRequest] = {}
 
@@ -99,7 +141,7 @@ class RequestTracker(QObject):
         :raises NotSentError: when it cannot be sent.
         """
         command = str(uuid.uuid4())
-        order = OperatorRequest(command, AbortAll.method, to_json(AbortAll(command)), self._clock())
+        order = OperatorRequest(command, AbortAll.method, to_json(AbortAll(command)), self._clock.steady())
         return self._put(order, tr("ABORT ALL"))
 
     @property
@@ -115,7 +157,7 @@ class RequestTracker(QObject):
         stop = str(uuid.uuid4())
         key = self._put(
             OperatorRequest(
-                stop, EmergencyStop.method, to_json(EmergencyStop(stop)), self._clock(), lasting=True
+                stop, EmergencyStop.method, to_json(EmergencyStop(stop)), self._clock.steady(), lasting=True
             ),
             tr("EMERGENCY STOP"),
         )
@@ -128,7 +170,7 @@ class RequestTracker(QObject):
         :raises NotSentError: when it cannot be sent.
         """
         params = to_json(ClearEmergencyStop(reason or None, stop))
-        order = OperatorRequest(str(uuid.uuid4()), ClearEmergencyStop.method, params, self._clock())
+        order = OperatorRequest(str(uuid.uuid4()), ClearEmergencyStop.method, params, self._clock.steady())
         return self._put(order, tr("Clear emergency stop"))
 
     def ask(
@@ -181,7 +223,7 @@ class RequestTracker(QObject):
 
     def watch(self) -> None:
         """Tell once of each order that waits for its answer for too long."""
-        now = self._clock()
+        now = self._clock.steady()
         for pending in self._pending.values():
             if not pending.told_slow and now - pending.asked_at > SLOW_AFTER:
                 pending.told_slow = tr(
@@ -203,7 +245,7 @@ class RequestTracker(QObject):
     ) -> str:
         command = str(uuid.uuid4())
         send = Send(command, robot, op, params, override=override)
-        order = OperatorRequest(command, Send.method, to_json(send), self._clock())
+        order = OperatorRequest(command, Send.method, to_json(send), self._clock.steady())
         return self._put(order, words, draft)
 
     def _put(
@@ -216,7 +258,7 @@ class RequestTracker(QObject):
         topics = topics_of(order.method, order.params) + more
         self.asked_again.emit(topics[0])
         try:
-            self._submit(order)
+            self._sender.submit(order)
         except NotSentError as error:
             text = tr("{words} was NOT sent: {error}", words=words, error=error)
             raise NotSentError(text, topics) from error

@@ -10,12 +10,10 @@ from qgis.core import QgsProject, QgsVectorLayer, QgsWkbTypes
 from qgis.PyQt.QtCore import QObject, QTimer, pyqtSignal
 
 from ...robot_bridge.core.messages import SiteReport
-from ..gateway_client.command_cache import CommandCache
-from ..gateway_client.report_caches import QueueCache
-from ..gateway_client.robot_states import RobotView
+from ..gateway_client.fleet_state import FleetState
 from ..layers.layer_source import LayerWatch
 from ..layers.roles import layers_with_role
-from ..layers.site_transform import SiteToMapTransform
+from ..layers.site_transform import SiteToCanvas, SiteToMapTransform
 from ..ui.errors import FleetError
 from ..ui.language import tr
 from ..ui.scheduling import CooperativeTask, Steps, scaled_progress
@@ -246,10 +244,7 @@ def _listed(things: Iterable[T]) -> Steps[list[T]]:
 
 
 class CommandChecks(QObject):
-    """Looks at drafts for the ``operator``, on the site as ``placement`` puts it on the map now.
-
-    ``view`` tells how a robot stands at this moment.
-    """
+    """Checks drafts against the project's layers, and against what the gateway reports of site and robots."""
 
     changed = pyqtSignal()
     """A layer is not as it was: what is under way has to begin anew."""
@@ -257,21 +252,16 @@ class CommandChecks(QObject):
     def __init__(
         self,
         project: QgsProject,
-        placement: Callable[[], SiteToMapTransform],
-        operator: Callable[[], str],
-        book: CommandCache,
-        queues: QueueCache,
-        view: Callable[[str], RobotView | None],
+        site_to_canvas: SiteToCanvas,
+        state: FleetState,
         parent: QObject,
     ):
         super().__init__(parent)
-        self._placement = placement
-        self._operator = operator
-        self._book = book
-        self._view = view
+        self._site_to_canvas = site_to_canvas
+        self._state = state
         self._layers = LayerCheck(project, self)
         self._layers.changed.connect(self.changed)
-        self._targets = TargetCheck(book, queues)
+        self._targets = TargetCheck(state.commands, state.queues)
 
     def check_command(self, draft: PendingCommand, afresh: bool) -> Steps[PendingCommand]:
         """Look at a draft, all of it ``afresh`` or only what is new; return it with what was found.
@@ -280,15 +270,15 @@ class CommandChecks(QObject):
 
         :raises FleetError: when there is no site or a layer cannot be read.
         """
-        placement = self._placement()
+        placement = self._site_to_canvas.transform()
         found = check_bounds(draft.points, placement.site) + check_map(placement)
         found += yield from self._layers.check_command(draft, placement, afresh)
         found += _approach_findings(draft)
         # At the end, so that nobody is sent there meanwhile.
         found += self._targets.check_command(draft)
-        robot = self._view(draft.robot)
+        robot = self._state.robot(draft.robot)
         found += check_heard(draft, robot) + check_abilities(draft, robot)
-        found += check_orders(draft, self._book.task_of(draft.robot), self._operator())
+        found += check_orders(draft, self._state.commands.task_of(draft.robot), self._state.link.operator)
         override = draft.override if found.overridable == draft.findings.overridable else None
         cones = has_ability(robot, "cones")
         return replace(draft, findings=found, override=override, is_checked=True, places_cone=cones)

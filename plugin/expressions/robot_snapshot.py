@@ -80,9 +80,9 @@ class ExpressionUpdater(QObject):
         self._turn = desk.beat.turn()
         self._rows: dict[str, int] = {}
         self._arrangement = -1
-        desk.pulled.connect(self._pulled)
-        desk.site_changed.connect(self.feed)
-        desk.robots_removed.connect(self.feed)
+        desk.state.updated.connect(self._pulled)
+        desk.state.site_changed.connect(self.feed)
+        desk.state.robots_removed.connect(self.feed)
 
     def remove(self) -> None:
         """Feed nothing more."""
@@ -90,22 +90,22 @@ class ExpressionUpdater(QObject):
 
     def feed(self) -> None:
         """Make the picture of this moment."""
-        desk, now = self._desk, self._desk.clock()
-        if desk.site is None:
+        desk, now = self._desk, self._desk.clock.steady()
+        if desk.state.site is None:
             self._fleet.robots = None
             return
-        robots = desk.picture.arrays(now)
-        if self._arrangement != desk.picture.arrangement or len(self._rows) != len(robots.names):
-            self._arrangement = desk.picture.arrangement
+        robots = desk.state.robots.arrays(now)
+        if self._arrangement != desk.state.robots.arrangement or len(self._rows) != len(robots.names):
+            self._arrangement = desk.state.robots.arrangement
             self._rows = {name: row for row, name in enumerate(robots.names)}
-        frame = frame_of(desk.site)
+        frame = frame_of(desk.state.site)
         self._fleet.robots = RobotSnapshot(
-            crs=QgsCoordinateReferenceSystem(desk.site.crs),
+            crs=QgsCoordinateReferenceSystem(desk.state.site.crs),
             rows=self._rows,
             states=_NAMES[robots.state].tolist(),
             xy=frame.to_crs(robots.xy),
             age=robots.age,
-            battery=desk.picture.column("battery"),
+            battery=desk.state.robots.column("battery"),
             taken=now,
         )
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Sequence
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -34,6 +34,13 @@ SPARE_WORDS = 1000
 _TEXTS_AT = [AT[name] for name in WORDED]
 
 Numbers = npt.NDArray[np.float64]
+
+
+class RemovedRobots(NamedTuple):
+    """Robots that are there no more, and (n,) the rows that they had."""
+
+    names: frozenset[str]
+    rows: npt.NDArray[np.intp]
 
 
 class RobotTable:
@@ -114,10 +121,15 @@ class RobotTable:
         """Return what was told last of the robot in ``row``."""
         return robot_report(self.told(row))
 
-    def merge(self, newer: RobotTable) -> None:
-        """Take over what is in ``newer``, which is used up, unless it arrived before what is known."""
-        if gone := self.gone_by(newer):
-            self.drop(gone)
+    def merge(self, newer: RobotTable) -> RemovedRobots:
+        """Take over what is in ``newer``, which is used up, unless it arrived before what is known.
+
+        Return the robots that are there no more.
+        """
+        rows = self.gone_by(newer)
+        gone = RemovedRobots(frozenset(self.names[row] for row in rows), np.array(rows, dtype=np.intp))
+        if rows:
+            self.drop(rows)
         self.everything |= newer.everything
         self.removed = (self.removed | newer.removed).difference(newer.names)
         numbers, received = newer._numbers[:, : len(newer)], AT["received"]
@@ -131,6 +143,7 @@ class RobotTable:
             self._numbers[:, rows[taken]] = numbers[:, taken]
         if len(self._words) > SPARE_WORDS + 2 * len(self):
             self._forget_words()
+        return gone
 
     def _say_in_own_words(self, numbers: Numbers, words: list[str]) -> None:
         """Make places in ``words`` places in this table's own, which grow by those that are new."""

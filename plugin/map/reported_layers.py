@@ -391,9 +391,9 @@ class RoadLayers(QObject):
         self._conflicts = RowLayer(
             project, "conflicts", tr("Conflicts"), "Point", CONFLICT_FIELDS, _style_conflicts
         )
-        desk.roads.closures_changed.connect(self._show_closures)
-        desk.roads.conflicts_changed.connect(self._show_conflicts)
-        desk.site_changed.connect(self._show)
+        desk.state.closures_changed.connect(self._show_closures)
+        desk.state.conflicts_changed.connect(self._show_conflicts)
+        desk.state.site_changed.connect(self._show)
 
     def remove(self) -> None:
         """Take both out of the project."""
@@ -405,13 +405,13 @@ class RoadLayers(QObject):
         self._show_conflicts()
 
     def _show_closures(self) -> None:
-        rows = [(closure.line, _closure_values(closure)) for closure in self._desk.roads.closures]
-        self._closures.show(rows, self._desk.site)
+        rows = [(closure.line, _closure_values(closure)) for closure in self._desk.state.closures]
+        self._closures.show(rows, self._desk.state.site)
 
     def _show_conflicts(self) -> None:
-        conflicts = self._desk.roads.conflicts.conflicts
+        conflicts = self._desk.state.conflicts.conflicts
         rows = [([(one.x, one.y)], _conflict_values(one)) for one in conflicts]
-        self._conflicts.show(rows, self._desk.site)
+        self._conflicts.show(rows, self._desk.state.site)
 
 
 def _closure_values(closure: ClosureReport) -> list[Any]:
@@ -472,9 +472,9 @@ class StandingCones(QObject):
         self._layer = RowLayer(
             desk.project, "standing_cones", tr("Cones put down"), "Point", PLACED_CONE_FIELDS, _style_cones
         )
-        desk.commands_changed.connect(self._add_reached)
-        desk.placements_changed.connect(self._show)
-        desk.site_changed.connect(self._site_changed)
+        desk.state.commands_changed.connect(self._add_reached)
+        desk.state.placed_cones_changed.connect(self._show)
+        desk.state.site_changed.connect(self._site_changed)
 
     def remove(self) -> None:
         """Take the layer out of the project."""
@@ -490,15 +490,17 @@ class StandingCones(QObject):
 
     def _site_changed(self) -> None:
         # Another site's commands are out of the book by now.
-        self._reached = {command: one for command, one in self._reached.items() if command in self._desk.book}
+        self._reached = {
+            command: one for command, one in self._reached.items() if command in self._desk.state.commands
+        }
         self._show()
 
     def _show(self, *_: object) -> None:
-        self._layer.show(list(self._rows())[-MOST:], self._desk.site)
+        self._layer.show(list(self._rows())[-MOST:], self._desk.state.site)
 
     def _rows(self) -> Iterator[Row]:
         known = set()
-        for cone in self._desk.placements:
+        for cone in self._desk.state.placed_cones:
             known.add(cone.command)
             if cone.collected_at is None:
                 values = [cone.robot, cone.label or cone.cone or "", date_and_time(cone.placed_at)]

@@ -43,7 +43,7 @@ class ProjectMatch(QObject):
         self._told = ""
         self._watch = ProjectWatch(desk.project, self)
         self._watch.opened.connect(self._compare)
-        desk.site_changed.connect(self._compare)
+        desk.state.site_changed.connect(self._compare)
 
     def remove(self) -> None:
         """Compare no more."""
@@ -53,7 +53,7 @@ class ProjectMatch(QObject):
         if self._told:
             self.over.emit(self._told)
         self._told = ""
-        site, mine = self._desk.site, own_frame(self._desk.project)
+        site, mine = self._desk.state.site, own_frame(self._desk.project)
         if site is None or mine is None or _is_one(mine, frame_of(site)):
             return
         self._told = tr(

@@ -31,9 +31,9 @@ from ...robot_bridge.core.messages import (
     SiteReport,
 )
 from ..control.fleet_controller import FleetController
-from ..gateway_client.buffers import RequestResult
 from ..gateway_client.connection_status import ConnectionPhase
 from ..gateway_client.report_caches import ObservationCache
+from ..gateway_client.requests import RequestResult
 from ..layers.live_layers import RowLayer
 from ..panel.robot_details import DecodeTask
 from ..ui.errors import FleetError
@@ -152,10 +152,10 @@ class ObservationFeed(QObject):
         self._reviews: dict[str, int] = {}
         self._image: tuple[str, int] | None = None
         self._without: set[int] = set()
-        desk.link_changed.connect(self._link_changed)
+        desk.state.link_changed.connect(self._link_changed)
         desk.answered.connect(self._answered)
-        desk.observations_changed.connect(self._observations_changed)
-        desk.site_changed.connect(self._site_changed)
+        desk.state.observations_changed.connect(self._observations_changed)
+        desk.state.site_changed.connect(self._site_changed)
         thumbnails.failed.connect(self._without.add)
 
     def review(self, request: ReviewObservation) -> None:
@@ -167,7 +167,7 @@ class ObservationFeed(QObject):
         return number in self._reviews.values()
 
     def _link_changed(self) -> None:
-        connected = self._desk.link.phase is ConnectionPhase.CONNECTED
+        connected = self._desk.state.link.phase is ConnectionPhase.CONNECTED
         if connected and not self._was_connected:
             self._without.clear()
             self._ask_page(GetObservations(state=ObservationState.PENDING, limit=PAGE))
@@ -200,7 +200,7 @@ class ObservationFeed(QObject):
 
     def _take_page(self, answer: RequestResult) -> None:
         if answer.error is not None:
-            if self._desk.link.phase is ConnectionPhase.CONNECTED:
+            if self._desk.state.link.phase is ConnectionPhase.CONNECTED:
                 self._desk.complained.emit(tr("What robots saw is not known: {error}", error=answer.error))
             return
         found = (answer.result or {}).get("observations") or []
@@ -216,17 +216,17 @@ class ObservationFeed(QObject):
 
     def _observations_changed(self, _numbers: list[int]) -> None:
         # The book forgets those that were reviewed long ago, and a picture is a file of up to 0.2 MB.
-        known = {one.observation for one in self._desk.observations}
+        known = {one.observation for one in self._desk.state.observations}
         self._thumbnails.keep(known)
         self._without &= known
         self._fetch_image()
 
     def _fetch_image(self) -> None:
         """Ask for the next image that is not there yet, when no other is on its way."""
-        if self._image is not None or self._desk.link.phase is not ConnectionPhase.CONNECTED:
+        if self._image is not None or self._desk.state.link.phase is not ConnectionPhase.CONNECTED:
             return
         wanted = next(
-            (one.observation for one in self._desk.observations.ordered() if self._lacks(one)), None
+            (one.observation for one in self._desk.state.observations.ordered() if self._lacks(one)), None
         )
         if wanted is None:
             return
@@ -242,7 +242,7 @@ class ObservationFeed(QObject):
         )
 
     def _site_changed(self) -> None:
-        if not len(self._desk.observations):
+        if not len(self._desk.state.observations):
             self._thumbnails.clear()
             self._without.clear()
 

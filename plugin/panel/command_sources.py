@@ -74,7 +74,7 @@ class CoordinatesDialog(QDialog):
         self._text.textChanged.connect(self._read)
         self._crs.crsChanged.connect(self._read)
         self._set.clicked.connect(self._choose)
-        desk.site_changed.connect(self._read)
+        desk.state.site_changed.connect(self._read)
         self._read()
 
     def ask(self) -> None:
@@ -115,15 +115,15 @@ class CoordinatesDialog(QDialog):
         :raises FleetError: when it is no place, or there is no site yet.
         """
         crs = self._crs.crs()
-        site_crs = self._desk.placement().site_crs
+        site_crs = self._desk.site_to_canvas.transform().site_crs
         context = self._desk.project.transformContext()
         path = datum_transform(crs, site_crs, context).in_words()
         if not self._text.text().strip():
             order = tr("latitude, longitude") if crs.isGeographic() else tr("x, y")
             return tr("Write {order} in {crs}.\n{path}", order=order, crs=crs.authid(), path=path)
-        self._place = read_site_place(self._text.text(), crs, self._desk.site, context)
+        self._place = read_site_place(self._text.text(), crs, self._desk.state.site, context)
         site = tr("{x:.2f}, {y:.2f} m on the site", x=self._place[0], y=self._place[1])
-        ((east, north),) = self._desk.placement().frame.to_crs([self._place])
+        ((east, north),) = self._desk.site_to_canvas.transform().frame.to_crs([self._place])
         return tr(
             "{site}; {east:.2f}, {north:.2f} in {crs}.\n{path}",
             site=site,
@@ -271,7 +271,9 @@ def _moved(feature: QgsFeature, layer: QgsVectorLayer, desk: FleetController) ->
             )
         )
     geometry = QgsGeometry(feature.geometry())
-    way = QgsCoordinateTransform(layer.crs(), desk.placement().site_crs, desk.project.transformContext())
+    way = QgsCoordinateTransform(
+        layer.crs(), desk.site_to_canvas.transform().site_crs, desk.project.transformContext()
+    )
     try:
         check_transform(way)
         geometry.transform(way)
@@ -289,7 +291,7 @@ def _moved(feature: QgsFeature, layer: QgsVectorLayer, desk: FleetController) ->
 
 
 def _in_site(places: Sequence[Point], desk: FleetController) -> tuple[Point, ...]:
-    in_site = desk.placement().frame.to_site(np.array(places, dtype=np.float64))
+    in_site = desk.site_to_canvas.transform().frame.to_site(np.array(places, dtype=np.float64))
     if not np.isfinite(in_site).all():
         raise LayerCommandError(
             tr("A coordinate of what is selected is no number. Correct it, or leave it out.")

@@ -17,7 +17,7 @@ from qgis.PyQt.QtWidgets import (
 
 from ...robot_bridge.core.messages import ConflictReport, GetWaysOut, HoldReport, WayOut, ways_out_report
 from ..control.fleet_controller import FleetController
-from ..gateway_client.buffers import RequestResult
+from ..gateway_client.requests import RequestResult
 from ..gateway_client.state_texts import MEETINGS
 from ..ui.errors import NotSentError
 from ..ui.language import tr
@@ -48,7 +48,7 @@ class ResolutionQuery(QObject):
         self._asked_at = 0.0
         self.why_not = ""
         """Why it is not known what the robots can do; empty where it is known or was just asked."""
-        desk.pulled.connect(self._ask_again)
+        desk.state.updated.connect(self._ask_again)
         desk.answered.connect(self._answered)
 
     def watch(self, pair: Pair | None, kind: str = "") -> None:
@@ -69,13 +69,13 @@ class ResolutionQuery(QObject):
 
     def _ask_again(self) -> None:
         waits = ASK_EVERY if self._key is None else ANSWERED_WITHIN
-        if self._pair is not None and self._desk.clock() - self._asked_at >= waits:
+        if self._pair is not None and self._desk.clock.steady() - self._asked_at >= waits:
             self._ask()
 
     def _ask(self) -> None:
         if self._pair is None:
             return
-        self._asked_at = self._desk.clock()
+        self._asked_at = self._desk.clock.steady()
         try:
             self._key = self._desk.inquire(GetWaysOut(*self._pair))
         except NotSentError as error:
@@ -142,7 +142,7 @@ class ConflictPanel(QWidget):
         self._over.timeout.connect(self._drop_over)
         self._lay_out()
         self._ways.changed.connect(self._show_buttons)
-        desk.roads.conflicts_changed.connect(self._show)
+        desk.state.conflicts_changed.connect(self._show)
         self._show()
 
     @property
@@ -184,7 +184,7 @@ class ConflictPanel(QWidget):
         return button
 
     def _show(self) -> None:
-        roads = self._desk.roads.conflicts
+        roads = self._desk.state.conflicts
         self._conflicts = {}
         for one in roads.conflicts:
             # Of two between the same robots the sooner one, which comes first.

@@ -166,8 +166,8 @@ class FleetDock(QgsDockWidget):
         self._lay_out(actions)
         self.setToggleVisibilityAction(actions.panel)
         self.conflict_panel.counted.connect(self._count_conflicts)
-        desk.pulled.connect(self._show_link)
-        desk.link_changed.connect(self._show_link)
+        desk.state.updated.connect(self._show_link)
+        desk.state.link_changed.connect(self._show_link)
         self._show_link()
 
     def _lay_out(self, actions: Actions) -> None:
@@ -211,7 +211,9 @@ class FleetDock(QgsDockWidget):
         self.tabs.show_colour(self.conflict_panel, for_letters(DOUBTFUL) if number else None)
 
     def _show_link(self) -> None:
-        self.connection_panel.show_link(self._desk.link, self._desk.site, self._desk.clock())
+        self.connection_panel.show_link(
+            self._desk.state.link, self._desk.state.site, self._desk.clock.steady()
+        )
 
 
 def _tools(actions: Actions) -> QGridLayout:

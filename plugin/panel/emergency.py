@@ -71,7 +71,7 @@ class EmergencyBanner(QFrame):
         columns.addWidget(self._clear, 0, Qt.AlignmentFlag.AlignVCenter)
         self.hide()
         desk.emergency_changed.connect(self.refresh)
-        desk.link_changed.connect(self.refresh)
+        desk.state.link_changed.connect(self.refresh)
         self.refresh()
 
     def text(self) -> str:
@@ -80,11 +80,11 @@ class EmergencyBanner(QFrame):
 
     def refresh(self) -> None:
         """Show how things stand."""
-        report = self._desk.emergency
+        report = self._desk.state.emergency
         in_force = report is not None and report.in_force
         asked = self._desk.orders.awaits_stop
         self._clear.setEnabled(in_force)
-        connected = self._desk.link.phase is ConnectionPhase.CONNECTED
+        connected = self._desk.state.link.phase is ConnectionPhase.CONNECTED
         text = in_words(report, asked, connected)
         self._text.setText(text)
         if self.isHidden() is (in_force or asked):

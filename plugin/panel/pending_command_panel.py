@@ -56,8 +56,8 @@ class PendingCommandPanel(QWidget):
         desk.sending.waiting_changed.connect(self._show)
         desk.remarked.connect(self._remarked)
         desk.orders.kept.connect(self._follow)
-        desk.commands_changed.connect(self._take_steps)
-        desk.site_changed.connect(lambda: self._remarked(""))
+        desk.state.commands_changed.connect(self._take_steps)
+        desk.state.site_changed.connect(lambda: self._remarked(""))
 
     def _lay_out(self, actions: Actions) -> None:
         # The arrows are known from every program; with words they made the panel too broad.
@@ -91,7 +91,7 @@ class PendingCommandPanel(QWidget):
 
     def _follow(self, command: str, words: str) -> None:
         """Say how a command stands, from now on at each of its steps until something else happens."""
-        known = self._desk.book.get(command)
+        known = self._desk.state.commands.get(command)
         stands = COMMAND_STATES[CommandState.QUEUED] if known is None else command_state_in_words(known)
         # First of all: what follows may be longer than the lines that are seen.
         self._show_remark(f"{stands[0].upper()}{stands[1:]}. {words}.", (command, words))
@@ -373,7 +373,7 @@ class PendingCommandActions(QObject):
     def _show(self, points: tuple[tuple[float, float], ...]) -> None:
         """Move the map where none of ``points`` is on it."""
         canvas = self._desk.canvas
-        places = self._desk.placement().to_map(np.array(points))
+        places = self._desk.site_to_canvas.transform().to_map(np.array(points))
         # Of a rotated map the extent also has corners that are not on the screen.
         seen, rule = canvas.mapSettings().visiblePolygon(), Qt.FillRule.OddEvenFill
         if not any(seen.containsPoint(QPointF(x, y), rule) for x, y in places.tolist()):

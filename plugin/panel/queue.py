@@ -37,7 +37,7 @@ from ...robot_bridge.core.messages import (
 from ..control.fleet_controller import FleetController
 from ..control.messages import QueueStand, Topic, draft_topic, queue_topic
 from ..control.pending_command import PendingCommand
-from ..gateway_client.buffers import RequestResult
+from ..gateway_client.requests import RequestResult
 from ..gateway_client.state_texts import (
     last_ended_in_words,
     queue_in_words,
@@ -71,7 +71,7 @@ class QueueEdits(QObject):
         self._asked: dict[str, str] = {}
         self._conflicts: dict[str, str] = {}
         desk.answered.connect(self._answered)
-        desk.site_changed.connect(self._clear)
+        desk.state.site_changed.connect(self._clear)
 
     def is_asked(self, robot: str) -> bool:
         """Tell whether the gateway has not answered yet what was asked of this queue."""
@@ -134,10 +134,10 @@ class QueueEdits(QObject):
         return self._change(ResumeQueue(robot, self._revision(robot)), words, self._state(robot))
 
     def _revision(self, robot: str) -> int:
-        return self._desk.queues.revision(robot)
+        return self._desk.state.queues.revision(robot)
 
     def _state(self, robot: str) -> Topic:
-        queue = self._desk.queues.get(robot)
+        queue = self._desk.state.queues.get(robot)
         return queue_topic(QueueStand(robot, state="" if queue is None else queue.state.value))
 
     def _waiting(self, robot: str, task: str) -> Topic:
@@ -186,8 +186,8 @@ class PauseActions(QObject):
         actions.pause.triggered.connect(self._pause)
         actions.go_on.triggered.connect(self._continue)
         desk.selection_changed.connect(self._enable)
-        desk.queues_changed.connect(self._enable)
-        desk.site_changed.connect(self._enable)
+        desk.state.queues_changed.connect(self._enable)
+        desk.state.site_changed.connect(self._enable)
         self._enable()
 
     def _pause(self) -> None:
@@ -204,7 +204,7 @@ class PauseActions(QObject):
             self._edits.go_on(queue)
 
     def _paused(self) -> list[QueueReport]:
-        queues = (self._desk.queues.get(robot) for robot in self._desk.selection)
+        queues = (self._desk.state.queues.get(robot) for robot in self._desk.selection)
         return [queue for queue in queues if queue is not None and queue.state is QueueState.PAUSED]
 
     def _enable(self, *_: object) -> None:
@@ -426,7 +426,7 @@ class QueuePanel(QWidget):
         self._remove.clicked.connect(lambda: self._chosen(self._edits.remove))
         self._first.clicked.connect(lambda: self._chosen(self._edits.make_current))
         self._hold.clicked.connect(self._hold_or_resume)
-        self._desk.queues_changed.connect(self._show)
+        self._desk.state.queues_changed.connect(self._show)
         self._edits.changed.connect(self._show)
         self._desk.selection_changed.connect(self._show)
 
@@ -459,7 +459,7 @@ class QueuePanel(QWidget):
 
     def _queue(self) -> QueueReport | None:
         robot = self._desk.selected
-        return self._desk.queues.get(robot) if robot is not None else None
+        return self._desk.state.queues.get(robot) if robot is not None else None
 
     def _is_free(self) -> bool:
         """Tell whether what is shown is what the gateway has: nothing asked for is without an answer."""
@@ -473,7 +473,7 @@ class QueuePanel(QWidget):
                 "{selected} has no queue. Add a target or a route with Add to queue.",
                 selected=self._desk.selected,
             )
-        queues = list(self._desk.queues)
+        queues = list(self._desk.state.queues)
         paused = sum(one.state is QueueState.PAUSED for one in queues)
         if not queues:
             return tr("Select a robot to see its queue. None has one yet.")
@@ -512,7 +512,7 @@ class QueuePanel(QWidget):
     def _go(self, row: int) -> None:
         task = self.list.tasks.tasks[row]
         try:
-            ((x, y),) = self._desk.placement().to_map(np.array([(task.x, task.y)]))
+            ((x, y),) = self._desk.site_to_canvas.transform().to_map(np.array([(task.x, task.y)]))
         except FleetError as error:
             self._desk.complained.emit(str(error))
             return

@@ -32,8 +32,8 @@ from ...robot_bridge.core.messages import (
     SendImage,
 )
 from ..control.fleet_controller import FleetController
-from ..gateway_client.buffers import RequestResult
 from ..gateway_client.command_cache import PathDeviations, asked_at, command_in_words, state_word
+from ..gateway_client.requests import RequestResult
 from ..gateway_client.robot_states import RobotView
 from ..gateway_client.state_texts import COMMAND_STATES, ROBOT_STATES, queue_in_words, task_in_words
 from ..gateway_client.state_texts import task_state_in_words as task_state
@@ -294,13 +294,13 @@ class RobotDetails(QWidget):
         self._lay_out()
         self._image.changed.connect(self._show_image)
         desk.selection_changed.connect(self.refresh)
-        desk.pulled.connect(self._pulled)
+        desk.state.updated.connect(self._pulled)
         self.refresh()
 
     def refresh(self) -> None:
         """Show what is known of the robot that was selected last."""
         robot = self._desk.selected
-        view = None if robot is None else self._desk.picture.view(robot, self._desk.clock())
+        view = None if robot is None else self._desk.state.robots.view(robot, self._desk.clock.steady())
         if robot is None or view is None:
             self._title.setText(tr("Select a robot in the table or on the map"))
             self._asked_for = ""
@@ -311,7 +311,7 @@ class RobotDetails(QWidget):
         self._title.setText(robot if len(self._desk.selection) == 1 else several)
         if self.isVisible() and self._asked_for != robot:
             self.ask()
-        book = self._desk.book
+        book = self._desk.state.commands
         at = (view.report.x, view.report.y) if view.has_pose else None
         off = self._deviations.of(robot, at)
         position = self._position(at)
@@ -326,7 +326,7 @@ class RobotDetails(QWidget):
                 ),
                 ALARMS: alarm_rows(self.alarms_of(robot)),
                 RECEIVED: received_rows(view.told),
-                QUEUE: queue_rows(self._desk.queues.get(robot)),
+                QUEUE: queue_rows(self._desk.state.queues.get(robot)),
                 COMMANDS: command_rows(book.of(robot, MOST)),
             }
         )
@@ -375,7 +375,7 @@ class RobotDetails(QWidget):
         if at is None:
             return ""
         try:
-            return self._positions.place_in_words(*at, self._desk.placement())
+            return self._positions.place_in_words(*at, self._desk.site_to_canvas.transform())
         except MapTransformError as error:
             return str(error)
 

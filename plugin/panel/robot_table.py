@@ -69,7 +69,7 @@ class RobotTableView(QTableView):
         self._is_fitting = self._is_fitted_by_hand = False
         self._fitted: tuple[int, int] = (0, 0)
         self.positions = PositionCrs(desk.project, self)
-        self._model = RobotModel(desk.picture, desk.book, desk.queues, self)
+        self._model = RobotModel(desk.state.robots, desk.state.commands, desk.state.queues, self)
         self._model.place_in_words = self._place
         self.setModel(self._model)
         self._model.modelReset.connect(self._reset)
@@ -78,10 +78,10 @@ class RobotTableView(QTableView):
         ZoomMenu(self, lambda index: self.zoom_wanted.emit(self._name(index)))
         self.positions.changed.connect(self.refresh)
         desk.selection_changed.connect(self._selected_elsewhere)
-        desk.pulled.connect(self._pulled)
+        desk.state.updated.connect(self._pulled)
         # The robots known so far may be gone, or be others by the same names.
-        desk.site_changed.connect(self.refresh)
-        desk.robots_removed.connect(self._removed)
+        desk.state.site_changed.connect(self.refresh)
+        desk.state.robots_removed.connect(self._removed)
 
     @property
     def robots(self) -> RobotModel:
@@ -92,7 +92,7 @@ class RobotTableView(QTableView):
         """Show what the desk knows at this moment."""
         # Rows that come and go with a filter take their selection with them; the desk's stays.
         self._marking = True
-        self._model.show(self._desk.clock())
+        self._model.show(self._desk.clock.steady())
         self._marking = False
         self._fit_names()
         if self._is_reset:
@@ -113,7 +113,7 @@ class RobotTableView(QTableView):
 
     def _fit_names(self) -> None:
         """Give the names the room that they take, whatever the other columns have left, until a hand does."""
-        picture = self._desk.picture
+        picture = self._desk.state.robots
         known = picture.arrangement, len(picture)
         if self._is_fitted_by_hand or known == self._fitted:
             return
@@ -168,7 +168,7 @@ class RobotTableView(QTableView):
         return self.horizontalHeader().sizeHint().height() + rows + beside + OF_THEMES
 
     def _pulled(self) -> None:
-        count = len(self._desk.picture)
+        count = len(self._desk.state.robots)
         half_seconds = 1 if count <= MANY else 2 if count <= 10 * MANY else 4
         if self._turn.has_come(half_seconds) or count != self._model.count():
             self.refresh()
@@ -178,7 +178,7 @@ class RobotTableView(QTableView):
 
     def _place(self, x: float, y: float) -> str:
         try:
-            return self.positions.place_in_words(x, y, self._desk.placement())
+            return self.positions.place_in_words(x, y, self._desk.site_to_canvas.transform())
         except MapTransformError:
             return tr("no such place")
 

@@ -152,7 +152,7 @@ class FleetWindow(QObject):
         self.notices.closed.connect(desk.messages.forget)
         self._project_match.differs.connect(self.notices.error)
         self._project_match.over.connect(self.notices.take_down)
-        desk.link_changed.connect(self._show_link)
+        desk.state.link_changed.connect(self._show_link)
 
     def _follow(self, whom: FollowMode, on: bool) -> None:
         if on:
@@ -187,7 +187,7 @@ class FleetWindow(QObject):
             self.notices.warning(str(error))
 
     def _show_link(self) -> None:
-        link = self.desk.link
+        link = self.desk.state.link
         wanted = link.phase not in (ConnectionPhase.CLOSED, ConnectionPhase.FAILED)
         self.actions.connect.setChecked(wanted)
         self.actions.connect.setText(tr("Disconnect") if wanted else tr("Connect"))
@@ -210,7 +210,7 @@ class FleetWindow(QObject):
         dialog.open()
 
     def _ask_to_clear(self) -> None:
-        report = self.desk.emergency
+        report = self.desk.state.emergency
         if report is None or not report.in_force:
             self.desk.complained.emit(tr("No emergency stop is in force."))
         else:

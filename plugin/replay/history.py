@@ -21,8 +21,8 @@ from ...robot_bridge.core.messages import (
     RobotState,
 )
 from ..control.fleet_controller import FleetController
-from ..gateway_client.buffers import RequestResult
 from ..gateway_client.command_cache import UNDER_WAY, CommandCache, asked_at, command_in_words, state_word
+from ..gateway_client.requests import RequestResult
 from ..gateway_client.robot_states import RobotArrays
 from ..gateway_client.robot_table import STATES as HISTORY_STATES
 from ..ui.errors import FleetError

@@ -33,7 +33,7 @@ class ReplayDock(ActionDock):
         self._told = ""
         self._showing = CooperativeTask(self, ONE_STEP)
         """Shows a history that has just come."""
-        self._past = CommandSorter(desk.book, self)
+        self._past = CommandSorter(desk.state.commands, self)
         self.fetching = HistoryDownload(desk, self)
         self.clockwork = ReplayClock(desk.canvas, self)
         self.layer = ReplayLayer(desk.project, self)
@@ -74,7 +74,7 @@ class ReplayDock(ActionDock):
         """Fetch the time in the form and begin to show it."""
         since, until = self.form.stretch()
         self._desk.messages.end(REPLAY)
-        if self._desk.site is None:
+        if self._desk.state.site is None:
             self._complain(tr("There is nothing to replay yet. Connect to a gateway first."))
             return
         if until <= since:
@@ -94,7 +94,7 @@ class ReplayDock(ActionDock):
         self._showing.stop()
         self._past.renew()
         self.layer.clear()
-        self.map.begin(self._desk.site)
+        self.map.begin(self._desk.state.site)
         self.line.show_time(since, until)
         self.clockwork.show(since, until)
         self.form.show_busy(True)
@@ -113,11 +113,11 @@ class ReplayDock(ActionDock):
         self.clockwork.playing_changed.connect(self._show_playing)
         self.play.clicked.connect(self._play_or_hold)
         self.speed.currentIndexChanged.connect(lambda k: self.clockwork.set_speed(SPEEDS[k]))
-        self._desk.commands_changed.connect(self._commands_changed)
+        self._desk.state.commands_changed.connect(self._commands_changed)
         self._past.done.connect(self._show_commands)
-        self._desk.site_changed.connect(self._site_changed)
+        self._desk.state.site_changed.connect(self._site_changed)
         self._robots: list[str] = []
-        self._generation = self._desk.picture.generation
+        self._generation = self._desk.state.robots.generation
 
     def _play_or_hold(self, *_: object) -> None:
         self.clockwork.play(not self.clockwork.is_playing)
@@ -157,8 +157,8 @@ class ReplayDock(ActionDock):
             yield (number + 1) / len(parts)
 
     def _show_lines(self) -> None:
-        if self._desk.site is not None:
-            self.layer.show(self.fetching.history, self._desk.site)
+        if self._desk.state.site is not None:
+            self.layer.show(self.fetching.history, self._desk.state.site)
 
     def _show_all(self) -> None:
         try:
@@ -196,11 +196,11 @@ class ReplayDock(ActionDock):
         self.line.show_marks(self._past.commands.marks(since, until, self._robots))
 
     def _site_changed(self) -> None:
-        if self._desk.picture.generation == self._generation:
+        if self._desk.state.robots.generation == self._generation:
             return
         # Another site's history has no place here, nor another gateway's of the same site: other robots may
         # bear the same names.
-        self._generation = self._desk.picture.generation
+        self._generation = self._desk.state.robots.generation
         self.fetching.forget()
         self._showing.stop()
         self._past.forget()

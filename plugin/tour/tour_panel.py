@@ -352,7 +352,7 @@ class TourAction(QObject):
         self.action.setObjectName("fleet_tour_action")
         self.action.triggered.connect(self.start)
         iface.addPluginToMenu(menu, self.action)
-        window.desk.link_changed.connect(self._show_practice)
+        window.desk.state.link_changed.connect(self._show_practice)
         self._offer_once()
 
     def start(self) -> None:
@@ -385,7 +385,7 @@ class TourAction(QObject):
 
     def remove(self) -> None:
         """Take every part out of the window."""
-        self._window.desk.link_changed.disconnect(self._show_practice)
+        self._window.desk.state.link_changed.disconnect(self._show_practice)
         self.end()
         self._take_offer_away()
         self._iface.removePluginMenu(self._menu, self.action)
@@ -424,7 +424,7 @@ class TourAction(QObject):
     def _start_fleet(self) -> None:
         if self._practising():
             self._tell(tr("The practice fleet runs, and the desk is connected to it."))
-        elif self._window.desk.link.phase in OPEN:
+        elif self._window.desk.state.link.phase in OPEN:
             self._tell(
                 tr(
                     "The desk is connected to another gateway. Disconnect first: the tour moves no real "
@@ -449,12 +449,12 @@ class TourAction(QObject):
 
     def _practising(self) -> bool:
         url = self._window.dock.connection_panel.url()
-        return bool(self.fleet.url) and url == self.fleet.url and self._window.desk.link.phase in OPEN
+        return bool(self.fleet.url) and url == self.fleet.url and self._window.desk.state.link.phase in OPEN
 
     def _show_practice(self) -> None:
         if self.panel is not None:
             self.panel.set_practice(
-                self._practising() and self._window.desk.link.phase is ConnectionPhase.CONNECTED
+                self._practising() and self._window.desk.state.link.phase is ConnectionPhase.CONNECTED
             )
 
     def _tell(self, text: str) -> None:

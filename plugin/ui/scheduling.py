@@ -191,6 +191,10 @@ class UpdateScheduler:
         self.pulls = 0
         self._turns = 0
 
+    def advance(self) -> None:
+        """Count an update."""
+        self.pulls += 1
+
     def turn(self) -> UpdateSlot:
         """Return a turn in which nobody else comes, as far as there are enough pulls."""
         self._turns += 1

@@ -363,9 +363,9 @@ class QueueMarks(QgsMapCanvasItem):
         self._image: QImage | None = None
         self._made_for: Screen | None = None
         self.setZValue(BELOW_ROBOTS)
-        desk.queues_changed.connect(self._place)
+        desk.state.queues_changed.connect(self._place)
         desk.selection_changed.connect(self._place)
-        desk.site_changed.connect(self._place)
+        desk.state.site_changed.connect(self._place)
         desk.canvas.destinationCrsChanged.connect(self._place)
         desk.project.transformContextChanged.connect(self._place)
 
@@ -397,12 +397,12 @@ class QueueMarks(QgsMapCanvasItem):
 
     def _place(self, *_: object) -> None:
         robot = self._desk.selected
-        queue = self._desk.queues.get(robot) if robot is not None else None
+        queue = self._desk.state.queues.get(robot) if robot is not None else None
         points = [(task.x, task.y) for task in queue.tasks] if queue is not None else []
         self.places, self._image, self._made_for = NOWHERE, None, None
         if points:
             try:
-                self.places = self._desk.placement().to_map(np.array(points))
+                self.places = self._desk.site_to_canvas.transform().to_map(np.array(points))
             except FleetError:
                 # The live picture says why nothing can be placed on this map.
                 self.places = NOWHERE

@@ -39,7 +39,7 @@ def moved_by_arrow(event: QKeyEvent, desk: FleetController, point: Point) -> Poi
     """
     aside = _ASIDE[event.key()]
     coarse = event.modifiers() & Qt.KeyboardModifier.ShiftModifier
-    placement, screen = desk.placement(), desk.canvas.getCoordinateTransform()
+    placement, screen = desk.site_to_canvas.transform(), desk.canvas.getCoordinateTransform()
     ((x, y),) = placement.to_map(np.array([point]))
     pixel = screen.transform(QgsPointXY(x, y))
     beside = placement.to_site(
@@ -120,7 +120,7 @@ class DrawingTool(QgsMapTool):
             self.finish()
         elif event.button() == Qt.MouseButton.LeftButton:
             at = event.snapPoint()
-            self._try(lambda: self._place(lambda: self.desk.placement().to_site(at)))
+            self._try(lambda: self._place(lambda: self.desk.site_to_canvas.transform().to_site(at)))
 
     def keyPressEvent(self, event: QKeyEvent) -> None:
         if event.key() in SEND_KEYS:
@@ -199,10 +199,10 @@ class DrawingTool(QgsMapTool):
         self.clicked(where())
 
     def _pasted(self) -> Point:
-        self.desk.placement()
+        self.desk.site_to_canvas.transform()
         wgs84 = QgsCoordinateReferenceSystem(PASTED_IN)
         context = self.desk.project.transformContext()
-        return read_site_place(QApplication.clipboard().text(), wgs84, self.desk.site, context)
+        return read_site_place(QApplication.clipboard().text(), wgs84, self.desk.state.site, context)
 
     def _try(self, change: Callable[[], object]) -> None:
         try:

@@ -50,7 +50,7 @@ class RoutePreview(QObject):
         """Where the way that is shown begins, of one from where a robot is."""
         desk.preview.shown.connect(self._show)
         desk.selection_changed.connect(self.hide)
-        desk.pulled.connect(self._follow)
+        desk.state.updated.connect(self._follow)
 
     def lead_to(
         self,
@@ -66,7 +66,7 @@ class RoutePreview(QObject):
         if robot is None:
             return
         try:
-            goal = self._desk.placement().to_site(event.mapPoint())
+            goal = self._desk.site_to_canvas.transform().to_site(event.mapPoint())
             self._question = RouteQuestion(robot, start, goal, wishes=wishes)
             self._desk.preview.want(self._question)
         except (NotSentError, MapTransformError):
@@ -110,7 +110,7 @@ class RoutePreview(QObject):
         question = self._question
         if self._band is None or self._begins is None or question is None or question.start is not None:
             return
-        view = self._desk.picture.view(question.robot, self._desk.clock())
+        view = self._desk.state.robots.view(question.robot, self._desk.clock.steady())
         if view is None or not view.has_pose:
             return
         if math.dist((view.told["x"], view.told["y"]), self._begins) > MOVED_M:
@@ -133,7 +133,7 @@ class RoutePreview(QObject):
 
     def _draw(self, route: RouteReport) -> None:
         try:
-            points = self._desk.placement().to_map(np.array(route.points))
+            points = self._desk.site_to_canvas.transform().to_map(np.array(route.points))
         except FleetError:
             return
         self._band = QgsRubberBand(self._desk.canvas, QgsWkbTypes.GeometryType.LineGeometry)

@@ -64,7 +64,7 @@ class RouteHandles:
         self._marker = None
         if draft is None or vertex is None:
             return
-        ((x, y),) = self._desk.placement().to_map(np.array([draft.points[vertex]]))
+        ((x, y),) = self._desk.site_to_canvas.transform().to_map(np.array([draft.points[vertex]]))
         self._marker = QgsVertexMarker(self._desk.canvas)
         self._marker.setCenter(QgsPointXY(x, y))
         self._marker.setIconType(QgsVertexMarker.IconType.ICON_BOX)
@@ -73,7 +73,7 @@ class RouteHandles:
         self._marker.setColor(MARK)
 
     def _pixels(self, draft: PendingCommand, which: list[int]) -> np.ndarray:
-        placement = self._desk.placement()
+        placement = self._desk.site_to_canvas.transform()
         if self._placed[:2] != (id(draft.points), placement):
             flat = np.fromiter(chain.from_iterable(draft.points), np.float64).reshape(-1, 2)
             self._placed = id(draft.points), placement, draft.points, placement.to_map(flat)
@@ -135,7 +135,7 @@ class RouteDrag:
         assert self._from is not None
         change = pending_command.inserted if self._puts_in else pending_command.moved
         try:
-            to = self._desk.placement().to_site(event.snapPoint())
+            to = self._desk.site_to_canvas.transform().to_site(event.snapPoint())
             self._shown = change(self._from, self._vertex, to)
         except FleetError as error:
             self._desk.complained.emit(str(error))
@@ -218,7 +218,7 @@ class RouteTool(DrawingTool):
             self.desk.drafts.point_at(None)
             return
         try:
-            self.desk.drafts.point_at(self.desk.placement().to_site(event.mapPoint()))
+            self.desk.drafts.point_at(self.desk.site_to_canvas.transform().to_site(event.mapPoint()))
         except MapTransformError:
             # A place the site frame cannot express has no preview; a click there says why.
             self.desk.drafts.point_at(None)

@@ -105,7 +105,7 @@ class StartTool(DrawingTool):
 
     def _drawn(self, start: QgsPointXY, end: QgsPointXY) -> None:
         self._check_robot()
-        placement = self.desk.placement()
+        placement = self.desk.site_to_canvas.transform()
         place, ahead = placement.to_site(start), placement.to_site(end)
         self._put(place, math.atan2(ahead[1] - place[1], ahead[0] - place[0]))
 

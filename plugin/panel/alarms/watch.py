@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 
 import numpy as np
 from qgis.core import Qgis, QgsApplication, QgsMessageLog
 from qgis.PyQt.QtCore import QObject, pyqtSignal
 
+from ....robot_bridge.core.clock import Clock
 from ....robot_bridge.core.messages import CommandState
 from ....robot_bridge.core.roads.surface_index import NOWHERE
 from ...control.fleet_controller import FleetController
@@ -138,34 +139,34 @@ class SnapshotBuilder:
         self._desk = desk
         self._ground = ground
         self._before: tuple[float, Floats] = (0.0, np.empty((0, 2)))
-        self._arrangement = desk.picture.arrangement
+        self._arrangement = desk.state.robots.arrangement
 
     def at(self, moment: float, limits: Thresholds) -> AlarmSnapshot:
         """Return how things are at ``moment`` of the desk's clock; the site has to be known."""
-        robots = self._desk.picture.arrays(moment)
+        robots = self._desk.state.robots.arrays(moment)
         off, on = self._roads(robots.xy, limits)
-        only_seen = self._desk.picture.only_seen()
+        only_seen = self._desk.state.robots.only_seen()
         return AlarmSnapshot(
             names=robots.names,
             xy=robots.xy,
             v=self._speeds(robots, moment),
-            battery=self._desk.picture.column("battery"),
+            battery=self._desk.state.robots.column("battery"),
             # Nobody drives by the accuracy of what is only seen: a phone's is some metres all day.
             accuracy=np.where(only_seen, np.nan, robots.accuracy),
             state=robots.state,
-            stopped=self._desk.picture.column("stopped") == 1.0,
+            stopped=self._desk.state.robots.column("stopped") == 1.0,
             driving=self._driving(len(robots.names)),
             only_seen=only_seen,
-            bounds=self._desk.site.bounds,
+            bounds=self._desk.state.site.bounds,
             off_road=off,
             on_road=on,
         )
 
     def _speeds(self, robots: RobotArrays, moment: float) -> Floats:
         then, places = self._before
-        if self._arrangement != self._desk.picture.arrangement:
+        if self._arrangement != self._desk.state.robots.arrangement:
             # Where other robots were.
-            self._arrangement, places = self._desk.picture.arrangement, places[:0]
+            self._arrangement, places = self._desk.state.robots.arrangement, places[:0]
         self._before = moment, robots.xy
         seen = np.full(len(robots.v), np.nan)
         if moment > then and 0 < len(places) <= len(robots.xy):
@@ -174,11 +175,11 @@ class SnapshotBuilder:
 
     def _driving(self, count: int) -> Bools:
         driving = np.zeros(count, dtype=bool)
-        if self._desk.emergency is not None and self._desk.emergency.in_force:
+        if self._desk.state.emergency is not None and self._desk.state.emergency.in_force:
             return driving
-        waits = {hold.robot for hold in self._desk.roads.conflicts.waiting}
-        for task in self._desk.book.under_way():
-            row = self._desk.picture.row(task.robot)
+        waits = {hold.robot for hold in self._desk.state.conflicts.waiting}
+        for task in self._desk.state.commands.under_way():
+            row = self._desk.state.robots.row(task.robot)
             if row is not None and task.state is CommandState.ACKNOWLEDGED and task.robot not in waits:
                 driving[row] = True
         return driving
@@ -187,7 +188,7 @@ class SnapshotBuilder:
         if AlarmKind.OFF_ROAD not in limits.kinds:
             return None, None
         try:
-            judged = self._ground.judge(xy, self._desk.placement(), limits.road_margin)
+            judged = self._ground.judge(xy, self._desk.site_to_canvas.transform(), limits.road_margin)
         except MapTransformError as error:
             self._ground.why_not = str(error)
             return None, None
@@ -202,9 +203,9 @@ WITHIN = 600.0
 
 
 class AlarmMessages:
-    """Writes what began. ``clock`` returns seconds that only ever go on."""
+    """Writes what began, by the steady time of ``clock``."""
 
-    def __init__(self, clock: Callable[[], float]):
+    def __init__(self, clock: Clock):
         self._clock = clock
         self._until = -math.inf
         self._left = 0
@@ -215,7 +216,7 @@ class AlarmMessages:
 
         To be called with nothing as well, again and again.
         """
-        if self._clock() >= self._until:
+        if self._clock.steady() >= self._until:
             self._begin_anew()
         for alarm in began[: self._left]:
             _write(alarm.text)
@@ -229,7 +230,7 @@ class AlarmMessages:
     def _begin_anew(self) -> None:
         if self._counted:
             _count(self._counted)
-        self._until, self._left, self._counted = self._clock() + WITHIN, MOST_LINES, 0
+        self._until, self._left, self._counted = self._clock.steady() + WITHIN, MOST_LINES, 0
 
 
 def _count(more: int) -> None:
@@ -267,32 +268,32 @@ class AlarmWatch(QObject):
         self._situations = SnapshotBuilder(desk, self._ground)
         self._messages = AlarmMessages(desk.clock)
         self._turn = desk.beat.turn()
-        self._generation = desk.picture.generation
+        self._generation = desk.state.robots.generation
         self._told = ""
         self._untold: list[AlarmEvent] = []
         self._unseen: set[Key] = set()
         """Alarms that have begun and that nobody was told of yet."""
         self._telling = CooperativeTask(self, ONE_STEP)
         self.board = AlarmBoard(read_thresholds())
-        desk.pulled.connect(self._pulled)
-        desk.robots_removed.connect(self._drop)
+        desk.state.updated.connect(self._pulled)
+        desk.state.robots_removed.connect(self._drop)
 
     def remove(self) -> None:
         """Look no more."""
-        self._desk.pulled.disconnect(self._pulled)
-        self._desk.robots_removed.disconnect(self._drop)
+        self._desk.state.updated.disconnect(self._pulled)
+        self._desk.state.robots_removed.disconnect(self._drop)
         self._telling.stop()
         self._ground.remove()
 
     def why_not(self) -> str:
         """Return what is not watched and why, empty when everything is."""
-        if self._desk.link.phase is not ConnectionPhase.CONNECTED:
+        if self._desk.state.link.phase is not ConnectionPhase.CONNECTED:
             return tr("Nothing is watched: the desk is not connected.")
         off = [ALARM_KINDS[kind] for kind in AlarmKind if kind not in self.board.limits.kinds]
         texts = [tr("Switched off: {kinds}.", kinds=", ".join(off))] if off else []
-        if (unfenced := self._desk.geofence.why_not()) and FENCED & self.board.limits.kinds:
+        if (unfenced := self._desk.state.geofence.why_not()) and FENCED & self.board.limits.kinds:
             texts.append(unfenced)
-        if (unwatched := self._desk.nearness.why_not()) and NEARNESS & self.board.limits.kinds:
+        if (unwatched := self._desk.state.nearness.why_not()) and NEARNESS & self.board.limits.kinds:
             texts.append(unwatched)
         if self._ground.why_not and AlarmKind.OFF_ROAD in self.board.limits.kinds:
             why = self._ground.why_not.rstrip(".")
@@ -301,8 +302,8 @@ class AlarmWatch(QObject):
 
     def evaluate(self) -> None:
         """Judge what is known now."""
-        if self._desk.link.phase is ConnectionPhase.CONNECTED and self._desk.site is not None:
-            moment = self._desk.clock()
+        if self._desk.state.link.phase is ConnectionPhase.CONNECTED and self._desk.state.site is not None:
+            moment = self._desk.clock.steady()
             situation = self._situations.at(moment, self.board.limits)
             self._tell(self.board.evaluate(situation, moment, time.time()))
             self._take_reported(moment)
@@ -310,7 +311,7 @@ class AlarmWatch(QObject):
 
     def acknowledge(self, keys: Iterable[Key]) -> None:
         """Note that the operator has seen these alarms."""
-        link = self._desk.link
+        link = self._desk.state.link
         operator = (link.who if link.phase is ConnectionPhase.CONNECTED else "") or tr("this desk")
         self._tell(self.board.acknowledge(keys, operator, time.time()))
         self._telling.finish()
@@ -326,20 +327,20 @@ class AlarmWatch(QObject):
         self.changed.emit()
 
     def _take_reported(self, moment: float) -> None:
-        reported = fence_alarms(self._desk.geofence.alarms)
-        reported += nearness_alarms(self._desk.nearness.alarms)
-        reported += passing_alarms(self._desk.roads.conflicts, self.board.limits)
+        reported = fence_alarms(self._desk.state.geofence.alarms)
+        reported += nearness_alarms(self._desk.state.nearness.alarms)
+        reported += passing_alarms(self._desk.state.conflicts, self.board.limits)
         events, renewed = self.board.report(reported, moment, time.time())
         self._tell(events)
         if renewed and not events:
             self.changed.emit()
 
     def _pulled(self) -> None:
-        if self._generation != self._desk.picture.generation:
-            self._generation = self._desk.picture.generation
+        if self._generation != self._desk.state.robots.generation:
+            self._generation = self._desk.state.robots.generation
             self.board.clear()
             self.changed.emit()
-        if self._turn.has_come(1 if len(self._desk.picture) <= MANY else 2):
+        if self._turn.has_come(1 if len(self._desk.state.robots) <= MANY else 2):
             self.evaluate()
 
     def _drop(self, gone: RemovedRobots) -> None:

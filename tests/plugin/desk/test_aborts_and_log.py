@@ -34,7 +34,7 @@ def test_abort_all_is_one_press_and_no_question(at_desk, gateway, wait):
     press(at_desk, QPushButton, "fleet_abort_all_button")
     assert QApplication.activeModalWidget() is None
     wait(lambda: gateway.asked("abort_all"))
-    wait(lambda: len(at_desk.desk.book) == 2, what="both aborts")
+    wait(lambda: len(at_desk.desk.state.commands) == 2, what="both aborts")
     assert at_desk.dock.findChild(QLabel, "fleet_draft_text").text() == "ABORT ALL: sent to 2 robots"
 
 
@@ -51,7 +51,7 @@ def test_abort_all_is_repeated_when_the_link_broke_before_the_answer(at_desk, ga
     wait(lambda: gateway.asked("abort_all"))
     gateway.stop()
     gateway.mute.clear()
-    wait(lambda: at_desk.desk.link.phase.value == "retrying")
+    wait(lambda: at_desk.desk.state.link.phase.value == "retrying")
     gateway.start()
     wait(lambda: len(gateway.asked("abort_all")) == 2, 8)
     first, again = gateway.asked("abort_all")
@@ -131,7 +131,7 @@ def test_the_line_leaves_a_command_for_what_happens_after_it(at_desk, gateway, w
     at_desk.desk.remarked.emit("3 commands written")
     (command,) = gateway.commands
     gateway.step(command, CommandState.REACHED, "r1")
-    wait(lambda: at_desk.desk.book.get(command).state is CommandState.REACHED)
+    wait(lambda: at_desk.desk.state.commands.get(command).state is CommandState.REACHED)
     assert line.text() == "3 commands written"
 
 

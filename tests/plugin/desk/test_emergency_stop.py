@@ -194,7 +194,7 @@ def test_a_stop_pressed_while_the_link_is_down_is_sent_when_it_is_back_and_says_
     at_desk, gateway, iface, wait
 ):
     gateway.stop()
-    wait(lambda: at_desk.desk.link.phase.value == "retrying", what="the loss of the link")
+    wait(lambda: at_desk.desk.state.link.phase.value == "retrying", what="the loss of the link")
     press_stop(at_desk)
     assert any("EMERGENCY STOP is NOT sent yet: the link is down" in text for text in iface.texts())
     assert "not confirmed it yet" in banner(at_desk)

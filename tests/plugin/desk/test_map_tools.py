@@ -57,7 +57,7 @@ def test_a_click_puts_a_cone_and_enter_sends_it_where_it_was_put(cone, iface, ga
     pixel = iface.canvas.mapUnitsPerPixel()
     assert params["params"]["x"] == pytest.approx(70, abs=pixel)
     assert params["params"]["y"] == pytest.approx(55, abs=pixel)
-    wait(lambda: len(cone.desk.book) == 1)
+    wait(lambda: len(cone.desk.state.commands) == 1)
     assert cone.desk.drafts.draft is None
 
 
@@ -335,12 +335,12 @@ def test_a_draft_that_the_gateway_refuses_comes_back(cone, iface, gateway, wait)
 def test_a_draft_without_a_link_is_not_sent_and_not_lost(cone, iface, gateway, wait):
     iface.click(70, 55)
     gateway.stop()
-    wait(lambda: cone.desk.link.phase.value == "retrying")
+    wait(lambda: cone.desk.state.link.phase.value == "retrying")
     key(iface, Qt.Key.Key_Return)
     assert any("was NOT sent" in text for text in iface.texts())
     assert cone.desk.drafts.draft is not None
     gateway.start()
-    wait(lambda: cone.desk.link.phase.value == "connected", 8)
+    wait(lambda: cone.desk.state.link.phase.value == "connected", 8)
     QTest.qWait(300)
     assert gateway.asked("send") == []
 

@@ -43,7 +43,7 @@ def tell_queue(at_desk, gateway, wait):
         gateway.tell(
             "queue", {**QUEUE, "state": state, "tasks": listed, "at": time.time(), "revision": revision}
         )
-        wait(lambda: at_desk.desk.queues.revision("r1") == revision, what="the queue")
+        wait(lambda: at_desk.desk.state.queues.revision("r1") == revision, what="the queue")
 
     return tell
 
@@ -83,11 +83,11 @@ def test_a_pause_that_was_not_sent_is_told_until_the_queue_is_paused(
     queue = {**QUEUE, "state": "running", "tasks": [{**TASK, "task": "t1", "state": "current"}]}
     gateway.answers["get_queue"] = lambda _: {"result": {"queues": [queue]}}
     at_desk.actions.connect.trigger()
-    wait(lambda: at_desk.desk.link.phase.value == "closed", what="the end of the link")
+    wait(lambda: at_desk.desk.state.link.phase.value == "closed", what="the end of the link")
     at_desk.queue_edits.pause("r1")
     told.begins("Pausing the queue of r1 was NOT sent")
     at_desk.actions.connect.trigger()
-    wait(lambda: at_desk.desk.link.phase.value == "connected", what="the link")
+    wait(lambda: at_desk.desk.state.link.phase.value == "connected", what="the link")
     wait(lambda: gateway.subscriptions == 2, what="the desk listening again")
     told.stays("Pausing the queue of r1 was NOT sent")
     tell_queue("paused", t1="waiting")
@@ -149,11 +149,11 @@ def replay(at_desk, gateway, iface):
 
 def test_a_replay_that_was_not_loaded_is_told_until_one_is(replay, at_desk, told, wait):
     at_desk.actions.connect.trigger()
-    wait(lambda: at_desk.desk.link.phase.value == "closed", what="the end of the link")
+    wait(lambda: at_desk.desk.state.link.phase.value == "closed", what="the end of the link")
     replay.load()
     told.begins("The replay was not loaded")
     at_desk.actions.connect.trigger()
-    wait(lambda: at_desk.desk.link.phase.value == "connected", what="the link")
+    wait(lambda: at_desk.desk.state.link.phase.value == "connected", what="the link")
     told.stays("The replay was not loaded")
     replay.load()
     told.ends("The replay was not loaded")

@@ -83,7 +83,7 @@ def in_conflict(gateway, desk, wait, *conflicts):
     at = time.time() + 20.0
     listed = [{**CONFLICT, "begins": at, "nearest_at": at, **one} for one in conflicts]
     gateway.tell("conflicts", {"t": time.time(), "conflicts": listed, "waiting": []})
-    wait(lambda: len(desk.roads.conflicts.conflicts) == len(listed), what="the conflicts")
+    wait(lambda: len(desk.state.conflicts.conflicts) == len(listed), what="the conflicts")
 
 
 @pytest.fixture
@@ -169,7 +169,10 @@ def with_messages(window, gateway, iface, wait):
 
 
 def nothing_of_before(window, iface, wait):
-    wait(lambda: window.desk.picture.row("r1") is None and len(window.desk.picture), what="other robots")
+    wait(
+        lambda: window.desk.state.robots.row("r1") is None and len(window.desk.state.robots),
+        what="other robots",
+    )
     assert is_gone(iface, wait, "not now")
     wait(lambda: iface.bar.findChild(QLabel, "fleet_alarm_text") is None, what="the end of the alarms")
 
@@ -201,7 +204,7 @@ def test_the_same_gateway_after_an_outage_keeps_what_is_true(at_desk, gateway, i
     with_messages(at_desk, gateway, iface, wait)
     for _ in range(2):
         at_desk.actions.connect.trigger()
-    wait(lambda: at_desk.desk.link.phase.value == "connected", what="the link")
+    wait(lambda: at_desk.desk.state.link.phase.value == "connected", what="the link")
     assert is_told(iface, "not now")
 
 

@@ -3,6 +3,7 @@
 import csv
 import re
 import time
+from types import SimpleNamespace
 
 import pytest
 from fleet_supervisor.plugin.gateway_client.command_cache import CommandCache
@@ -345,7 +346,7 @@ def later(at_desk, monkeypatch):
 
     def pass_by(seconds):
         now = at_desk.desk.clock
-        monkeypatch.setattr(at_desk.desk, "clock", lambda: now() + seconds)
+        monkeypatch.setattr(at_desk.desk, "clock", SimpleNamespace(steady=lambda: now.steady() + seconds))
 
     return pass_by
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from fleet_supervisor.plugin.gateway_client.buffers import RequestResult
+from fleet_supervisor.plugin.gateway_client.requests import RequestResult
 from pyproj import Transformer
 from qgis.PyQt.QtCore import Qt
 from qgis.PyQt.QtWidgets import QApplication

@@ -18,7 +18,7 @@ def beyond(at_desk, gateway, make_robot, iface, wait):
         make_robot(name, 60 + 130 * (k - 3.5), 600, **states.get(name, {})) for k, name in enumerate(NAMES)
     ]
     gateway.show(*robots)
-    wait(lambda: len(at_desk.desk.picture) == 10, what="the robots")
+    wait(lambda: len(at_desk.desk.state.robots) == 10, what="the robots")
     return at_desk
 
 

@@ -28,7 +28,7 @@ def test_several_selected_robots_are_kept_in_view_and_others_may_go(
     at_desk, gateway, iface, make_robot, wait
 ):
     gateway.show(make_robot("r3", 20, 20))
-    wait(lambda: len(at_desk.desk.picture) == 3)
+    wait(lambda: len(at_desk.desk.state.robots) == 3)
     at_desk.desk.select_all(["r1", "r2"])
     at_desk.actions.follow.trigger()
     gateway.show(make_robot("r1", 260, 20), make_robot("r2", 330, 60))

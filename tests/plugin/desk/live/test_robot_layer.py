@@ -131,7 +131,7 @@ def test_while_a_project_is_read_its_layers_are_left_alone(at_desk, tmp_path, wa
 
     def in_the_middle(*_):
         # As timers do that run while QGIS shows how far it is.
-        at_desk.desk.pulled.emit()
+        at_desk.desk.state.updated.emit()
         touched.append(at_desk.view.layer.layer)
 
     project.layerLoaded.connect(in_the_middle)

@@ -17,7 +17,7 @@ CONTROL = Qt.KeyboardModifier.ControlModifier
 def desk(at_desk, gateway, make_robot, iface, wait):
     """Four robots in a row, and the tool in hand."""
     gateway.show(*[make_robot(f"r{k}", 20.0 * k, 50.0) for k in range(1, 5)])
-    wait(lambda: len(at_desk.desk.picture) == 4)
+    wait(lambda: len(at_desk.desk.state.robots) == 4)
     wait(lambda: at_desk.view.overlay.robot_at(*xy(iface.pixel(80, 50))) == "r4")
     wait(lambda: at_desk.dock.table.model().rowCount() == 4)
     at_desk.actions.select.trigger()
@@ -140,7 +140,7 @@ def test_an_arrow_at_the_border_selects_and_shows_the_robots_beyond(desk, at_des
     iface.look_at(0, 0, 50, 40)
     wait(lambda: len(at_desk.view.overlay._painter.hints) > 0)
     iface.canvas.grab()
-    row = desk.picture.row("r4")
+    row = desk.state.robots.row("r4")
     (hint,) = [h for h in at_desk.view.overlay._painter.hints if row in h.rows]
     assert hint.x < iface.canvas.width() and hint.y < iface.canvas.height()
     at = QPoint(round(hint.x), round(hint.y))

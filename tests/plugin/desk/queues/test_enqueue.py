@@ -41,7 +41,7 @@ def test_a_route_goes_in_as_a_path_behind_what_is_there(desk, iface, gateway, wa
     desk.actions.cone.trigger()
     iface.click(70, 55)
     enqueue(desk)
-    wait(lambda: desk.desk.queues.revision("r1") == 1)
+    wait(lambda: desk.desk.state.queues.revision("r1") == 1)
     desk.actions.route.trigger()
     for point in ((40, 30), (60, 30), (60, 60)):
         iface.click(*point)
@@ -107,7 +107,7 @@ def test_a_target_in_another_robots_queue_is_in_the_way(desk, iface, gateway, wa
 
     queued = [QueueTask("task-one", 20.0, 20.0), QueueTask("task-two", 70.0, 55.0)]
     gateway.queues.give("r2", queued)
-    wait(lambda: desk.desk.queues.revision("r2") == 1)
+    wait(lambda: desk.desk.state.queues.revision("r2") == 1)
     desk.actions.cone.trigger()
     iface.click(70, 55)
     assert any("from a task of r2 at 70.00, 55.00" in text for text in iface.texts())

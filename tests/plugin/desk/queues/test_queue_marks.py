@@ -17,7 +17,7 @@ PLACES = [(60.0, 50.0), (80.0, 50.0), (80.0, 70.0)]
 @pytest.fixture
 def marks(at_desk, gateway, wait):
     gateway.queues.give("r1", [QueueTask(f"task-of-{k}", *place) for k, place in enumerate(PLACES)])
-    wait(lambda: at_desk.desk.queues.get("r1") is not None)
+    wait(lambda: at_desk.desk.state.queues.get("r1") is not None)
     at_desk.desk.select("r1")
     return at_desk.queue_marks
 

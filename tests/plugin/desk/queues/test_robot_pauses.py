@@ -20,7 +20,7 @@ def driving(at_desk, gateway, wait):
     for robot in ("r1", "r2"):
         cone = QueueTask(f"task-of-{robot}", 60.0, 50.0, kind=TaskKind.PLACE, cone=f"K-{robot}")
         gateway.queues.give(robot, [cone])
-    wait(lambda: len(at_desk.desk.queues) == 2, what="both queues")
+    wait(lambda: len(at_desk.desk.state.queues) == 2, what="both queues")
     return at_desk
 
 

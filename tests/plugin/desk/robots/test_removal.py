@@ -17,7 +17,7 @@ def connect_as(window, gateway, wait, role):
     wait(lambda: not gateway._sockets, what="the end of the link")
     gateway.who = {"operator": "anna", "role": role}
     window.actions.connect.trigger()
-    wait(lambda: window.desk.link.role == role, what="the link")
+    wait(lambda: window.desk.state.link.role == role, what="the link")
 
 
 @pytest.fixture

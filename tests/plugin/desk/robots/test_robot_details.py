@@ -1,6 +1,7 @@
 """All that is known of the selected robot, on the real panel."""
 
 import base64
+from types import SimpleNamespace
 
 import pytest
 from fleet_supervisor.plugin.panel import robot_details
@@ -78,7 +79,7 @@ def test_diagnostics_are_shown_as_received_with_their_units(details, at_desk, ga
 def test_what_was_not_heard_for_hours_is_told_in_hours(details, at_desk, monkeypatch):
     at_desk.desk.select("r1")
     clock = at_desk.desk.clock
-    monkeypatch.setattr(at_desk.desk, "clock", lambda: clock() + 7215.3)
+    monkeypatch.setattr(at_desk.desk, "clock", SimpleNamespace(steady=lambda: clock.steady() + 7215.3))
     details.refresh()
     assert "last heard 2.0 h ago over" in dict(sections(details)["Now"])["State"]
 
