@@ -85,8 +85,8 @@ class FleetPlugin:
         alarms = add(WindowAlarms(iface, window, self._surfaces))
         connections = window.dock.connection_panel.menu
         add(ExpressionUpdater(window.desk, self._fleet))
-        add(OptionsFactory(iface, window, alarms.watch.set_limits))
-        add(RobotLocator(iface, self._fleet, window.go_to))
+        add(OptionsFactory(iface, window, alarms.watch))
+        add(RobotLocator(iface, self._fleet, window))
         add(SiteDropHandler(iface, project, window.notices))
         add(HelpActions(iface, MENU, window.dock))
         add(RolesAction(iface, MENU))

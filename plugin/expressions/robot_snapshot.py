@@ -67,6 +67,10 @@ class SnapshotHolder:
     def __init__(self) -> None:
         self.robots: RobotSnapshot | None = None
 
+    def replace(self, robots: RobotSnapshot | None) -> None:
+        """Hold another snapshot from now on."""
+        self.robots = robots
+
 
 _NAMES = np.array([state.value for state in STATES], dtype=object)
 
@@ -86,20 +90,20 @@ class ExpressionUpdater(QObject):
 
     def remove(self) -> None:
         """Feed nothing more."""
-        self._fleet.robots = None
+        self._fleet.replace(None)
 
     def feed(self) -> None:
         """Make the picture of this moment."""
         desk, now = self._desk, self._desk.clock.steady()
         if desk.state.site is None:
-            self._fleet.robots = None
+            self._fleet.replace(None)
             return
         robots = desk.state.robots.arrays(now)
         if self._arrangement != desk.state.robots.arrangement or len(self._rows) != len(robots.names):
             self._arrangement = desk.state.robots.arrangement
             self._rows = {name: row for row, name in enumerate(robots.names)}
         frame = frame_of(desk.state.site)
-        self._fleet.robots = RobotSnapshot(
+        snapshot = RobotSnapshot(
             crs=QgsCoordinateReferenceSystem(desk.state.site.crs),
             rows=self._rows,
             states=_NAMES[robots.state].tolist(),
@@ -108,6 +112,7 @@ class ExpressionUpdater(QObject):
             battery=desk.state.robots.column("battery"),
             taken=now,
         )
+        self._fleet.replace(snapshot)
 
     def _pulled(self) -> None:
         if self._turn.has_come():

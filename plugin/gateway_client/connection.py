@@ -124,7 +124,7 @@ class GatewayClient:
                 raise
             return explained
         finally:
-            self._protocol.ready = False
+            self._protocol.end_link()
         return GatewayLinkError(tr("The gateway at {url} closed the link. It is tried again.", url=self._url))
 
     async def _hold(self) -> None:
@@ -234,7 +234,11 @@ class ConnectionThread(QObject):
         self._ending: list[_Worker] = []
         self._buffer = UpdateBuffer()
         self.rate = 10.0
-        """How many times a second positions are asked for at most, by links that are opened from now on."""
+        """How many times a second positions are asked for at most."""
+
+    def set_rate(self, rate: float) -> None:
+        """Have links that are opened from now on ask for positions so many times a second at most."""
+        self.rate = rate
 
     @property
     def is_open(self) -> bool:

@@ -148,6 +148,10 @@ class GatewayProtocol:
             return []
         return [self._request(order)]
 
+    def end_link(self) -> None:
+        """Send nothing until the next link has been greeted."""
+        self.ready = False
+
     def end(self) -> None:
         """Hand back every order that was not answered: nobody will ask for an answer any more."""
         for order in self._outbox.clear():

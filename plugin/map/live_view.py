@@ -55,7 +55,7 @@ class LiveView(QObject):
         self.overlay = FleetOverlay(desk.canvas, self._trails)
         self.layer = RobotLayer(desk.project, desk.canvas, self)
         self._project = ProjectWatch(desk.project, self)
-        self._hovering = HoverTracker(desk.canvas, self.overlay, self._card, self)
+        self._hovering = HoverTracker(desk.canvas, self.overlay, self, self)
         self._frame = QTimer(self)
         self._frame.setSingleShot(True)
         self._frame.setInterval(FRAME_MS)
@@ -252,7 +252,8 @@ class LiveView(QObject):
             rows=rows,
         )
 
-    def _card(self, robot: str) -> str | None:
+    def card_text(self, robot: str) -> str | None:
+        """Return what is known of a robot as rich text, None where it is not known any more."""
         view = self._desk.state.robots.view(robot, self._desk.clock.steady())
         if view is None or self._desk.state.site is None:
             return None

@@ -187,7 +187,7 @@ class CommandLog(QWidget):
         self._lay_out()
         self._robots.currentIndexChanged.connect(self.refresh)
         self._which.currentIndexChanged.connect(self.refresh)
-        ZoomMenu(self.view, self._go)
+        ZoomMenu(self.view).wanted.connect(self._go)
         self.view.selectionModel().selectionChanged.connect(self._allow)
         desk.state.commands_changed.connect(self.show_reports)
         desk.state.site_changed.connect(self._site_changed)

@@ -420,7 +420,7 @@ class QueuePanel(QWidget):
         tasks.remove_wanted.connect(lambda task: self._ask(self._edits.remove, task))
         tasks.first_wanted.connect(lambda task: self._ask(self._edits.make_current, task))
         tasks.selectionModel().selectionChanged.connect(self._show_buttons)
-        ZoomMenu(tasks, lambda index: self._go(index.row()))
+        ZoomMenu(tasks).wanted.connect(lambda index: self._go(index.row()))
         self._up.clicked.connect(lambda: self._step(-1))
         self._down.clicked.connect(lambda: self._step(2))
         self._remove.clicked.connect(lambda: self._chosen(self._edits.remove))

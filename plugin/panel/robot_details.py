@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import base64
 import binascii
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from typing import Any
 
 from qgis.core import QgsApplication, QgsTask
@@ -43,7 +43,7 @@ from ..ui.language import tr
 from ..ui.steady_widgets import ElidedText
 from ..ui.tables import shrink_view
 from ..ui.times import date_and_time, heard_in_words, time_of_day
-from .alarms.board import alarm_state_in_words
+from .alarms.board import AlarmBoard, alarm_state_in_words
 from .alarms.rules import Alarm
 
 Row = tuple[str, str]
@@ -280,8 +280,7 @@ class RobotDetails(QWidget):
         self._positions, self._deviations = positions, deviations
         self._turn = desk.beat.turn()
         self._asked_for = ""
-        self.alarms_of: Callable[[str], list[Alarm]] = lambda robot: []
-        """Returns a robot's alarms."""
+        self._alarms: AlarmBoard | None = None
         self._title = ElidedText("fleet_details_title")
         font = QFont(self._title.font())
         font.setBold(True)
@@ -296,6 +295,10 @@ class RobotDetails(QWidget):
         desk.selection_changed.connect(self.refresh)
         desk.state.updated.connect(self._pulled)
         self.refresh()
+
+    def show_alarms_of(self, board: AlarmBoard | None) -> None:
+        """Show each robot's alarms on ``board`` from now on, None for none."""
+        self._alarms = board
 
     def refresh(self) -> None:
         """Show what is known of the robot that was selected last."""
@@ -324,7 +327,7 @@ class RobotDetails(QWidget):
                     position,
                     self._positions.name,
                 ),
-                ALARMS: alarm_rows(self.alarms_of(robot)),
+                ALARMS: alarm_rows([] if self._alarms is None else self._alarms.of(robot)),
                 RECEIVED: received_rows(view.told),
                 QUEUE: queue_rows(self._desk.state.queues.get(robot)),
                 COMMANDS: command_rows(book.of(robot, MOST)),

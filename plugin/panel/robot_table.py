@@ -70,12 +70,11 @@ class RobotTableView(QTableView):
         self._fitted: tuple[int, int] = (0, 0)
         self.positions = PositionCrs(desk.project, self)
         self._model = RobotModel(desk.state.robots, desk.state.commands, desk.state.queues, self)
-        self._model.place_in_words = self._place
         self.setModel(self._model)
         self._model.modelReset.connect(self._reset)
         self._set_up()
         self.selectionModel().selectionChanged.connect(self._selected_here)
-        ZoomMenu(self, lambda index: self.zoom_wanted.emit(self._name(index)))
+        ZoomMenu(self).wanted.connect(lambda index: self.zoom_wanted.emit(self._name(index)))
         self.positions.changed.connect(self.refresh)
         desk.selection_changed.connect(self._selected_elsewhere)
         desk.state.updated.connect(self._pulled)
@@ -176,7 +175,8 @@ class RobotTableView(QTableView):
     def _name(self, index: QModelIndex) -> str:
         return self._model.name_at(index.row())
 
-    def _place(self, x: float, y: float) -> str:
+    def place_in_words(self, x: float, y: float) -> str:
+        """Return the text of a position, given in metres in the site frame."""
         try:
             return self.positions.place_in_words(x, y, self._desk.site_to_canvas.transform())
         except MapTransformError:
@@ -252,7 +252,7 @@ class RobotPanel(QWidget):
 
     def mark_troubled(self, robots: set[str]) -> None:
         """Say which robots have alarms."""
-        self.table.robots.troubled = robots
+        self.table.robots.set_troubled(robots)
 
     def _columns_button(self) -> QToolButton:
         button = QToolButton()
@@ -274,8 +274,8 @@ class RobotPanel(QWidget):
         head.addWidget(self._columns)
 
     def _narrow(self, *_what: object) -> None:
-        self.table.robots.text = self._search.text()
-        self.table.robots.which = list(RobotChoice)[self._which.currentIndex()]
+        which = list(RobotChoice)[self._which.currentIndex()]
+        self.table.robots.set_filter(self._search.text(), which)
         self.table.refresh()
 
     def _show_count(self) -> None:

@@ -230,7 +230,7 @@ class WindowAlarms(QObject):
         self.bar = AlarmBar(iface.messageBar(), self.watch, self)
         self._tabs = window.dock.tabs
         self._tabs.add_page(self.panel, tr("Alarms"), counts=True)
-        window.dock.details.alarms_of = self.watch.board.of
+        window.dock.details.show_alarms_of(self.watch.board)
         self.watch.changed.connect(self._changed)
         self.panel.robots_wanted.connect(self._go)
         self.panel.counted.connect(self._count)
@@ -241,7 +241,7 @@ class WindowAlarms(QObject):
         self.bar.remove()
         self.watch.remove()
         self.panel.remove()
-        self._window.dock.details.alarms_of = lambda robot: []
+        self._window.dock.details.show_alarms_of(None)
         self._tabs.removeTab(self._tabs.indexOf(self.panel))
         self.panel.deleteLater()
         self.deleteLater()

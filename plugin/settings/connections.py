@@ -282,7 +282,7 @@ class Connections:
             was_last = self.last == instead_of
             self.remove(instead_of)
             if was_last:
-                self.last = connection.name
+                self.set_last(connection.name)
         for key in _KEYS:
             QgsSettings().setValue(f"{_group(connection.name)}/{key}", getattr(connection, key))
 
@@ -290,15 +290,15 @@ class Connections:
         """Keep the connection ``name`` no longer; its token stays with QGIS's authentication."""
         QgsSettings().remove(_group(name))
         if self.last == name:
-            self.last = ""
+            self.set_last("")
 
     @property
     def last(self) -> str:
         """The name of the connection that was used last, empty for one without a name."""
         return str(QgsSettings().value(LAST, "") or "")
 
-    @last.setter
-    def last(self, name: str) -> None:
+    def set_last(self, name: str) -> None:
+        """Note the connection that was used last by its name, empty for one without."""
         QgsSettings().setValue(LAST, name)
 
 

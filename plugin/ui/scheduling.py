@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable, Generator
 from typing import Any, TypeVar
 
 from qgis.PyQt.QtCore import QObject, QTimer
 
+from ...robot_bridge.core.clock import Clock
 from .errors import FleetError
 
 # Long work of the window's thread is done in slices between which the window paints and answers the mouse.
@@ -41,10 +41,10 @@ class CooperativeTask(QObject):
         self,
         parent: QObject | None = None,
         seconds: float | None = None,
-        clock: Callable[[], float] = time.perf_counter,
+        clock: Clock | None = None,
     ):
         super().__init__(parent)
-        self._clock = clock
+        self._clock = Clock() if clock is None else clock
         self._seconds = seconds
         self._work: Steps[Any] | None = None
         self._goes_on: Callable[[], None] = _nothing
@@ -134,13 +134,13 @@ class CooperativeTask(QObject):
     def _slice(self) -> tuple[bool, Any]:
         work = self._work
         assert work is not None
-        until = self._clock() + (SLICE_SECONDS if self._seconds is None else self._seconds)
+        until = self._clock.steady() + (SLICE_SECONDS if self._seconds is None else self._seconds)
         try:
             while True:
                 self.share = next(work)
                 if self._work is not work:
                     return False, None
-                if self._clock() >= until:
+                if self._clock.steady() >= until:
                     break
         except StopIteration as end:
             is_wanted = self._work is work

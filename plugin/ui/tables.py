@@ -9,7 +9,7 @@ from datetime import datetime
 from pathlib import Path
 from typing import Any
 
-from qgis.PyQt.QtCore import QAbstractTableModel, QEvent, QModelIndex, QObject, Qt
+from qgis.PyQt.QtCore import QAbstractTableModel, QEvent, QModelIndex, QObject, Qt, pyqtSignal
 from qgis.PyQt.QtWidgets import QAbstractItemView, QHeaderView, QStyle, QTableView, QTreeView
 
 from .errors import FleetError
@@ -142,13 +142,14 @@ ALONE = (Qt.KeyboardModifier.NoModifier, Qt.KeyboardModifier.KeypadModifier)
 
 
 class ZoomMenu(QObject):
-    """Calls ``go`` with a row of ``view`` at a double click on it, and at Enter with the selected one."""
+    """Tells of a row of ``view`` at a double click on it, and at Enter of the selected one."""
 
-    def __init__(self, view: QAbstractItemView, go: Callable[[QModelIndex], object]):
+    wanted = pyqtSignal(QModelIndex)
+
+    def __init__(self, view: QAbstractItemView):
         super().__init__(view)
         self._view = view
-        self._go = go
-        view.doubleClicked.connect(go)
+        view.doubleClicked.connect(self.wanted)
         view.installEventFilter(self)
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:
@@ -161,7 +162,7 @@ class ZoomMenu(QObject):
             # What is renewed all the time may have selected rows and no current one.
             index = next(iter(selection.selectedRows()), QModelIndex())
         if index.isValid():
-            self._go(index)
+            self.wanted.emit(index)
         return True
 
 

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
 from html import escape
+from typing import Protocol
 
 import numpy as np
 from qgis.gui import QgsMapCanvas, QgsMapCanvasItem
@@ -144,12 +144,12 @@ class FleetOverlay(QgsMapCanvasItem):
 
     def magnify(self, times: float) -> None:
         """Draw robots so many times as large as they come."""
-        self._painter.robots.magnification = times
+        self._painter.robots.set_magnification(times)
         self.update()
 
     def draw_arrows(self, wanted: bool) -> None:
         """Draw an arrow for each robot, or leave that to the layer; the rest is drawn always."""
-        self._painter.robots.arrows = wanted
+        self._painter.robots.draw_arrows(wanted)
 
     def robot_at(self, x: float, y: float) -> str | None:
         """Return the robot nearest to pixel (x, y), None when there is none nearby."""
@@ -267,19 +267,26 @@ _ENDS = (QEvent.Type.Leave, QEvent.Type.MouseButtonPress)
 """Looked up once: every event of the canvas comes by here, and there are many to a frame."""
 
 
+class CardTexts(Protocol):
+    """Who knows what stands on the cards of robots."""
+
+    def card_text(self, robot: str) -> str | None:
+        """Return the text of a robot's card, None when it is not known any more."""
+
+
 class HoverTracker(QObject):
-    """``card_of`` returns the text of a robot's card, None when it is not known any more."""
+    """Shows the card of the robot under the mouse, with the text that ``cards`` has of it."""
 
     def __init__(
         self,
         canvas: QgsMapCanvas,
         overlay: FleetOverlay,
-        card_of: Callable[[str], str | None],
+        cards: CardTexts,
         parent: QObject | None = None,
     ):
         super().__init__(parent)
         self._overlay = overlay
-        self._card_of = card_of
+        self._cards = cards
         self._mouse: QPoint | None = None
         self._viewport = canvas.viewport()
         self._card = HoverCard(self._viewport)
@@ -299,7 +306,7 @@ class HoverTracker(QObject):
         robot = None
         if self._mouse is not None:
             robot = self._overlay.robot_at(self._mouse.x(), self._mouse.y())
-        text = self._card_of(robot) if robot is not None else None
+        text = self._cards.card_text(robot) if robot is not None else None
         if text is None:
             self._card.hide()
         else:

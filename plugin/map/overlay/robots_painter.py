@@ -78,6 +78,14 @@ class RobotsPainter:
         self.arrows = True
         """Whether the robots themselves are painted; their rings always are."""
 
+    def set_magnification(self, times: float) -> None:
+        """Draw robots so many times as large as they come."""
+        self.magnification = times
+
+    def draw_arrows(self, wanted: bool) -> None:
+        """Draw an arrow for each robot, or none."""
+        self.arrows = wanted
+
     def marks(self, ratio: float, size: float = 1.0) -> Sprites:
         """Return the marks of :func:`~.desk.live.atlases.mark_atlas`."""
         if self._made_for != (ratio, self.magnification):

@@ -225,7 +225,7 @@ class AlarmPanel(QWidget):
         view.setColumnWidth(2, view.fontMetrics().horizontalAdvance(tr("over") + " ×00") + 14)
         view.horizontalHeader().setSectionResizeMode(1, QHeaderView.ResizeMode.Stretch)
         view.horizontalHeader().setHighlightSections(False)
-        ZoomMenu(view, lambda index: self._go(self._model.alarm_at(index.row())))
+        ZoomMenu(view).wanted.connect(lambda index: self._go(self._model.alarm_at(index.row())))
         view.selectionModel().selectionChanged.connect(self._allow)
 
     def _buttons(self) -> QHBoxLayout:

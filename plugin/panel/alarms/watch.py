@@ -71,6 +71,10 @@ class RoadGround(QObject):
         off[beside] = ~_on_a_surface(rim, placement, surfaces).reshape(-1, len(AROUND)).any(axis=1)
         return off, on
 
+    def report_failure(self, why: str) -> None:
+        """Say why nobody can tell who is on the road."""
+        self.why_not = why
+
     def remove(self) -> None:
         """Let go of what is being read."""
         self._store.forgotten.disconnect(self._forgotten)
@@ -190,7 +194,7 @@ class SnapshotBuilder:
         try:
             judged = self._ground.judge(xy, self._desk.site_to_canvas.transform(), limits.road_margin)
         except MapTransformError as error:
-            self._ground.why_not = str(error)
+            self._ground.report_failure(str(error))
             return None, None
         return (None, None) if judged is None else judged
 
