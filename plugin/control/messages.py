@@ -346,7 +346,7 @@ class MessageBar(QObject):
         if item is not None:
             self._bar.popWidget(item)
 
-    def withdraw(self) -> None:
+    def remove(self) -> None:
         """Take down whatever still hangs there."""
         self._bar.widgetRemoved.disconnect(self._removed)
         for item in list(self._shown.values()):

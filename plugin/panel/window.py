@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from qgis.core import QgsProject
 from qgis.gui import QgisInterface, QgsMapTool
 from qgis.PyQt.QtCore import QObject, Qt
@@ -50,15 +52,17 @@ class FleetWindow(QObject):
         canvas = iface.mapCanvas()
         self.desk = FleetController(canvas, QgsProject.instance(), self)
         self.actions = Actions(self)
-        self._key = EmergencyKey(self.actions.emergency, self)
-        self.notices = MessageBar(iface.messageBar(), self)
-        self._project_match = ProjectMatch(self.desk, self)
-        self.view = LiveView(self.desk, self)
+        self._parts: list[Any] = []
+        """What :meth:`remove` takes out, the last one first."""
+        self.notices = self._add(MessageBar(iface.messageBar(), self))
+        self._key = self._add(EmergencyKey(self.actions.emergency, self))
+        self._project_match = self._add(ProjectMatch(self.desk, self))
+        self.view = self._add(LiveView(self.desk, self))
         self.queue_edits = QueueEdits(self.desk, self)
-        self.queue_marks = QueueMarks(self.desk)
+        self.queue_marks = self._add(QueueMarks(self.desk))
         self.dock = FleetDock(self.desk, self.actions, self.queue_edits, iface.mainWindow())
-        self.road_layers = RoadLayers(self.desk, self)
-        self.standing_cones = StandingCones(self.desk, self)
+        self.road_layers = self._add(RoadLayers(self.desk, self))
+        self.standing_cones = self._add(StandingCones(self.desk, self))
         self.toolbar: QToolBar = iface.addToolBar("Fleet Supervisor")
         self.toolbar.setObjectName("fleet_toolbar")
         self._road_route = RoadRouteTool(self.desk)
@@ -73,8 +77,8 @@ class FleetWindow(QObject):
         self._draft_menu = QMenu(tr("Targets and routes"), iface.mainWindow())
         self._draft_menu.setObjectName("fleet_draft_menu")
         self._draft_menu.setIcon(self.actions.cone.icon())
-        self.draft_commands = PendingCommandActions(
-            self.desk, self.queue_edits, self.actions, iface.mainWindow()
+        self.draft_commands = self._add(
+            PendingCommandActions(self.desk, self.queue_edits, self.actions, iface.mainWindow())
         )
         self.robot_pauses = PauseActions(self.desk, self.queue_edits, self.actions, self)
         self._wire_actions()
@@ -87,14 +91,8 @@ class FleetWindow(QObject):
             self._put_away(tool)
             tool.deleteLater()
         self._tools.clear()
-        self.draft_commands.remove()
-        self.queue_marks.remove()
-        self.road_layers.remove()
-        self.standing_cones.remove()
-        self.view.remove()
-        self._project_match.remove()
-        self._key.remove()
-        self.notices.withdraw()
+        while self._parts:
+            self._parts.pop().remove()
         for action in self.menu_entries():
             self._iface.removePluginMenu(MENU, action)
         self._draft_menu.deleteLater()
@@ -104,6 +102,10 @@ class FleetWindow(QObject):
         self._iface.removeDockWidget(self.dock)
         self.dock.deleteLater()
         self.deleteLater()
+
+    def _add(self, part: Any) -> Any:
+        self._parts.append(part)
+        return part
 
     def menu_entries(self) -> list[QAction]:
         """Return what stands in the plugin's menu itself; one entry opens the menu of drafts."""
