@@ -105,7 +105,7 @@ class FleetPlugin:
         alarms = self._add(WindowAlarms(iface, window, self._surfaces))
         desk, notices, connections = window.desk, window.notices, window.dock.connection_panel.menu
         for part, *needs in (
-            (ExpressionUpdater, desk, self._fleet),
+            (ExpressionUpdater, desk.state, desk.beat, self._fleet),
             (OptionsFactory, iface, window, alarms.watch),
             (RobotLocator, iface, self._fleet, window),
             (SiteDropHandler, iface, project, notices),

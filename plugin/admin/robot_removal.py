@@ -115,7 +115,7 @@ class RobotRemoval:
         if why:
             self._desk.complained.emit(tr("No robot was removed: {why}", why=why))
             return
-        chosen = set(self._desk.selection)
+        chosen = set(self._desk.selection.robots)
         dialog = RemovalDialog([name for name in gone if name in chosen], gone, self._iface.mainWindow())
         dialog.confirmed.connect(self._remove)
         dialog.open()

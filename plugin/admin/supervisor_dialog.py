@@ -48,12 +48,12 @@ class PendingQueries(QObject):
         super().__init__(parent)
         self._desk = desk
         self._takers: dict[str, tuple[str, Take]] = {}
-        desk.answered.connect(self._answered)
+        desk.orders.answered.connect(self._answered)
 
     def ask(self, request: Any, words: str, take: Take) -> None:
         """Ask for ``request``, which is ``words`` to the operator; ``take`` gets the result."""
         try:
-            self._takers[self._desk.inquire(request)] = words, take
+            self._takers[self._desk.orders.inquire(request)] = words, take
         except FleetError as error:
             self.refused.emit(f"{words}: {error}")
 

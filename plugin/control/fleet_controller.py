@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import uuid
 from collections.abc import Callable, Iterable
-from typing import Any
 
 from qgis.core import QgsProject
 from qgis.gui import QgsMapCanvas
@@ -17,12 +15,11 @@ from ...robot_bridge.core.messages import (
     PauseRobot,
     ReplannedRobot,
     SiteReport,
-    to_json,
 )
 from ..gateway_client.connection import ConnectionThread
 from ..gateway_client.connection_status import ConnectionPhase, ConnectionStatus, OperatorCredentials
 from ..gateway_client.fleet_state import FleetState
-from ..gateway_client.requests import OperatorRequest, RequestResult
+from ..gateway_client.requests import RequestResult
 from ..gateway_client.robot_table import RemovedRobots
 from ..layers.site_transform import SiteToCanvas, SiteToMapTransform
 from ..ui.errors import FleetError, NotSentError
@@ -52,14 +49,37 @@ STOPPED_BY = "emergency stop"
 """What a gateway's refusal holds where an emergency stop is the reason."""
 
 
+class Selection(QObject):
+    """The robots that the operator has selected, each once, in the order of their selection."""
+
+    changed = pyqtSignal()
+
+    def __init__(self, parent: QObject | None = None):
+        super().__init__(parent)
+        self.robots: tuple[str, ...] = ()
+
+    @property
+    def last(self) -> str | None:
+        """The robot that drafts are made for: of several selected ones the last. None without any."""
+        return self.robots[-1] if self.robots else None
+
+    def select(self, robot: str | None) -> None:
+        """Select a robot alone, None for none."""
+        self.select_all([] if robot is None else [robot])
+
+    def select_all(self, robots: Iterable[str]) -> None:
+        """Select these robots and no others; the last of them is the one that drafts are made for."""
+        selection = tuple(dict.fromkeys(robots))
+        if selection != self.robots:
+            self.robots = selection
+            self.changed.emit()
+
+
 class FleetController(QObject):
     """Builds the parts that draw, check and send commands, and does what the operator asks for."""
 
-    selection_changed = pyqtSignal()
     emergency_changed = pyqtSignal()
     """An emergency stop was asked for, or the gateway said how one stands."""
-    answered = pyqtSignal(object)
-    """What became of a request other than for a route: the RequestResult."""
     failed = pyqtSignal(str)
     """Something that was asked for was not done: the text must not go unseen."""
     settled = pyqtSignal(str)
@@ -95,7 +115,7 @@ class FleetController(QObject):
         self._endings = MessageEndings(self.messages, self.drafts, state, self)
         self._suspensions = SuspensionNotices(self)
         self._links = LinkNotices(self)
-        self.selection: tuple[str, ...] = ()
+        self.selection = Selection(self)
         self._rules = CommandChecks(project, self.site_to_canvas, state, self)
         self.checks = ValidationRunner(self.drafts, self._rules.check_command, self)
         self.checks.found.connect(self._found)
@@ -127,7 +147,7 @@ class FleetController(QObject):
         state.updated.connect(self._count_update)
 
     def _keep_names(self) -> None:
-        """Give cone plans the state by the names that they know."""
+        """Give cone plans state and requests by the names that they know."""
         state = self.state
         self.picture, self.queues, self.placements = state.robots, state.queues, state.placed_cones
         self.pulled, self.site_changed, self.link_changed = (
@@ -135,6 +155,7 @@ class FleetController(QObject):
             state.site_changed,
             state.link_changed,
         )
+        self.ask, self.answered = self.orders.ask, self.orders.answered
         self.queues_changed, self.placements_changed = state.queues_changed, state.placed_cones_changed
 
     @property
@@ -166,7 +187,7 @@ class FleetController(QObject):
         self.sender.settled.connect(self.settled)
         self.orders.asked_again.connect(self.messages.end)
         self.sending.failed.connect(lambda text, topics: self.report_failure(text, *topics))
-        self.selection_changed.connect(self._endings.selection_changed)
+        self.selection.changed.connect(self._endings.selection_changed)
         self.sending.complained.connect(lambda text: self.messages.post(text, Level.WARNING, NO_DRAFT))
         self.orders.accepted.connect(self.remarked)
         self.orders.slow.connect(self.failed)
@@ -214,8 +235,7 @@ class FleetController(QObject):
     def _answered(self, answer: RequestResult) -> None:
         if self.target_ways.accept_answer(answer) or self.preview.accept_answer(answer):
             return
-        self.orders.answered(answer)
-        self.answered.emit(answer)
+        self.orders.accept_answer(answer)
         self.emergency_changed.emit()
 
     def _emergency_reported(self) -> None:
@@ -234,7 +254,7 @@ class FleetController(QObject):
 
     def _forget_robots(self) -> None:
         self._rules.forget_targets()
-        self.select(None)
+        self.selection.select(None)
         lost = self.sending.outgoing.withdraw()
         if self.drafts.draft is not None:
             lost.append(self.drafts.draft)
@@ -248,7 +268,7 @@ class FleetController(QObject):
     def _robots_removed(self, gone: RemovedRobots) -> None:
         """Forget robots that an administrator has removed; what they did stays in the log."""
         self._endings.robots_removed(gone.names)
-        self.select_all(robot for robot in self.selection if robot not in gone.names)
+        self.selection.select_all(robot for robot in self.selection.robots if robot not in gone.names)
         draft = self.drafts.draft
         if draft is not None and draft.robot in gone.names:
             words = draft.in_words()
@@ -291,28 +311,12 @@ class FleetController(QObject):
 
     # --- what the operator does ---
 
-    @property
-    def selected(self) -> str | None:
-        """The robot that drafts are made for: of several selected ones the last. None without any."""
-        return self.selection[-1] if self.selection else None
-
-    def select(self, robot: str | None) -> None:
-        """Select a robot alone, None for none."""
-        self.select_all([] if robot is None else [robot])
-
-    def select_all(self, robots: Iterable[str]) -> None:
-        """Select these robots and no others; the last of them is the one that drafts are made for."""
-        selection = tuple(dict.fromkeys(robots))
-        if selection != self.selection:
-            self.selection = selection
-            self.selection_changed.emit()
-
     def abort_selected(self) -> None:
         """Ask every selected robot to give up its task."""
-        if not self.selection:
+        if not self.selection.robots:
             text = tr("No robot is selected, so none was aborted. Select it in the table or on the map.")
             self.messages.post(text, Level.WARNING, SELECTION)
-        for robot in self.selection:
+        for robot in self.selection.robots:
             self._try(lambda robot=robot: self.orders.abort(robot))
         self._give_up_drafting()
 
@@ -350,37 +354,12 @@ class FleetController(QObject):
 
     def pause_robot(self, robot: str) -> None:
         """Ask for ``robot`` to stand and keep what it is doing; never refused here, as nothing that stops."""
-        self._try(lambda: self.ask(PauseRobot(robot), tr("Pause of {robot}", robot=robot)))
+        self._try(lambda: self.orders.ask(PauseRobot(robot), tr("Pause of {robot}", robot=robot)))
 
     def propose_route(self, robot: str, points: list[Point]) -> None:
         """Put a route for ``robot`` on the map, to be looked at, and sent as any other."""
         route = PendingCommand(robot, ROUTE, tuple(points), legs=(1,) * len(points))
         self._try(lambda: self.put_draft(route))
-
-    def ask(self, request: Any, words: str, *topics: Topic, draft: PendingCommand | None = None) -> str:
-        """Ask the gateway for ``request``, which is ``words`` to the operator, and return the order's key.
-
-        What becomes of it comes with :attr:`answered`. A refusal is told until one of ``topics`` is over;
-        the ``draft`` that it was made of comes back then.
-
-        :raises NotSentError: when it cannot be sent.
-        """
-        order = OperatorRequest(str(uuid.uuid4()), request.method, to_json(request), self.clock.steady())
-        self.orders.ask(order, words, topics, draft)
-        return order.key
-
-    def inquire(self, request: Any, *, lasting: bool = False) -> str:
-        """Ask the gateway for what it knows, without a word to the operator, and return the order's key.
-
-        A ``lasting`` one is asked again however long the link was lost.
-
-        :raises NotSentError: when it cannot be sent.
-        """
-        order = OperatorRequest(
-            str(uuid.uuid4()), request.method, to_json(request), self.clock.steady(), lasting
-        )
-        self.sender.submit(order)
-        return order.key
 
     def _try(self, action: Callable[[], object]) -> bool:
         try:

@@ -85,6 +85,8 @@ class PendingRequest:
 class RequestTracker(QObject):
     """Gives each press of a button its own id, hands it to the connection and tells what became of it."""
 
+    answered = pyqtSignal(object)
+    """What became of a request: the RequestResult."""
     refused = pyqtSignal(str, object, object)
     """An order was not carried out: the text, the draft it came from or None, and the text's topics."""
     asked_again = pyqtSignal(object)
@@ -173,23 +175,48 @@ class RequestTracker(QObject):
         order = OperatorRequest(str(uuid.uuid4()), ClearEmergencyStop.method, params, self._clock.steady())
         return self._put(order, tr("Clear emergency stop"))
 
-    def ask(
+    def ask(self, request: Any, words: str, *topics: Topic, draft: PendingCommand | None = None) -> str:
+        """Ask the gateway for ``request``, which is ``words`` to the operator, and return its key.
+
+        What becomes of it comes with :attr:`answered`. A refusal is told until one of ``topics`` is over;
+        the ``draft`` that it was made of comes back then.
+
+        :raises NotSentError: when it cannot be sent.
+        """
+        return self.submit(self._order(request), words, topics, draft)
+
+    def inquire(self, request: Any, *, lasting: bool = False) -> str:
+        """Ask the gateway for what it knows, without a word to the operator, and return the request's key.
+
+        A ``lasting`` one is asked again however long the link was lost.
+
+        :raises NotSentError: when it cannot be sent.
+        """
+        order = self._order(request, lasting)
+        self._sender.submit(order)
+        return order.key
+
+    def submit(
         self,
         order: OperatorRequest,
         words: str,
         topics: tuple[Topic, ...] = (),
         draft: PendingCommand | None = None,
-    ) -> None:
-        """Ask for something else, which is ``words`` to the operator.
+    ) -> str:
+        """Ask for something that has its key already, and return that; as :meth:`ask` otherwise."""
+        return self._put(order, words, draft, topics)
 
-        ``topics`` are what else a refusal is about, ``draft`` what it was made of.
+    def _order(self, request: Any, lasting: bool = False) -> OperatorRequest:
+        return OperatorRequest(
+            str(uuid.uuid4()), request.method, to_json(request), self._clock.steady(), lasting
+        )
 
-        :raises NotSentError: when it cannot be sent.
-        """
-        self._put(order, words, draft, topics)
+    def accept_answer(self, answer: RequestResult) -> None:
+        """Take in what became of a request, and tell of it with :attr:`answered`."""
+        self._settle(answer)
+        self.answered.emit(answer)
 
-    def answered(self, answer: RequestResult) -> None:
-        """Take in what became of an order."""
+    def _settle(self, answer: RequestResult) -> None:
         pending = self._pending.pop(answer.order.key, None)
         if pending is None:
             return

@@ -43,7 +43,7 @@ class RoadStatus(QObject):
         """
         closure = str(uuid.uuid4())
         request = CloseRoad(closure, *place, reason or None, seconds, reach)
-        self._requests.ask(
+        self._requests.submit(
             self._order(closure, request),
             tr(
                 "Closing the road at {x:.1f}, {y:.1f} m",
@@ -55,12 +55,12 @@ class RoadStatus(QObject):
 
     def open(self, closure: str) -> None:
         """Ask for a closed road to be opened; raises NotSentError when that cannot be sent."""
-        self._requests.ask(self._order(str(uuid.uuid4()), OpenRoad(closure)), tr("Opening the road"))
+        self._requests.submit(self._order(str(uuid.uuid4()), OpenRoad(closure)), tr("Opening the road"))
 
     def resolve(self, robot: str, other: str) -> None:
         """Ask for ``robot`` to give way to ``other``; raises NotSentError when that cannot be sent."""
         request = ResolveConflict(robot, other)
-        self._requests.ask(
+        self._requests.submit(
             self._order(str(uuid.uuid4()), request),
             tr(
                 "{robot} gives way to {other}",

@@ -10,9 +10,10 @@ from qgis.core import QgsCoordinateReferenceSystem, QgsPointXY
 from qgis.PyQt.QtCore import QObject
 
 from ...robot_bridge.core.clock import steady_time
-from ..control.fleet_controller import FleetController
+from ..gateway_client.fleet_state import FleetState
 from ..gateway_client.robot_table import STATES
 from ..layers.site_transform import frame_of
+from ..ui.scheduling import UpdateScheduler
 
 Numbers = npt.NDArray[np.float64]
 
@@ -78,15 +79,15 @@ _NAMES = np.array([state.value for state in STATES], dtype=object)
 class ExpressionUpdater(QObject):
     """Makes a new picture for expressions out of the desk's; :meth:`remove` leaves them without one."""
 
-    def __init__(self, desk: FleetController, fleet: SnapshotHolder):
-        super().__init__(desk)
-        self._desk, self._fleet = desk, fleet
-        self._turn = desk.beat.turn()
+    def __init__(self, state: FleetState, scheduler: UpdateScheduler, fleet: SnapshotHolder):
+        super().__init__(state)
+        self._state, self._fleet = state, fleet
+        self._turn = scheduler.turn()
         self._rows: dict[str, int] = {}
         self._arrangement = -1
-        desk.state.updated.connect(self._pulled)
-        desk.state.site_changed.connect(self.feed)
-        desk.state.robots_removed.connect(self.feed)
+        state.updated.connect(self._pulled)
+        state.site_changed.connect(self.feed)
+        state.robots_removed.connect(self.feed)
 
     def remove(self) -> None:
         """Feed nothing more."""
@@ -94,22 +95,22 @@ class ExpressionUpdater(QObject):
 
     def feed(self) -> None:
         """Make the picture of this moment."""
-        desk, now = self._desk, self._desk.clock.steady()
-        if desk.state.site is None:
+        state, now = self._state, self._state.clock.steady()
+        if state.site is None:
             self._fleet.replace(None)
             return
-        robots = desk.state.robots.arrays(now)
-        if self._arrangement != desk.state.robots.arrangement or len(self._rows) != len(robots.names):
-            self._arrangement = desk.state.robots.arrangement
+        robots = state.robots.arrays(now)
+        if self._arrangement != state.robots.arrangement or len(self._rows) != len(robots.names):
+            self._arrangement = state.robots.arrangement
             self._rows = {name: row for row, name in enumerate(robots.names)}
-        frame = frame_of(desk.state.site)
+        frame = frame_of(state.site)
         snapshot = RobotSnapshot(
-            crs=QgsCoordinateReferenceSystem(desk.state.site.crs),
+            crs=QgsCoordinateReferenceSystem(state.site.crs),
             rows=self._rows,
             states=_NAMES[robots.state].tolist(),
             xy=frame.to_crs(robots.xy),
             age=robots.age,
-            battery=desk.state.robots.column("battery"),
+            battery=state.robots.column("battery"),
             taken=now,
         )
         self._fleet.replace(snapshot)

@@ -69,7 +69,7 @@ class LiveView(QObject):
         desk.state.updated.connect(self._pulled)
         desk.state.site_changed.connect(self._site_changed)
         desk.state.robots_removed.connect(self._robots_removed)
-        desk.selection_changed.connect(self._selection_changed)
+        desk.selection.changed.connect(self._selection_changed)
         desk.state.commands_changed.connect(self._frame.start)
         desk.drafts.changed.connect(self._frame.start)
         desk.drafts.pointed.connect(self._frame.start)
@@ -144,7 +144,7 @@ class LiveView(QObject):
     def follow(self, whom: FollowMode) -> None:
         """Keep the selected robots or all of them in view, or stop doing so."""
         self.following = whom
-        if whom is FollowMode.SELECTED and not self._desk.selection:
+        if whom is FollowMode.SELECTED and not self._desk.selection.robots:
             self._desk.complained.emit(
                 tr("No robot is selected to be followed. Select one in the table or on the map.")
             )
@@ -191,12 +191,12 @@ class LiveView(QObject):
         self._frame.start()
 
     def _selection_changed(self) -> None:
-        self.layer.mark(self._desk.selection)
+        self.layer.mark(self._desk.selection.robots)
         self._frame.start()
 
     def _selected_in_layer(self, robots: list[str]) -> None:
         # The one that drafts are made for stays so as long as it is among them.
-        self._desk.select_all(sorted(robots, key=lambda robot: robot == self._desk.selected))
+        self._desk.selection.select_all(sorted(robots, key=lambda robot: robot == self._desk.selection.last))
 
     def _write_layer(self) -> None:
         if self._project.is_reading:
@@ -209,7 +209,7 @@ class LiveView(QObject):
             self.layer.begin(len(self._desk.state.robots))
         self.layer.go_on(self._desk.state.robots, self._desk.clock.steady())
         if self.layer.is_new:
-            self.layer.mark(self._desk.selection)
+            self.layer.mark(self._desk.selection.robots)
 
     def _go_after(self) -> None:
         if self.following is FollowMode.NOBODY or self._desk.state.site is None:
@@ -217,7 +217,7 @@ class LiveView(QObject):
         robots = self._desk.state.robots.arrays(self._desk.clock.steady())
         xy = robots.xy
         if self.following is FollowMode.SELECTED:
-            rows = [self._desk.state.robots.row(name) for name in self._desk.selection]
+            rows = [self._desk.state.robots.row(name) for name in self._desk.selection.robots]
             xy = xy[[row for row in rows if row is not None]]
         there = xy[np.isfinite(xy).all(axis=1)]
         try:
@@ -232,15 +232,17 @@ class LiveView(QObject):
         robots = desk.state.robots.arrays(now)
         self._trails.extend(robots.xy, now)
         plans = self._plans.of(desk.state.commands.under_way(), NEW_PLANS)
-        measured = plans if len(plans) <= MANY else [p for p in plans if p.robot in desk.selection][:MANY]
-        named = {*desk.selection, *(plan.robot for plan in measured)}
+        measured = (
+            plans if len(plans) <= MANY else [p for p in plans if p.robot in desk.selection.robots][:MANY]
+        )
+        named = {*desk.selection.robots, *(plan.robot for plan in measured)}
         if desk.drafts.draft is not None:
             named.add(desk.drafts.draft.robot)
         rows = {name: row for name in named if (row := desk.state.robots.row(name)) is not None}
         return SiteScene(
             robots=robots,
             now=now,
-            chosen=desk.selection,
+            chosen=desk.selection.robots,
             plans=plans,
             remaining={
                 plan.command: self._plans.remaining(plan, robots.xy[rows[plan.robot]])

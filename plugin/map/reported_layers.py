@@ -39,8 +39,8 @@ from ...robot_bridge.core.messages import (
     SiteReport,
 )
 from ...robot_bridge.core.sites.frame import SiteFrame
-from ..control.fleet_controller import FleetController
 from ..gateway_client.command_cache import DRIVE_OPERATIONS, place_of
+from ..gateway_client.fleet_state import FleetState
 from ..gateway_client.robot_states import RobotStates
 from ..gateway_client.robot_table import STATES
 from ..gateway_client.state_texts import ROBOT_STATES
@@ -381,19 +381,19 @@ CONFLICT_FIELDS = (
 class RoadLayers(QObject):
     """A layer of each, made when there is something to show and taken out with the plugin."""
 
-    def __init__(self, desk: FleetController, parent: QObject | None = None):
+    def __init__(self, state: FleetState, project: QgsProject, parent: QObject | None = None):
         super().__init__(parent)
-        self._desk = desk
-        project = desk.project
+        self._state, self._project = state, project
+        project = project
         self._closures = RowLayer(
             project, "closed_roads", tr("Closed roads"), "LineString", CLOSED_FIELDS, _style_closures
         )
         self._conflicts = RowLayer(
             project, "conflicts", tr("Conflicts"), "Point", CONFLICT_FIELDS, _style_conflicts
         )
-        desk.state.closures_changed.connect(self._show_closures)
-        desk.state.conflicts_changed.connect(self._show_conflicts)
-        desk.state.site_changed.connect(self._show)
+        state.closures_changed.connect(self._show_closures)
+        state.conflicts_changed.connect(self._show_conflicts)
+        state.site_changed.connect(self._show)
 
     def remove(self) -> None:
         """Take both out of the project."""
@@ -405,13 +405,13 @@ class RoadLayers(QObject):
         self._show_conflicts()
 
     def _show_closures(self) -> None:
-        rows = [(closure.line, _closure_values(closure)) for closure in self._desk.state.closures]
-        self._closures.show(rows, self._desk.state.site)
+        rows = [(closure.line, _closure_values(closure)) for closure in self._state.closures]
+        self._closures.show(rows, self._state.site)
 
     def _show_conflicts(self) -> None:
-        conflicts = self._desk.state.conflicts.conflicts
+        conflicts = self._state.conflicts.conflicts
         rows = [([(one.x, one.y)], _conflict_values(one)) for one in conflicts]
-        self._conflicts.show(rows, self._desk.state.site)
+        self._conflicts.show(rows, self._state.site)
 
 
 def _closure_values(closure: ClosureReport) -> list[Any]:
@@ -465,16 +465,16 @@ class StandingCones(QObject):
     were reached, straight or along a path. :meth:`remove` takes it out of the project.
     """
 
-    def __init__(self, desk: FleetController, parent: QObject | None = None):
+    def __init__(self, state: FleetState, project: QgsProject, parent: QObject | None = None):
         super().__init__(parent)
-        self._desk = desk
+        self._state, self._project = state, project
         self._reached: dict[str, CommandReport] = {}
         self._layer = RowLayer(
-            desk.project, "standing_cones", tr("Cones put down"), "Point", PLACED_CONE_FIELDS, _style_cones
+            project, "standing_cones", tr("Cones put down"), "Point", PLACED_CONE_FIELDS, _style_cones
         )
-        desk.state.commands_changed.connect(self._add_reached)
-        desk.state.placed_cones_changed.connect(self._show)
-        desk.state.site_changed.connect(self._site_changed)
+        state.commands_changed.connect(self._add_reached)
+        state.placed_cones_changed.connect(self._show)
+        state.site_changed.connect(self._site_changed)
 
     def remove(self) -> None:
         """Take the layer out of the project."""
@@ -491,16 +491,16 @@ class StandingCones(QObject):
     def _site_changed(self) -> None:
         # Another site's commands are out of the book by now.
         self._reached = {
-            command: one for command, one in self._reached.items() if command in self._desk.state.commands
+            command: one for command, one in self._reached.items() if command in self._state.commands
         }
         self._show()
 
     def _show(self, *_: object) -> None:
-        self._layer.show(list(self._rows())[-MOST:], self._desk.state.site)
+        self._layer.show(list(self._rows())[-MOST:], self._state.site)
 
     def _rows(self) -> Iterator[Row]:
         known = set()
-        for cone in self._desk.state.placed_cones:
+        for cone in self._state.placed_cones:
             known.add(cone.command)
             if cone.collected_at is None:
                 values = [cone.robot, cone.label or cone.cone or "", date_and_time(cone.placed_at)]

@@ -10,8 +10,8 @@ from qgis.gui import QgisInterface, QgsCustomDropHandler
 from qgis.PyQt.QtCore import QMimeData, QObject, QTimer, pyqtSignal
 
 from ...robot_bridge.core.sites.frame import SiteFrame
-from ..control.fleet_controller import FleetController
 from ..control.messages import MessageBar
+from ..gateway_client.fleet_state import FleetState
 from ..layers.crs import own_frame
 from ..layers.live_layers import ProjectWatch
 from ..layers.publishing.published_layers import LoadedSite, load_site, loaded_already, site_folder
@@ -37,13 +37,13 @@ class ProjectMatch(QObject):
     over = pyqtSignal(str)
     """What was told is not so any more."""
 
-    def __init__(self, desk: FleetController, parent: QObject | None = None):
+    def __init__(self, state: FleetState, project: QgsProject, parent: QObject | None = None):
         super().__init__(parent)
-        self._desk = desk
+        self._state, self._project = state, project
         self._told = ""
-        self._watch = ProjectWatch(desk.project, self)
+        self._watch = ProjectWatch(project, self)
         self._watch.opened.connect(self._compare)
-        desk.state.site_changed.connect(self._compare)
+        state.site_changed.connect(self._compare)
 
     def remove(self) -> None:
         """Compare no more."""
@@ -53,7 +53,7 @@ class ProjectMatch(QObject):
         if self._told:
             self.over.emit(self._told)
         self._told = ""
-        site, mine = self._desk.state.site, own_frame(self._desk.project)
+        site, mine = self._state.site, own_frame(self._project)
         if site is None or mine is None or _is_one(mine, frame_of(site)):
             return
         self._told = tr(

@@ -153,14 +153,14 @@ class ObservationFeed(QObject):
         self._image: tuple[str, int] | None = None
         self._without: set[int] = set()
         desk.state.link_changed.connect(self._link_changed)
-        desk.answered.connect(self._answered)
+        desk.orders.answered.connect(self._answered)
         desk.state.observations_changed.connect(self._observations_changed)
         desk.state.site_changed.connect(self._site_changed)
         thumbnails.failed.connect(self._without.add)
 
     def review(self, request: ReviewObservation) -> None:
         """Tell the gateway what became of an observation; raises NotSentError when that cannot be sent."""
-        self._reviews[self._desk.inquire(request)] = request.observation
+        self._reviews[self._desk.orders.inquire(request)] = request.observation
 
     def is_asked(self, number: int) -> bool:
         """Tell whether a review of this observation is on its way."""
@@ -178,7 +178,7 @@ class ObservationFeed(QObject):
 
     def _ask_page(self, request: GetObservations) -> None:
         try:
-            self._pages.add(self._desk.inquire(request))
+            self._pages.add(self._desk.orders.inquire(request))
         except FleetError:
             # The link is down again: all is asked anew when it is back.
             self._pages.clear()
@@ -231,7 +231,7 @@ class ObservationFeed(QObject):
         if wanted is None:
             return
         try:
-            self._image = self._desk.inquire(GetImage(wanted)), wanted
+            self._image = self._desk.orders.inquire(GetImage(wanted)), wanted
         except FleetError:
             self._image = None
 

@@ -64,7 +64,7 @@ class OlderCommands(QObject):
         self._desk = desk
         self._wishes: dict[str, HistoryRequest] = {}
         """By the keys of the questions that are not answered yet."""
-        desk.answered.connect(self._answered)
+        desk.orders.answered.connect(self._answered)
         desk.state.updated.connect(self._watch)
         desk.state.site_changed.connect(self._site_changed)
 
@@ -76,7 +76,7 @@ class OlderCommands(QObject):
         try:
             # Of very many robots the newest commands of all will do: the log holds no more.
             for robot in sorted(robots) if robots and len(robots) <= MOST_ASKED else [None]:
-                self._wishes[self._desk.inquire(GetCommands(robot, OLDER), lasting=True)] = wish
+                self._wishes[self._desk.orders.inquire(GetCommands(robot, OLDER), lasting=True)] = wish
                 wish.waiting += 1
         except FleetError as error:
             wish.is_refused = True
@@ -191,7 +191,7 @@ class CommandLog(QWidget):
         self.view.selectionModel().selectionChanged.connect(self._allow)
         desk.state.commands_changed.connect(self.show_reports)
         desk.state.site_changed.connect(self._site_changed)
-        desk.selection_changed.connect(self._selection_changed)
+        desk.selection.changed.connect(self._selection_changed)
         self._allow()
 
     def show_reports(self, reports: list[CommandReport]) -> None:
@@ -219,7 +219,7 @@ class CommandLog(QWidget):
         whose = self._robots.currentIndex()
         robots = None if whose == 0 else frozenset({self._robots.currentText()})
         if whose == 1:
-            robots = frozenset(self._desk.selection)
+            robots = frozenset(self._desk.selection.robots)
         return CommandFilter(robots, list(CommandChoice)[self._which.currentIndex()])
 
     def export(self, path: str) -> None:

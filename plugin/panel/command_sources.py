@@ -152,7 +152,7 @@ def command_from_layer(layer: QgsVectorLayer | None, desk: FleetController) -> P
 
     :raises FleetError: naming what is wrong with the layer, the selection or the robot.
     """
-    if desk.selected is None:
+    if desk.selection.last is None:
         raise LayerCommandError(
             tr("No robot is selected. Select the one that the draft is for, then try again.")
         )
@@ -223,8 +223,8 @@ def _targets(layer: QgsVectorLayer, features: Sequence[QgsFeature], desk: FleetC
         )
     points = _in_site(places, desk)
     if len(points) == 1:
-        return PendingCommand(desk.selected, CONE, points)
-    return PendingCommand(desk.selected, TARGETS, points, names=tuple(names))
+        return PendingCommand(desk.selection.last, CONE, points)
+    return PendingCommand(desk.selection.last, TARGETS, points, names=tuple(names))
 
 
 def _route(layer: QgsVectorLayer, features: Sequence[QgsFeature], desk: FleetController) -> PendingCommand:
@@ -257,7 +257,7 @@ def _route(layer: QgsVectorLayer, features: Sequence[QgsFeature], desk: FleetCon
                 longest_path=LONGEST_PATH,
             )
         )
-    return PendingCommand(desk.selected, ROUTE, _in_site(places, desk), legs=(1,) * len(places))
+    return PendingCommand(desk.selection.last, ROUTE, _in_site(places, desk), legs=(1,) * len(places))
 
 
 def _moved(feature: QgsFeature, layer: QgsVectorLayer, desk: FleetController) -> QgsGeometry:

@@ -49,7 +49,7 @@ class ResolutionQuery(QObject):
         self.why_not = ""
         """Why it is not known what the robots can do; empty where it is known or was just asked."""
         desk.state.updated.connect(self._ask_again)
-        desk.answered.connect(self._answered)
+        desk.orders.answered.connect(self._answered)
 
     def watch(self, pair: Pair | None, kind: str = "") -> None:
         """Ask about ``pair`` from now on, None for no pair; at once where they meet in another way."""
@@ -77,7 +77,7 @@ class ResolutionQuery(QObject):
             return
         self._asked_at = self._desk.clock.steady()
         try:
-            self._key = self._desk.inquire(GetWaysOut(*self._pair))
+            self._key = self._desk.orders.inquire(GetWaysOut(*self._pair))
         except NotSentError as error:
             self._key = None
             self._know({}, str(error))

@@ -347,10 +347,10 @@ class PendingCommandActions(QObject):
         self._try(lambda: self._show(((x, y),)))
 
     def _send_maps(self) -> None:
-        if not self._desk.selection:
+        if not self._desk.selection.robots:
             raise NotSentError(tr("No robot is selected, so none was sent the map. Select it first."))
-        for robot in self._desk.selection:
-            self._desk.ask(SendMap(robot), tr("Map for {robot}", robot=robot))
+        for robot in self._desk.selection.robots:
+            self._desk.orders.ask(SendMap(robot), tr("Map for {robot}", robot=robot))
 
     def _draft(self) -> PendingCommand:
         draft = self._desk.drafts.draft

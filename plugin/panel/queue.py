@@ -70,7 +70,7 @@ class QueueEdits(QObject):
         self._desk = desk
         self._asked: dict[str, str] = {}
         self._conflicts: dict[str, str] = {}
-        desk.answered.connect(self._answered)
+        desk.orders.answered.connect(self._answered)
         desk.state.site_changed.connect(self._clear)
 
     def is_asked(self, robot: str) -> bool:
@@ -147,7 +147,7 @@ class QueueEdits(QObject):
         self, request: QueueRequest, words: str, *topics: Topic, draft: PendingCommand | None = None
     ) -> str | None:
         try:
-            key = self._desk.ask(request, words, *topics, draft=draft)
+            key = self._desk.orders.ask(request, words, *topics, draft=draft)
         except FleetError as error:
             about = () if draft is None else (draft_topic(draft.place),)
             self._desk.report_failure(str(error), *error.topics, *about)
@@ -185,17 +185,17 @@ class PauseActions(QObject):
         self._go_on = actions.go_on
         actions.pause.triggered.connect(self._pause)
         actions.go_on.triggered.connect(self._continue)
-        desk.selection_changed.connect(self._enable)
+        desk.selection.changed.connect(self._enable)
         desk.state.queues_changed.connect(self._enable)
         desk.state.site_changed.connect(self._enable)
         self._enable()
 
     def _pause(self) -> None:
-        if not self._desk.selection:
+        if not self._desk.selection.robots:
             self._desk.complained.emit(
                 tr("No robot is selected, so none was paused. Select it in the table or on the map.")
             )
-        for robot in self._desk.selection:
+        for robot in self._desk.selection.robots:
             self._edits.pause_robot(robot)
         self._desk.sending.withdraw()
 
@@ -204,7 +204,7 @@ class PauseActions(QObject):
             self._edits.go_on(queue)
 
     def _paused(self) -> list[QueueReport]:
-        queues = (self._desk.state.queues.get(robot) for robot in self._desk.selection)
+        queues = (self._desk.state.queues.get(robot) for robot in self._desk.selection.robots)
         return [queue for queue in queues if queue is not None and queue.state is QueueState.PAUSED]
 
     def _enable(self, *_: object) -> None:
@@ -428,12 +428,12 @@ class QueuePanel(QWidget):
         self._hold.clicked.connect(self._hold_or_resume)
         self._desk.state.queues_changed.connect(self._show)
         self._edits.changed.connect(self._show)
-        self._desk.selection_changed.connect(self._show)
+        self._desk.selection.changed.connect(self._show)
 
     def _show(self, *_: object) -> None:
         queue = self._queue()
         self._head.setText(self._in_words(queue))
-        conflict = self._edits.conflict(self._desk.selected or "")
+        conflict = self._edits.conflict(self._desk.selection.last or "")
         self._conflict.setText(conflict)
         self._foot.setCurrentWidget(self._conflict if conflict else self._last)
         self._last.setText(last_ended_in_words(queue) if queue else "")
@@ -455,23 +455,23 @@ class QueuePanel(QWidget):
             else tr("Send the robot no further task; what it is doing it finishes (Pause robot stops it)")
         )
         # To hold is never in the way of anything: it waits for no answer.
-        self._hold.setEnabled(self._desk.selected is not None and (waits or not paused))
+        self._hold.setEnabled(self._desk.selection.last is not None and (waits or not paused))
 
     def _queue(self) -> QueueReport | None:
-        robot = self._desk.selected
+        robot = self._desk.selection.last
         return self._desk.state.queues.get(robot) if robot is not None else None
 
     def _is_free(self) -> bool:
         """Tell whether what is shown is what the gateway has: nothing asked for is without an answer."""
-        return not self._edits.is_asked(self._desk.selected or "")
+        return not self._edits.is_asked(self._desk.selection.last or "")
 
     def _in_words(self, queue: QueueReport | None) -> str:
         if queue is not None:
             return queue_in_words(queue)
-        if self._desk.selected is not None:
+        if self._desk.selection.last is not None:
             return tr(
                 "{selected} has no queue. Add a target or a route with Add to queue.",
-                selected=self._desk.selected,
+                selected=self._desk.selection.last,
             )
         queues = list(self._desk.state.queues)
         paused = sum(one.state is QueueState.PAUSED for one in queues)
@@ -499,12 +499,12 @@ class QueuePanel(QWidget):
         self._ask(self._edits.move, task, before)
 
     def _ask(self, edit: Callable[..., object], *how: str | None) -> None:
-        robot = self._desk.selected
+        robot = self._desk.selection.last
         if robot is not None and self._is_free():
             edit(robot, *how)
 
     def _hold_or_resume(self) -> None:
-        queue, robot = self._queue(), self._desk.selected
+        queue, robot = self._queue(), self._desk.selection.last
         if robot is not None:
             resumes = queue is not None and queue.state is QueueState.PAUSED
             (self._edits.resume if resumes else self._edits.pause)(robot)

@@ -146,7 +146,7 @@ class LastImage(QObject):
         self._task: DecodeTask | None = None
         self.image: QImage | None = None
         self.text = ""
-        desk.answered.connect(self._answered)
+        desk.orders.answered.connect(self._answered)
 
     def ask(self, robot: str) -> None:
         """Look for the newest image of ``robot``."""
@@ -164,7 +164,7 @@ class LastImage(QObject):
 
     def _ask(self, request: GetObservations | GetImage, text: str) -> None:
         try:
-            self._key = self._desk.inquire(request)
+            self._key = self._desk.orders.inquire(request)
         except FleetError as error:
             self._say(str(error), self.image)
             return
@@ -292,7 +292,7 @@ class RobotDetails(QWidget):
         self._image = LastImage(desk, self)
         self._lay_out()
         self._image.changed.connect(self._show_image)
-        desk.selection_changed.connect(self.refresh)
+        desk.selection.changed.connect(self.refresh)
         desk.state.updated.connect(self._pulled)
         self.refresh()
 
@@ -302,7 +302,7 @@ class RobotDetails(QWidget):
 
     def refresh(self) -> None:
         """Show what is known of the robot that was selected last."""
-        robot = self._desk.selected
+        robot = self._desk.selection.last
         view = None if robot is None else self._desk.state.robots.view(robot, self._desk.clock.steady())
         if robot is None or view is None:
             self._title.setText(tr("Select a robot in the table or on the map"))
@@ -311,7 +311,7 @@ class RobotDetails(QWidget):
             self._fill({})
             return
         several = tr("{robot}, selected last of several", robot=robot)
-        self._title.setText(robot if len(self._desk.selection) == 1 else several)
+        self._title.setText(robot if len(self._desk.selection.robots) == 1 else several)
         if self.isVisible() and self._asked_for != robot:
             self.ask()
         book = self._desk.state.commands
@@ -336,13 +336,13 @@ class RobotDetails(QWidget):
 
     def ask(self) -> None:
         """Ask the gateway for the robot's last image, and for what was asked of it before this desk came."""
-        robot = self._desk.selected
+        robot = self._desk.selection.last
         if robot is None:
             return
         self._asked_for = robot
         self._image.ask(robot)
         try:
-            self._desk.inquire(GetCommands(robot, HISTORY))
+            self._desk.orders.inquire(GetCommands(robot, HISTORY))
         except FleetError as error:
             self._about.setText(str(error))
 

@@ -76,7 +76,7 @@ class RobotTableView(QTableView):
         self.selectionModel().selectionChanged.connect(self._selected_here)
         ZoomMenu(self).wanted.connect(lambda index: self.zoom_wanted.emit(self._name(index)))
         self.positions.changed.connect(self.refresh)
-        desk.selection_changed.connect(self._selected_elsewhere)
+        desk.selection.changed.connect(self._selected_elsewhere)
         desk.state.updated.connect(self._pulled)
         # The robots known so far may be gone, or be others by the same names.
         desk.state.site_changed.connect(self.refresh)
@@ -191,11 +191,11 @@ class RobotTableView(QTableView):
         current = self.currentIndex()
         last = self._name(current) if current.isValid() else ""
         names.sort(key=lambda name: name == last)
-        self._desk.select_all(names)
+        self._desk.selection.select_all(names)
 
     def _selected_elsewhere(self) -> None:
         self._mark()
-        rows = self._model.rows_of(self._desk.selection)
+        rows = self._model.rows_of(self._desk.selection.robots)
         if len(rows) == 1:
             self.scrollTo(self._model.index(rows[0], 0))
 
@@ -203,7 +203,7 @@ class RobotTableView(QTableView):
         self._is_reset = True
 
     def _mark(self) -> None:
-        rows = self._model.rows_of(self._desk.selection)
+        rows = self._model.rows_of(self._desk.selection.robots)
         if set(rows) == {i.row() for i in self.selectionModel().selectedRows()}:
             return
         wanted = QItemSelection()

@@ -56,13 +56,13 @@ class FleetWindow(QObject):
         """What :meth:`remove` takes out, the last one first."""
         self.notices = self._add(MessageBar(iface.messageBar(), self))
         self._key = self._add(EmergencyKey(self.actions.emergency, self))
-        self._project_match = self._add(ProjectMatch(self.desk, self))
+        self._project_match = self._add(ProjectMatch(self.desk.state, self.desk.project, self))
         self.view = self._add(LiveView(self.desk, self))
         self.queue_edits = QueueEdits(self.desk, self)
         self.queue_marks = self._add(QueueMarks(self.desk))
         self.dock = FleetDock(self.desk, self.actions, self.queue_edits, iface.mainWindow())
-        self.road_layers = self._add(RoadLayers(self.desk, self))
-        self.standing_cones = self._add(StandingCones(self.desk, self))
+        self.road_layers = self._add(RoadLayers(self.desk.state, self.desk.project, self))
+        self.standing_cones = self._add(StandingCones(self.desk.state, self.desk.project, self))
         self.toolbar: QToolBar = iface.addToolBar("Fleet Supervisor")
         self.toolbar.setObjectName("fleet_toolbar")
         self._road_route = RoadRouteTool(self.desk)
@@ -115,7 +115,7 @@ class FleetWindow(QObject):
 
     def go_to(self, robot: str) -> None:
         """Select a robot alone and show where it is."""
-        self.desk.select(robot)
+        self.desk.selection.select(robot)
         self.view.zoom_to(robot)
 
     def _place(self) -> None:
@@ -227,7 +227,9 @@ class WindowAlarms(QObject):
     def __init__(self, iface: QgisInterface, window: FleetWindow, surfaces: SurfaceStore):
         super().__init__(window)
         self._window = window
-        self.watch = AlarmWatch(window.desk, surfaces, self)
+        self.watch = AlarmWatch(
+            window.desk.state, window.desk.site_to_canvas, window.desk.beat, surfaces, self
+        )
         self.panel = AlarmPanel(self.watch)
         self.bar = AlarmBar(iface.messageBar(), self.watch, self)
         self._tabs = window.dock.tabs
@@ -258,7 +260,7 @@ class WindowAlarms(QObject):
         self._tabs.show_colour(self.panel, alarm_colour(True) if new else None)
 
     def _go(self, robots: list[str]) -> None:
-        self._window.desk.select_all(robots)
+        self._window.desk.selection.select_all(robots)
         self._window.view.zoom_to(*robots)
 
     def _show(self) -> None:

@@ -376,7 +376,7 @@ class HistoryDownload(QObject):
         self.history = History()
         self.reached = 0.0
         """The time of the newest position that is there."""
-        desk.answered.connect(self._answered)
+        desk.orders.answered.connect(self._answered)
 
     @property
     def is_busy(self) -> bool:
@@ -389,8 +389,8 @@ class HistoryDownload(QObject):
         :raises NotSentError: when it cannot be asked for; what was there stays.
         """
         wanted = GetTrajectory(robots=robots, since=since, until=until, limit=PAGE)
-        self._desk.inquire(GetCommands(limit=COMMANDS))
-        self._key = self._desk.inquire(wanted)
+        self._desk.orders.inquire(GetCommands(limit=COMMANDS))
+        self._key = self._desk.orders.inquire(wanted)
         self._wanted = wanted
         self._drop_task()
         self.history, self.reached = History(), since
@@ -437,7 +437,7 @@ class HistoryDownload(QObject):
         wanted = self._wanted
         try:
             request = GetTrajectory(wanted.robots, wanted.since, wanted.until, after=after, limit=PAGE)
-            self._key = self._desk.inquire(request)
+            self._key = self._desk.orders.inquire(request)
         except FleetError as error:
             self._end(tr("The rest of the time was not fetched: {error}", error=error))
             return

@@ -80,7 +80,7 @@ class ReplayDock(ActionDock):
         if until <= since:
             self._complain(tr("The replay's time ends before it begins. Correct one of the two."))
             return
-        robots = list(self._desk.selection) if self.form.selected.isChecked() else []
+        robots = list(self._desk.selection.robots) if self.form.selected.isChecked() else []
         if self.form.selected.isChecked() and not robots:
             text = tr("No robot is selected to be replayed. Select one, or replay all.")
             self._complain(text, SELECTION)
@@ -176,7 +176,9 @@ class ReplayDock(ActionDock):
             # It is shown when all of it is there.
             return
         try:
-            self.map.show_moment(self.fetching.history, self._past.commands, moment, self._desk.selection)
+            self.map.show_moment(
+                self.fetching.history, self._past.commands, moment, self._desk.selection.robots
+            )
         except FleetError as error:
             self.clockwork.play(False)
             self._complain(str(error))

@@ -364,7 +364,7 @@ class QueueMarks(QgsMapCanvasItem):
         self._made_for: Screen | None = None
         self.setZValue(BELOW_ROBOTS)
         desk.state.queues_changed.connect(self._place)
-        desk.selection_changed.connect(self._place)
+        desk.selection.changed.connect(self._place)
         desk.state.site_changed.connect(self._place)
         desk.canvas.destinationCrsChanged.connect(self._place)
         desk.project.transformContextChanged.connect(self._place)
@@ -396,7 +396,7 @@ class QueueMarks(QgsMapCanvasItem):
         painter.drawImage(QPointF(0.0, 0.0), self._image)
 
     def _place(self, *_: object) -> None:
-        robot = self._desk.selected
+        robot = self._desk.selection.last
         queue = self._desk.state.queues.get(robot) if robot is not None else None
         points = [(task.x, task.y) for task in queue.tasks] if queue is not None else []
         self.places, self._image, self._made_for = NOWHERE, None, None

@@ -77,7 +77,7 @@ class DrawingTool(QgsMapTool):
         self._snapped = QgsSnapIndicator(self.canvas())
         self.canvas().installEventFilter(self)
         self.canvas().setFocus()
-        if self.desk.selected is None:
+        if self.desk.selection.last is None:
             text = tr("Select a robot first, in the table or on the map.")
             self.desk.messages.post(text, Level.WARNING, SELECTION)
 
@@ -211,7 +211,7 @@ class DrawingTool(QgsMapTool):
             self.desk.complained.emit(str(error))
 
     def _check_robot(self) -> None:
-        if self.desk.selected is None and self.draft is None:
+        if self.desk.selection.last is None and self.draft is None:
             raise FleetError(
                 tr(
                     "No robot is selected, so there is nobody to send there. Select one in the table or on "

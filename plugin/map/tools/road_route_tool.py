@@ -49,7 +49,7 @@ class RoutePreview(QObject):
         self._begins: Point | None = None
         """Where the way that is shown begins, of one from where a robot is."""
         desk.preview.shown.connect(self._show)
-        desk.selection_changed.connect(self.hide)
+        desk.selection.changed.connect(self.hide)
         desk.state.updated.connect(self._follow)
 
     def lead_to(
@@ -238,7 +238,7 @@ class RoadRouteTool(RouteTool):
         """Return whose the next leg is, and where it begins; None for where the robot is."""
         draft = self.draft
         if draft is None:
-            return self.desk.selected, None
+            return self.desk.selection.last, None
         return draft.robot, draft.points[-1]
 
     def _take(self, question: RouteQuestion, route: RouteReport) -> None:

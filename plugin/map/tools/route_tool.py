@@ -268,7 +268,7 @@ class RouteTool(DrawingTool):
         self._is_finished = False
         draft = self.draft
         if draft is None:
-            draft = PendingCommand(self.desk.selected, ROUTE, ())
+            draft = PendingCommand(self.desk.selection.last, ROUTE, ())
         if self.is_for_selected(draft):
             self.set_command(draft.with_leg((point,)))
 
@@ -281,14 +281,14 @@ class RouteTool(DrawingTool):
 
     def is_for_selected(self, draft: PendingCommand) -> bool:
         """Tell whether the draft is for the robot that is selected; say so where it is for another."""
-        if self.desk.selected in (None, draft.robot):
+        if self.desk.selection.last in (None, draft.robot):
             return True
         self.desk.complained.emit(
             tr(
                 "The route on the map is for {robot}, but {selected} is selected. Send it (Enter) or "
                 "cancel it (Esc) first, or select {robot} again.",
                 robot=draft.robot,
-                selected=self.desk.selected,
+                selected=self.desk.selection.last,
             )
         )
         return False

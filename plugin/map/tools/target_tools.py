@@ -38,7 +38,7 @@ class ConeTool(DrawingTool):
             self._is_direct = False
 
     def hovered(self, event: QgsMapMouseEvent) -> None:
-        self._way.lead_to(event, self.desk.selected, None)
+        self._way.lead_to(event, self.desk.selection.last, None)
 
     def deactivate(self) -> None:
         self._way.clear()
@@ -55,7 +55,7 @@ class ConeTool(DrawingTool):
             )
             return
         self.set_command(
-            PendingCommand(self.desk.selected or other.robot, CONE, (point,), is_direct=self._is_direct)
+            PendingCommand(self.desk.selection.last or other.robot, CONE, (point,), is_direct=self._is_direct)
         )
 
     def key(self, event: QKeyEvent) -> bool:
@@ -118,4 +118,6 @@ class StartTool(DrawingTool):
                     in_words=other.in_words(),
                 )
             )
-        self.set_command(PendingCommand(self.desk.selected or other.robot, START, (place,), theta=theta))
+        self.set_command(
+            PendingCommand(self.desk.selection.last or other.robot, START, (place,), theta=theta)
+        )

@@ -316,7 +316,7 @@ def test_each_role_reaches_as_far_as_it_may_and_is_told_where_it_ends(
     token = bridge.run("operators", "add", role.title(), "--role", role)
     desk.open_link(bridge.url, role.title(), OperatorCredentials(token, str(bridge.ca)))
     wait(lambda: desk.state.link.phase is ConnectionPhase.CONNECTED and desk.state.site is not None, 10)
-    desk.answered.connect(answers.append)
+    desk.orders.answered.connect(answers.append)
 
     def error_of(request, action) -> str:
         # Questions that the desk asks by itself, such as for observations, are answered here as well.
@@ -328,7 +328,7 @@ def test_each_role_reaches_as_far_as_it_may_and_is_told_where_it_ends(
         return str(to_request()[-1].error or "")
 
     def draw_and_send():
-        desk.select("nobody")
+        desk.selection.select("nobody")
         window.actions.cone.trigger()
         iface.canvas.mapTool().add_point((100.0, 80.0))
         wait(lambda: not desk.checks.is_under_way)

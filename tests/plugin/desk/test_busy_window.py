@@ -23,7 +23,7 @@ def test_the_window_goes_on_while_a_gateway_hangs(at_desk, gateway, wait):
     timer = QTimer()
     timer.timeout.connect(lambda: ticks.append(time.monotonic()))
     timer.start(20)
-    at_desk.desk.select("r1")
+    at_desk.desk.selection.select("r1")
     at_desk.actions.abort.trigger()
     press(at_desk, QPushButton, "fleet_abort_all_button")
     at_desk.actions.connect.trigger()

@@ -38,7 +38,7 @@ def test_no_button_moves_whatever_is_reported(panel, gateway, make_robot, wait, 
     wait(lambda: len(desk.state.robots) == 14, what="the robots")
     dock.table.refresh()
     watched.check("robots have come")
-    desk.select(names[0])
+    desk.selection.select(names[0])
     watched.check("a robot is selected")
     found = Findings(refused=(LONG,), warnings=(LONG,))
     for words, draft in (

@@ -98,7 +98,7 @@ def test_what_was_refused_for_a_queue_comes_back_as_a_draft_and_goes_with_it(
     at_desk, gateway, iface, told, wait
 ):
     gateway.refuse["add_tasks"] = WHY
-    at_desk.desk.select("r1")
+    at_desk.desk.selection.select("r1")
     at_desk.actions.cone.trigger()
     iface.click(70, 55)
     at_desk.actions.enqueue.trigger()
@@ -160,11 +160,11 @@ def test_a_replay_that_was_not_loaded_is_told_until_one_is(replay, at_desk, told
 
 
 def test_without_a_robot_to_be_replayed_that_is_said_until_one_is_selected(replay, at_desk, told):
-    at_desk.desk.select(None)
+    at_desk.desk.selection.select(None)
     replay.form.selected.setChecked(True)
     replay.load()
     told.begins("No robot is selected to be replayed")
-    at_desk.desk.select("r1")
+    at_desk.desk.selection.select("r1")
     told.ends("No robot is selected to be replayed")
 
 

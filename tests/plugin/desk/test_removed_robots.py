@@ -65,12 +65,12 @@ def test_its_queue_and_what_was_told_of_it_are_gone(at_desk, gateway, wait, ifac
 def test_it_is_gone_from_table_map_layer_and_expressions(at_desk, gateway, wait, iface, removed):
     left = {"r1": "r2", "r2": "r1"}[removed]
     wait(lambda: layer_of(at_desk) == ["r1", "r2"], what="both robots in the layer")
-    at_desk.desk.select(removed)
+    at_desk.desk.selection.select(removed)
     remove(gateway, removed)
     wait(lambda: len(at_desk.desk.state.robots) == 1, what="the news")
     assert rows_of(at_desk) == [left]
     assert layer_of(at_desk) == [left]
-    assert at_desk.desk.selection == ()
+    assert at_desk.desk.selection.robots == ()
     assert QgsExpression(f"robot_state('{removed}')").evaluate() is None
     assert QgsExpression(f"robot_state('{left}')").evaluate() == "fresh"
     at = {"r1": iface.pixel(50, 40), "r2": iface.pixel(80, 60)}
@@ -80,7 +80,7 @@ def test_it_is_gone_from_table_map_layer_and_expressions(at_desk, gateway, wait,
 
 
 def test_a_draft_for_it_is_taken_away_and_that_is_said(at_desk, gateway, wait, iface):
-    at_desk.desk.select("r1")
+    at_desk.desk.selection.select("r1")
     at_desk.actions.cone.trigger()
     iface.click(70, 55)
     assert at_desk.desk.drafts.draft is not None
@@ -90,13 +90,13 @@ def test_a_draft_for_it_is_taken_away_and_that_is_said(at_desk, gateway, wait, i
 
 
 def test_a_draft_for_another_stays(at_desk, gateway, wait, iface):
-    at_desk.desk.select("r2")
+    at_desk.desk.selection.select("r2")
     at_desk.actions.cone.trigger()
     iface.click(70, 55)
     remove(gateway, "r1")
     wait(lambda: len(at_desk.desk.state.robots) == 1, what="the news")
     assert at_desk.desk.drafts.draft.robot == "r2"
-    assert at_desk.desk.selection == ("r2",)
+    assert at_desk.desk.selection.robots == ("r2",)
 
 
 def test_one_that_was_removed_while_the_link_was_away_is_gone_when_it_is_back(at_desk, gateway, wait):

@@ -15,7 +15,7 @@ from qgis.PyQt.QtWidgets import QLabel
 @pytest.fixture
 def drawn(at_desk, iface):
     """A desk with a cone target for r1 as a draft."""
-    at_desk.desk.select("r1")
+    at_desk.desk.selection.select("r1")
     at_desk.actions.cone.trigger()
     iface.click(70, 55)
     assert at_desk.desk.drafts.draft is not None
@@ -41,7 +41,7 @@ def test_robots_commands_and_a_stop_outlast_a_site_that_is_published_anew_or_cho
     tell(gateway, replace(site, **how), wait, drawn)
     assert desk.state.emergency == stop and drawn.dock.banner.isVisible()
     assert len(desk.state.commands) == 1 and len(desk.state.robots) == 2
-    assert desk.selection == ("r1",)
+    assert desk.selection.robots == ("r1",)
 
 
 def test_a_draft_is_held_against_the_site_that_was_published_anew(drawn, gateway, site, wait, iface):

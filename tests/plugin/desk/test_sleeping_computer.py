@@ -76,7 +76,7 @@ def test_what_had_come_in_before_is_not_taken_for_new(lid, monkeypatch, plugin, 
 
 
 def test_an_order_from_before_is_handed_back_and_not_sent_again(laptop, lid, gateway, wait, iface):
-    laptop.desk.select("r1")
+    laptop.desk.selection.select("r1")
     laptop.actions.cone.trigger()
     iface.click(70, 55)
     gateway.mute.add("send")

@@ -34,7 +34,7 @@ def test_unloading_leaves_nothing_twice(iface, gateway, make_robot, wait):
     for _ in range(2):
         plugin = connected(iface, gateway, wait)
         window = plugin.window
-        window.desk.select("r1")
+        window.desk.selection.select("r1")
         window.actions.cone.trigger()
         iface.click(60, 50)
         window.desk.abort_all()

@@ -227,7 +227,7 @@ def look_at_panel(show: Show, window, desk_window, gateway, desk_tests) -> None:
     desk_window.actions.connect.trigger()
     desk_tests.wait_until(lambda: len(desk.state.robots) == 5, what="five robots")
     desk_tests.wait_until(lambda: alarm_bar(window) is not None, what="the alarm of a low battery")
-    desk.select("r1")
+    desk.selection.select("r1")
     watches = loaded("button_places", ROOT / "tests" / "plugin" / "desk" / "button_places.py")
     make_panels_narrow(window)
     settle()

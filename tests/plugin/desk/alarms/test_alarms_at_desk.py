@@ -357,7 +357,7 @@ def test_a_double_click_or_enter_goes_to_both_robots(at_alarms, gateway, make_ro
         QTest.keyClick(view, Qt.Key.Key_Return)
     else:
         QTest.mouseDClick(view.viewport(), LEFT, pos=view.visualRect(view.model().index(0, 1)).center())
-    assert at_alarms.desk.selection == ("r2", "r1")
+    assert at_alarms.desk.selection.robots == ("r2", "r1")
     centre = iface.canvas.extent().center()
     assert (centre.x() - 488000, centre.y() - 5190000) == pytest.approx((79.75, 60), abs=0.5)
 

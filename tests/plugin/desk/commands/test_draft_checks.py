@@ -132,11 +132,11 @@ def test_a_target_too_near_to_that_of_another_robot_is_refused_and_that_one_name
     cone.key(Qt.Key.Key_Return)
     cone.sent()
     cone.wait(lambda: len(cone.window.desk.state.commands) == 1)
-    cone.window.desk.select("r2")
+    cone.window.desk.selection.select("r2")
     cone.click((70, 55.5))
     assert cone.complained("m from the target of r1 at ")
     assert "Not to be sent" in cone.told
-    cone.window.desk.select("r1")
+    cone.window.desk.selection.select("r1")
     cone.click((70, 55.5))
     assert "Not to be sent" not in cone.told
 

@@ -267,7 +267,7 @@ def test_the_way_to_the_mouse_goes_with_whatever_makes_it_untrue(roads, gateway)
     way = roads.hand.iface.canvas.mapTool()._way
 
     def shown():
-        desk.select("r1")
+        desk.selection.select("r1")
         # One pixel beside where it was, so that the mouse has moved.
         roads.hand.move(70, 60)
         roads.hand.move(71, 60)
@@ -289,7 +289,7 @@ def test_the_way_to_the_mouse_goes_with_whatever_makes_it_untrue(roads, gateway)
         QTest.qWait(100)
         assert way.line == [], f"{go}: it came back"
     shown()
-    desk.select(None)
+    desk.selection.select(None)
     assert way.line == []
     shown()
     gateway.stop()

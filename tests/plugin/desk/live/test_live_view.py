@@ -102,7 +102,7 @@ def test_another_gateway_of_the_same_site_has_nothing_of_the_one_before(
     driven, gateway, site, iface, make_robot, wait
 ):
     desk = driven.desk
-    desk.select("r1")
+    desk.selection.select("r1")
     desk.orders.abort("r1")
     wait(lambda: len(desk.state.commands) == 1)
     other = type(gateway)(site)
@@ -113,7 +113,7 @@ def test_another_gateway_of_the_same_site_has_nothing_of_the_one_before(
         desk.state.site_changed.connect(lambda: rows.append(driven.dock.table.model().rowCount()))
         desk.open_link(other.url, "anna")
         wait(lambda: len(desk.state.robots) == 1 and desk.state.robots.row("z9") == 0)
-        assert len(desk.state.commands) == 0 and desk.selected is None
+        assert len(desk.state.commands) == 0 and desk.selection.last is None
         assert driven.dock.log.view.model().rowCount() == 0
         # Not for a moment does a row show what another robot told.
         assert rows == [0]
@@ -126,12 +126,12 @@ def test_another_gateway_of_the_same_site_has_nothing_of_the_one_before(
 
 def test_the_same_gateway_again_takes_nothing_away(driven, gateway, wait):
     desk = driven.desk
-    desk.select("r1")
+    desk.selection.select("r1")
     desk.close_link()
     wait(lambda: desk.state.link.phase.value == "closed")
     desk.open_link(gateway.url, "anna")
     wait(lambda: desk.state.link.phase.value == "connected")
-    assert desk.selected == "r1" and len(desk.state.robots) == 2
+    assert desk.selection.last == "r1" and len(desk.state.robots) == 2
 
 
 def test_a_thousand_newcomers_are_in_table_and_layer_without_the_window_waiting(

@@ -53,7 +53,7 @@ class Desk(QObject):
 
     def __init__(self):
         super().__init__()
-        self.state = self
+        self.state = self.orders = self
         self.link, self.observations = ConnectionStatus(ConnectionPhase.CLOSED), ObservationCache()
 
     def tell(self, *numbers):

@@ -259,6 +259,6 @@ def test_a_plan_that_is_cleared_while_it_is_sent_is_sent_no_further(panel, gatew
     first = OperatorRequest(panel.driven.sending._key, "set_queue")
     panel.driven.clear()
     assert not panel.driven.busy and panel.driven.driven is None
-    panel._desk.answered.emit(RequestResult(first, {}))
+    panel._desk.orders.answered.emit(RequestResult(first, {}))
     QTest.qWait(200)
     assert len(gateway.asked("set_queue")) == 1 and panel.driven.sending is None

@@ -12,7 +12,7 @@ from qgis.PyQt.QtWidgets import QToolButton
 
 @pytest.fixture
 def desk(at_desk):
-    at_desk.desk.select("r1")
+    at_desk.desk.selection.select("r1")
     return at_desk
 
 
@@ -27,7 +27,7 @@ def tasks(gateway, robot="r1"):
 def test_a_cone_goes_into_the_queue_of_the_robot_that_it_was_made_for(desk, iface, gateway, wait):
     desk.actions.cone.trigger()
     iface.click(70, 55)
-    desk.desk.select("r2")
+    desk.desk.selection.select("r2")
     enqueue(desk)
     wait(lambda: len(tasks(gateway)) == 1)
     (task,) = tasks(gateway)

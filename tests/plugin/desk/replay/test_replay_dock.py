@@ -182,7 +182,7 @@ def test_of_what_is_removed_nothing_is_left_to_be_done(loaded):
 def test_a_replay_of_selected_robots_has_their_marks_alone(loaded, at_desk, gateway, wait):
     at_desk.desk.orders.abort("r2")
     wait(lambda: {mark.command.robot for mark in loaded.line.marks} == {"r1", "r2"}, what="both aborts")
-    at_desk.desk.select("r2")
+    at_desk.desk.selection.select("r2")
     loaded.form.selected.setChecked(True)
     loaded.form.load.click()
     wait(lambda: not loaded.is_busy and loaded.line.marks, what="the replay")

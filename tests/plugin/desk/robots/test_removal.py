@@ -38,7 +38,7 @@ def asked(gone, iface):
     """Opens the question, with these robots selected, by the key in the table."""
 
     def ask(*selected):
-        gone.desk.select_all(selected)
+        gone.desk.selection.select_all(selected)
         gone.dock.table.setFocus()
         QTest.keyClick(gone.dock.table, Qt.Key.Key_Delete)
         return iface.mainWindow().findChild(RemovalDialog)

@@ -259,12 +259,12 @@ def test_what_changes_is_put_in_order_again_and_stays_selected(table, at_desk, g
     assert column(table, "Robot") == ["r2", "r1", "a9", "r3"]
     view_row = column(table, "Robot").index("r1")
     QTest.mouseClick(table.viewport(), LEFT, pos=table.visualRect(table.model().index(view_row, 0)).center())
-    assert at_desk.desk.selection == ("r1",)
+    assert at_desk.desk.selection.robots == ("r1",)
     gateway.show(make_robot("r1", 50, 40, v=2.5))
     wait(lambda: column(table, "Robot") == ["r1", "r2", "a9", "r3"])
     assert [index.row() for index in table.selectionModel().selectedRows()] == [0]
     assert table.currentIndex().row() == 0
-    assert at_desk.desk.selection == ("r1",)
+    assert at_desk.desk.selection.robots == ("r1",)
 
 
 # --- which ---
@@ -317,20 +317,20 @@ def test_only_some_are_listed(table, at_desk, gateway, wait, which, names):
 
 
 def test_a_selected_robot_that_the_filter_hides_stays_selected(table, at_desk):
-    at_desk.desk.select("r2")
+    at_desk.desk.selection.select("r2")
     type_search(at_desk, "r1")
-    assert at_desk.desk.selection == ("r2",)
+    assert at_desk.desk.selection.robots == ("r2",)
     assert table.selectionModel().selectedRows() == []
     type_search(at_desk, "")
     assert [table.model().name_at(i.row()) for i in table.selectionModel().selectedRows()] == ["r2"]
 
 
 def test_keys_move_the_selection(table, at_desk):
-    at_desk.desk.select("r1")
+    at_desk.desk.selection.select("r1")
     QTest.keyClick(table, Qt.Key.Key_Down)
-    assert at_desk.desk.selection == ("r2",)
+    assert at_desk.desk.selection.robots == ("r2",)
     QTest.keyClick(table, Qt.Key.Key_Down, Qt.KeyboardModifier.ShiftModifier)
-    assert set(at_desk.desk.selection) == {"r2", "r3"}
+    assert set(at_desk.desk.selection.robots) == {"r2", "r3"}
 
 
 # --- columns ---
