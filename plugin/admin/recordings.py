@@ -45,7 +45,7 @@ class RecordingsDialog(QDialog):
         self.setObjectName("fleet_recordings_dialog")
         self.setWindowTitle(tr("Recordings on the map"))
         self._desk = desk
-        self._asking = PendingQueries(desk, self)
+        self._asking = PendingQueries(desk.orders, self)
         self._link = QComboBox()
         self._link.setObjectName("fleet_recordings_link")
         self._place = QSlider(Qt.Orientation.Horizontal)

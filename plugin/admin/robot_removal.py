@@ -89,7 +89,7 @@ class RobotRemoval:
     ):
         self._iface, self._menu, self._connections = iface, menu, connections
         self._desk, self._table = desk, table
-        self._asking = PendingQueries(desk, table)
+        self._asking = PendingQueries(desk.orders, table)
         self._asking.refused.connect(desk.failed)
         self._question: RemovalDialog | None = None
         self.action = QAction(

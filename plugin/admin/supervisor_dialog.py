@@ -22,6 +22,7 @@ from qgis.PyQt.QtWidgets import (
 
 from ...robot_bridge.core.messages import Role
 from ..control.fleet_controller import FleetController
+from ..control.request_tracker import RequestTracker
 from ..gateway_client.connection_status import ConnectionPhase, ConnectionStatus, role_in_words
 from ..gateway_client.requests import RequestResult
 from ..help import HelpTopic, show_help
@@ -44,16 +45,16 @@ class PendingQueries(QObject):
     refused = pyqtSignal(str)
     """Something was not done, or its answer cannot be read: why, for the operator."""
 
-    def __init__(self, desk: FleetController, parent: QObject | None = None):
+    def __init__(self, requests: RequestTracker, parent: QObject | None = None):
         super().__init__(parent)
-        self._desk = desk
+        self._requests = requests
         self._takers: dict[str, tuple[str, Take]] = {}
-        desk.orders.answered.connect(self._answered)
+        requests.answered.connect(self._answered)
 
     def ask(self, request: Any, words: str, take: Take) -> None:
         """Ask for ``request``, which is ``words`` to the operator; ``take`` gets the result."""
         try:
-            self._takers[self._desk.orders.inquire(request)] = words, take
+            self._takers[self._requests.inquire(request)] = words, take
         except FleetError as error:
             self.refused.emit(f"{words}: {error}")
 
@@ -140,7 +141,7 @@ class SupervisorDialog(QDialog):
         self.setObjectName(name)
         self.setWindowTitle(title)
         self._desk, self.model, self._topic = desk, model, topic
-        self._listing, self._changing = PendingQueries(desk, self), PendingQueries(desk, self)
+        self._listing, self._changing = PendingQueries(desk.orders, self), PendingQueries(desk.orders, self)
         self.view = _table(model, f"{name}_table")
         self.said = WrappingLabel(lines=2)
         self.said.setObjectName(f"{name}_said")

@@ -32,6 +32,7 @@ from ...robot_bridge.core.messages import (
     SendImage,
 )
 from ..control.fleet_controller import FleetController
+from ..control.request_tracker import RequestTracker
 from ..gateway_client.command_cache import PathDeviations, asked_at, command_in_words, state_word
 from ..gateway_client.requests import RequestResult
 from ..gateway_client.robot_states import RobotView
@@ -137,16 +138,16 @@ class LastImage(QObject):
 
     changed = pyqtSignal()
 
-    def __init__(self, desk: FleetController, parent: QObject | None = None):
+    def __init__(self, requests: RequestTracker, parent: QObject | None = None):
         super().__init__(parent)
-        self._desk = desk
+        self._requests = requests
         self._robot = ""
         self._key = ""
         self._seen: dict = {}
         self._task: DecodeTask | None = None
         self.image: QImage | None = None
         self.text = ""
-        desk.orders.answered.connect(self._answered)
+        requests.answered.connect(self._answered)
 
     def ask(self, robot: str) -> None:
         """Look for the newest image of ``robot``."""
@@ -164,7 +165,7 @@ class LastImage(QObject):
 
     def _ask(self, request: GetObservations | GetImage, text: str) -> None:
         try:
-            self._key = self._desk.orders.inquire(request)
+            self._key = self._requests.inquire(request)
         except FleetError as error:
             self._say(str(error), self.image)
             return
@@ -289,7 +290,7 @@ class RobotDetails(QWidget):
         self._sections = {name: _section(self._tree, name) for name in SECTIONS}
         self._picture = _Picture()
         self._about = ElidedText("fleet_image_text")
-        self._image = LastImage(desk, self)
+        self._image = LastImage(desk.orders, self)
         self._lay_out()
         self._image.changed.connect(self._show_image)
         desk.selection.changed.connect(self.refresh)

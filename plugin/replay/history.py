@@ -20,7 +20,7 @@ from ...robot_bridge.core.messages import (
     GetTrajectory,
     RobotState,
 )
-from ..control.fleet_controller import FleetController
+from ..control.request_tracker import RequestTracker
 from ..gateway_client.command_cache import UNDER_WAY, CommandCache, asked_at, command_in_words, state_word
 from ..gateway_client.requests import RequestResult
 from ..gateway_client.robot_states import RobotArrays
@@ -367,16 +367,16 @@ class HistoryDownload(QObject):
     ended = pyqtSignal(str)
     """All is there (an empty text), or not all, and why."""
 
-    def __init__(self, desk: FleetController, parent: QObject | None = None):
+    def __init__(self, requests: RequestTracker, parent: QObject | None = None):
         super().__init__(parent)
-        self._desk = desk
+        self._requests = requests
         self._key = ""
         self._wanted: GetTrajectory | None = None
         self._task: SortHistoryTask | None = None
         self.history = History()
         self.reached = 0.0
         """The time of the newest position that is there."""
-        desk.orders.answered.connect(self._answered)
+        requests.answered.connect(self._answered)
 
     @property
     def is_busy(self) -> bool:
@@ -389,8 +389,8 @@ class HistoryDownload(QObject):
         :raises NotSentError: when it cannot be asked for; what was there stays.
         """
         wanted = GetTrajectory(robots=robots, since=since, until=until, limit=PAGE)
-        self._desk.orders.inquire(GetCommands(limit=COMMANDS))
-        self._key = self._desk.orders.inquire(wanted)
+        self._requests.inquire(GetCommands(limit=COMMANDS))
+        self._key = self._requests.inquire(wanted)
         self._wanted = wanted
         self._drop_task()
         self.history, self.reached = History(), since
@@ -437,7 +437,7 @@ class HistoryDownload(QObject):
         wanted = self._wanted
         try:
             request = GetTrajectory(wanted.robots, wanted.since, wanted.until, after=after, limit=PAGE)
-            self._key = self._desk.orders.inquire(request)
+            self._key = self._requests.inquire(request)
         except FleetError as error:
             self._end(tr("The rest of the time was not fetched: {error}", error=error))
             return

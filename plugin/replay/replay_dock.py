@@ -34,7 +34,7 @@ class ReplayDock(ActionDock):
         self._showing = CooperativeTask(self, ONE_STEP)
         """Shows a history that has just come."""
         self._past = CommandSorter(desk.state.commands, self)
-        self.fetching = HistoryDownload(desk, self)
+        self.fetching = HistoryDownload(desk.orders, self)
         self.clockwork = ReplayClock(desk.canvas, self)
         self.layer = ReplayLayer(desk.project, self)
         self.form = TimeRangeForm()

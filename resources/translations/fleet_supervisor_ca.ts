@@ -1108,16 +1108,6 @@
         </message>
         <message>
             <location filename="../../plugin/control/fleet_controller.py" />
-            <source>Another site is served now: {site}, no longer {before}. Open its project.</source>
-            <translation>Ara se serveix un altre recinte: {site}, ja no {before}. Obriu-ne el projecte.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/fleet_controller.py" />
-            <source>EMERGENCY STOP is NOT sent yet: the link is down. It is sent as soon as that is back; use the robots' own emergency stops now.</source>
-            <translation>La PARADA D'EMERGÈNCIA encara NO s'ha enviat: l'enllaç està tallat. S'envia quan torni; feu servir ara les parades d'emergència dels mateixos robots.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/fleet_controller.py" />
             <source>No robot is selected, so none was aborted. Select it in the table or on the map.</source>
             <translation>No hi ha cap robot seleccionat, així que no se n'ha avortat cap. Seleccioneu-lo a la taula o al mapa.</translation>
         </message>
@@ -1128,23 +1118,8 @@
         </message>
         <message>
             <location filename="../../plugin/control/fleet_controller.py" />
-            <source>The gateway has another database than before: its robots and commands are others, and those of before are not shown any more.</source>
-            <translation>La passarel·la té una altra base de dades que abans: els seus robots i ordres són uns altres, i els d'abans ja no es mostren.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/fleet_controller.py" />
             <source>The operator's name is empty. Write who you are: it stands in every log.</source>
             <translation>El nom de l'operador és buit. Escriviu qui sou: és a tots els registres.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/fleet_controller.py" />
-            <source>The site is not known yet. Connect to a gateway first.</source>
-            <translation>El recinte encara no es coneix. Connecteu abans a una passarel·la.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/fleet_controller.py" />
-            <source>the desk is not connected to a gateway. Connect first; to stop a robot now use the robot's own emergency stop.</source>
-            <translation>la consola no està connectada a cap passarel·la. Connecteu abans; per aturar ara un robot feu servir la seva parada d'emergència.</translation>
         </message>
         <message>
             <location filename="../../plugin/control/fleet_controller.py" />
@@ -1348,6 +1323,16 @@
             <location filename="../../plugin/control/request_tracker.py" />
             <source>EMERGENCY STOP</source>
             <translation>PARADA D'EMERGÈNCIA</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/control/request_tracker.py" />
+            <source>EMERGENCY STOP is NOT sent yet: the link is down. It is sent as soon as that is back; use the robots' own emergency stops now.</source>
+            <translation>La PARADA D'EMERGÈNCIA encara NO s'ha enviat: l'enllaç està tallat. S'envia quan torni; feu servir ara les parades d'emergència dels mateixos robots.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/control/request_tracker.py" />
+            <source>the desk is not connected to a gateway. Connect first; to stop a robot now use the robot's own emergency stop.</source>
+            <translation>la consola no està connectada a cap passarel·la. Connecteu abans; per aturar ara un robot feu servir la seva parada d'emergència.</translation>
         </message>
         <message>
             <location filename="../../plugin/control/request_tracker.py" />
@@ -1941,6 +1926,16 @@
             <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>{url} takes no desk now: {said} It is tried again by itself.</source>
             <translation>{url} ara no admet cap consola: {said} Es torna a provar sol.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/gateway_client/fleet_state.py" />
+            <source>Another site is served now: {site}, no longer {before}. Open its project.</source>
+            <translation>Ara se serveix un altre recinte: {site}, ja no {before}. Obriu-ne el projecte.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/gateway_client/fleet_state.py" />
+            <source>The gateway has another database than before: its robots and commands are others, and those of before are not shown any more.</source>
+            <translation>La passarel·la té una altra base de dades que abans: els seus robots i ordres són uns altres, i els d'abans ja no es mostren.</translation>
         </message>
         <message>
             <location filename="../../plugin/gateway_client/protocol.py" />
@@ -3064,6 +3059,11 @@
         </message>
         <message>
             <location filename="../../plugin/layers/site_transform.py" />
+            <source>The site is not known yet. Connect to a gateway first.</source>
+            <translation>El recinte encara no es coneix. Connecteu abans a una passarel·la.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/site_transform.py" />
             <source>The site {name} is in the CRS {crs}, which this QGIS does not know: its robots cannot be placed on the map. Correct crs in the site's site.toml, or update QGIS.</source>
             <translation>El recinte {name} és en el SRC {crs}, que aquest QGIS no coneix: els seus robots no es poden situar al mapa. Corregiu crs al site.toml del recinte, o actualitzeu QGIS.</translation>
         </message>
@@ -3096,86 +3096,6 @@
             <location filename="../../plugin/locator.py" />
             <source>{state}, heard of {age:.0f} s ago</source>
             <translation>{state}, últim missatge fa {age:.0f} s</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/reported_layers.py" />
-            <source>Accuracy (m)</source>
-            <translation>Exactitud (m)</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/reported_layers.py" />
-            <source>Age (s)</source>
-            <translation>Antiguitat (s)</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/reported_layers.py" />
-            <source>Battery (0 to 1)</source>
-            <translation>Bateria (0 a 1)</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/reported_layers.py" />
-            <source>Closed roads</source>
-            <translation>Vies tancades</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/reported_layers.py" />
-            <source>Command</source>
-            <translation>Ordre</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/reported_layers.py" />
-            <source>Cones put down</source>
-            <translation>Cons posats</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/reported_layers.py" />
-            <source>Conflicts</source>
-            <translation>Conflictes</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/reported_layers.py" />
-            <source>Heading (°)</source>
-            <translation>Rumb (°)</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/reported_layers.py" />
-            <source>Link</source>
-            <translation>Enllaç</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/reported_layers.py" />
-            <source>Robot</source>
-            <translation>Robot</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/reported_layers.py" />
-            <source>Robots (live)</source>
-            <translation>Robots (en directe)</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/reported_layers.py" />
-            <source>Speed (m/s)</source>
-            <translation>Velocitat (m/s)</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/reported_layers.py" />
-            <source>Status</source>
-            <translation>Situació</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/reported_layers.py" />
-            <source>Theta (rad)</source>
-            <translation>Theta (rad)</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/reported_layers.py" />
-            <source>closed</source>
-            <translation>tancada</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/reported_layers.py" />
-            <source>until</source>
-            <translation>fins a</translation>
         </message>
         <message>
             <location filename="../../plugin/map/live_view.py" />
@@ -3286,6 +3206,86 @@
             <location filename="../../plugin/map/overlay/task_painter.py" />
             <source>{metres:.0f} m</source>
             <translation>{metres:.0f} m</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/reported_layers.py" />
+            <source>Accuracy (m)</source>
+            <translation>Exactitud (m)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/reported_layers.py" />
+            <source>Age (s)</source>
+            <translation>Antiguitat (s)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/reported_layers.py" />
+            <source>Battery (0 to 1)</source>
+            <translation>Bateria (0 a 1)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/reported_layers.py" />
+            <source>Closed roads</source>
+            <translation>Vies tancades</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/reported_layers.py" />
+            <source>Command</source>
+            <translation>Ordre</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/reported_layers.py" />
+            <source>Cones put down</source>
+            <translation>Cons posats</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/reported_layers.py" />
+            <source>Conflicts</source>
+            <translation>Conflictes</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/reported_layers.py" />
+            <source>Heading (°)</source>
+            <translation>Rumb (°)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/reported_layers.py" />
+            <source>Link</source>
+            <translation>Enllaç</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/reported_layers.py" />
+            <source>Robot</source>
+            <translation>Robot</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/reported_layers.py" />
+            <source>Robots (live)</source>
+            <translation>Robots (en directe)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/reported_layers.py" />
+            <source>Speed (m/s)</source>
+            <translation>Velocitat (m/s)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/reported_layers.py" />
+            <source>Status</source>
+            <translation>Situació</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/reported_layers.py" />
+            <source>Theta (rad)</source>
+            <translation>Theta (rad)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/reported_layers.py" />
+            <source>closed</source>
+            <translation>tancada</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/reported_layers.py" />
+            <source>until</source>
+            <translation>fins a</translation>
         </message>
         <message>
             <location filename="../../plugin/map/site_project.py" />

@@ -1108,16 +1108,6 @@
         </message>
         <message>
             <location filename="../../plugin/control/fleet_controller.py" />
-            <source>Another site is served now: {site}, no longer {before}. Open its project.</source>
-            <translation>Ahora se sirve otro recinto: {site}, ya no {before}. Abra su proyecto.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/fleet_controller.py" />
-            <source>EMERGENCY STOP is NOT sent yet: the link is down. It is sent as soon as that is back; use the robots' own emergency stops now.</source>
-            <translation>La PARADA DE EMERGENCIA aún NO se ha enviado: el enlace está caído. Se envía en cuanto vuelva; use ahora las paradas de emergencia de los propios robots.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/fleet_controller.py" />
             <source>No robot is selected, so none was aborted. Select it in the table or on the map.</source>
             <translation>No hay ningún robot seleccionado, así que no se abortó ninguno. Selecciónelo en la tabla o en el mapa.</translation>
         </message>
@@ -1128,23 +1118,8 @@
         </message>
         <message>
             <location filename="../../plugin/control/fleet_controller.py" />
-            <source>The gateway has another database than before: its robots and commands are others, and those of before are not shown any more.</source>
-            <translation>La pasarela tiene otra base de datos que antes: sus robots y órdenes son otros, y los de antes ya no se muestran.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/fleet_controller.py" />
             <source>The operator's name is empty. Write who you are: it stands in every log.</source>
             <translation>El nombre del operador está vacío. Escriba quién es: está en todos los registros.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/fleet_controller.py" />
-            <source>The site is not known yet. Connect to a gateway first.</source>
-            <translation>El recinto aún no se conoce. Conéctese antes a una pasarela.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/fleet_controller.py" />
-            <source>the desk is not connected to a gateway. Connect first; to stop a robot now use the robot's own emergency stop.</source>
-            <translation>la consola no está conectada a ninguna pasarela. Conéctese antes; para detener ahora un robot use su propia parada de emergencia.</translation>
         </message>
         <message>
             <location filename="../../plugin/control/fleet_controller.py" />
@@ -1348,6 +1323,16 @@
             <location filename="../../plugin/control/request_tracker.py" />
             <source>EMERGENCY STOP</source>
             <translation>PARADA DE EMERGENCIA</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/control/request_tracker.py" />
+            <source>EMERGENCY STOP is NOT sent yet: the link is down. It is sent as soon as that is back; use the robots' own emergency stops now.</source>
+            <translation>La PARADA DE EMERGENCIA aún NO se ha enviado: el enlace está caído. Se envía en cuanto vuelva; use ahora las paradas de emergencia de los propios robots.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/control/request_tracker.py" />
+            <source>the desk is not connected to a gateway. Connect first; to stop a robot now use the robot's own emergency stop.</source>
+            <translation>la consola no está conectada a ninguna pasarela. Conéctese antes; para detener ahora un robot use su propia parada de emergencia.</translation>
         </message>
         <message>
             <location filename="../../plugin/control/request_tracker.py" />
@@ -1941,6 +1926,16 @@
             <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>{url} takes no desk now: {said} It is tried again by itself.</source>
             <translation>{url} no admite ahora ninguna consola: {said} Se vuelve a intentar solo.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/gateway_client/fleet_state.py" />
+            <source>Another site is served now: {site}, no longer {before}. Open its project.</source>
+            <translation>Ahora se sirve otro recinto: {site}, ya no {before}. Abra su proyecto.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/gateway_client/fleet_state.py" />
+            <source>The gateway has another database than before: its robots and commands are others, and those of before are not shown any more.</source>
+            <translation>La pasarela tiene otra base de datos que antes: sus robots y órdenes son otros, y los de antes ya no se muestran.</translation>
         </message>
         <message>
             <location filename="../../plugin/gateway_client/protocol.py" />
@@ -3064,6 +3059,11 @@
         </message>
         <message>
             <location filename="../../plugin/layers/site_transform.py" />
+            <source>The site is not known yet. Connect to a gateway first.</source>
+            <translation>El recinto aún no se conoce. Conéctese antes a una pasarela.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/site_transform.py" />
             <source>The site {name} is in the CRS {crs}, which this QGIS does not know: its robots cannot be placed on the map. Correct crs in the site's site.toml, or update QGIS.</source>
             <translation>El recinto {name} está en el SRC {crs}, que este QGIS no conoce: sus robots no se pueden situar en el mapa. Corrija crs en el site.toml del recinto, o actualice QGIS.</translation>
         </message>
@@ -3096,86 +3096,6 @@
             <location filename="../../plugin/locator.py" />
             <source>{state}, heard of {age:.0f} s ago</source>
             <translation>{state}, último mensaje hace {age:.0f} s</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/reported_layers.py" />
-            <source>Accuracy (m)</source>
-            <translation>Exactitud (m)</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/reported_layers.py" />
-            <source>Age (s)</source>
-            <translation>Antigüedad (s)</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/reported_layers.py" />
-            <source>Battery (0 to 1)</source>
-            <translation>Batería (0 a 1)</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/reported_layers.py" />
-            <source>Closed roads</source>
-            <translation>Vías cerradas</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/reported_layers.py" />
-            <source>Command</source>
-            <translation>Orden</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/reported_layers.py" />
-            <source>Cones put down</source>
-            <translation>Conos puestos</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/reported_layers.py" />
-            <source>Conflicts</source>
-            <translation>Conflictos</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/reported_layers.py" />
-            <source>Heading (°)</source>
-            <translation>Rumbo (°)</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/reported_layers.py" />
-            <source>Link</source>
-            <translation>Enlace</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/reported_layers.py" />
-            <source>Robot</source>
-            <translation>Robot</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/reported_layers.py" />
-            <source>Robots (live)</source>
-            <translation>Robots (en vivo)</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/reported_layers.py" />
-            <source>Speed (m/s)</source>
-            <translation>Velocidad (m/s)</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/reported_layers.py" />
-            <source>Status</source>
-            <translation>Situación</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/reported_layers.py" />
-            <source>Theta (rad)</source>
-            <translation>Theta (rad)</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/reported_layers.py" />
-            <source>closed</source>
-            <translation>cerrada</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/reported_layers.py" />
-            <source>until</source>
-            <translation>hasta</translation>
         </message>
         <message>
             <location filename="../../plugin/map/live_view.py" />
@@ -3286,6 +3206,86 @@
             <location filename="../../plugin/map/overlay/task_painter.py" />
             <source>{metres:.0f} m</source>
             <translation>{metres:.0f} m</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/reported_layers.py" />
+            <source>Accuracy (m)</source>
+            <translation>Exactitud (m)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/reported_layers.py" />
+            <source>Age (s)</source>
+            <translation>Antigüedad (s)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/reported_layers.py" />
+            <source>Battery (0 to 1)</source>
+            <translation>Batería (0 a 1)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/reported_layers.py" />
+            <source>Closed roads</source>
+            <translation>Vías cerradas</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/reported_layers.py" />
+            <source>Command</source>
+            <translation>Orden</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/reported_layers.py" />
+            <source>Cones put down</source>
+            <translation>Conos puestos</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/reported_layers.py" />
+            <source>Conflicts</source>
+            <translation>Conflictos</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/reported_layers.py" />
+            <source>Heading (°)</source>
+            <translation>Rumbo (°)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/reported_layers.py" />
+            <source>Link</source>
+            <translation>Enlace</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/reported_layers.py" />
+            <source>Robot</source>
+            <translation>Robot</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/reported_layers.py" />
+            <source>Robots (live)</source>
+            <translation>Robots (en vivo)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/reported_layers.py" />
+            <source>Speed (m/s)</source>
+            <translation>Velocidad (m/s)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/reported_layers.py" />
+            <source>Status</source>
+            <translation>Situación</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/reported_layers.py" />
+            <source>Theta (rad)</source>
+            <translation>Theta (rad)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/reported_layers.py" />
+            <source>closed</source>
+            <translation>cerrada</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/reported_layers.py" />
+            <source>until</source>
+            <translation>hasta</translation>
         </message>
         <message>
             <location filename="../../plugin/map/site_project.py" />

@@ -1102,16 +1102,6 @@
         </message>
         <message>
             <location filename="../../plugin/control/fleet_controller.py" />
-            <source>Another site is served now: {site}, no longer {before}. Open its project.</source>
-            <translation>Most másik telephely van kiszolgálva: {site}, már nem {before}. Nyissa meg annak projektjét.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/fleet_controller.py" />
-            <source>EMERGENCY STOP is NOT sent yet: the link is down. It is sent as soon as that is back; use the robots' own emergency stops now.</source>
-            <translation>A VÉSZLEÁLLÍTÁS MÉG NINCS elküldve: a kapcsolat megszakadt. Elmegy, amint visszatér; most használja a robotok saját vészleállítóit.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/fleet_controller.py" />
             <source>No robot is selected, so none was aborted. Select it in the table or on the map.</source>
             <translation>Nincs kijelölt robot, így egyik sem lett megszakítva. Jelölje ki a táblázatban vagy a térképen.</translation>
         </message>
@@ -1122,23 +1112,8 @@
         </message>
         <message>
             <location filename="../../plugin/control/fleet_controller.py" />
-            <source>The gateway has another database than before: its robots and commands are others, and those of before are not shown any more.</source>
-            <translation>Az átjárónak más adatbázisa van, mint előbb: robotjai és parancsai mások, a korábbiak már nem látszanak.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/fleet_controller.py" />
             <source>The operator's name is empty. Write who you are: it stands in every log.</source>
             <translation>A kezelő neve üres. Írja be, ki Ön: minden naplóban ott áll.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/fleet_controller.py" />
-            <source>The site is not known yet. Connect to a gateway first.</source>
-            <translation>A telephely még nem ismert. Előbb kapcsolódjon egy átjáróhoz.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/fleet_controller.py" />
-            <source>the desk is not connected to a gateway. Connect first; to stop a robot now use the robot's own emergency stop.</source>
-            <translation>a kezelőpult nincs átjáróhoz kapcsolva. Előbb kapcsolódjon; robotot most a saját vészleállítójával állíthat meg.</translation>
         </message>
         <message>
             <location filename="../../plugin/control/fleet_controller.py" />
@@ -1341,6 +1316,16 @@
             <location filename="../../plugin/control/request_tracker.py" />
             <source>EMERGENCY STOP</source>
             <translation>VÉSZLEÁLLÍTÁS</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/control/request_tracker.py" />
+            <source>EMERGENCY STOP is NOT sent yet: the link is down. It is sent as soon as that is back; use the robots' own emergency stops now.</source>
+            <translation>A VÉSZLEÁLLÍTÁS MÉG NINCS elküldve: a kapcsolat megszakadt. Elmegy, amint visszatér; most használja a robotok saját vészleállítóit.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/control/request_tracker.py" />
+            <source>the desk is not connected to a gateway. Connect first; to stop a robot now use the robot's own emergency stop.</source>
+            <translation>a kezelőpult nincs átjáróhoz kapcsolva. Előbb kapcsolódjon; robotot most a saját vészleállítójával állíthat meg.</translation>
         </message>
         <message>
             <location filename="../../plugin/control/request_tracker.py" />
@@ -1933,6 +1918,16 @@
             <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>{url} takes no desk now: {said} It is tried again by itself.</source>
             <translation>{url} most nem fogad kezelőpultot: {said} Magától újrapróbálkozik.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/gateway_client/fleet_state.py" />
+            <source>Another site is served now: {site}, no longer {before}. Open its project.</source>
+            <translation>Most másik telephely van kiszolgálva: {site}, már nem {before}. Nyissa meg annak projektjét.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/gateway_client/fleet_state.py" />
+            <source>The gateway has another database than before: its robots and commands are others, and those of before are not shown any more.</source>
+            <translation>Az átjárónak más adatbázisa van, mint előbb: robotjai és parancsai mások, a korábbiak már nem látszanak.</translation>
         </message>
         <message>
             <location filename="../../plugin/gateway_client/protocol.py" />
@@ -3044,6 +3039,11 @@
         </message>
         <message>
             <location filename="../../plugin/layers/site_transform.py" />
+            <source>The site is not known yet. Connect to a gateway first.</source>
+            <translation>A telephely még nem ismert. Előbb kapcsolódjon egy átjáróhoz.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/site_transform.py" />
             <source>The site {name} is in the CRS {crs}, which this QGIS does not know: its robots cannot be placed on the map. Correct crs in the site's site.toml, or update QGIS.</source>
             <translation>A(z) {name} telephely vetülete {crs}, amelyet ez a QGIS nem ismer: robotjai nem helyezhetők a térképre. Javítsa ki a crs értékét a telephely site.toml fájljában, vagy frissítse a QGIS-t.</translation>
         </message>
@@ -3076,86 +3076,6 @@
             <location filename="../../plugin/locator.py" />
             <source>{state}, heard of {age:.0f} s ago</source>
             <translation>{state}, utolsó hír {age:.0f} s óta</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/reported_layers.py" />
-            <source>Accuracy (m)</source>
-            <translation>Pontosság (m)</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/reported_layers.py" />
-            <source>Age (s)</source>
-            <translation>Kor (s)</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/reported_layers.py" />
-            <source>Battery (0 to 1)</source>
-            <translation>Akku (0–1)</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/reported_layers.py" />
-            <source>Closed roads</source>
-            <translation>Lezárt utak</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/reported_layers.py" />
-            <source>Command</source>
-            <translation>Parancs</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/reported_layers.py" />
-            <source>Cones put down</source>
-            <translation>Lerakott bóják</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/reported_layers.py" />
-            <source>Conflicts</source>
-            <translation>Ütközések</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/reported_layers.py" />
-            <source>Heading (°)</source>
-            <translation>Irány (°)</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/reported_layers.py" />
-            <source>Link</source>
-            <translation>Kapcs.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/reported_layers.py" />
-            <source>Robot</source>
-            <translation>Robot</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/reported_layers.py" />
-            <source>Robots (live)</source>
-            <translation>Robotok (élő)</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/reported_layers.py" />
-            <source>Speed (m/s)</source>
-            <translation>Sebesség (m/s)</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/reported_layers.py" />
-            <source>Status</source>
-            <translation>Állapotszöveg</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/reported_layers.py" />
-            <source>Theta (rad)</source>
-            <translation>Théta (rad)</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/reported_layers.py" />
-            <source>closed</source>
-            <translation>lezárva</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/reported_layers.py" />
-            <source>until</source>
-            <translation>eddig:</translation>
         </message>
         <message>
             <location filename="../../plugin/map/live_view.py" />
@@ -3266,6 +3186,86 @@
             <location filename="../../plugin/map/overlay/task_painter.py" />
             <source>{metres:.0f} m</source>
             <translation>{metres:.0f} m</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/reported_layers.py" />
+            <source>Accuracy (m)</source>
+            <translation>Pontosság (m)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/reported_layers.py" />
+            <source>Age (s)</source>
+            <translation>Kor (s)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/reported_layers.py" />
+            <source>Battery (0 to 1)</source>
+            <translation>Akku (0–1)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/reported_layers.py" />
+            <source>Closed roads</source>
+            <translation>Lezárt utak</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/reported_layers.py" />
+            <source>Command</source>
+            <translation>Parancs</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/reported_layers.py" />
+            <source>Cones put down</source>
+            <translation>Lerakott bóják</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/reported_layers.py" />
+            <source>Conflicts</source>
+            <translation>Ütközések</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/reported_layers.py" />
+            <source>Heading (°)</source>
+            <translation>Irány (°)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/reported_layers.py" />
+            <source>Link</source>
+            <translation>Kapcs.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/reported_layers.py" />
+            <source>Robot</source>
+            <translation>Robot</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/reported_layers.py" />
+            <source>Robots (live)</source>
+            <translation>Robotok (élő)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/reported_layers.py" />
+            <source>Speed (m/s)</source>
+            <translation>Sebesség (m/s)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/reported_layers.py" />
+            <source>Status</source>
+            <translation>Állapotszöveg</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/reported_layers.py" />
+            <source>Theta (rad)</source>
+            <translation>Théta (rad)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/reported_layers.py" />
+            <source>closed</source>
+            <translation>lezárva</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/reported_layers.py" />
+            <source>until</source>
+            <translation>eddig:</translation>
         </message>
         <message>
             <location filename="../../plugin/map/site_project.py" />
