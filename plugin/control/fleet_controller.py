@@ -144,19 +144,16 @@ class FleetController(QObject):
         state.suspensions_changed.connect(lambda: self._suspensions.show(state.suspensions))
         state.links_changed.connect(lambda: self._links.show(state.links))
         state.merged.connect(self._merged)
-        state.updated.connect(self._count_update)
+        state.updated.connect(self.beat.advance)
 
     def _keep_names(self) -> None:
         """Give cone plans state and requests by the names that they know."""
         state = self.state
         self.picture, self.queues, self.placements = state.robots, state.queues, state.placed_cones
-        self.pulled, self.site_changed, self.link_changed = (
-            state.updated,
-            state.site_changed,
-            state.link_changed,
-        )
+        self.pulled, self.site_changed = state.updated, state.site_changed
+        self.link_changed, self.queues_changed = state.link_changed, state.queues_changed
+        self.placements_changed = state.placed_cones_changed
         self.ask, self.answered = self.orders.ask, self.orders.answered
-        self.queues_changed, self.placements_changed = state.queues_changed, state.placed_cones_changed
 
     @property
     def link(self) -> ConnectionStatus:
@@ -228,9 +225,6 @@ class FleetController(QObject):
         self.orders.watch()
         self.target_ways.watch()
         self.preview.watch()
-
-    def _count_update(self) -> None:
-        self.beat.advance()
 
     def _answered(self, answer: RequestResult) -> None:
         if self.target_ways.accept_answer(answer) or self.preview.accept_answer(answer):

@@ -258,8 +258,8 @@ Floats = npt.NDArray[np.float64]
 class PathDeviations:
     """Remembers of each robot whether it has come to its path: the way there is nobody's to prescribe."""
 
-    def __init__(self, book: CommandCache):
-        self._book = book
+    def __init__(self, commands: CommandCache):
+        self._commands = commands
         self._ways: dict[str, tuple[str, PathApproach]] = {}
         """By robot, the command whose path it is to drive, and how it comes to that."""
 
@@ -269,9 +269,9 @@ class PathDeviations:
         ``xy`` is where it is, in the site frame. None where it has neither, or is on its way to a target or
         to the first point of its path: it cannot be beside what it was not given.
         """
-        task = self._book.task_of(robot)
+        task = self._commands.task_of(robot)
         if task is None:
-            reached = self._book.reached_by(robot)
+            reached = self._commands.reached_by(robot)
             return None if reached is None else reached.deviation
         points = _path_points(task) if task.op == SetPath.__name__ else np.empty((0, 2))
         if xy is None or len(points) == 0:
