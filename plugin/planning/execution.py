@@ -233,7 +233,7 @@ class PlanExecution(QObject):
 
     def _plan_rest(self, trouble: PlanProblem, try_again: bool) -> None:
         driven, progress = self.driven, self.progress
-        robots = self._desk.picture.arrays(self._desk.clock())
+        robots = self._desk.picture.arrays(self._desk.clock.steady())
         places = {
             robots.names[row]: tuple(robots.xy[row].tolist()) for row in np.flatnonzero(have_position(robots))
         }

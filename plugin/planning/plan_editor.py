@@ -20,7 +20,7 @@ from ...robot_bridge.core.errors import AssignmentError, MissingStoreError
 from ...robot_bridge.core.messages import ClosureReport, CollectLayout, MessageError, QueueTask, TaskKind
 from ...robot_bridge.core.sites.frame import SiteFrame
 from ..control.fleet_controller import FleetController
-from ..gateway_client.buffers import RequestResult
+from ..gateway_client.requests import RequestResult
 from ..ui.errors import FleetError, MapTransformError
 from ..ui.language import tr
 from .plan_settings import (
@@ -231,7 +231,7 @@ class PlanEditor(QObject):
         return self._desk.placement().frame
 
     def _robots(self) -> tuple[PlanRobot, ...]:
-        robots = self._desk.picture.arrays(self._desk.clock())
+        robots = self._desk.picture.arrays(self._desk.clock.steady())
         used = participating_robots(robots, self.settings)
         if not used.any():
             raise PlanningError(
@@ -254,7 +254,7 @@ class PlanEditor(QObject):
 
     def _standing_robots(self) -> dict[str, tuple[float, float]]:
         """Return where robots are that do not take part."""
-        robots = self._desk.picture.arrays(self._desk.clock())
+        robots = self._desk.picture.arrays(self._desk.clock.steady())
         stand = have_position(robots) & ~participating_robots(robots, self.settings)
         return {robots.names[row]: tuple(robots.xy[row].tolist()) for row in np.flatnonzero(stand)}
 

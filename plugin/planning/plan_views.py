@@ -237,7 +237,7 @@ def _doubts(desk: FleetController, robot: PlanRobot) -> list[str]:
 
 def _doubts_of_place(desk: FleetController, robot: PlanRobot) -> Iterator[str]:
     """Yield whether the robot is elsewhere than where the plan begins, or away."""
-    view = desk.picture.view(robot.id, desk.clock())
+    view = desk.picture.view(robot.id, desk.clock.steady())
     if view is None or not view.has_pose:
         yield tr("it is not known where {id} is", id=robot.id)
         return

@@ -22,7 +22,7 @@ from ...robot_bridge.core.messages import (
 )
 from ..control.fleet_controller import FleetController
 from ..control.messages import PLAN_TROUBLE
-from ..gateway_client.link import ConnectionPhase
+from ..gateway_client.connection_status import ConnectionPhase
 from ..gateway_client.report_caches import MOST_ASKED
 from ..ui.language import first_of, tr
 from .plan_settings import ConeFacts

@@ -26,7 +26,7 @@ from ...robot_bridge.core.messages import (
 )
 from ..control.fleet_controller import FleetController
 from ..control.messages import PLAN_SENT
-from ..gateway_client.buffers import RequestResult
+from ..gateway_client.requests import RequestResult
 from ..ui.errors import NotSentError
 from ..ui.language import first_of, tr
 from .plan_settings import ConeFacts

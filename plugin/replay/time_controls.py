@@ -20,8 +20,6 @@ from ..ui.steady_widgets import SteadyPushButton
 from ..ui.times import date_and_time
 from .history import NO_MARKS, TimelineMark, TimelineMarks
 
-# --- The time that is replayed, by QGIS's temporal controller ---
-
 FRAMES_A_SECOND = 5.0
 LOOK_MS = 200
 SPEEDS = (0.5, 1, 2, 5, 10, 30, 60, 300)
@@ -137,8 +135,6 @@ def local_time(at: float) -> QDateTime:
     return QDateTime.fromMSecsSinceEpoch(round(at * 1000))
 
 
-# --- Which time is to be replayed, and of whom ---
-
 LAST = {
     tr("the last 5 minutes"): 300,
     tr("the last 15 minutes"): 900,
@@ -217,8 +213,6 @@ def _time(name: str) -> QDateTimeEdit:
     box.setCalendarPopup(True)
     return box
 
-
-# --- The time that is replayed as a line: what was commanded when, and which moment is shown ---
 
 EDGE = 9.0
 """Pixels left and right of the line."""

@@ -8,8 +8,6 @@ from qgis.PyQt.QtWidgets import QApplication
 
 from ...robot_bridge.core.messages import CommandState, RobotState
 
-# --- The desk's colours: of Okabe and Ito's palette, told apart by colour-blind people as well ---
-
 STATE_COLOURS = {
     RobotState.FRESH: QColor("#0072B2"),
     RobotState.STALE: QColor("#E69F00"),
@@ -59,17 +57,12 @@ def for_letters(colour: QColor) -> QColor:
     return QColor(STALE_LETTERS) if colour == STATE_COLOURS[RobotState.STALE] else colour
 
 
-# --- The pen that everything on the map is drawn with ---
-
-
 def pen(colour: QColor, width: float, strength: float = 1.0) -> QPen:
     """Return a pen with round ends, ``width`` pixels; ``strength`` 1 is the colour as it is, 0 nothing."""
     shade = QColor(colour)
     shade.setAlphaF(colour.alphaF() * strength)
     return QPen(shade, width, Qt.PenStyle.SolidLine, Qt.PenCapStyle.RoundCap, Qt.PenJoinStyle.RoundJoin)
 
-
-# --- The drawings of robots and cones, in logical pixels around (0, 0) ---
 
 CELL = 32
 """Width and height of the square that a robot's drawing fits in at any heading."""

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import json
 from typing import Any
 
 import numpy as np
 
-from robot_bridge.core.messages import PositionColumns
-from robot_bridge.gateway.fleet.operator_updates import packed
+from robot_bridge.core.messages import PositionColumns, to_json
+from robot_bridge.core.position_frame import METHOD, packed_frame
 
 SPEED = 1.5
 SILENT = 0.03
@@ -67,4 +68,5 @@ class DrivingFleet:
         }
         names = [f"robot-{number}" for number in range(count)]
         head = PositionColumns(0.0, names, [*columns, "device_time"], ["fresh", "websocket", "driving"])
-        return packed(head, columns.values())
+        text = json.dumps({"jsonrpc": "2.0", "method": METHOD, "params": to_json(head)})
+        return packed_frame(text.encode(), columns.values())

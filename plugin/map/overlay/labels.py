@@ -16,10 +16,7 @@ from ...gateway_client.robot_table import STATES
 from ...gateway_client.state_texts import ROBOT_STATES
 from ...ui.glyphs import PAPER
 from ...ui.language import tr
-from .scene import InView, MapScene
-from .screen import Screen
-
-# --- Short texts as pictures, readable on any ground ---
+from .scene import InView, MapScene, Screen
 
 INK = QColor("#101418")
 MOST = 600
@@ -99,8 +96,6 @@ def _drawn(text: str, ratio: float) -> QPixmap:
     painter.end()
     return pixmap
 
-
-# --- Where on the screen there is room for a text ---
 
 Points = npt.NDArray[np.float64]
 Widths = npt.NDArray[np.float64]
@@ -182,8 +177,6 @@ def _bits(left: int, right: int) -> int:
     """Return a number with a bit for each cell from ``left`` to before ``right``."""
     return (1 << right) - (1 << left)
 
-
-# --- Paints robots' names, as many as there is room for, and what is to be known of those that are silent
 
 Rows = npt.NDArray[np.intp]
 

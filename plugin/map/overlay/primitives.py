@@ -13,8 +13,6 @@ from qgis.PyQt.QtGui import QBrush, QColor, QImage, QPainter, QPainterPath, QPen
 from ....robot_bridge.core.messages import RobotState
 from ...ui.glyphs import CASING, CELL, PAPER, SELECTED, draw_arrow, draw_cone, draw_robot, pen
 
-# --- Lines and rings that can be seen on any ground: a colour on a dark casing ---
-
 Points = npt.NDArray[np.float64]
 
 
@@ -106,8 +104,6 @@ def _legs(pixels: Points) -> list[QLineF]:
     return lines(pixels[:-1], pixels[1:])
 
 
-# --- A drawing that points to all sides: an eighth of them is drawn, the others are its mirror images ---
-
 Cells = npt.NDArray[np.uint32]
 Draw = Callable[[QPainter], None]
 
@@ -156,8 +152,6 @@ def in_a_column(cells: Cells) -> QPixmap:
     # A picture of its own: the image only looks at the array.
     return QPixmap.fromImage(QImage(column.data, side, count * side, side * 4, FORMAT).copy())
 
-
-# --- The pictures that robots, marks and arrows are painted from, a cell for each way that one can look
 
 HEADINGS = 88
 """Directions that robots are drawn in; between them nobody sees a difference."""
@@ -219,8 +213,6 @@ def _mark(mark: int) -> Draw:
 
     return draw
 
-
-# --- Many copies of a few pictures, painted in one call ---
 
 FIELDS = 10
 """x, y, source left, top, width, height, scale x, scale y, rotation, opacity: Qt's PixmapFragment."""

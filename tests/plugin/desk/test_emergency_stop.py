@@ -194,7 +194,7 @@ def test_a_stop_pressed_while_the_link_is_down_is_sent_when_it_is_back_and_says_
     at_desk, gateway, iface, wait
 ):
     gateway.stop()
-    wait(lambda: at_desk.desk.link.phase.value == "retrying", what="the loss of the link")
+    wait(lambda: at_desk.desk.state.link.phase.value == "retrying", what="the loss of the link")
     press_stop(at_desk)
     assert any("EMERGENCY STOP is NOT sent yet: the link is down" in text for text in iface.texts())
     assert "not confirmed it yet" in banner(at_desk)
@@ -275,7 +275,7 @@ def test_who_may_not_clear_it_is_told_so_and_it_stays(stopped, gateway, iface, w
 
 def test_what_the_gateway_refuses_while_it_is_in_force_comes_back_as_a_draft(stopped, gateway, iface, wait):
     gateway.refuse["send"] = "an emergency stop is in force since 12:00:00 UTC, by anna"
-    stopped.desk.select("r1")
+    stopped.desk.selection.select("r1")
     stopped.actions.cone.trigger()
     iface.click(30, 30)
     stopped.desk.sending.send()

@@ -5,10 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from fleet_supervisor.plugin.gateway_client.robot_states import RobotStates
-from fleet_supervisor.plugin.map.overlay import paths_painter
-from fleet_supervisor.plugin.map.overlay.paths_painter import MANY, PathsImage
-from fleet_supervisor.plugin.map.overlay.scene import MapScene, SiteScene, TaskPath
-from fleet_supervisor.plugin.map.overlay.screen import Screen
+from fleet_supervisor.plugin.map.overlay import task_painter
+from fleet_supervisor.plugin.map.overlay.scene import MapScene, Screen, SiteScene, TaskPath
+from fleet_supervisor.plugin.map.overlay.task_painter import MANY, PathsImage
 from qgis.PyQt.QtGui import QImage, QPainter
 
 WIDTH, HEIGHT = 200, 100
@@ -45,12 +44,12 @@ def rows(image, scene, screen=SCREEN, column=100):
 @pytest.fixture
 def slow(qgis_app, monkeypatch):
     """A frame in which there is time for one way only."""
-    monkeypatch.setattr(paths_painter, "FILL_SECONDS", 0.0)
+    monkeypatch.setattr(task_painter, "FILL_SECONDS", 0.0)
 
 
 def test_few_ways_are_there_at_once(qgis_app, monkeypatch):
     # As on an idle machine, where painting two ways takes a fraction of it.
-    monkeypatch.setattr(paths_painter, "FILL_SECONDS", 60.0)
+    monkeypatch.setattr(task_painter, "FILL_SECONDS", 60.0)
     image = PathsImage()
     assert {20, 60} <= set(rows(image, placed(20, 60)))
     assert image.is_whole

@@ -119,11 +119,11 @@ def test_a_drive_is_played_while_the_live_map_goes_on(driven, dock, operator):
     assert dock.map.overlay._placed.scene.plans == []
     # The live robot is where it is, and is heard of.
     assert operator.report("r1").x == pytest.approx(40, abs=0.5)
-    assert operator.desk.link.phase.value == "connected"
+    assert operator.desk.state.link.phase.value == "connected"
     assert "not live" in dock.banner.text()
     # All that was driven is in view, by its pixels.
     placed = dock.map.overlay._placed
-    pixels = dock.map.overlay.screen().pixels(placed.robots)
+    pixels = dock.map.overlay.scene().pixels(placed.robots)
     assert (pixels > 0).all() and (pixels < [dock.map.width(), dock.map.height()]).all()
 
 
