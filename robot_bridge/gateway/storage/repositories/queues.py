@@ -68,6 +68,16 @@ def newest_ended(connection: Connection, robot: str, limit: int) -> list[QueuedT
     return _tasks(connection, query.order_by(c.ended_at.desc(), c.place.desc()).limit(limit))
 
 
+def find_all(connection: Connection, tasks: Sequence[str]) -> dict[str, tuple[str, QueuedTask]]:
+    """Return some tasks, each with the robot whose queue it is or was in; those that are not stored lack."""
+    found: dict[str, tuple[str, QueuedTask]] = {}
+    for begin in range(0, len(tasks), 500):
+        query = select(queue_tasks).where(queue_tasks.c.id.in_(tasks[begin : begin + 500]))
+        rows = connection.execute(query).mappings()
+        found.update(readable(rows, lambda row: (row["id"], (row["robot"], _task(row))), _name_of_task))
+    return found
+
+
 def whereabouts(connection: Connection, tasks: Sequence[str]) -> dict[str, Whereabouts]:
     """Return where those of some tasks are that were given before."""
     c = queue_tasks.c
@@ -88,6 +98,14 @@ def save(connection: Connection, before: Queue, after: Queue, ended: Iterable[Qu
     _save_queue(connection, before, after)
     old = {task.id: task for task in before.tasks}
     _save_tasks(connection, after.robot, old, [*after.tasks, *ended])
+
+
+def save_each(
+    connection: Connection, changes: Sequence[tuple[Queue, Queue, Sequence[QueuedTask]]]
+) -> None:
+    """Write several queues, each as :func:`save` does; raises ChangedError, and nothing is to be written."""
+    for before, after, ended in changes:
+        save(connection, before, after, ended)
 
 
 def save_many(connection: Connection, changes: Sequence[tuple[Queue, Queue]]) -> None:
