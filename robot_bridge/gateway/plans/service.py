@@ -256,6 +256,7 @@ class PlanService:
             one = self._plan(request.plan)
             if one.making is not None:
                 one.making.cancel()
+            await self._follow(one)
             return await self._put(one, PlanState.CLEARED, operator, None, proposal=None, held={})
 
     async def watch(self) -> None:
