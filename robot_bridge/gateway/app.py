@@ -355,6 +355,7 @@ async def _save_last(fleet: Fleet, gate: AuthGate) -> None:
         async with asyncio.timeout(SAVE_WITHIN):
             await fleet.finish_trajectories()
             await gate.close()
+            await fleet.plans.finish()
     except (StoreError, TimeoutError) as error:
         reason = str(error) or "the database does not answer"
         log.error("%s; the last positions are not stored", reason)

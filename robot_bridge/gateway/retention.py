@@ -13,7 +13,6 @@ from ..core.clock import steady_time
 from ..core.sites.settings import SiteSettings
 from .auth import audit
 from .model.clocks import ClockWatch
-from .plans.persistence import forget_plans
 from .storage.database import Database
 from .storage.repositories import closures, commands, emergency_stops, queues, records, trajectories
 
@@ -45,7 +44,7 @@ def kept(settings: SiteSettings) -> Iterator[RetainedRows]:
     yield RetainedRows("positions", settings.trajectories.keep_days, trajectories.forget)
     yield RetainedRows("ended commands", settings.commands.keep_days, commands.forget)
     yield RetainedRows("ended tasks", settings.commands.keep_days, queues.forget)
-    yield RetainedRows("ended plans", settings.commands.keep_days, forget_plans)
+    yield RetainedRows("ended plans", settings.commands.keep_days, queues.forget_plans)
     yield RetainedRows("collected cones", settings.commands.keep_days, records.forget)
     yield RetainedRows("emergency stops", settings.commands.keep_days, emergency_stops.forget)
     yield RetainedRows("opened roads", settings.commands.keep_days, closures.forget)

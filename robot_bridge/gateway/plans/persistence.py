@@ -14,7 +14,7 @@ from ...core.assignment.progress import ConeFacts, SentStop
 from ...core.errors import PlanFileError
 from ...core.json_decoder import DOCUMENT, decode_json
 from ...core.messages import PlanState
-from ..storage.rows import delete_oldest, readable
+from ..storage.rows import readable
 from ..storage.schema import plan_stops, plans
 from .model import ENDS, DrivenPlan, PlanTerms
 
@@ -72,14 +72,6 @@ def save_plan(
     ]
     if rows:
         connection.execute(insert(plan_stops), rows)
-
-
-def forget_plans(connection: Connection, before: float, limit: int) -> int:
-    """Delete at most ``limit`` plans that ended before a time, with their stops; return how many."""
-    gone = delete_oldest(connection, plans.c.name, plans.c.ended_at, before, limit)
-    for name in gone:
-        connection.execute(delete(plan_stops).where(plan_stops.c.plan == name))
-    return len(gone)
 
 
 def _read(connection: Connection, query: Any) -> list[DrivenPlan]:

@@ -139,6 +139,7 @@ class PlanService:
         self._plans: dict[str, _Followed] = {}
         self._lock = asyncio.Lock()
         self._tasks: set[asyncio.Task[None]] = set()
+        self._began = context.clock()
 
     async def restore(self) -> None:
         """Go on with the plans that an earlier gateway left."""
@@ -271,6 +272,8 @@ class PlanService:
         for one in self._plans.values():
             if one.making is not None:
                 one.making.cancel()
+                # It stays stored as being planned again: the next gateway begins that anew.
+                one.making = None
         await asyncio.gather(*self._tasks, return_exceptions=True)
 
     # --- following ------------------------------------------------------------------------------------
@@ -280,21 +283,24 @@ class PlanService:
             # Nothing goes on by itself after an emergency stop: somebody has to resume.
             state = PlanState.PAUSED if one.plan.state is PlanState.DRIVEN else one.plan.state
             await self._put(one, state, GATEWAY, "an emergency stop", by_itself=False)
-        if not await self._follow(one):
-            return
         plan = one.plan
-        queued = {task.id for robot in plan.staying for task in self._queue(robot).tasks}
-        if one.progress.is_finished(plan.document) and not queued & one.progress.stops.keys():
-            await self._put(one, PlanState.FINISHED, GATEWAY, None, proposal=None, held={})
-            return
-        self._announced(one)
+        if await self._follow(one):
+            queued = {task.id for robot in plan.staying for task in self._queue(robot).tasks}
+            if one.progress.is_finished(plan.document) and not queued & one.progress.stops.keys():
+                await self._put(one, PlanState.FINISHED, GATEWAY, None, proposal=None, held={})
+                return
+            self._announced(one)
         new = bool(one.problem) and one.problem != one.seen_to
-        if plan.by_itself and plan.state is PlanState.DRIVEN and new:
+        if plan.by_itself and plan.state is PlanState.DRIVEN and new and not self._is_settling():
             one.seen_to = one.problem
             try:
                 await self._hold(one, GATEWAY, try_again=False)
             except RefusedError as error:
                 await self._put(one, PlanState.DRIVEN, GATEWAY, str(error))
+
+    def _is_settling(self) -> bool:
+        """Tell whether the gateway has only begun: robots that drive on are not heard of yet."""
+        return self._context.clock() < self._began + self._context.site.report.lost_after
 
     async def _follow(self, one: _Followed) -> bool:
         """Take in how the plan's queues, robots and roads are; false when nothing has changed."""

@@ -218,6 +218,36 @@ async def test_a_gateway_that_is_started_again_goes_on_with_it(drive, state):
     assert (await drive.seen()).state is PlanState.FINISHED and drive.cones() == ALL
 
 
+async def test_after_a_restart_robots_have_time_to_come_back_before_it_is_planned_again(drive):
+    await drive.submit(by_itself=True)
+    await drive.go(robots=["r1"])
+    pose = drive.yard.fleet.robots.get("r1").pose
+    drive.yard.now += 60.0
+    await drive.yard.restart()
+    drive.yard.fleet.age()
+    await drive.plans.watch()
+    report = await drive.seen()
+    assert report.state is PlanState.DRIVEN and len(report.problems) == 2
+    await drive.yard.ready("r1")
+    await drive.yard.at(pose.x, pose.y)
+    await drive.plans.watch()
+    assert (await drive.seen()).state is PlanState.DRIVEN
+    await drive.lose()
+    assert (await drive.seen()).state is PlanState.REPLANNING
+    await drive.planned()
+    assert (await drive.seen()).robots == ["r1"]
+
+
+async def test_planning_that_the_gateways_end_cut_short_begins_anew(drive):
+    await drive.submit()
+    await drive.plans.replan(Replan("plan-1", 1), "Ada")
+    await drive.plans.finish()
+    await drive.yard.restart()
+    assert (await drive.seen()).state is PlanState.REPLANNING
+    await drive.planned()
+    assert (await drive.seen()).state is PlanState.PROPOSED
+
+
 async def test_after_an_emergency_stop_it_waits_for_somebody(drive):
     await drive.submit(by_itself=True)
     await drive.go()

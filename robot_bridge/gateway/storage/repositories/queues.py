@@ -7,14 +7,14 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, NamedTuple
 
 import msgspec
-from sqlalchemy import Connection, Select, bindparam, exists, insert, or_, select, update
+from sqlalchemy import Connection, Select, bindparam, delete, exists, insert, or_, select, update
 
 from ....core.errors import RefusedError
 from ....core.json_decoder import decode_json
 from ....core.messages import QueueState, QueueTask, TaskState, to_json
 from ...model.task_queue import ENDS, Queue, QueuedTask, Whereabouts
 from ..rows import beside_the_time, delete_oldest, readable
-from ..schema import queue_tasks, queues
+from ..schema import plan_stops, plans, queue_tasks, queues
 
 _ENDED = [state.value for state in ENDS]
 _OPEN = [state.value for state in TaskState if state not in ENDS]
@@ -149,6 +149,14 @@ def forget(connection: Connection, before: float, limit: int) -> int:
     c = queue_tasks.c
     has_ended = beside_the_time(c.state).in_(_ENDED)
     return len(delete_oldest(connection, c.id, c.ended_at, before, limit, has_ended))
+
+
+def forget_plans(connection: Connection, before: float, limit: int) -> int:
+    """Delete at most ``limit`` plans that ended before a time, with their stops; return how many."""
+    gone = delete_oldest(connection, plans.c.name, plans.c.ended_at, before, limit)
+    for name in gone:
+        connection.execute(delete(plan_stops).where(plan_stops.c.plan == name))
+    return len(gone)
 
 
 def _save_queue(connection: Connection, before: Queue, after: Queue) -> None:
