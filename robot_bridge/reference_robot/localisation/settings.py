@@ -6,16 +6,13 @@ from pathlib import Path
 from typing import Annotated, Literal
 
 import msgspec
-import tomllib
 
-# --- The exception family of the reference robot ---
+from ...core.json_decoder import toml_tables
 
 
 class ReferenceRobotError(Exception):
     """Something the robot cannot do; the text names what was wrong, where, and what to do."""
 
-
-# --- What the robot and its simulated world are set to: one TOML file, a table for each part ---
 
 LARGEST = 64_000
 """bytes of a settings file."""
@@ -138,13 +135,14 @@ class LocalisedRobotSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=
 def settings_tables(file: Path) -> dict[str, object]:
     """Return the tables in a TOML ``file``; raises ReferenceRobotError."""
     try:
-        content = file.read_bytes()
+        with file.open("rb") as opened:
+            content = opened.read(LARGEST + 1)
         if len(content) > LARGEST:
-            raise ReferenceRobotError(f"settings {file}: {len(content)} bytes, more than {LARGEST}")
-        return tomllib.loads(content.decode())
+            raise ReferenceRobotError(f"settings {file}: more than {LARGEST} bytes")
+        return toml_tables(content.decode())
     except OSError as error:
         raise ReferenceRobotError(
             f"settings {file} cannot be read: {error.strerror or error}; name another file"
         ) from None
-    except (ValueError, RecursionError) as error:
+    except ValueError as error:
         raise ReferenceRobotError(f"settings {file} are no TOML: {error}") from None

@@ -117,6 +117,9 @@ def test_the_settings_that_come_with_the_program_can_be_read(name):
         ("route = [[0, 0], [1, inf]]", "route"),
         ("route = ", "no TOML"),
         ("#" * 70_000, "more than 64000"),
+        # What tomllib alone takes seconds for.
+        ("a" + ".a" * 30_000 + " = 1", "more than 32 parts"),
+        ("route = " + "[" * 30_000, "nested too deeply"),
     ],
 )
 def test_wrong_settings_are_named(tmp_path, text, said):
