@@ -10,10 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .ray_casting import RayCaster
-from .settings import GpsSettings, GyroscopeSettings, LaserSettings, OdometrySettings
+from .settings import GpsSettings, GyroscopeSettings, LaserSettings, OdometrySettings, StandingSettings
 from .world import Walls
-
-# --- Simulated sensors: each measures the true motion or place, wrong in its own way, alike for one seed
 
 TruePose = tuple[float, float, float]
 """x, y in metres and theta in radians."""
@@ -146,14 +144,6 @@ class SimulatedGps:
         return pose[0] + east, pose[1] + north
 
 
-# --- What a robot's sensors say between two scans, and what in it cannot be right ---
-
-LONGEST_PAUSE = 2.0
-"""seconds between two readings, beyond which nobody knows what the robot did meanwhile."""
-LEAST_JUMP = 0.3
-"""metres and radians that a motion may be beyond what the body can do: the noise of its sensors."""
-
-
 @dataclass(frozen=True, eq=False)
 class SensorReading:
     """One scan, and the motion since the one before.
@@ -176,16 +166,20 @@ class BodyReach:
     turn_rate: float
 
 
-def motion_fault(reading: SensorReading, before: float | None, reach: BodyReach) -> str | None:
+def motion_fault(
+    reading: SensorReading, before: float | None, reach: BodyReach, settings: StandingSettings
+) -> str | None:
     """Return what is wrong with the time and the motion of a reading, None where nothing is.
 
     ``before`` is the time of the one before, None for the first.
     """
     passed = 0.0 if before is None else reading.t - before
-    if not math.isfinite(reading.t) or (before is not None and not 0 < passed <= LONGEST_PAUSE):
-        return f"the sensors' clock jumped by {passed:+.2f} s; set it, or let the robot start anew"
+    if not math.isfinite(reading.t) or (before is not None and not 0 < passed <= settings.pause):
+        return f"the sensors' clock jumped by {passed:+.2f} s; set it, or restart the robot"
     far, turned = abs(reading.motion.distance), abs(reading.motion.turn)
-    if not (far <= reach.speed * passed + LEAST_JUMP and turned <= reach.turn_rate * passed + LEAST_JUMP):
+    if not (
+        far <= reach.speed * passed + settings.jump and turned <= reach.turn_rate * passed + settings.jump
+    ):
         return (
             f"the odometry jumped by {reading.motion.distance:.2f} m and {reading.motion.turn:.2f} rad in "
             f"{passed:.2f} s; check the wheels' encoders and the gyroscope"

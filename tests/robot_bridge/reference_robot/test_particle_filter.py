@@ -10,7 +10,7 @@ import pytest
 from robot_bridge.core.robotmap.builder import build_map
 from robot_bridge.core.robotmap.model import Window
 from robot_bridge.core.robotmap.outlines import Outlines
-from robot_bridge.reference_robot.localisation.particle_filter import FIX_WRONG, ParticleFilter
+from robot_bridge.reference_robot.localisation.particle_filter import ParticleFilter
 from robot_bridge.reference_robot.localisation.sensors import (
     Motion,
     SimulatedLaser,
@@ -117,7 +117,7 @@ def test_a_gps_position_weighs_particles_by_their_distance_and_rules_none_out(ya
     tracking.place(CIRCLE[0], (1.0, 0.1))
     tracking.observe_fix(15.0, 5.0, 1.5)
     away = np.hypot(*(tracking.particles[:, :2] - (15.0, 5.0)).T)
-    direct = np.array([math.exp(-(metres**2) / (2 * 1.5**2)) + FIX_WRONG for metres in away])
+    direct = np.array([math.exp(-(metres**2) / (2 * 1.5**2)) + SETTINGS.gps.wrong for metres in away])
     np.testing.assert_allclose(tracking.weights, direct / direct.sum())
     assert not tracking.belief.lost
 
