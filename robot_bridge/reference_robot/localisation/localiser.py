@@ -68,8 +68,8 @@ class LocaliserSettings:
 class Localiser:
     """Hands readings to a particle filter that works on ``executor``, one after the other.
 
-    :attr:`pose` is the newest belief, moved on by what was measured since. :attr:`trouble` says why it is not
-    to be driven by. Call all methods from one thread.
+    :attr:`pose` is the newest belief, moved on by what was measured since. :attr:`trouble` says why the
+    robot must not drive by it. Call all methods from one thread.
     """
 
     def __init__(
@@ -92,10 +92,10 @@ class Localiser:
         self._work: Future[Estimate] | None = None
         self._work_t = 0.0
         self._next_map: RobotMap | None = None
-        """What the filter is to use from its next reading on."""
+        """The map that the filter uses from its next reading on."""
         self._tried: tuple[RobotMap | None, InitialBelief | None] = None, None
         self._owed: list[Motion] = []
-        """What the filter has not been told yet, because it was busy."""
+        """Motions that the filter does not have yet, because it was busy."""
         self._number = 0
         self._since: list[tuple[int, Motion]] = []
         """Motions by the number of their reading, that the newest estimate does not know of."""
@@ -118,7 +118,7 @@ class Localiser:
 
     @property
     def lost(self) -> bool:
-        """Tell whether the robot does not know its place."""
+        """Whether the robot does not know its place."""
         return self._estimate.lost
 
     @property
@@ -138,7 +138,7 @@ class Localiser:
 
     @property
     def trouble(self) -> str | None:
-        """Why the robot is not to drive, None when it knows where it is."""
+        """Why the robot must not drive, None when it knows where it is."""
         self._collect()
         if self.map is None:
             return "it has no map yet"
@@ -173,7 +173,7 @@ class Localiser:
         self._next_map = robot_map
 
     def place(self, start: InitialBelief) -> None:
-        """Take the robot to be where it is told that it is."""
+        """Take the robot to be at ``start``, whatever the filter believed."""
         self._start = start
         self._estimate = Estimate(self._number, start.pose, start.deviation[0], True, 0.0)
         self._since, self._owed, self._worst = [], [], 0.0
@@ -186,7 +186,7 @@ class Localiser:
             self._done_t = reading.t
         fault = motion_fault(reading, before, self._settings.reach, self._standing)
         if fault is not None:
-            # What the robot did meanwhile nobody knows: the filter is to doubt, and is not told.
+            # What the robot did meanwhile nobody knows: the filter doubts its place.
             self._fault, self._missed, self._done_t = fault, True, reading.t
             return
         self._number += 1
@@ -222,7 +222,7 @@ class Localiser:
             return
         self._failure = None
         if self._start is not None:
-            # It was told another place meanwhile.
+            # It was given another place meanwhile.
             return
         estimate = self._estimate = work.result()
         worst = max(self._worst, estimate.accuracy, self._standing.lost_accuracy)
@@ -290,7 +290,7 @@ class Localiser:
         return Estimate(number, belief.pose, accuracy, belief.lost, belief.agreement, count, nothing)
 
     def _sees_nothing(self, pose: TruePose, ranges: Any) -> bool:
-        """Tell whether neither the scan nor the map has anything there: all places are alike then."""
+        """Return whether neither the scan nor the map has anything there: all places are alike then."""
         reach = self._settings.laser.reach
         if np.count_nonzero(ranges < reach) > self._standing.few_echoes or self._walls is None:
             return False

@@ -67,7 +67,7 @@ def beam_likelihood(
     likelihood *= settings.hit / (sigma * math.sqrt(2 * math.pi))
     likelihood += settings.random / reach
     likelihood += settings.short * short / np.maximum(expected, sigma)
-    # Without an echo: a point mass, told as a density over one standard deviation.
+    # Without an echo: a point mass, written as a density over one standard deviation.
     likelihood += (settings.far / sigma) * (measured >= reach)
     likelihood /= whole
     return likelihood
@@ -159,7 +159,7 @@ def in_groups(
 ) -> tuple[NDArray[Any], NDArray[Any]]:
     """Return the rows of about ``count`` particles drawn in each group by itself, and their weights of sum 1.
 
-    ``group``, (N,) int64, tells which belong together. A group keeps its weight, and has
+    ``group``, (N,) int64, says which belong together. A group keeps its weight, and has
     ``group_least`` particles at least: of places that look alike none dies out by chance, and what scans say
     of them adds up. Groups of less weight than ``group_share`` are left out, and all but the ``most_groups``
     heaviest.

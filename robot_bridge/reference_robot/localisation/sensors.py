@@ -125,7 +125,7 @@ class SimulatedGps:
         self._settings = settings
         self._rng = rng
         slope = math.tan(math.radians(settings.mask_deg))
-        # Walls of one height class shade as far as the lower edge of the class tells.
+        # Walls of one height class shade as far as the lower edge of the class says.
         self._casters = []
         for low, high in ((2.0, 5.0), (5.0, 10.0), (10.0, 20.0), (20.0, np.inf)):
             some = (walls.height >= low) & (walls.height < high)
