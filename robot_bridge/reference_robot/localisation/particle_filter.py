@@ -194,7 +194,11 @@ class ParticleFilter:
         """Weigh all particles by a GPS position, metres, of which ``deviation`` is the standard deviation.
 
         Several in a row that are far away show that the belief is wrong.
+
+        :raises ReferenceRobotError: for one that is not finite.
         """
+        if not (math.isfinite(x) and math.isfinite(y)):
+            raise ReferenceRobotError(f"GPS position ({x}, {y}) is not finite; check the receiver")
         self._fix, self._since_fix = (x, y, deviation), 0.0
         squares = np.square(self.particles[:, :2] - (x, y)).sum(axis=1) / deviation**2
         weights = self.weights * (np.exp(-0.5 * squares) + self._settings.gps.wrong)
@@ -217,7 +221,7 @@ class ParticleFilter:
         place = weights @ poses[:, :2]
         off = np.column_stack([poses[:, :2] - place, _wrapped(poses[:, 2] - theta)])
         covariance = (weights[:, None] * off).T @ off
-        lost = self._unsettled > 0 or share < self._settings.recovery.share
+        lost = self._unsettled > 0 or not share >= self._settings.recovery.share
         apart = self.particles[:, :2] - place
         spread = math.sqrt(float(self.weights @ np.square(apart).sum(axis=1)))
         pose = float(place[0]), float(place[1]), theta

@@ -188,11 +188,13 @@ def motion_fault(
 
 
 def scan_fault(reading: SensorReading, beams: int) -> str | None:
-    """Return what is wrong with the scan of a reading, None where nothing is."""
+    """Return what is wrong with the scan or the GPS position of a reading, None where nothing is."""
     if reading.ranges.shape != (beams,):
         return f"the laser gives {reading.ranges.size} ranges and not {beams}; see the laser's settings"
     if not (reading.ranges >= 0).any():
         return "no beam of the laser has a reading; check its power and its window"
+    if reading.fix is not None and not all(math.isfinite(metres) for metres in reading.fix):
+        return f"the GPS receiver gives the position {reading.fix}; check the receiver and its driver"
     return None
 
 

@@ -122,6 +122,16 @@ def test_a_gps_position_weighs_particles_by_their_distance_and_rules_none_out(ya
     assert not tracking.belief.lost
 
 
+def test_a_gps_position_that_is_no_number_is_refused_and_changes_nothing(yard):
+    tracking = Run(yard).filter
+    tracking.place(CIRCLE[0], (0.1, 0.05))
+    before = tracking.weights.copy()
+    for x, y in ((math.nan, 3.5), (14.5, math.inf)):
+        with pytest.raises(ReferenceRobotError, match=r"GPS position .* is not finite"):
+            tracking.observe_fix(x, y, 1.5)
+    np.testing.assert_array_equal(tracking.weights, before)
+
+
 def test_gps_positions_far_from_the_belief_bring_it_back(yard):
     run = Run(yard)
     run.filter.place((3.0, 18.0, 0.0), (0.1, 0.05))
