@@ -24,6 +24,7 @@ from qgis.PyQt.QtWidgets import (
     QWidget,
 )
 
+from ...robot_bridge.core.files import replacement
 from ..gateway_client.connection import ConnectionThread
 from ..gateway_client.link import DEFAULT_URL, ConnectionPhase, ConnectionStatus, OperatorCredentials
 from ..help import CONNECTIONS, show_help
@@ -383,7 +384,8 @@ class ConnectionsWidget(QWidget):
         names = self.selected() or self._connections.names()
         chosen = [one for one in self._connections.all() if one.name in names]
         try:
-            Path(file).write_text(connections_text(chosen), encoding="utf-8")
+            with replacement(Path(file)) as made:
+                made.write_text(connections_text(chosen), encoding="utf-8")
         except OSError as error:
             self._verdict.show_verdict(False, tr("{file} cannot be written: {error}", file=file, error=error))
             return

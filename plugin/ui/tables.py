@@ -12,6 +12,7 @@ from typing import Any
 from qgis.PyQt.QtCore import QAbstractTableModel, QEvent, QModelIndex, QObject, Qt
 from qgis.PyQt.QtWidgets import QAbstractItemView, QHeaderView, QStyle, QTableView, QTreeView
 
+from ...robot_bridge.core.files import replacement
 from .errors import FleetError
 from .language import tr
 from .times import short_time
@@ -202,10 +203,9 @@ def write_csv(path: str, head: Sequence[str], rows: Iterable[Sequence[object]]) 
         table.writerow([_cell(value) for value in row])
         count += 1
     target = Path(path)
-    part = target.with_name(target.name + ".part")
     try:
-        part.write_text(text.getvalue(), encoding="utf-8-sig", newline="")
-        part.replace(target)
+        with replacement(target) as part:
+            part.write_text(text.getvalue(), encoding="utf-8-sig", newline="")
     except OSError as error:
         raise CsvError(
             tr(

@@ -139,10 +139,12 @@ def _served(site: Path, name: str, database: str | None, output: Path | None) ->
 
 def _write(folder: Path, name: str, text: str) -> None:
     from ..core.errors import BridgeError
+    from ..core.files import replacement
 
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        (folder / name).write_text(text, encoding="utf-8")
+        with replacement(folder / name) as made:
+            made.write_text(text, encoding="utf-8")
     except OSError as error:
         raise BridgeError(
             f"{folder / name} cannot be written: {error.strerror or error}; choose another --output"

@@ -6,7 +6,6 @@ import asyncio
 import csv
 import dataclasses
 import struct
-import tempfile
 from collections.abc import Callable, Sequence
 from datetime import UTC, datetime
 from pathlib import Path
@@ -16,6 +15,7 @@ import numpy as np
 import typer
 
 from ..core.errors import BridgeError, counted, listed_names
+from ..core.files import replacement
 from ..core.messages import GetPlacements, PlacementReport
 from ..core.messages.records import MOST_PLACEMENTS
 from ..core.sites.frame import SiteFrame, projections
@@ -108,11 +108,8 @@ def write_placed_cones(found: Sequence[Row], frame: SiteFrame, file: Path) -> No
     """
     as_file = {".csv": _write_csv, ".gpkg": _write_geopackage}[file.suffix.lower()]
     try:
-        # A folder beside the file, so that the finished one is put into its place at once.
-        with tempfile.TemporaryDirectory(prefix=".exporting-", dir=file.parent) as folder:
-            partial = Path(folder) / file.name
+        with replacement(file) as partial:
             as_file(found, frame, partial)
-            partial.replace(file)
     except OSError as error:
         raise BridgeError(f"{file} cannot be written: {error.strerror or error}; check its folder") from error
 

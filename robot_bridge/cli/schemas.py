@@ -8,6 +8,7 @@ from typing import Annotated
 import typer
 
 from ..core.errors import BridgeError
+from ..core.files import replacement
 
 
 def schemas(
@@ -20,7 +21,8 @@ def schemas(
         file = folder / path
         try:
             file.parent.mkdir(parents=True, exist_ok=True)
-            file.write_text(text, encoding="utf-8")
+            with replacement(file) as made:
+                made.write_text(text, encoding="utf-8")
         except OSError as error:
             raise BridgeError(
                 f"{file} cannot be written: {error.strerror or error}; choose another folder"

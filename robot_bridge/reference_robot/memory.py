@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import json
-import os
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
 
 from ..core.errors import BridgeError
+from ..core.files import write_state
 from ..core.json_decoder import decode_json
 from .body import Pose
 
@@ -58,13 +58,8 @@ class RobotMemory:
 
     def keep(self, remembered: RememberedRun) -> None:
         """Write what is to be remembered in place of what was; raises BridgeError."""
-        partial = self._file.with_name(f"{self._file.name}.part")
         try:
-            with partial.open("w", encoding="utf-8") as text:
-                json.dump(asdict(remembered), text)
-                text.flush()
-                os.fsync(text.fileno())
-            partial.replace(self._file)
+            write_state(self._file, json.dumps(asdict(remembered)).encode())
         except OSError as error:
             raise BridgeError(
                 f"memory {self._file} cannot be written: {error.strerror or error}; check its folder and "

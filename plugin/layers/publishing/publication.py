@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 import shutil
-import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass, replace
@@ -14,16 +13,15 @@ from qgis.core import QgsFeedback
 from qgis.PyQt.QtCore import QLockFile
 
 from ....robot_bridge.core.errors import SettingsError
+from ....robot_bridge.core.files import StagedFiles
 from ....robot_bridge.core.sites.geopackage import GEOPACKAGE_FILE
 from ....robot_bridge.core.sites.settings import (
     SETTINGS_FILE,
     SiteSettings,
     check_values,
-    earlier_settings,
-    settings_text,
 )
-from ....robot_bridge.core.sites.site import cache_writer, put_cache, write_site_cache
-from ....robot_bridge.core.sites.site_cache import CACHE_FILE, CacheWriter
+from ....robot_bridge.core.sites.site import cache_writer, publish_staged, write_settings_and_cache
+from ....robot_bridge.core.sites.site_cache import CacheWriter
 from ...ui.language import tr
 from ..errors import PublicationError
 from .site_file import SiteContent, stamp_in, write_site_file
@@ -173,10 +171,10 @@ def next_version(settings: SiteSettings, folder: Path, *, replace_other: bool = 
 
 
 class NewPublication:
-    """A publication that is being made in ``partial``, a folder inside ``folder``."""
+    """A publication that is being made in ``staged``."""
 
-    def __init__(self, folder: Path, partial: Path) -> None:
-        self._folder, self._partial = folder, partial
+    def __init__(self, staged: StagedFiles) -> None:
+        self._staged = staged
         self._cache: CacheWriter | None = None
 
     def write_layers(self, content: SiteContent, settings: SiteSettings, feedback: QgsFeedback) -> bool:
@@ -184,33 +182,29 @@ class NewPublication:
 
         :raises PublicationError: when a layer cannot be written.
         """
-        self._cache = cache = cache_writer(self._partial, settings.frame)
-        return write_site_file(self._partial / GEOPACKAGE_FILE, content, settings, cache, feedback)
+        self._cache = cache = cache_writer(self._staged.folder, settings.frame)
+        return write_site_file(self._staged.folder / GEOPACKAGE_FILE, content, settings, cache, feedback)
 
     def replace_earlier(self, settings: SiteSettings, feedback: QgsFeedback) -> bool:
         """Put the layers that were written, and ``settings``, in the place of what is published.
 
         To be called behind :meth:`write_layers`. Return false after a cancel. Other files in the folder stay,
-        and in ``site.toml`` the tables that the operator set. A gateway that reads between the replacement of
-        the files refuses what it finds and reads no half site.
+        and in ``site.toml`` the tables that the operator set.
 
         :raises PublicationError: when a setting is wrong.
         """
-        check_publication_values(settings, self._folder)
-        text = settings_text(settings, earlier_settings(self._folder, settings.id))
-        (self._partial / SETTINGS_FILE).write_text(text, encoding="utf-8")
-        if self._cache is not None:
-            write_site_cache(self._partial, settings, text, self._cache)
+        assert self._cache is not None
+        check_publication_values(settings, self._staged.target)
+        write_settings_and_cache(self._staged, settings, self._cache)
         if feedback.isCanceled():
             return False
-        _replace(self._partial, self._folder)
+        publish_staged(self._staged)
         return True
 
     def remove(self) -> None:
-        """Delete what was written and not put into the folder."""
+        """Delete what is kept beside the layers while they are written."""
         if self._cache is not None:
             self._cache.remove()
-        shutil.rmtree(self._partial, ignore_errors=True)
 
 
 @contextmanager
@@ -222,43 +216,16 @@ def new_publication(folder: Path) -> Iterator[NewPublication]:
     :raises PublicationError: when the folder cannot be written.
     """
     try:
-        folder.mkdir(parents=True, exist_ok=True)
         for left_by_a_crash in folder.glob(f"{_PARTIAL}*"):
             shutil.rmtree(left_by_a_crash, ignore_errors=True)
-        # A folder inside the target, so that both renames stay on one file system.
-        publication = NewPublication(folder, Path(tempfile.mkdtemp(prefix=_PARTIAL, dir=folder)))
-        try:
-            yield publication
-        finally:
-            publication.remove()
+        with StagedFiles(folder, _PARTIAL) as staged:
+            publication = NewPublication(staged)
+            try:
+                yield publication
+            finally:
+                publication.remove()
     except OSError as error:
         raise unwritable(folder, error.strerror or str(error)) from error
-
-
-def _replace(partial: Path, folder: Path) -> None:
-    """Put the files of ``partial`` in the place of those in ``folder``, or leave these as they were."""
-    layers, cache = folder / GEOPACKAGE_FILE, folder / CACHE_FILE
-    earlier, earlier_cache = partial / "earlier.gpkg", partial / "earlier.cache"
-    if layers.exists():
-        shutil.copyfile(layers, earlier)
-    if cache.exists():
-        # A gateway that looks meanwhile does without.
-        cache.replace(earlier_cache)
-    try:
-        put_cache(partial, folder)
-        (partial / GEOPACKAGE_FILE).replace(layers)
-        (partial / SETTINGS_FILE).replace(folder / SETTINGS_FILE)
-    except OSError:
-        _put_back(earlier, layers)
-        _put_back(earlier_cache, cache)
-        raise
-
-
-def _put_back(earlier: Path, file: Path) -> None:
-    if earlier.exists():
-        earlier.replace(file)
-    else:
-        file.unlink(missing_ok=True)
 
 
 def check_publication_values(settings: SiteSettings, folder: Path) -> None:

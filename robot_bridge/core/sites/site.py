@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import logging
-import shutil
-import tempfile
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -14,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from ..errors import CacheError, SiteError, WindowError
+from ..files import StagedFiles
 from ..geometry import Track
 from ..messages.links import MOST_AREA_POINTS, SiteArea, SiteAreas, SiteRoad
 from ..roads.centrelines import Surface
@@ -305,7 +304,7 @@ def read_site(folder: Path | str) -> Site:
     return site
 
 
-def write_site_cache(folder: Path, settings: SiteSettings, text: str, obstacles: CacheWriter) -> None:
+def _write_site_cache(folder: Path, settings: SiteSettings, text: str, obstacles: CacheWriter) -> None:
     """Write ``site.cache`` beside the ``site.gpkg`` in ``folder`` that ``obstacles`` are published in.
 
     ``text`` is that of ``site.toml``, which says how large a map may be. What a gateway would refuse, or
@@ -381,32 +380,36 @@ def write_site(
 
 
 def _write(folder: Path, settings: SiteSettings, layers: Sequence[Layer], obstacles: Outlines) -> None:
-    folder.mkdir(parents=True, exist_ok=True)
-    # A folder inside the target, so that both renames stay on one file system.
-    partial = Path(tempfile.mkdtemp(prefix=".writing-", dir=folder))
-    try:
-        write_layers(partial / GEOPACKAGE_FILE, layers, settings.crs, settings.stamp)
-        text = settings_text(settings, earlier_settings(folder, settings.id))
-        (partial / SETTINGS_FILE).write_text(text, encoding="utf-8")
-        with cache_writer(partial, settings.frame) as cache:
+    with StagedFiles(folder) as staged:
+        write_layers(staged.folder / GEOPACKAGE_FILE, layers, settings.crs, settings.stamp)
+        with cache_writer(staged.folder, settings.frame) as cache:
             cache.add(obstacles)
-            write_site_cache(partial, settings, text, cache)
-        put_cache(partial, folder)
-        (partial / GEOPACKAGE_FILE).replace(folder / GEOPACKAGE_FILE)
-        (partial / SETTINGS_FILE).replace(folder / SETTINGS_FILE)
-    finally:
-        shutil.rmtree(partial, ignore_errors=True)
+            write_settings_and_cache(staged, settings, cache)
+        publish_staged(staged)
 
 
-def put_cache(partial: Path, folder: Path) -> None:
-    """Put the ``site.cache`` in ``partial`` into ``folder``, or take away the one there; raises OSError.
+def write_settings_and_cache(staged: StagedFiles, settings: SiteSettings, cache: CacheWriter) -> None:
+    """Write ``site.toml`` and ``site.cache`` beside the layers in ``staged``, which ``cache`` was given.
 
-    Before the files that it belongs to: a gateway does not look at it until they have changed.
+    In ``site.toml`` the tables stay that the operator set in the one there. Raises OSError.
     """
-    if (partial / CACHE_FILE).is_file():
-        (partial / CACHE_FILE).replace(folder / CACHE_FILE)
+    text = settings_text(settings, earlier_settings(staged.target, settings.id))
+    (staged.folder / SETTINGS_FILE).write_text(text, encoding="utf-8")
+    _write_site_cache(staged.folder, settings, text, cache)
+
+
+def publish_staged(staged: StagedFiles) -> None:
+    """Put the layers, the settings and the cache in ``staged`` in the place of those that are published.
+
+    The cache goes before the files that it belongs to: a gateway does not look at it until they have changed,
+    and one that reads between the replacement of those refuses what it finds and reads no half site.
+
+    :raises OSError: the block of ``staged`` is to end by it, so that all is as it was.
+    """
+    if (staged.folder / CACHE_FILE).is_file():
+        staged.publish([CACHE_FILE, GEOPACKAGE_FILE, SETTINGS_FILE])
     else:
-        (folder / CACHE_FILE).unlink(missing_ok=True)
+        staged.publish([GEOPACKAGE_FILE, SETTINGS_FILE], removed=[CACHE_FILE])
 
 
 # --- The published sites that lie in one folder, and which of them may follow one another on one gateway

@@ -12,6 +12,7 @@ import os
 import stat
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 from cryptography import x509
@@ -19,6 +20,7 @@ from cryptography.hazmat.primitives import hashes, serialization
 from cryptography.hazmat.primitives.asymmetric import ec
 from cryptography.x509.oid import ExtendedKeyUsageOID, NameOID
 
+from ...core.files import replacement
 from ...protocol.credentials import AccessError
 
 CA_DAYS = 3650
@@ -224,15 +226,10 @@ def _write(file: Path, content: bytes, mode: int = 0o644) -> None:
 
     Then it belongs to whom ``file`` did: root renews what the gateway's account has to read.
     """
-    fresh = file.with_name(f".{file.name}.new")
-    fresh.unlink(missing_ok=True)
-    with os.fdopen(os.open(fresh, os.O_WRONLY | os.O_CREAT | os.O_EXCL, mode), "wb") as stream:
+    with replacement(file) as fresh, open(fresh, "wb", opener=partial(os.open, mode=mode)) as stream:
         stream.write(content)
-        stream.flush()
-        os.fsync(stream.fileno())
         if file.exists():
             _give_as(file, stream.fileno())
-    fresh.replace(file)
 
 
 def _give_as(file: Path, fresh: int) -> None:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import asyncio
-import contextlib
 import hashlib
 import json
 import logging
@@ -20,6 +19,7 @@ from sqlalchemy import URL, Connection
 from sqlalchemy.exc import ProgrammingError
 
 from ...core.errors import BridgeError, DataRefusedError, StoreError, UncertainError
+from ...core.files import write_state
 from ...core.json_decoder import DecodingError, decode_json
 from ...core.messages import Abort, MessageError, SetPath, SetPosEnd, check_command_id
 from ..commands.active_command import CommandOrder
@@ -113,30 +113,13 @@ class StopJournal:
     def _write(self, stops: list[StopRow]) -> None:
         try:
             if stops:
-                self._replace(json.dumps([_plain(stop) for stop in stops]))
+                text = json.dumps([_plain(stop) for stop in stops])
+                write_state(self._file, text.encode(), mode=0o600)
             else:
                 self._file.unlink(missing_ok=True)
         except Exception as error:
             why = (error.strerror if isinstance(error, OSError) else None) or error
             log.error("emergency stops cannot be noted in %s: %s; they go out all the same", self._file, why)
-
-    def _replace(self, text: str) -> None:
-        partial = self._file.with_name(f".{self._file.name}.new")
-        file = os.open(partial, os.O_WRONLY | os.O_CREAT | os.O_TRUNC | os.O_CLOEXEC, 0o600)
-        with open(file, "w", encoding="utf-8") as writing:  # noqa: PTH123 - by its descriptor
-            writing.write(text)
-            writing.flush()
-            os.fsync(file)
-        partial.replace(self._file)
-        _to_disk(self._file.parent)
-
-
-def _to_disk(folder: Path) -> None:
-    """Have the name of a new file on the disk too; some file systems cannot, and need not."""
-    descriptor = os.open(folder, os.O_RDONLY)
-    with contextlib.suppress(OSError):
-        os.fsync(descriptor)
-    os.close(descriptor)
 
 
 def _plain(stop: StopRow) -> dict[str, object]:

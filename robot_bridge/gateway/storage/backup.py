@@ -21,6 +21,7 @@ from sqlalchemy import URL, Connection, create_engine, delete, func, inspect, se
 from sqlalchemy.pool import NullPool
 
 from ...core.errors import BridgeError, StoreError, counted
+from ...core.files import replacement
 from ...core.json_decoder import SHORT, decode_json
 from . import revisions
 from .database import run_once, shown
@@ -414,15 +415,12 @@ def back_up(url: URL, file: Path, *, replace: bool = False) -> int:
         raise BridgeError(f"{file} is there already; choose another name, or give --replace")
     revision = run_once(url, _revision, shown(url))
     try:
-        with tempfile.TemporaryDirectory(prefix=".backing-up-", dir=file.parent) as folder:
-            partial = Path(folder) / "backup"
+        with replacement(file) as partial:
             # It holds what the database does, and nobody else's eyes are meant for it.
             os.close(os.open(partial, os.O_CREAT | os.O_WRONLY, 0o600))
             kind = KINDS[url.get_backend_name()](url)
             kind.write(partial, revision)
             kind.check(partial)
-            _to_disk(partial)
-            partial.replace(file)
     except OSError as error:
         raise BridgeError(f"{file} cannot be written: {error.strerror or error}; check its folder") from error
     return file.stat().st_size
@@ -523,11 +521,3 @@ def _check_kind(url: URL, file: Path) -> None:
     of = next((name for name in KINDS if KINDS[name](url).recognises(head)), None)
     what = f"is of {of}" if of == "sqlite" else "is of a database server" if of else "is no backup"
     raise StoreError(f"file {file} {what}, and database {shown(url)} is {wanted}; give a backup of {wanted}")
-
-
-def _to_disk(file: Path) -> None:
-    descriptor = os.open(file, os.O_RDONLY)
-    try:
-        os.fsync(descriptor)
-    finally:
-        os.close(descriptor)

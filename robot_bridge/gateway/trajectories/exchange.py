@@ -5,7 +5,6 @@ from __future__ import annotations
 import asyncio
 import logging
 import struct
-import tempfile
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
@@ -16,6 +15,7 @@ from typing import Any
 import numpy as np
 
 from ...core.errors import BridgeError, listed_names
+from ...core.files import replacement
 from ...core.geometry import headings_of
 from ...core.sites.frame import SiteFrame, projections
 from ...core.sites.settings_tables import TrajectorySettings
@@ -204,12 +204,9 @@ async def export_trajectories(
     """
     await _check_robots(database, wanted.robots)
     try:
-        # A folder beside the file, so that the finished one is put into its place at once.
-        with tempfile.TemporaryDirectory(prefix=".exporting-", dir=file.parent) as folder:
-            partial = Path(folder) / f"{file.stem}.gpkg"
+        with replacement(file) as partial:
             written = TrajectoryFile(partial, frame, gap)
             await _copy(database, wanted, written)
-            partial.replace(file)
     except OSError as error:
         raise BridgeError(f"{file} cannot be written: {error.strerror or error}; check its folder") from error
     return written

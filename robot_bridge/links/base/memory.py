@@ -10,11 +10,12 @@ import logging
 import os
 import secrets
 from collections import OrderedDict
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from ...core.files import write_state
 from ...core.json_decoder import SHORT, DecodingError, decode_json
 from .errors import LinkError
 
@@ -165,7 +166,7 @@ class LinkMemory:
     def _write_anew(self, lines: Sequence[dict[str, Any]], revision: int) -> None:
         assert self._file is not None
         try:
-            _replace(self._file, lines)
+            _write_lines(self._file, lines)
         except OSError as error:
             raise self._failed(error) from None
         if revision == self._revision:
@@ -210,7 +211,7 @@ class LinkMemory:
     def _begin_file(self, file: Path) -> None:
         """Write the file anew with what is still known: it shows that it can be written, too."""
         try:
-            _replace(file, list(self._lines()))
+            _write_lines(file, self._lines())
         except OSError as error:
             if error.errno not in PASSING:
                 raise LinkError(
@@ -232,10 +233,5 @@ class LinkMemory:
                     yield {"robot": name, "done": id, **refusal}
 
 
-def _replace(file: Path, lines: Sequence[dict[str, Any]]) -> None:
-    new = file.with_name(f"{file.name}.new")
-    with new.open("w", encoding="utf-8") as out:
-        out.writelines(json.dumps(line) + "\n" for line in lines)
-        out.flush()
-        os.fsync(out.fileno())
-    new.replace(file)
+def _write_lines(file: Path, lines: Iterable[dict[str, Any]]) -> None:
+    write_state(file, "".join(json.dumps(line) + "\n" for line in lines).encode())

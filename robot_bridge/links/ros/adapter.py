@@ -9,6 +9,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any, Generic, TypeVar
 
+from ...core.files import write_state
 from ...core.json_decoder import DecodingError, decode_json
 from ...core.messages import MessageError, check_robot_name
 from ..base.adapter import Adapter, Command, Link
@@ -49,10 +50,8 @@ class RobotNotes:
 
     def write(self, notes: Mapping[str, Any]) -> None:
         """Write notes in place of what was; what is wrong with that is logged once, and kept as ``fault``."""
-        new = self._file.with_name(f"{self._file.name}.new")
         try:
-            new.write_text(json.dumps(notes), encoding="utf-8")
-            new.replace(self._file)
+            write_state(self._file, json.dumps(notes).encode())
         except OSError as error:
             fault = f"{self._file} cannot be written: {error.strerror or error}"
             if self.fault is None:

@@ -15,6 +15,7 @@ import msgspec
 from msgspec import UNSET, Struct, field
 from shapely import LineString
 
+from ...core.files import write_state
 from ...core.json_decoder import DecodingError, JsonBounds, decode_json
 from ...core.messages import SetPath, SetPosEnd, to_json
 from ...protocol.codec import decode_answer, parse_params
@@ -255,12 +256,9 @@ class Memory:
     def keep(self, vehicle: str, remembered: Remembered) -> None:
         """Write what is to be remembered of a vehicle in place of what was; raises Vda5050Error."""
         file = self._file(vehicle)
-        partial = file.with_suffix(".part")
         try:
             self._folder.mkdir(mode=0o700, parents=True, exist_ok=True)
-            with partial.open("wb") as stream:
-                stream.write(msgspec.json.encode(remembered))
-            partial.replace(file)
+            write_state(file, msgspec.json.encode(remembered))
         except OSError as error:
             raise Vda5050Error(
                 f"memory {file} cannot be written: {error.strerror or error}; check its folder and free space"

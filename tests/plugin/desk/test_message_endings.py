@@ -172,7 +172,7 @@ def test_without_a_robot_to_be_replayed_that_is_said_until_one_is_selected(repla
 
 
 def test_a_log_that_was_not_written_is_told_until_it_is(at_desk, told, tmp_path):
-    (tmp_path / "log.csv.part").mkdir()
+    (tmp_path / "log.csv").mkdir()
     at_desk.dock.log.export(str(tmp_path / "log.csv"))
     told.begins("was not written")
     at_desk.dock.log.export(str(tmp_path / "other.csv"))

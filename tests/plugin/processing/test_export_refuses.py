@@ -24,7 +24,7 @@ def refused(export, tmp_path):
         with pytest.raises(QgsProcessingException) as error:
             export(*layers, **parameters)
         assert older.read_text() == "an older map"
-        assert [file.name for file in tmp_path.iterdir() if file.name.endswith(".part")] == []
+        assert [file.name for file in tmp_path.iterdir() if file.name.startswith(".")] == []
         return str(error.value)
 
     return run

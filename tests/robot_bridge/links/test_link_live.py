@@ -305,7 +305,7 @@ def test_a_robot_that_says_too_much_still_acknowledges_what_it_is_told(start_bri
 def test_a_full_disk_keeps_no_stop_from_a_robot(bridge, link, desk, names, caplog):
     place(link, desk, names[:1])
     memory = link.client.settings.memory_file
-    new = memory.with_name(f"{memory.name}.new")
+    new = memory.with_name(f".{memory.name}.new")
     link.kill()
     new.symlink_to("/dev/full")
     link.start()

@@ -116,7 +116,7 @@ def test_what_was_backed_up_is_what_is_restored(address, other, tmp_path, kind):
     assert run_once(other, contents) == run_once(address, contents)
     assert len(run_once(other, contents)["trajectories"]) == 3000
     assert run_once(other, lambda c: c.scalar(select(metadata.tables["rr"].c.id))) is None
-    assert [entry.name for entry in tmp_path.iterdir() if "backing" in entry.name] == []
+    assert [entry.name for entry in tmp_path.iterdir() if entry.name.startswith(".")] == []
 
 
 def test_a_restored_database_is_another_and_gives_out_new_numbers(address, other, tmp_path):

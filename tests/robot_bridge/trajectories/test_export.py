@@ -153,7 +153,7 @@ def test_what_is_wrong_is_named(turned_site, tmp_path, monkeypatch, options, say
     done = run("trajectories", "export", *options, "--site", turned_site)
     assert (done.returncode, "Traceback" in done.stderr) == (1, False)
     assert says in done.stderr
-    assert not re.search("out|exporting", " ".join(file.name for file in tmp_path.iterdir()))
+    assert not re.search(r"out|\.writing", " ".join(file.name for file in tmp_path.iterdir()))
 
 
 @pytest.mark.parametrize("more", [[], ["--robot", "r1"]])

@@ -62,7 +62,7 @@ def test_a_folder_that_cannot_be_written_is_named(tmp_path):
 
 async def test_on_a_full_disk_nothing_is_begun_and_all_is_written_once_there_is_room(file, caplog):
     magic = LinkMemory(file).magic("agv-1")
-    new = file.with_name(f"{file.name}.new")
+    new = file.with_name(f".{file.name}.new")
     new.symlink_to("/dev/full")
     memory = LinkMemory(file)
     assert "No space left" in memory.fault

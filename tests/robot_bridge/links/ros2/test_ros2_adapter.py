@@ -64,7 +64,7 @@ def test_the_next_process_knows_who_had_a_robots_tasks(adapter, tmp_path):
 
 
 def test_a_full_disk_ends_no_link_and_is_told(adapter, tmp_path, caplog):
-    link, new = Link(), tmp_path / "nav2.servers.new"
+    link, new = Link(), tmp_path / ".nav2.servers.new"
     new.symlink_to("/dev/full")
     adapter._meet("r1", lambda name: Robot(name, server=bytes(range(16))))
     for _ in range(2):
