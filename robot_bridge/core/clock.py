@@ -27,6 +27,9 @@ class Clock:
         return steady_time()
 
 
+SYSTEM_CLOCK = Clock()
+
+
 @dataclass
 class ManualClock(Clock):
     """Clocks that stand until they are moved: ``wall`` is :meth:`time`, ``uptime`` is :meth:`steady`."""

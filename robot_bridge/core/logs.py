@@ -10,11 +10,12 @@ import re
 import secrets
 import socket
 import sys
-import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from typing import Literal, TextIO
+
+from .clock import SYSTEM_CLOCK, Clock
 
 # --- The log on standard error: lines for people or JSON for programs, neither with a secret in it ---
 
@@ -145,7 +146,7 @@ class _Run:
 class RepeatedLines:
     """Writes warnings by their keys, such as link, robot and operation, which bound the size of the log."""
 
-    def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
+    def __init__(self, clock: Clock = SYSTEM_CLOCK) -> None:
         self._clock = clock
         self._runs: dict[Key, _Run] = {}
 
@@ -162,7 +163,7 @@ class RepeatedLines:
 
     def summarise(self) -> None:
         """Write the counts that are due; to be called every second or so."""
-        now = self._clock()
+        now = self._clock.steady()
         for key, run in list(self._runs.items()):
             if now - run.began < WINDOW:
                 continue
@@ -178,7 +179,7 @@ class RepeatedLines:
         if run is None:
             if len(self._runs) >= MOST_KEYS:
                 del self._runs[next(iter(self._runs))]
-            run = self._runs[key] = _Run(log, self._clock())
+            run = self._runs[key] = _Run(log, self._clock.steady())
         if run.written < IN_FULL:
             run.written += 1
             return True

@@ -141,9 +141,9 @@ class Gateway:
         metrics = Metrics(fleet.tally)
         fleet.database.observe = metrics.database.observe
         self._status = StatusPages(fleet, metrics)
-        self._clock_watch = ClockWatch(time.time)
+        self._clock_watch = ClockWatch()
         self._leavings = GarbageCollection()
-        self.retention = Retention(fleet.database, lambda: fleet.site.settings, time.time)
+        self.retention = Retention(fleet.database, lambda: fleet.site.settings)
 
     async def serve(self, host: str, port: int) -> Server:
         """Listen for robots and operators; raises BridgeError when that cannot be done there."""

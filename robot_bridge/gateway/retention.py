@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 from sqlalchemy import Connection
 
-from ..core.clock import steady_time
+from ..core.clock import SYSTEM_CLOCK, Clock
 from ..core.sites.settings import SiteSettings
 from .auth import audit
 from .model.clocks import ClockWatch
@@ -56,28 +56,23 @@ def kept(settings: SiteSettings) -> Iterator[RetainedRows]:
 
 
 class Retention:
-    """Deletes what is too old; ``settings`` is asked each time, so they may change.
-
-    The ``steady`` clock is one that nobody sets.
-    """
+    """Deletes what is too old; ``settings`` is asked each time, so they may change."""
 
     def __init__(
         self,
         database: Database,
         settings: Callable[[], SiteSettings],
-        clock: Callable[[], float],
-        steady: Callable[[], float] = steady_time,
+        clock: Clock = SYSTEM_CLOCK,
     ) -> None:
         self._database = database
         self._settings = settings
         self._clock = clock
-        self._steady = steady
-        self._clock_watch = ClockWatch(clock, steady)
-        self._doubtful_until = steady()
+        self._clock_watch = ClockWatch(clock)
+        self._doubtful_until = clock.steady()
 
     def doubt_clock(self) -> None:
         """Delete nothing for a day: the clock may be ahead."""
-        self._doubtful_until = self._steady() + DOUBT
+        self._doubtful_until = self._clock.steady() + DOUBT
 
     async def prune(self) -> None:
         """Delete what the settings do not keep any longer; raises StoreError."""
@@ -96,10 +91,10 @@ class Retention:
                 "its age. If it is wrong, set it right before then, and before the gateway is started anew",
                 step.by / DAY,
             )
-        return self._steady() >= self._doubtful_until
+        return self._clock.steady() >= self._doubtful_until
 
     async def _forget(self, kind: RetainedRows) -> int:
-        before, removed = self._clock() - kind.days * DAY, 0
+        before, removed = self._clock.time() - kind.days * DAY, 0
         while some := await self._database.run(kind.forget, before, kind.at_once):
             removed += some
             await asyncio.sleep(PAUSE)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import asyncio
 import logging
-import time
 from collections import deque
 from collections.abc import Callable, Collection, Sequence
 from dataclasses import asdict, dataclass
@@ -12,6 +11,7 @@ from typing import Any
 
 from sqlalchemy import Connection, insert, select, update
 
+from ...core.clock import SYSTEM_CLOCK, Clock
 from ...core.errors import StoreError
 from ...protocol.credentials import AccessError
 from ..storage.database import Database
@@ -194,7 +194,7 @@ class AuditJournal:
     said.
     """
 
-    def __init__(self, database: Database, clock: Callable[[], float] = time.time) -> None:
+    def __init__(self, database: Database, clock: Clock = SYSTEM_CLOCK) -> None:
         self._database = database
         self._clock = clock
         self._waiting: deque[Work] = deque()
@@ -215,7 +215,7 @@ class AuditJournal:
         detail: str | None = None,
     ) -> None:
         """Note that ``who`` did ``action``, or tried to."""
-        entry = AuditEntry(self._clock(), who, action, done, role, address, subject, detail)
+        entry = AuditEntry(self._clock.time(), who, action, done, role, address, subject, detail)
         self._put(lambda connection: add_entries(connection, [entry]))
 
     def began(self, session: SessionRow) -> None:
@@ -228,12 +228,12 @@ class AuditJournal:
 
     def ended(self, id: str, reason: str) -> None:
         """Note a session's end."""
-        at = self._clock()
+        at = self._clock.time()
         self._put(lambda connection: note_session_end(connection, id, at, reason))
 
     def used(self, token: str) -> None:
         """Note that a token opened a connection."""
-        at = self._clock()
+        at = self._clock.time()
         self._put(lambda connection: accounts.note_use(connection, [(token, at)]))
 
     async def run(self) -> None:
@@ -275,7 +275,7 @@ class AuditJournal:
         A database that cannot be written, such as on a full disk, does not take that either: the piece waits.
         """
         gap = AuditEntry(
-            self._clock(), "gateway", "audit", False, detail=f"an entry is missing here: {error}"
+            self._clock.time(), "gateway", "audit", False, detail=f"an entry is missing here: {error}"
         )
         lost = await self._succeeds([lambda connection: add_entries(connection, [gap])])
         self._dropped += lost

@@ -7,11 +7,12 @@ import http
 import logging
 import time
 from collections import Counter, defaultdict
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 
 from websockets.frames import CloseCode
 from websockets.http11 import Request, Response
 
+from ...core.clock import SYSTEM_CLOCK, Clock
 from ...core.errors import StoreError, counted
 from ...core.messages import Role
 from ...core.sites.settings_tables import LimitSettings
@@ -197,7 +198,7 @@ class AuthGate:
         limits: LimitSettings,
         *,
         may_be_open: bool,
-        clock: Callable[[], float] = time.time,
+        clock: Clock = SYSTEM_CLOCK,
     ) -> None:
         self.limits = limits
         self.journal = AuditJournal(database, clock)
@@ -214,7 +215,7 @@ class AuthGate:
 
     async def open(self) -> None:
         """Read the accounts, and note the end of what an earlier gateway left open; raises StoreError."""
-        await self._database.run(audit.end_all_sessions, self._clock(), "the gateway ended")
+        await self._database.run(audit.end_all_sessions, self._clock.time(), "the gateway ended")
         await self.book.refresh()
 
     def warn(self) -> None:
@@ -378,7 +379,7 @@ class AuthGate:
         grant = self.book.grant(identity.token)
         if grant is None or (identity.kind is TokenKind.OPERATOR and grant.role is None):
             return "this token is not known any more"
-        return grant.fault(self._clock())
+        return grant.fault(self._clock.time())
 
     def _note_login(self, visitor: ClientConnection, identity: Identity) -> None:
         if identity.token is not None:
@@ -394,7 +395,7 @@ class AuthGate:
         who = identity.name or f"desk {address}"
         if identity.token is not None:
             self.journal.note(who, "login", role=role, address=address, subject=session)
-        self.journal.began(SessionRow(session, who, identity.token, role, address, self._clock()))
+        self.journal.began(SessionRow(session, who, identity.token, role, address, self._clock.time()))
 
     def _refuse(self, visitor: ClientConnection, kind: TokenKind, who: str, fault: str) -> Response:
         # Whoever knocks with wrong tokens is to fill neither the log nor the disk.

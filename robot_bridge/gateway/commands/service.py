@@ -10,6 +10,7 @@ from typing import Any
 
 from sqlalchemy import Connection
 
+from ...core.clock import Clock
 from ...core.errors import DataRefusedError, RefusedError, StoreError
 from ...core.logs import log_and_continue
 from ...core.messages import Answer, CommandReport, CommandState, OpAck, SendPos, SetPath
@@ -72,7 +73,7 @@ class CommandService(CommandReader):
         database: Database,
         robots: Robots,
         tolerance: float,
-        clock: Callable[[], float],
+        clock: Clock,
         rules: CommandRules,
         changed: Callable[[CommandReport], None],
         outbox_changed: Callable[[str], None],
@@ -199,7 +200,7 @@ class CommandService(CommandReader):
 
     async def expire(self, expire_after: float) -> None:
         """End the commands that were not fetched in time: ``expire_after`` seconds, or as they say."""
-        now = self._clock()
+        now = self._clock.time()
         late = [c for c in self._open.queued.values() if c.expired(now, expire_after)]
         if late:
             await to_its_end(self._expire([c.report.command for c in late]))
@@ -267,7 +268,7 @@ class CommandService(CommandReader):
     async def _store(
         self, orders: list[CommandOrder], found: Sequence[RefusedError | None], also: Also | None
     ) -> list[CommandReport]:
-        now = self._clock()
+        now = self._clock.time()
         drafts = [self.drafting.draft(order, fault, now) for order, fault in zip(orders, found, strict=True)]
         issued, changed = await self._held.run(insert_commands, drafts, also)
         for command in changed:
@@ -292,7 +293,7 @@ class CommandService(CommandReader):
         robots = {self._open.queued[id].report.robot for id in sa_ids if id in self._open.queued}
         async with self._held.of(robots):
             queued = [self._open.queued[id] for id in sa_ids if id in self._open.queued]
-            now = self._clock()
+            now = self._clock.time()
             await self._save([command.step(CommandState.DELIVERED, now, GATEWAY) for command in queued])
 
     async def _acknowledged(self, robot: str, ack: OpAck) -> float | None:
@@ -313,7 +314,7 @@ class CommandService(CommandReader):
     async def _note_late(self, robot: str, sa_id: int) -> None:
         """Note that the robot read a message whose command has ended; what cannot be stored now is kept."""
         try:
-            report = await self._held.run(write_late, robot, sa_id, self._clock())
+            report = await self._held.run(write_late, robot, sa_id, self._clock.time())
         except DataRefusedError:
             raise
         except StoreError:
@@ -333,7 +334,7 @@ class CommandService(CommandReader):
         async with self._held.of([command.report.robot]):
             if self._open.get(command.report.command) is not command:
                 return
-            now, abort = self._clock(), given_up_by(command, self._open.of(command.report.robot))
+            now, abort = self._clock.time(), given_up_by(command, self._open.of(command.report.robot))
             if deviation is not None:
                 reason = None if abort is None else ABORTED_TOO_LATE
                 # An Abort has no place that it could be off.
@@ -353,7 +354,7 @@ class CommandService(CommandReader):
     ) -> None:
         async with self._held.of([robot]):
             anew = restart_commands(
-                self._open.of(robot), reason, self._clock(), expire_after, self._robots.pose
+                self._open.of(robot), reason, self._clock.time(), expire_after, self._robots.pose
             )
             again = anew.again, anew.ended
             for command in await self._held.run(write_again, robot, welcome, *again, note_run):
@@ -364,7 +365,7 @@ class CommandService(CommandReader):
         async with self._held.of({robot for id in ids if (robot := self.robot_of(id))}):
             found = [command for id in ids if (command := self._open.get(id))]
             late = [command for command in found if command.report.state is CommandState.QUEUED]
-            now, reason = self._clock(), "the robot did not fetch it in time"
+            now, reason = self._clock.time(), "the robot did not fetch it in time"
             recalls = [Recall(c, c.step(CommandState.EXPIRED, now, GATEWAY, reason)) for c in late]
             if recalls:
                 for command in await self._held.run(write_recalls, recalls):
@@ -372,14 +373,14 @@ class CommandService(CommandReader):
 
     async def _give_up(self, robot: str, reason: str) -> None:
         async with self._held.of([robot]):
-            now = self._clock()
+            now = self._clock.time()
             mine = self._open.of(robot)
             await self._save([c.step(CommandState.FAILED, now, GATEWAY, reason) for c in mine])
 
     # -------------------------------------------------------------------------------------------------------
 
     def _answered(self, command: ActiveCommand, ack: OpAck) -> list[ActiveCommand]:
-        robot, now = command.report.robot, self._clock()
+        robot, now = command.report.robot, self._clock.time()
         unseen = self._robots.is_unseen(robot, now)
         return acknowledge_command(command, ack, self._open.of(robot), now, self.tolerance, unseen=unseen)
 

@@ -12,6 +12,7 @@ from typing import Any
 
 from sqlalchemy import Connection
 
+from ...core.clock import Clock
 from ...core.errors import RefusedError, StoreError
 from ...core.logs import log_and_continue
 from ...core.messages import (
@@ -134,7 +135,7 @@ class EmergencyStops:
         self,
         book: CommandService,
         database: Database,
-        clock: Callable[[], float],
+        clock: Clock,
         robots: Callable[[], list[str]],
         announce: Callable[[str, str, dict[str, Any]], None],
         journal: StopJournal | None = None,
@@ -226,7 +227,7 @@ class EmergencyStops:
         """
         if request.command not in self._seen:
             begun = asyncio.ensure_future(
-                self._begin(StopRow(request.command, self._clock(), _name(operator), request.line))
+                self._begin(StopRow(request.command, self._clock.time(), _name(operator), request.line))
             )
             # Goes on to its end when the operator's connection does not.
             await asyncio.shield(begun)
@@ -250,7 +251,7 @@ class EmergencyStops:
                     "look at that one first, then clear it"
                 )
             await self._store()
-            at, supervisor, reason = self._clock(), _name(supervisor), request.reason or None
+            at, supervisor, reason = self._clock.time(), _name(supervisor), request.reason or None
             await self._database.run(emergency_stops.clear, at, supervisor, reason)
             if self._stop is stop:
                 self._stop = stop._replace(cleared_at=at, cleared_by=supervisor, clear_reason=reason)

@@ -13,6 +13,7 @@ from typing import Any, NamedTuple, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from ...core.clock import Clock
 from ...core.errors import BridgeError, RefusedError
 from ...core.messages import AbortTask, MessageError, PauseRobot, RobotState, to_json
 from ...core.messages.safety import FenceAlarm, FenceKind, Geofence, StopAction, StopOutcome
@@ -229,7 +230,7 @@ class GeofenceWatch:
         orders: CommandRequests,
         pauses: PauseService,
         emergency: EmergencyStops,
-        clock: Callable[[], float],
+        clock: Clock,
         announce: Callable[[str, str, dict[str, Any]], None],
         note: AuditNote | None = None,
     ) -> None:
@@ -264,7 +265,7 @@ class GeofenceWatch:
 
     def report(self) -> Geofence:
         """Return what operators are told."""
-        now = self._clock()
+        now = self._clock.time()
         stays = sorted(self._stays, key=lambda stay: -stay.since)
         unjudged = self._unjudged(now)
         fenced = self._fenced
@@ -302,7 +303,7 @@ class GeofenceWatch:
         settings = self._site.settings
         clearances = Clearances.of(settings.geofence, settings.routes.radius_m)
         found = await asyncio.to_thread(find_stays, names, places, fences, clearances)
-        changes = self._stays.update(found, settings.geofence, self._clock())
+        changes = self._stays.update(found, settings.geofence, self._clock.time())
         self._seen = seen
         for stay in changes.ended:
             log.info("robot %s is no longer %s", stay.robot, _where(stay))

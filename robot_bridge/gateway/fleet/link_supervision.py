@@ -16,6 +16,7 @@ from typing import Any, Protocol
 
 import msgspec
 
+from ...core.clock import SYSTEM_CLOCK, Clock
 from ...core.errors import RefusedError
 from ...core.messages import to_json
 from ...core.messages.administration import (
@@ -84,9 +85,7 @@ class _Known:
 class LinkWatch:
     """The links that a site names, and those that have been connected. Operators are told of each change."""
 
-    def __init__(
-        self, robots: Robots, announce: Announce, clock: Callable[[], float] = time.monotonic
-    ) -> None:
+    def __init__(self, robots: Robots, announce: Announce, clock: Clock = SYSTEM_CLOCK) -> None:
         self._robots = robots
         self._announce = announce
         self._clock = clock
@@ -95,7 +94,7 @@ class LinkWatch:
 
     def update(self, connected: Iterable[ConnectedLink], processes: Iterable[LinkProcess] = ()) -> None:
         """Take note of how things are, and tell operators what has changed."""
-        now = self._clock()
+        now = self._clock.steady()
         for process in processes:
             self._known.setdefault(process.name, _Known(now, process.kind)).process = process
         for known in self._known.values():
@@ -112,7 +111,7 @@ class LinkWatch:
 
     def introduce(self, link: str, kind: str, ask: Ask) -> None:
         """Note the kind of a link that has said hello, before it speaks for any robot, and how to ask it."""
-        known = self._known.setdefault(link, _Known(self._clock()))
+        known = self._known.setdefault(link, _Known(self._clock.steady()))
         known.kind, known.ask = kind, ask
 
     def withdraw(self, link: str, ask: Ask) -> None:
@@ -142,7 +141,7 @@ class LinkWatch:
 
     def report(self) -> Links:
         """Return how each link is; one that nobody starts and whose robots are all elsewhere is forgotten."""
-        now = self._clock()
+        now = self._clock.steady()
         found = []
         for name, known in sorted(self._known.items()):
             text = self._fault(known, now)
@@ -154,7 +153,7 @@ class LinkWatch:
 
     def numbers(self, name: str) -> dict[tuple[str, ...], float]:
         """Return one number of each link by its name: ``up``, ``robots`` or ``starts``."""
-        now = self._clock()
+        now = self._clock.steady()
         each: dict[str, Callable[[_Known], float]] = {
             "up": lambda known: float(self._fault(known, now) is None),
             "robots": lambda known: float(known.robots),
@@ -319,7 +318,7 @@ class AccountSuspensions:
         database: Database,
         commands: SuspendedCommands,
         announce: Announce,
-        clock: Callable[[], float] = time.time,
+        clock: Clock = SYSTEM_CLOCK,
     ) -> None:
         self._database = database
         self._commands = commands
@@ -347,7 +346,7 @@ class AccountSuspensions:
 
     async def update(self) -> None:
         """Lock accounts that have offended too often, unlock those whose time is over; raises StoreError."""
-        now = self._clock()
+        now = self._clock.time()
         for robot, why in (await self._offenders(now)).items():
             if robot not in self._in_force and not self._commands.awaits_any_abort(robot):
                 await self._suspend(robot, why, now)

@@ -12,6 +12,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from ...core.clock import Clock
 from ...core.messages import RobotState, SendPos, to_json
 from ...core.messages.safety import Nearness, NearnessAlarm
 from ...core.sites.settings_tables import NearnessSettings
@@ -136,7 +137,7 @@ class NearnessWatch:
         links: LinkWatch,
         traffic: TrafficControl,
         settings: Callable[[], NearnessSettings],
-        clock: Callable[[], float],
+        clock: Clock,
         announce: Callable[[str, str, dict[str, Any]], None],
     ) -> None:
         self._robots = robots
@@ -154,7 +155,7 @@ class NearnessWatch:
 
     async def watch(self) -> None:
         """Judge where everybody is now, and tell of it."""
-        now, limits = self._clock(), self._settings()
+        now, limits = self._clock.time(), self._settings()
         try:
             found = await self._meetings(now, NearnessLimits(limits.metres, limits.within_s))
         except Exception as error:
@@ -168,7 +169,7 @@ class NearnessWatch:
 
     def report(self) -> Nearness:
         """Return what operators are told."""
-        limits, now = self._settings(), self._clock()
+        limits, now = self._settings(), self._clock.time()
         alarms = [
             NearnessAlarm(
                 one.seen,
@@ -206,7 +207,7 @@ class NearnessWatch:
         return robot.abilities == "" and robot.state in HEARD and not replayed
 
     def _note(self, found: list[Meeting]) -> None:
-        now = self._clock()
+        now = self._clock.time()
         since = {}
         for one in found:
             is_near = one.seconds == 0.0

@@ -17,6 +17,7 @@ import msgspec
 import numpy as np
 import numpy.typing as npt
 
+from ...core.clock import Clock
 from ...core.errors import RefusedError, UncertainError
 from ...core.images import check_size, media_type_of
 from ...core.logs import log_and_continue
@@ -72,7 +73,7 @@ class ObservationService:
         self,
         site: ObservedSite,
         database: Database,
-        clock: Callable[[], float],
+        clock: Clock,
         changed: Callable[[ObservationReport], None],
     ) -> None:
         self._site = site
@@ -116,7 +117,7 @@ class ObservationService:
             check_places(self._site, [(told.x, told.y)])
         else:
             self.check_size(len(told.image))
-        new = _new(robot.name, told, _occasion(robot, link, told, id), self._clock())
+        new = _new(robot.name, told, _occasion(robot, link, told, id), self._clock.time())
         most_pending = self._site.settings.observations.most_pending
         told_before = new.robot, new.source
         try:
@@ -162,7 +163,7 @@ class ObservationService:
             self._undrawn |= is_drawn
             self._untold.add(report.observation)
             reviewed = await self._database.run(
-                records.review, report.observation, state, operator, self._clock(), values
+                records.review, report.observation, state, operator, self._clock.time(), values
             )
             if is_drawn and ACCEPTED in (report.state, reviewed.state):
                 await self.restore()
@@ -411,7 +412,7 @@ class Snapshots:
     are. ``clock`` is the one by which robots' messages came in.
     """
 
-    def __init__(self, robots: Robots, clock: Callable[[], float]) -> None:
+    def __init__(self, robots: Robots, clock: Clock) -> None:
         self._robots = robots
         self._clock = clock
         self._made: dict[float, tuple[int, dict[tuple[PositionForm, int], Snapshot]]] = {}
@@ -440,7 +441,7 @@ class Snapshots:
         return Snapshot(self._encoded(revision, form), self._robots.revision)
 
     def _encoded(self, revision: int, form: PositionForm) -> bytes | None:
-        now, changed = self._clock(), self._robots.changed(revision)
+        now, changed = self._clock.time(), self._robots.changed(revision)
         everything = revision == EVERYTHING
         removed = [] if everything else self._robots.removed(revision)
         if not (changed or removed or everything):

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import asyncio
 import logging
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from functools import partial
 from typing import Protocol
 
+from ...core.clock import Clock
 from ...core.errors import RefusedError, StoreError, listed_names
 from ...core.messages import Answer, KeptRobot, OpAck, Ready, RemoveRobots, RobotsRemoved, SetMap, Start
 from ..commands.service import CommandService
@@ -91,7 +92,7 @@ class Registration:
         maps: MapSender,
         saving: TrajectoryWriter,
         database: Database,
-        clock: Callable[[], float],
+        clock: Clock,
     ) -> None:
         self.holds = ConnectionClaims()
         self._site = site
@@ -150,7 +151,7 @@ class Registration:
             # and send it once more what it is doing by then.
             note_run = partial(stored_robots.note_run, robot=self._robots.get(robot), magic=ready.magic)
             await self._commands.deliver_again(robot, reason, expire_after, welcome, note_run)
-        self._robots.ready(robot, ready.magic, link, self._clock(), ready.paths, ready.can)
+        self._robots.ready(robot, ready.magic, link, self._clock.time(), ready.paths, ready.can)
         self._saving.touch(robot)
         if starts_anew:
             await self._saving.save(robot)
@@ -162,7 +163,7 @@ class Registration:
         if robot not in self._robots:
             return None
         known, limit = self._robots.get(robot), self._site.report.stale_after
-        return await claim_refusal(known, magic, self._clock() - known.received_at, limit, self.holds)
+        return await claim_refusal(known, magic, self._clock.time() - known.received_at, limit, self.holds)
 
 
 # --- Robots that somebody removes while the gateway runs, with a program or at a desk: gone everywhere

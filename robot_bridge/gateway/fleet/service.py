@@ -7,12 +7,12 @@ before it is answered.
 from __future__ import annotations
 
 import logging
-import time
 from collections import Counter
 from collections.abc import Callable, Coroutine, Sequence
 from dataclasses import replace
 from typing import Any
 
+from ...core.clock import SYSTEM_CLOCK, Clock
 from ...core.errors import RefusedError
 from ...core.logs import RepeatedLines
 from ...core.messages import (
@@ -76,7 +76,7 @@ class Fleet:
         self,
         site: ServedSite,
         database: Database,
-        clock: Callable[[], float] = time.time,
+        clock: Clock = SYSTEM_CLOCK,
         planner: Planner | None = None,
         stops: StopJournal | None = None,
         note: AuditNote | None = None,
@@ -169,7 +169,7 @@ class Fleet:
         await self.reception.restore()
         known = await self._database.run(stored_robots.load)
         for robot in known:
-            self.robots.restore(robot, self._clock())
+            self.robots.restore(robot, self._clock.time())
         await self._book.restore()
         self.removals.begin([robot.name for robot in known])
         for robot in known:
@@ -195,7 +195,7 @@ class Fleet:
         :raises NotReadyError: from a robot that never said Ready; RefusedError for what is not done, saying
             why; MessageError for what is wrong in itself.
         """
-        now = self._clock()
+        now = self._clock.time()
         self.tally.requests[link, type(request).__name__] += 1
         if isinstance(request, Ready):
             return await self.reception.receive(robot, link, request, id)
@@ -223,7 +223,7 @@ class Fleet:
         That is the storing of a command that the robot has carried out, nearly always None.
         """
         self.tally.requests[link, "SendPos"] += 1
-        now = self._clock()
+        now = self._clock.time()
         self.robots.check_run(robot, pose.magic, link)
         self._check_place(robot, link, (pose.x, pose.y), now)
         return self._take_pose(robot, link, pose, now)
@@ -233,7 +233,7 @@ class Fleet:
 
         Return what is left for some: a coroutine to be awaited, or what is wrong with a position.
         """
-        now = self._clock()
+        now = self._clock.time()
         moved, others = self.robots.follow(poses, link, now, self._places.near())
         self.tally.requests[link, "SendPos"] += len(poses) - len(others)
         self._saving.observe(now, moved)
@@ -250,7 +250,7 @@ class Fleet:
     def refuse_large(self, robot: str, link: str, fault: str) -> None:
         """Note that a robot sent what is too large to be read: it is there, and its operators are told."""
         if robot in self.robots:
-            self.robots.disbelieve(robot, link, self._clock(), fault)
+            self.robots.disbelieve(robot, link, self._clock.time(), fault)
 
     def closed(self, robot: str) -> None:
         """Note that the robot closed its link in good order."""
@@ -261,11 +261,11 @@ class Fleet:
 
     def reports(self, since: int = -1) -> list[RobotReport]:
         """Return the robots that changed after revision ``since`` of :attr:`robots`."""
-        return self.robots.reports(self._clock(), since)
+        return self.robots.reports(self._clock.time(), since)
 
     def rows(self, since: int = -1) -> list[Any]:
         """Return them as they are encoded (see :mod:`.operator_updates`)."""
-        return self.robots.rows(self._clock(), since, ReportRow)
+        return self.robots.rows(self._clock.time(), since, ReportRow)
 
     async def commands(self, robot: str | None, limit: int) -> list[CommandReport]:
         """Return the newest commands first, of one robot or of all."""
@@ -292,7 +292,7 @@ class Fleet:
 
     def age(self) -> None:
         """Bring the liveness of every robot up to now."""
-        self.robots.age(self._clock())
+        self.robots.age(self._clock.time())
 
     async def save(self) -> None:
         """Store what is not stored yet, an emergency stop first; see to who was removed and what is too old.
@@ -375,7 +375,7 @@ class Fleet:
     def _measure(self, robot: Robot, written_at: float | None) -> None:
         """Take the time from a message's writing to its OpAck for the latency of a link that has no pings."""
         if robot.link == "sql" and written_at is not None:
-            took = self._clock() - written_at
+            took = self._clock.time() - written_at
             # A robot that was away in between says nothing about its link.
             if 0 <= took < self.site.report.lost_after:
                 self.robots.measured(robot.name, took)

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from ...core.clock import steady_time
+from ...core.clock import SYSTEM_CLOCK, Clock
 
 # --- Which pose of a robot is newest: by the time of its fix, else by the robot's clock, else as they come
 
@@ -108,15 +107,15 @@ class ClockStep(NamedTuple):
 
 
 class ClockWatch:
-    """Holds a ``clock``, seconds since 1970, against a ``steady`` one."""
+    """Compares the time of a ``clock`` with its steady one, to notice when that time is set."""
 
-    def __init__(self, clock: Callable[[], float], steady: Callable[[], float] = steady_time) -> None:
-        self._clock, self._steady = clock, steady
-        self._seen = clock(), steady()
+    def __init__(self, clock: Clock = SYSTEM_CLOCK) -> None:
+        self._clock = clock
+        self._seen = clock.time(), clock.steady()
 
     def measure_step(self) -> ClockStep | None:
         """Return how the clock was set since the last look, None where it was not."""
-        (then, steady_then), self._seen = self._seen, (self._clock(), self._steady())
+        (then, steady_then), self._seen = self._seen, (self._clock.time(), self._clock.steady())
         now, steady_now = self._seen
         passed = steady_now - steady_then
         by = now - then - passed

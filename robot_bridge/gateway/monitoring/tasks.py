@@ -9,6 +9,7 @@ import math
 import time
 from collections.abc import Awaitable, Callable, Mapping
 
+from ...core.clock import SYSTEM_CLOCK, Clock
 from ...core.errors import BridgeError, FatalError
 from .metrics import Counters
 
@@ -169,22 +170,19 @@ def freeze_permanent_objects() -> None:
 
 
 class GarbageCollection:
-    """Sees to what connections leave behind: by the time they go it is old, and looks at the old are rare.
+    """Sees to what connections leave behind: by the time they go it is old, and looks at the old are rare."""
 
-    ``clock`` returns seconds that only ever go on.
-    """
-
-    def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
+    def __init__(self, clock: Clock = SYSTEM_CLOCK) -> None:
         self._clock = clock
         self._looked_at = 0
         self._rests_until = -math.inf
 
     def clear_away(self, gone: int) -> None:
         """Look at all objects when ``gone``, connections since the start, has grown by MOST_GONE since."""
-        began = self._clock()
+        began = self._clock.steady()
         if gone - self._looked_at < MOST_GONE or began < self._rests_until:
             return
         self._looked_at = gone
         gc.collect()
-        now = self._clock()
+        now = self._clock.steady()
         self._rests_until = now + REST * (now - began)

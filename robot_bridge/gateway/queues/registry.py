@@ -8,6 +8,7 @@ from collections.abc import AsyncIterator, Awaitable, Callable, Iterable, Sequen
 from dataclasses import dataclass, field
 from typing import Any, TypeVar
 
+from ...core.clock import Clock
 from ...core.errors import OutdatedError
 from ...core.messages import PlacementReport, QueueReport, to_json
 from ..commands.service import CommandService
@@ -150,5 +151,5 @@ class QueueContext:
     commands: CommandService
     book: QueueRegistry
     database: Database
-    clock: Callable[[], float]
+    clock: Clock
     planner: Planner = field(default_factory=StraightPlanner)

@@ -79,7 +79,7 @@ class PauseService:
 
     async def _pause(self, request: PauseRobot, operator: str) -> QueueReport:
         robot, queue = request.robot, self._book.get(request.robot)
-        reason, now = because(f"paused by {operator}", request.reason), self._clock()
+        reason, now = because(f"paused by {operator}", request.reason), self._clock.time()
         doing = self._commands.carried_out(robot)
         own = None if doing is None else _task_by(queue, doing.report.command)
         kept = self._kept(robot, doing) if own is None else []
@@ -108,7 +108,7 @@ class PauseService:
         # A target that is waited on the way to, or a task of the queue, is kept as a whole already.
         if row is not None and row.task is None and not (doing and isinstance(doing.message, SetPosEnd)):
             rest, offset = SetPath(**row.rest), self._site.settings.cones.offset
-            kept.append(task_of_rest(rest, offset, row.command, row.by, self._clock()))
+            kept.append(task_of_rest(rest, offset, row.command, row.by, self._clock.time()))
         return kept
 
 
@@ -140,7 +140,7 @@ class QueueEditor:
         request = replace(request, tasks=await tasks_in_site_frame(self._site, request.tasks))
         async with self._editing(request.robot, request.revision) as queue:
             known = await self._checked(request, queue)
-            after = task_queue.replace_tasks(queue, request.tasks, known, operator, self._clock())
+            after = task_queue.replace_tasks(queue, request.tasks, known, operator, self._clock.time())
             return await self._edit(queue, after, operator, "another list took its place")
 
     async def add(self, request: AddTasks, operator: str) -> QueueReport:
@@ -148,7 +148,7 @@ class QueueEditor:
         request = replace(request, tasks=await tasks_in_site_frame(self._site, request.tasks))
         async with self._editing(request.robot, request.revision) as queue:
             known = await self._checked(request, queue)
-            now = self._clock()
+            now = self._clock.time()
             after = task_queue.add_tasks(queue, request.tasks, request.before, known, operator, now)
             return await self._edit(queue, after, operator)
 
@@ -185,7 +185,7 @@ class QueueEditor:
     async def resume(self, request: ResumeQueue, operator: str) -> QueueReport:
         """Let a queue go on; where its robot has not stopped yet as it was told to, as soon as it has."""
         async with self._editing(request.robot, request.revision) as queue:
-            after, current = task_queue.resume_queue(queue, operator, self._clock()), queue.current
+            after, current = task_queue.resume_queue(queue, operator, self._clock.time()), queue.current
             if current is not None and self._is_being_aborted(queue.robot, current):
                 after = after.with_head(task_queue.return_task(current, task_life.STOPS_FIRST))
             return await self._edit(queue, after, operator)
@@ -200,7 +200,7 @@ class QueueEditor:
                 self._robots.check_known(name)
                 self._check_revision(name, revisions[name])
             before = {name: self._book.get(name) for name in names}
-            after = task_life.transfer_tasks(before, request, operator, self._clock())
+            after = task_life.transfer_tasks(before, request, operator, self._clock.time())
             for share in request.shares:
                 paths = [wanted.path for wanted in share.tasks if wanted.path]
                 for path in paths:
@@ -254,7 +254,7 @@ class QueueEditor:
 
     async def _pause(self, robot: str, reason: str, operator: str) -> QueueReport:
         queue = self._book.get(robot)
-        return await self._edit(queue, queue.paused(reason, operator, self._clock()), operator)
+        return await self._edit(queue, queue.paused(reason, operator, self._clock.time()), operator)
 
     @contextlib.asynccontextmanager
     async def _editing(self, robot: str, revision: int) -> AsyncIterator[Queue]:
@@ -268,7 +268,7 @@ class QueueEditor:
     ) -> QueueReport:
         kept = {task.id for task in after.tasks}
         why = because(f"removed by {operator}", reason)
-        now = self._clock()
+        now = self._clock.time()
         gone = [
             task_life.end_task(task, TaskState.REMOVED, now, why)
             for task in before.tasks

@@ -66,7 +66,7 @@ class QueueOutcomes:
         if found is None:
             reason = "what its command came to is not stored any more"
             await self._book.save(
-                queue, task_life.mark_failed(queue, reason, self._clock(), skips=False).queue
+                queue, task_life.mark_failed(queue, reason, self._clock.time(), skips=False).queue
             )
             return
         if is_open(found.report.state):
@@ -332,7 +332,7 @@ class QueueRunner:
                 raise RefusedError(f"robot {robot!r} has been told otherwise in the meantime")
             check_path(current.id, rest, (current.task.x, current.task.y))
             label = f"waits for {other}"
-            after = task_life.split_at_stop(queue, first, rest, label, by, self._clock())
+            after = task_life.split_at_stop(queue, first, rest, label, by, self._clock.time())
             report = await self._send(queue, after, SetPath(first), by, label, current.command, also)
             return report.command
 
@@ -383,13 +383,13 @@ class QueueRunner:
         Whether it was away itself, its link or the gateway: nobody saw what became of its surroundings.
         """
         robot = self._robots.get(queue.robot)
-        is_away = robot.state in AWAY and self._clock() - robot.received_at > self._longest_silence
+        is_away = robot.state in AWAY and self._clock.time() - robot.received_at > self._longest_silence
         if (is_away or robot.name in self._returned) and queue.running and queue.tasks:
             reason = (
                 f"the robot was not heard for longer than {self._longest_silence:g} s, or no gateway was "
                 "there to hear it; resume when it may drive again"
             )
-            await self._book.save(queue, queue.paused(reason, task_life.GATEWAY, self._clock()))
+            await self._book.save(queue, queue.paused(reason, task_life.GATEWAY, self._clock.time()))
         self._returned.discard(robot.name)
 
     def _is_beside(self, queue: Queue, report: CommandReport) -> bool:
@@ -413,11 +413,11 @@ class QueueRunner:
             if busy is not None and busy not in own:
                 raise RefusedError(f"the robot is busy with command {busy}, which is not of its queue")
             message = await self._message(queue, head)
-            await self._send(queue, task_life.mark_sent(queue, self._clock()), message, head.added_by)
+            await self._send(queue, task_life.mark_sent(queue, self._clock.time()), message, head.added_by)
         except OutdatedError:
             raise
         except RefusedError as error:
-            await self._book.save(queue, task_life.pause_before_head(queue, str(error), self._clock()))
+            await self._book.save(queue, task_life.pause_before_head(queue, str(error), self._clock.time()))
 
     async def _why_not_yet(self, robot: str, head: QueuedTask) -> str | None:
         """Return why what comes next is not sent yet, None when it may be; raises StoreError."""

@@ -15,6 +15,7 @@ from typing import Any, Protocol
 import numpy as np
 from sqlalchemy import Connection
 
+from ...core.clock import Clock
 from ...core.errors import BridgeError, RefusedError, StoreError, UncertainError
 from ...core.messages import (
     AbortTask,
@@ -230,7 +231,7 @@ class ClosureService:
     def __init__(
         self,
         database: Database,
-        clock: Callable[[], float],
+        clock: Clock,
         roads: RoadPlanner | None,
         detours: Detours,
         announce: Callable[[str, str, dict[str, Any]], None],
@@ -279,7 +280,7 @@ class ClosureService:
             if known is not None:
                 return RoadClosed(self._reported(known))
             line, level = await asyncio.to_thread(roads.stretch, (request.x, request.y), request.reach)
-            now = self._clock()
+            now = self._clock.time()
             row = ClosureRow(
                 request.closure,
                 [(round(x, 3), round(y, 3)) for x, y in line.tolist()],
@@ -316,7 +317,7 @@ class ClosureService:
 
     async def expire(self) -> None:
         """Open the roads that were closed until now."""
-        now = self._clock()
+        now = self._clock.time()
         async with self._looked_up():
             for row in [row for row in self._rows.values() if row.until is not None and row.until <= now]:
                 await self._open(row, GATEWAY)
@@ -386,7 +387,7 @@ class ClosureService:
             raise
 
     async def _open(self, row: ClosureRow, by: str) -> ClosureReport:
-        at = self._clock()
+        at = self._clock.time()
         await self._run(closures.end, row.id, at, by)
         self._rows.pop(row.id, None)
         await self._enforce()

@@ -8,6 +8,7 @@ import time
 from collections.abc import Callable, Iterable
 from typing import Any, NamedTuple
 
+from ...core.clock import Clock
 from ...core.errors import RefusedError
 from ...core.messages import (
     CommandReport,
@@ -62,7 +63,7 @@ class TrafficControl:
 
     def __init__(
         self,
-        clock: Callable[[], float],
+        clock: Clock,
         robots: Robots,
         ways: RobotPaths,
         roads: RoadPlanner | None,
@@ -134,7 +135,7 @@ class TrafficControl:
                 places[name] = (pose.x, pose.y), abs(pose.v) if usual else settings.speed_ms
         placed = frozenset(name for name in places if self._robots.is_placed(name))
         return TrafficSnapshot(
-            self._clock(), settings, self._ways.all(), places, self._waiting.rows(), placed
+            self._clock.time(), settings, self._ways.all(), places, self._waiting.rows(), placed
         )
 
     def _ways_out(self, seen: TrafficSnapshot, request: GetWaysOut, site: Site) -> WaysOut:
@@ -299,7 +300,7 @@ class RoadTraffic:
         orders: CommandRequests,
         queues: DetourQueues,
         database: Database,
-        clock: Callable[[], float],
+        clock: Clock,
         planner: RoadPlanner | None,
         announce: Callable[[str, str, dict[str, Any]], None],
     ) -> None:

@@ -11,6 +11,7 @@ from typing import Any, NamedTuple
 
 from sqlalchemy import Connection
 
+from ...core.clock import Clock
 from ...core.errors import DataRefusedError
 from ...core.messages import GetTrajectory, SendPos, Trajectory, TrajectoryPlace
 from ...core.messages.records import mark_text
@@ -168,7 +169,7 @@ class TrajectoryWriter:
     """
 
     def __init__(
-        self, database: Database, robots: Robots, recorder: TrajectoryRecorder, clock: Callable[[], float]
+        self, database: Database, robots: Robots, recorder: TrajectoryRecorder, clock: Clock
     ) -> None:
         self._database = database
         self._robots = robots
@@ -219,7 +220,7 @@ class TrajectoryWriter:
 
     async def _jot_with(self, work: Callable[..., None], arguments: tuple[Any, ...]) -> None:
         async with self._writing:
-            fixes, session = self._recorder.next_batch(self._clock()), self._database.session
+            fixes, session = self._recorder.next_batch(self._clock.time()), self._database.session
             try:
                 await self._database.jot(work, *arguments, fixes)
             except DataRefusedError:
@@ -240,7 +241,7 @@ class TrajectoryWriter:
                 return
             self._take_back()
             while True:
-                fixes = self._recorder.next_batch(self._clock())
+                fixes = self._recorder.next_batch(self._clock.time())
                 last, unsaved = not self._recorder.waiting, set[str]()
                 if last:
                     unsaved, self._unsaved = self._unsaved, set()

@@ -7,6 +7,7 @@ import time
 import pytest
 from stage.patience import BUSY
 
+from robot_bridge.core.clock import ManualClock
 from robot_bridge.gateway.storage.database import Database
 
 
@@ -25,15 +26,8 @@ async def database(database_url):
 
 @pytest.fixture
 def clock():
-    """A clock that the test turns: ``clock.now``."""
-
-    class Clock:
-        now = 1_000_000.0
-
-        def __call__(self):
-            return self.now
-
-    return Clock()
+    """A clock that the test moves."""
+    return ManualClock(wall=1_000_000.0)
 
 
 @pytest.fixture(scope="session")

@@ -51,9 +51,9 @@ def test_a_bucket_lets_a_burst_through_and_then_its_rate(clock):
     bucket = RateLimit(10.0, 3, clock)
     assert [bucket.consume() for _ in range(4)] == [True, True, True, False]
     assert bucket.wait() == pytest.approx(0.1)
-    clock.now += 0.11
+    clock.advance(0.11)
     assert [bucket.consume(), bucket.consume()] == [True, False]
-    clock.now += 1000
+    clock.advance(1000)
     assert [bucket.consume() for _ in range(4)] == [True, True, True, False]
 
 

@@ -10,6 +10,7 @@ from database_client import DatabaseClient
 from old_database import make_old
 from sqlalchemy import Engine, event
 
+from robot_bridge.core.clock import ManualClock
 from robot_bridge.core.errors import StoreError
 from robot_bridge.gateway.storage import revisions
 from robot_bridge.gateway.storage.database import Database, run_once
@@ -157,7 +158,7 @@ async def test_a_gateway_goes_on_with_the_commands_of_version_0_1_0(old_url, sam
     await asyncio.to_thread(run_once, old_url, revisions.upgrade)
     database = Database(old_url)
     await database.open()
-    fleet = Fleet(SiteMaps(read_site(sample_site)), database, clock=lambda: 1001.0)
+    fleet = Fleet(SiteMaps(read_site(sample_site)), database, clock=ManualClock(wall=1001.0))
     await fleet.start()
     await fleet.mailboxes.finish([await fleet.receive("r1", "websocket", Ready(7), 1)], [], acks=False)
     told = {row.op: row for row in await fleet.mailboxes.outbox("r1", 0)}

@@ -81,7 +81,7 @@ class RoadYard(Yard):
         self.database = Database(self.url)
         await self.database.open()
         planner = RoadPlanner(lambda: self.site.site)
-        self.fleet = Fleet(self.site, self.database, clock=lambda: self.now, planner=planner)
+        self.fleet = Fleet(self.site, self.database, clock=self.clock, planner=planner)
         self.fleet.listeners.add(self)
         await self.fleet.start()
         self.link = SqlInterface(self.fleet, self.database)

@@ -17,6 +17,7 @@ import pytest
 from database_client import DatabaseClient
 from mortal_database import Killed, MortalDatabase
 
+from robot_bridge.core.clock import ManualClock
 from robot_bridge.core.errors import OutdatedError, RefusedError, StoreError
 from robot_bridge.core.messages import CommandState, GetQueue, QueueTask, ResumeQueue, Send, SetQueue
 from robot_bridge.gateway.api.robot_sql import SqlInterface
@@ -58,13 +59,18 @@ class Play:
     def __init__(self, site, url, journal: Path, death, how=DRIVE_ON, *, cut=None, roads=False):
         self.site, self.url, self.death, self.how, self.roads = site, url, death, how, roads
         self.cut = cut
-        self.now = 1000.0
+        self.clock = ManualClock(wall=1000.0)
         self.robots = {}
         self.turns = 0
         self._journal = journal
         self._client = DatabaseClient(url)
         self.sql = self._client.sql
         self.database = self.fleet = self._link = None
+
+    @property
+    def now(self):
+        """The time that the gateway goes by."""
+        return self.clock.wall
 
     # --- the gateway ----------------------------------------------------------------------------------------
 
@@ -87,7 +93,7 @@ class Play:
                 await self.database.open()
                 planner = RoadPlanner(lambda: self.site.site) if self.roads else None
                 journal = StopJournal(self._journal)
-                self.fleet = Fleet(self.site, self.database, lambda: self.now, planner, journal)
+                self.fleet = Fleet(self.site, self.database, self.clock, planner, journal)
                 self.fleet.emergency.reach(self._stop_all)
                 await self.fleet.start()
                 self._link = SqlInterface(self.fleet, self.database)
@@ -99,7 +105,7 @@ class Play:
         """Start another gateway on the same database; the robots have lived on meanwhile."""
         await self.database.close()
         for _ in range(GONE):
-            self.now += 1
+            self.clock.advance(1)
             for robot in self.robots.values():
                 robot.move(1.0)
                 if robot.link == "sql":
@@ -133,7 +139,7 @@ class Play:
         """Let a second pass; the gateway may die in it."""
         self.turns += 1
         assert self.turns < LONGEST, f"the play does not come to its end: {self._stage()}"
-        self.now += 1
+        self.clock.advance(1)
         for robot in self.robots.values():
             robot.move(1.0)
         if self.cut is not None and self.turns == self.cut.turn:

@@ -177,7 +177,7 @@ class Noted:
     async def start(self):
         self.database = Database(self.yard.url)
         await self.database.open()
-        self.fleet = Fleet(self.yard.site, self.database, lambda: self.yard.now, stops=StopJournal(self.file))
+        self.fleet = Fleet(self.yard.site, self.database, self.yard.clock, stops=StopJournal(self.file))
         self.listener = Listener()
         self.fleet.listeners.add(self.listener)
         self.called = []

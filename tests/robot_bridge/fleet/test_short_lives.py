@@ -70,7 +70,7 @@ async def live(yard, robots, transactions):
     death = Death()
     yard.database = MortalDatabase(yard.url, death)
     await yard.database.open()
-    yard.fleet = Fleet(yard.site, yard.database, clock=lambda: yard.now)
+    yard.fleet = Fleet(yard.site, yard.database, clock=yard.clock)
     await yard.fleet.start()
     robots.turn()
     death.at = death.count + 1 + transactions

@@ -6,6 +6,7 @@ import json
 
 from database_client import DatabaseClient
 
+from robot_bridge.core.clock import ManualClock
 from robot_bridge.core.messages import OpAck, Ready, Send, SendPos, to_json
 from robot_bridge.gateway.api.robot_sql import SqlInterface
 from robot_bridge.gateway.fleet.service import Fleet
@@ -17,16 +18,25 @@ class Yard:
     """One gateway's fleet without its sockets; ``restart`` puts another in its place on the same database."""
 
     def __init__(self, site: SiteMaps, url: str):
-        self.site, self.url, self.now = site, url, 1000.0
+        self.site, self.url, self.clock = site, url, ManualClock(wall=1000.0)
         self.client = DatabaseClient(url)
         self.sql = self.client.sql
         self.told = []
         self.database = self.fleet = self.link = None
 
+    @property
+    def now(self):
+        """The time that the fleet goes by, which a test sets."""
+        return self.clock.wall
+
+    @now.setter
+    def now(self, wall):
+        self.clock.wall = wall
+
     async def start(self):
         self.database = Database(self.url)
         await self.database.open()
-        self.fleet = Fleet(self.site, self.database, clock=lambda: self.now)
+        self.fleet = Fleet(self.site, self.database, clock=self.clock)
         self.fleet.listeners.add(self)
         await self.fleet.start()
         self.link = SqlInterface(self.fleet, self.database)

@@ -17,6 +17,7 @@ from bridge_programs import Bridge, wait_until
 from stage.processes import Processes
 from yards import GATEWAY, MINE, OTHER, RefusedError
 
+from robot_bridge.core.clock import ManualClock
 from robot_bridge.gateway.fleet import link_supervision
 from robot_bridge.gateway.fleet.link_supervision import AccountSuspensions
 from robot_bridge.gateway.storage.database import Database, run_once
@@ -25,13 +26,6 @@ from robot_bridge.gateway.storage.roles.choice import role_manager_on
 from robot_bridge.gateway.storage.wakeups import GATEWAY_CHANNEL
 
 FLOOD = "select count(pg_notify('rr', n::text)) from generate_series(1, 2000) n"
-
-
-class Clock:
-    now = 1_000_000.0
-
-    def __call__(self):
-        return self.now
 
 
 class Desks:
@@ -83,12 +77,12 @@ def can_connect(yard, robot=MINE):
 
 @pytest.mark.parametrize("times", [2, 3])
 async def test_who_blocks_three_times_in_a_minute_is_locked_out_and_let_in_again(yard, database, times):
-    clock, desks = Clock(), Desks()
+    clock, desks = ManualClock(), Desks()
     suspensions = AccountSuspensions(database, Commands(), desks.announce, clock)
     with yard.session(MINE) as mine, yard.session(OTHER) as other:
         for _ in range(times):
             database.offences.add_blocking([MINE])
-            clock.now += 29
+            clock.advance(29)
             await suspensions.update()
         assert can_connect(yard, OTHER) and other.run("select 1")
         if times == 2:
@@ -100,30 +94,30 @@ async def test_who_blocks_three_times_in_a_minute_is_locked_out_and_let_in_again
     # The gateway is killed meanwhile, and the next one lets the robot in again.
     after = AccountSuspensions(database, Commands(), desks.announce, clock)
     await after.restore()
-    clock.now += link_supervision.FIRST_S - 1
+    clock.advance(link_supervision.FIRST_S - 1)
     await after.update()
     assert desks.told[1:] == [[(MINE, True)]] and not can_connect(yard)
-    clock.now += 2
+    clock.advance(2)
     await after.update()
     assert desks.told[2:] == [[]] and can_connect(yard)
     assert await database.read(blocking_sessions.stored_suspensions) == {}
 
 
 async def test_who_does_it_again_is_locked_out_for_twice_as_long(yard, database):
-    clock, desks = Clock(), Desks()
+    clock, desks = ManualClock(), Desks()
     suspensions = AccountSuspensions(database, Commands(), desks.announce, clock)
     for seconds in (60, 120, 240):
         database.offences.add_blocking([MINE] * 3)
         await suspensions.update()
         (one,) = suspensions.report().robots
-        assert one.until == clock.now + seconds
-        clock.now += seconds
+        assert one.until == clock.wall + seconds
+        clock.advance(seconds)
         await suspensions.update()
         assert suspensions.report().robots == [] and can_connect(yard)
 
 
 async def test_no_account_is_locked_while_its_robot_awaits_an_abort(yard, database):
-    clock, desks, commands = Clock(), Desks(), Commands()
+    clock, desks, commands = ManualClock(), Desks(), Commands()
     suspensions = AccountSuspensions(database, commands, desks.announce, clock)
     database.offences.add_blocking([MINE] * 3)
     await suspensions.update()
@@ -141,11 +135,11 @@ async def test_no_account_is_locked_while_its_robot_awaits_an_abort(yard, databa
 
 
 async def test_a_gateway_that_dies_before_the_lock_is_set_unlocks_all_the_same(yard, database):
-    clock, desks = Clock(), Desks()
-    await database.run(blocking_sessions.store_suspensions, {MINE: (clock.now + 60, "blocks")})
+    clock, desks = ManualClock(), Desks()
+    await database.run(blocking_sessions.store_suspensions, {MINE: (clock.wall + 60, "blocks")})
     suspensions = AccountSuspensions(database, Commands(), desks.announce, clock)
     await suspensions.restore()
-    clock.now += 61
+    clock.advance(61)
     await suspensions.update()
     assert desks.told == [[(MINE, True)], []] and can_connect(yard)
 
@@ -187,7 +181,7 @@ async def test_an_older_set_up_is_said_and_an_upgrade_mends_it(yard, database, c
     }[yard.kind]
     yard.sql(f"drop {routine}")
     yard.sql(comment.format("robots'' side of the fleet, version 1"))
-    clock, desks = Clock(), Desks()
+    clock, desks = ManualClock(), Desks()
     suspensions = AccountSuspensions(database, Commands(), desks.announce, clock)
     database.offences.add_blocking([MINE] * 3)
     await suspensions.update()

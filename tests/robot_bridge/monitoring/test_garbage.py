@@ -7,6 +7,7 @@ import weakref
 
 import pytest
 
+from robot_bridge.core.clock import ManualClock
 from robot_bridge.core.messages import SendPos
 from robot_bridge.gateway.monitoring.tasks import (
     MOST_GONE,
@@ -62,7 +63,7 @@ def test_what_was_loaded_is_not_looked_at(looks):
 
 
 def test_what_many_connections_left_is_looked_for_at_once_and_only_once(looks):
-    leavings, old = GarbageCollection(lambda: 0.0), weakref.ref(Ring())
+    leavings, old = GarbageCollection(ManualClock()), weakref.ref(Ring())
     leavings.clear_away(MOST_GONE - 1)
     assert looks == [] and old() is not None
     leavings.clear_away(MOST_GONE)
@@ -75,11 +76,21 @@ def test_what_many_connections_left_is_looked_for_at_once_and_only_once(looks):
 
 def test_a_look_that_took_long_is_not_followed_by_another_for_much_longer(looks):
     """However many connections go: everybody waits while Python looks."""
-    begins, ends, too_soon, in_time = 10.0, 12.0, 11.9 + 2.0 * REST, 12.0 + 2.0 * REST
-    times = iter([begins, ends, too_soon, in_time, in_time])
-    leavings = GarbageCollection(lambda: next(times))
-    leavings.clear_away(MOST_GONE)
-    leavings.clear_away(9 * MOST_GONE)
-    assert looks == [2]
-    leavings.clear_away(9 * MOST_GONE)
+    clock = ManualClock(uptime=10.0)
+
+    def last_two_seconds(phase, _info):
+        if phase == "stop":
+            clock.advance(2.0)
+
+    leavings = GarbageCollection(clock)
+    gc.callbacks.append(last_two_seconds)
+    try:
+        leavings.clear_away(MOST_GONE)
+        clock.advance(2.0 * REST - 0.1)
+        leavings.clear_away(9 * MOST_GONE)
+        assert looks == [2]
+        clock.advance(0.2)
+        leavings.clear_away(9 * MOST_GONE)
+    finally:
+        gc.callbacks.remove(last_two_seconds)
     assert looks == [2, 2]

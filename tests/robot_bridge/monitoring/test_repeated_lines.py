@@ -6,22 +6,16 @@ import logging
 
 import pytest
 
+from robot_bridge.core.clock import ManualClock
 from robot_bridge.core.logs import IN_FULL, MOST_KEYS, RepeatedLines
 
 log = logging.getLogger("robot_bridge.test")
 R1, R2 = ("link sql:", "robot", "'r1'", "SendPos"), ("link sql:", "robot", "'r2'", "SendPos")
 
 
-class Clock:
-    now = 1000.0
-
-    def __call__(self):
-        return self.now
-
-
 @pytest.fixture
 def clock():
-    return Clock()
+    return ManualClock()
 
 
 @pytest.fixture
@@ -33,7 +27,7 @@ def test_a_day_of_refusals_is_a_line_a_minute(lines, clock, caplog):
     for second in range(3600):
         for k in range(10):
             lines.warn(log, R1, f"link sql: request {10 * second + k} of robot 'r1': no")
-        clock.now += 1.0
+        clock.advance(1.0)
         lines.summarise()
     assert len(caplog.messages) == IN_FULL + 60
     assert caplog.messages[0] == "link sql: request 0 of robot 'r1': no"
@@ -54,7 +48,7 @@ def test_one_robot_does_not_hide_another(lines, caplog):
 def test_after_a_quiet_minute_lines_are_written_in_full_again(lines, clock, caplog):
     for _ in range(IN_FULL):
         lines.warn(log, R1, "no")
-    clock.now += 61
+    clock.advance(61)
     lines.summarise()
     lines.warn(log, R1, "again")
     assert caplog.messages[-1] == "again"

@@ -6,6 +6,7 @@ from dataclasses import replace
 import pytest
 from sqlalchemy import func, insert, select
 
+from robot_bridge.core.clock import ManualClock
 from robot_bridge.core.messages import SendPos
 from robot_bridge.core.sites.settings_tables import (
     AuditSettings,
@@ -183,69 +184,58 @@ def left(connection):
 
 async def test_what_is_too_old_goes_and_all_else_stays(database, settings):
     await database.run(fill)
-    await Retention(database, lambda: settings, lambda: NOW).prune()
+    await Retention(database, lambda: settings, ManualClock(wall=NOW)).prune()
     assert await database.run(left) == KEPT
 
 
 async def test_nothing_goes_before_the_times_that_hold_without_settings(database, site):
     await database.run(fill)
     count = await database.run(rows)
-    await Retention(database, lambda: site.settings, lambda: ago(0) + 50 * DAY).prune()
+    await Retention(database, lambda: site.settings, ManualClock(wall=ago(0) + 50 * DAY)).prune()
     assert await database.run(rows) == count
-    await Retention(database, lambda: site.settings, lambda: ago(0) + 370 * DAY).prune()
+    await Retention(database, lambda: site.settings, ManualClock(wall=ago(0) + 370 * DAY)).prune()
     assert set((await database.run(left))[commands.c.id]) == {"old-open"}
-
-
-class Clocks:
-    """The computer's clock, which is set, and one that nobody sets."""
-
-    def __init__(self):
-        self.now, self.steady = NOW, 5000.0
-
-    def pass_by(self, seconds):
-        self.now += seconds
-        self.steady += seconds
 
 
 async def test_a_clock_that_was_set_far_ahead_deletes_nothing_for_a_day(database, settings, caplog):
     await database.run(fill)
-    clocks, count = Clocks(), await database.run(rows)
-    keeping = Retention(database, lambda: settings, lambda: clocks.now, lambda: clocks.steady)
-    clocks.now += 4000 * DAY
+    clocks, count = ManualClock(wall=NOW), await database.run(rows)
+    keeping = Retention(database, lambda: settings, clocks)
+    clocks.wall += 4000 * DAY
     await keeping.prune()
-    clocks.pass_by(DAY - 60)
+    clocks.advance(DAY - 60)
     await keeping.prune()
     assert await database.run(rows) == count
     assert "set forward by 4000.0 days; for a day nothing is deleted for its age" in caplog.text
-    clocks.pass_by(120)
+    clocks.advance(120)
     await keeping.prune()
     assert (await database.run(left))[audit.c.who] == set()
 
 
 async def test_a_clock_that_may_be_ahead_from_the_start_deletes_nothing_for_a_day(database, settings):
     await database.run(fill)
-    clocks, count = Clocks(), await database.run(rows)
-    keeping = Retention(database, lambda: settings, lambda: clocks.now, lambda: clocks.steady)
+    clocks, count = ManualClock(wall=NOW), await database.run(rows)
+    keeping = Retention(database, lambda: settings, clocks)
     keeping.doubt_clock()
-    clocks.pass_by(DAY - 60)
+    clocks.advance(DAY - 60)
     await keeping.prune()
     assert await database.run(rows) == count
-    clocks.pass_by(120)
+    clocks.advance(120)
     await keeping.prune()
     assert await database.run(rows) != count
 
 
 async def test_a_clock_that_was_set_right_again_deletes_no_more_than_before(database, settings):
     await database.run(fill)
-    clocks = Clocks()
-    keeping = Retention(database, lambda: settings, lambda: clocks.now, lambda: clocks.steady)
-    clocks.now += 4000 * DAY
+    clocks = ManualClock(wall=NOW)
+    keeping = Retention(database, lambda: settings, clocks)
+    clocks.wall += 4000 * DAY
     await keeping.prune()
-    clocks.now -= 4000 * DAY
-    clocks.pass_by(60)
+    clocks.wall -= 4000 * DAY
+    clocks.advance(60)
     await keeping.prune()
-    clocks.steady += DAY
-    clocks.now += DAY / 100
+    clocks.uptime += DAY
+    clocks.wall += DAY / 100
     await keeping.prune()
     assert await database.run(left) == KEPT
 
@@ -260,7 +250,7 @@ async def test_it_goes_in_pieces_between_which_others_have_the_database(database
     )
     fixes = [Fix("r1", at, SendPos(x, 0.0, 0.5, 1.0)) for at, x in times()]
     await database.run(trajectories.add, list(map(pack, fixes)))
-    pruning = asyncio.create_task(Retention(database, lambda: settings, lambda: NOW).prune())
+    pruning = asyncio.create_task(Retention(database, lambda: settings, ManualClock(wall=NOW)).prune())
     counts = set()
     while not pruning.done():
         counts.add(len(await database.run(trajectories.read, TrajectoryQuery(), 5000, None)))

@@ -9,6 +9,7 @@ import threading
 import pytest
 from sqlalchemy import select
 
+from robot_bridge.core.clock import ManualClock
 from robot_bridge.core.errors import DataRefusedError, StoreError
 from robot_bridge.core.messages import SendPos
 from robot_bridge.core.sites.settings_tables import TrajectorySettings
@@ -48,7 +49,7 @@ class Yard:
         self.robots = Robots()
         self.robots.ready("r1", 1, "sql", 0.0)
         self.saving = TrajectoryWriter(
-            database, self.robots, recorder or TrajectoryRecorder(lambda: EVERY), lambda: 100.0
+            database, self.robots, recorder or TrajectoryRecorder(lambda: EVERY), ManualClock(wall=100.0)
         )
 
     def tell(self, *times):

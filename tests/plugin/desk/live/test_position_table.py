@@ -14,6 +14,7 @@ from fleet_supervisor.plugin.gateway_client.robot_table import (
     table_from_frame,
     table_from_rows,
 )
+from fleet_supervisor.robot_bridge.core.clock import ManualClock
 from fleet_supervisor.robot_bridge.core.messages import PositionForm, SendPos
 from fleet_supervisor.robot_bridge.gateway.fleet.operator_updates import EVERYTHING, Snapshots
 from fleet_supervisor.robot_bridge.gateway.model.robots import Robots
@@ -29,7 +30,7 @@ def gateway(number=3):
 
 
 def frames(robots):
-    made = Snapshots(robots, lambda: 102.5)
+    made = Snapshots(robots, ManualClock(wall=102.5))
     return [made.after(EVERYTHING, form=form).frame for form in PositionForm]
 
 
@@ -61,7 +62,7 @@ def test_a_part_of_the_robots_changes_those_alone():
     known = table_from_frame(frames(robots)[1], 7.0)
     seen = robots.revision
     robots.observe("r0", SendPos(3.0, 4.0, 0.0, 0.0, status="new"), "sql", 102.0)
-    part = Snapshots(robots, lambda: 102.5).after(seen, form=PositionForm.COLUMNS).frame
+    part = Snapshots(robots, ManualClock(wall=102.5)).after(seen, form=PositionForm.COLUMNS).frame
     known.merge(table_from_frame(part, 8.0))
     assert known.names == ["r0", "r1", "r2"]
     assert [known.told(row).get("status") for row in range(3)] == ["new", "docking", None]
@@ -71,7 +72,7 @@ def test_a_part_of_the_robots_changes_those_alone():
 def test_the_words_of_a_day_do_not_pile_up():
     mailbox = UpdateBuffer()
     known, robots = RobotTable(), gateway()
-    made = Snapshots(robots, lambda: 102.5)
+    made = Snapshots(robots, ManualClock(wall=102.5))
     for minute in range(SPARE_WORDS + 99):
         robots.assign("r2", f"target-{minute}")
         frame = made.after(EVERYTHING, form=PositionForm.COLUMNS).frame
