@@ -9,6 +9,15 @@ import numpy as np
 from qgis.PyQt.QtCore import QObject, pyqtSignal
 
 from ...robot_bridge.core.assignment.plan_changes import replan
+from ...robot_bridge.core.assignment.progress import (
+    PlanProblem,
+    PlanProgress,
+    SentStop,
+    current_cones,
+    current_stops,
+    situation_of,
+    tasks_of,
+)
 from ...robot_bridge.core.assignment.solver import Objective
 from ...robot_bridge.core.messages import MessageError, QueueTask
 from ..control.fleet_controller import FleetController
@@ -19,20 +28,18 @@ from ..ui.language import first_of, tr
 from .plan_editor import PlanEditor, PlanningError
 from .plan_settings import have_position
 from .plan_views import after_sending
-from .progress import PlanMonitor, PlanProblem, PlanProgress, current_cones, current_stops, situation_of
+from .progress import PlanMonitor, problem_in_words
 from .proposal import ClosureCheck, PlanProposal
 from .queue_steps import (
     QueueRequests,
     QueueStep,
     RefusedStep,
-    SentStop,
     continuing_steps,
     first_steps,
     has_failed,
     holding_steps,
     later_steps,
     paused_at,
-    tasks_of,
 )
 
 _REPLANNING_S = 2.0
@@ -259,7 +266,7 @@ class PlanExecution(QObject):
         self.offer = offer
         self.changed.emit()
         if self._drafts.settings.by_itself and not offer.meetings and not offer.closed:
-            why = self._followed.seen_to.in_words()
+            why = problem_in_words(self._followed.seen_to)
             self.remarked.emit(tr("A new plan is sent by itself, as you switched on: {why}", why=why))
             # What made the plan is still telling of it.
             self._drafts.changed.connect(self._confirm_once)
@@ -356,7 +363,7 @@ def _reason(trouble: PlanProblem) -> str:
     """Return why robots are held, for their queues."""
     if not trouble:
         return tr("plan of what is left")
-    return tr("plan of what is left: {in_words}", in_words=trouble.in_words())[:_LONGEST_REASON]
+    return tr("plan of what is left: {in_words}", in_words=problem_in_words(trouble))[:_LONGEST_REASON]
 
 
 def _tasks(draft: PlanProposal, now: Mapping[str, SentStop] | None = None) -> dict[str, list[QueueTask]]:

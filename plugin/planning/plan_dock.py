@@ -38,6 +38,8 @@ from .forms import RobotsForm, SettingsForm
 from .plan_editor import CollectionPlanner, PlanEditor
 from .plan_settings import PlanSettings, keep_settings, read_settings
 from .plan_views import PlanLayers, PlanTree, before_sending, method_text, plan_summary, stop_rows
+from .progress import problem_in_words
+from .proposal import closed_in_words, meeting_in_words
 
 # --- What the operator does with a plan: send it, and agree to a new one for what is left ---
 
@@ -185,11 +187,11 @@ class ExecutionBar(QWidget):
             return f"{driven.refusal.words}: {in_brief(driven.refusal.found)}{hint}"
         shown = driven.offer or driven.driven or self._drafts.draft
         near = shown.meetings if shown is not None and (driven.driven is None or driven.offer) else ()
-        parts = first_of([meeting.in_words() for meeting in near])
+        parts = first_of([meeting_in_words(meeting) for meeting in near])
         if shown is not None and (driven.driven is None or driven.offer):
-            parts = [*first_of([one.in_words() for one in shown.closed]), *parts]
+            parts = [*first_of([closed_in_words(one) for one in shown.closed]), *parts]
         if driven.trouble and driven.offer is None:
-            parts.insert(0, driven.trouble.in_words())
+            parts.insert(0, problem_in_words(driven.trouble))
         return "; ".join(parts)
 
 

@@ -15,6 +15,7 @@ from qgis.PyQt.QtCore import QObject, pyqtSignal
 from ...robot_bridge.core.assignment import plan_changes
 from ...robot_bridge.core.assignment.job import COLLECT, AssignmentJob, ConeTarget, PlanRobot
 from ...robot_bridge.core.assignment.plan import ConePlan
+from ...robot_bridge.core.assignment.progress import ConeFacts
 from ...robot_bridge.core.assignment.solver import AUTOMATIC, PREVIEW, Objective, assign
 from ...robot_bridge.core.errors import AssignmentError, MissingStoreError
 from ...robot_bridge.core.messages import ClosureReport, CollectLayout, MessageError, QueueTask, TaskKind
@@ -24,7 +25,6 @@ from ..gateway_client.buffers import RequestResult
 from ..ui.errors import FleetError, MapTransformError
 from ..ui.language import tr
 from .plan_settings import (
-    ConeFacts,
     PlanSettings,
     have_position,
     participating_robots,

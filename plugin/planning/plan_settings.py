@@ -13,6 +13,7 @@ import numpy.typing as npt
 from qgis.core import QgsCoordinateReferenceSystem, QgsProject, QgsVectorLayer, QgsWkbTypes
 
 from ...robot_bridge.core.assignment.job import FINISHES, PLACE, STAY, ConeTarget, PlanRobot, Store
+from ...robot_bridge.core.assignment.progress import ConeFacts
 from ...robot_bridge.core.assignment.schedules import BALANCED, OBJECTIVES
 from ...robot_bridge.core.geometry import theta_of
 from ...robot_bridge.core.json_decoder import decode_json
@@ -148,19 +149,6 @@ _NAMES = ("id", "name")
 
 class ConeLayerError(FleetError):
     """There is no layer of cones or stores to plan for, or nothing in it."""
-
-
-@dataclass(frozen=True)
-class ConeFacts:
-    """What is written down of a target: the operator's name of the cone and its layout.
-
-    ``placement`` is the number of the placed cone that is collected, None for one to be placed.
-    """
-
-    cone: str
-    layout: str = ""
-    placement: int | None = None
-    theta: float | None = None
 
 
 def point_layers(project: QgsProject) -> list[QgsVectorLayer]:

@@ -27,6 +27,7 @@ from qgis.PyQt.QtWidgets import QAbstractItemView, QMenu, QTreeWidget, QTreeWidg
 from ...robot_bridge.core.assignment.job import STRAIGHT, PlanRobot
 from ...robot_bridge.core.assignment.plan import ConePlan, PlanStop, RobotPlan
 from ...robot_bridge.core.assignment.plan_changes import trips_of
+from ...robot_bridge.core.assignment.progress import PlanProgress
 from ...robot_bridge.core.messages import PlacementReport, QueueReport, QueueState, RobotState, TaskState
 from ...robot_bridge.core.sites.frame import SiteFrame
 from ..cone_texts import RESULT_QUALITY
@@ -38,8 +39,7 @@ from ..ui.glyphs import WRONG, for_letters
 from ..ui.language import first_of, tr, tr_count
 from ..ui.tables import fit_headers
 from .as_placed import PLACED, utc_in_words
-from .progress import PlanProgress
-from .proposal import PlanProposal
+from .proposal import PlanProposal, closed_in_words, meeting_in_words
 
 # --- A plan in words and numbers: what table, map and message say of it ---
 
@@ -202,8 +202,8 @@ def before_sending(desk: FleetController, draft: PlanProposal) -> str:
     lines = [plan_summary(draft) + ".", ""]
     lines += first_of([f"{one.robot.id}: {_cones(one)}" for one in driving], LISTED)
     doubts = [doubt for one in driving for doubt in _doubts(desk, one.robot)]
-    closed = [one.in_words() for one in draft.closed]
-    meetings = [meeting.in_words() for meeting in draft.meetings]
+    closed = [closed_in_words(one) for one in draft.closed]
+    meetings = [meeting_in_words(meeting) for meeting in draft.meetings]
     minded = [text for texts in (doubts, closed, meetings) for text in first_of(texts, LISTED)]
     if minded:
         lines += ["", tr("Mind:"), *(f"• {text}" for text in minded)]

@@ -96,6 +96,7 @@ PRUNE_INTERVAL = 60.0
 ROADS_INTERVAL = 1.0
 GEOFENCE_INTERVAL = 0.25
 NEARNESS_INTERVAL = 0.5
+PLANS_INTERVAL = 0.5
 MOST_THREADS = 32
 ENDPOINTS = {path: kind for kind, path in PATHS.items()}
 SAVE_WITHIN, CLOSE_WITHIN = 2.2, 0.5
@@ -157,6 +158,7 @@ class Gateway:
             "sql link": SqlInterface(fleet, fleet.database).run,
             "liveness": lambda: every(AGE_INTERVAL, self._age, "liveness", tally),
             "queues": fleet.driving.run,
+            "plans": lambda: every(PLANS_INTERVAL, fleet.plans.watch, "plans", tally),
             "maps": fleet.maps.run,
             "save": lambda: every(SAVE_INTERVAL, fleet.save, "save", tally),
             "prune": lambda: every(PRUNE_INTERVAL, self.retention.prune, "prune", tally),
@@ -353,6 +355,7 @@ async def _save_last(fleet: Fleet, gate: AuthGate) -> None:
         async with asyncio.timeout(SAVE_WITHIN):
             await fleet.finish_trajectories()
             await gate.close()
+            await fleet.plans.finish()
     except (StoreError, TimeoutError) as error:
         reason = str(error) or "the database does not answer"
         log.error("%s; the last positions are not stored", reason)

@@ -44,6 +44,7 @@ def kept(settings: SiteSettings) -> Iterator[RetainedRows]:
     yield RetainedRows("positions", settings.trajectories.keep_days, trajectories.forget)
     yield RetainedRows("ended commands", settings.commands.keep_days, commands.forget)
     yield RetainedRows("ended tasks", settings.commands.keep_days, queues.forget)
+    yield RetainedRows("ended plans", settings.commands.keep_days, queues.forget_plans)
     yield RetainedRows("collected cones", settings.commands.keep_days, records.forget)
     yield RetainedRows("emergency stops", settings.commands.keep_days, emergency_stops.forget)
     yield RetainedRows("opened roads", settings.commands.keep_days, closures.forget)

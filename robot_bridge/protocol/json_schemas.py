@@ -60,6 +60,7 @@ from ..core.messages.operator_requests import (
     HelloResult,
     Image,
     Observations,
+    Plans,
     Positions,
     Queues,
     Send,
@@ -67,6 +68,17 @@ from ..core.messages.operator_requests import (
     Sessions,
     SetPositions,
     Subscribe,
+)
+from ..core.messages.plans import (
+    ClearPlan,
+    ConfirmReplan,
+    DiscardReplan,
+    GetPlans,
+    PausePlan,
+    PlanReport,
+    Replan,
+    ResumePlan,
+    SubmitPlan,
 )
 from ..core.messages.queues import (
     AddTasks,
@@ -211,6 +223,14 @@ RESULTS: dict[type[DeskRequest], type] = {
     ResumeQueue: QueueReport,
     GetQueue: Queues,
     TakeOver: Queues,
+    SubmitPlan: PlanReport,
+    GetPlans: Plans,
+    PausePlan: PlanReport,
+    ResumePlan: PlanReport,
+    Replan: PlanReport,
+    ConfirmReplan: PlanReport,
+    DiscardReplan: PlanReport,
+    ClearPlan: PlanReport,
     GetPlacements: Placements,
     CollectLayout: CollectingTasks,
     GetRoute: RouteReport,
@@ -241,6 +261,7 @@ NOTIFICATIONS: dict[str, type] = {
     "nearness": Nearness,
     "queue": QueueReport,
     "placement": PlacementReport,
+    "plan": PlanReport,
 }
 """What operators are told without asking, by method."""
 

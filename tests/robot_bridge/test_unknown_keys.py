@@ -26,6 +26,7 @@ STOPS = {
     "abort_all": {},
     "pause_robot": {"robot": "r1"},
     "pause_queue": {"robot": "r1"},
+    "pause_plan": {"plan": "p"},
 }
 
 

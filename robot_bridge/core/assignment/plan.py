@@ -162,8 +162,23 @@ T = TypeVar("T")
 
 def plan_to_json(plan: ConePlan) -> str:
     """Return ``plan`` as a JSON document."""
-    document = {"format": FORMAT, "version": VERSION, **_plain_value(plan)}
-    return json.dumps(document, ensure_ascii=False, allow_nan=False, separators=(",", ":"))
+    return json.dumps(document_of(plan), ensure_ascii=False, allow_nan=False, separators=(",", ":"))
+
+
+def document_of(plan: ConePlan) -> dict[str, Any]:
+    """Return ``plan`` as plain values, as :func:`plan_to_json` writes them."""
+    return {"format": FORMAT, "version": VERSION, **_plain_value(plan)}
+
+
+def stop_document(stop: PlanStop) -> dict[str, Any]:
+    """Return one stop as plain values."""
+    values: dict[str, Any] = _plain_value(stop)
+    return values
+
+
+def stop_of_document(values: Any) -> PlanStop:
+    """Return the stop of :func:`stop_document`; raises PlanFileError."""
+    return _stop(values, "stop")
 
 
 def plan_from_json(text: str | bytes) -> ConePlan:

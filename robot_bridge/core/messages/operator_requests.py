@@ -23,6 +23,17 @@ from .administration import (
     SetPlayback,
     SetRole,
 )
+from .plans import (
+    ClearPlan,
+    ConfirmReplan,
+    DiscardReplan,
+    GetPlans,
+    PausePlan,
+    PlanReport,
+    Replan,
+    ResumePlan,
+    SubmitPlan,
+)
 from .queues import (
     AddTasks,
     GetQueue,
@@ -402,6 +413,14 @@ DeskRequest = (
     | ResumeQueue
     | GetQueue
     | TakeOver
+    | SubmitPlan
+    | GetPlans
+    | PausePlan
+    | ResumePlan
+    | Replan
+    | ConfirmReplan
+    | DiscardReplan
+    | ClearPlan
     | GetPlacements
     | CollectLayout
     | GetRoute
@@ -489,6 +508,13 @@ class Audit:
     """Who did what, newest first."""
 
     entries: list[AuditReport]
+
+
+@dataclass(frozen=True)
+class Plans:
+    """Plans, those that are driven first."""
+
+    plans: list[PlanReport]
 
 
 @dataclass(frozen=True)

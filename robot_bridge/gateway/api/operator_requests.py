@@ -16,10 +16,13 @@ from ...core.messages import (
     AddTasks,
     ChooseSite,
     ClearEmergencyStop,
+    ClearPlan,
     CloseRoad,
     CollectLayout,
     CommandReport,
+    ConfirmReplan,
     DeskRequest,
+    DiscardReplan,
     EmergencyStop,
     EndSession,
     GetAudit,
@@ -30,6 +33,7 @@ from ...core.messages import (
     GetObservations,
     GetOperators,
     GetPlacements,
+    GetPlans,
     GetPositions,
     GetQueue,
     GetRoute,
@@ -41,12 +45,15 @@ from ...core.messages import (
     MakeCurrent,
     MoveTask,
     OpenRoad,
+    PausePlan,
     PauseQueue,
     PauseRobot,
     QueueReport,
     RemoveRobots,
     RemoveTask,
+    Replan,
     ResolveConflict,
+    ResumePlan,
     ResumeQueue,
     ReviewObservation,
     RevokeToken,
@@ -60,6 +67,7 @@ from ...core.messages import (
     SetQueue,
     SetRole,
     Sites,
+    SubmitPlan,
     SurfaceAt,
     TakeOver,
     to_json,
@@ -139,7 +147,11 @@ async def _set_positions(fleet: Fleet, request: SetPositions, caller: Caller) ->
     return _commands(await fleet.orders.set_positions(request.positions, caller.operator))
 
 
-def _check_override(fleet: Fleet, request: Send | SetQueue | AddTasks | TakeOver, caller: Caller) -> None:
+def _check_override(
+    fleet: Fleet,
+    request: Send | SetQueue | AddTasks | TakeOver | SubmitPlan | ConfirmReplan,
+    caller: Caller,
+) -> None:
     """Raise ForbiddenError for an override that the caller's role does not reach."""
     least = Role(fleet.site.settings.commands.override_role)
     if request.override is not None and not caller.role.includes(least):
@@ -290,6 +302,40 @@ def _queues(reports: Sequence[QueueReport]) -> Json:
     return {"queues": [to_json(report) for report in reports]}
 
 
+async def _submit_plan(fleet: Fleet, request: SubmitPlan, caller: Caller) -> Json:
+    _check_override(fleet, request, caller)
+    return to_json(await fleet.plans.submit(request, caller.operator))
+
+
+async def _pause_plan(fleet: Fleet, request: PausePlan, caller: Caller) -> Json:
+    return to_json(await fleet.plans.pause(request, caller.operator))
+
+
+async def _resume_plan(fleet: Fleet, request: ResumePlan, caller: Caller) -> Json:
+    return to_json(await fleet.plans.resume(request, caller.operator))
+
+
+async def _replan(fleet: Fleet, request: Replan, caller: Caller) -> Json:
+    return to_json(await fleet.plans.replan(request, caller.operator))
+
+
+async def _confirm_replan(fleet: Fleet, request: ConfirmReplan, caller: Caller) -> Json:
+    _check_override(fleet, request, caller)
+    return to_json(await fleet.plans.confirm(request, caller.operator))
+
+
+async def _discard_replan(fleet: Fleet, request: DiscardReplan, caller: Caller) -> Json:
+    return to_json(await fleet.plans.discard(request, caller.operator))
+
+
+async def _clear_plan(fleet: Fleet, request: ClearPlan, caller: Caller) -> Json:
+    return to_json(await fleet.plans.clear(request, caller.operator))
+
+
+async def _get_plans(fleet: Fleet, request: GetPlans, _caller: Caller) -> Json:
+    return {"plans": [to_json(report) for report in await fleet.plans.read(request)]}
+
+
 async def _get_placements(fleet: Fleet, request: GetPlacements, _caller: Caller) -> Json:
     found = await fleet.database.read(records.newest_placed_cones, request)
     return {"placements": [to_json(report) for report in found]}
@@ -371,6 +417,14 @@ SERVICES: dict[type[DeskRequest], Service] = {
     PauseRobot: Service(Role.OPERATOR, _pause_robot),
     ResumeQueue: Service(Role.OPERATOR, _resume_queue),
     TakeOver: Service(Role.OPERATOR, _take_over),
+    GetPlans: Service(Role.VIEWER, _get_plans),
+    SubmitPlan: Service(Role.OPERATOR, _submit_plan),
+    PausePlan: Service(Role.OPERATOR, _pause_plan),
+    ResumePlan: Service(Role.OPERATOR, _resume_plan),
+    Replan: Service(Role.OPERATOR, _replan),
+    ConfirmReplan: Service(Role.OPERATOR, _confirm_replan),
+    DiscardReplan: Service(Role.OPERATOR, _discard_replan),
+    ClearPlan: Service(Role.OPERATOR, _clear_plan),
     Send: Service(Role.OPERATOR, _send),
     SendMap: Service(Role.OPERATOR, _send_map),
     SetPositions: Service(Role.OPERATOR, _set_positions),

@@ -38,7 +38,7 @@ log = logging.getLogger(__name__)
 
 OWN = (Hello, Subscribe)
 """Requests that concern the connection itself; everything later goes by them."""
-SUBJECTS = ("robot", "session", "operator", "site", "observation", "command")
+SUBJECTS = ("robot", "session", "operator", "site", "observation", "command", "plan")
 """Parameters that say what a request is about; of several the first."""
 UNNOTED = ("hello", "subscribe")
 """Requests that change nothing but the connection they come from."""

@@ -19,7 +19,9 @@ from ...core.messages import (
     AbortTask,
     AddTasks,
     ClearEmergencyStop,
+    ConfirmReplan,
     DeskRequest,
+    DiscardReplan,
     EmergencyStop,
     GetConflicts,
     GetImage,
@@ -30,10 +32,12 @@ from ...core.messages import (
     MakeCurrent,
     PauseRobot,
     ResolveConflict,
+    ResumePlan,
     ResumeQueue,
     Send,
     SetPositions,
     SetQueue,
+    SubmitPlan,
     TakeOver,
 )
 from ...protocol import jsonrpc
@@ -49,6 +53,10 @@ MOVING = (
     MakeCurrent,
     ResumeQueue,
     TakeOver,
+    SubmitPlan,
+    ResumePlan,
+    ConfirmReplan,
+    DiscardReplan,
     ResolveConflict,
     ClearEmergencyStop,
 )

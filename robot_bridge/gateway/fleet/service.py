@@ -43,6 +43,7 @@ from ..model.position_checks import NO_FIX, GroundTracks, PlaceChecks
 from ..model.robots import Robot, RobotPose, Robots
 from ..monitoring.metrics import Counters
 from ..monitoring.tasks import Steps
+from ..plans.service import PlanService
 from ..queues.registry import QueueContext, QueueRegistry
 from ..queues.requests import PauseService, QueueEditor
 from ..queues.runner import QueueRunner
@@ -126,6 +127,9 @@ class Fleet:
         self.nearness = NearnessWatch(
             self.robots, self.links, self.roads.traffic, lambda: site.settings.nearness, clock, announce
         )
+        self.plans = PlanService(
+            about_queues, self.queues, self.roads.closures, self.emergency, self.listeners
+        )
         self.recorder = TrajectoryRecorder(lambda: self.site.settings.trajectories)
         self._saving = TrajectoryWriter(database, self.robots, self.recorder, clock)
         self.mailboxes = RobotOutboxes(database, self.robots, self._book, self.emergency, self._saving)
@@ -177,6 +181,7 @@ class Fleet:
         await self.emergency.restore()
         await self.roads.restore()
         await self._queue_book.restore()
+        await self.plans.restore()
         await self.observations.restore()
         await self.suspensions.restore()
         start = self.reception.greeting()

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import contextlib
 import uuid
-from collections.abc import AsyncIterator, Callable
-from dataclasses import replace
+from collections.abc import AsyncIterator, Callable, Collection, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from functools import partial
+
+from sqlalchemy import Connection
 
 from ...core.errors import OutdatedError, RefusedError
 from ...core.messages import (
@@ -32,6 +34,7 @@ from ...core.messages import (
     TaskState,
 )
 from ..commands.active_command import ActiveCommand, CommandOrder, because
+from ..commands.persistence import Also
 from ..model import task_queue
 from ..model.task_queue import Queue, QueuedTask, queue_report
 from ..site.places import check_keepouts, check_places, tasks_in_site_frame
@@ -118,6 +121,38 @@ def _task_by(queue: Queue, command: str) -> QueuedTask | None:
 
 
 # --- What operators change in queues: understood, checked against robots and site, and put into the book
+
+
+QueueChange = tuple[Queue, Queue, list[QueuedTask]]
+"""A queue before and after, and the tasks that ended with that."""
+
+
+@dataclass(frozen=True)
+class QueueEntries:
+    """``tasks`` in place of what the robots have not begun; None leaves a queue as it is.
+
+    A queue at another revision than in ``revisions`` is refused. Queues of ``resumed`` robots go on. Robots
+    that are ``away`` are paused and lose the tasks ``withdrawn``, for ``reason``; one of them that is being
+    done is aborted. ``override`` as with SetQueue.
+    """
+
+    tasks: Mapping[str, Sequence[QueueTask] | None]
+    revisions: Mapping[str, int] = field(default_factory=dict)
+    resumed: Collection[str] = ()
+    away: Sequence[str] = ()
+    withdrawn: Collection[str] = ()
+    reason: str | None = None
+    override: str | None = None
+
+
+def _write_entries(changes: Sequence[QueueChange], also: Also, connection: Connection) -> None:
+    queues.save_each(connection, changes)
+    also(connection)
+
+
+def _removed(tasks: Sequence[QueuedTask], reason: str, operator: str, at: float) -> list[QueuedTask]:
+    why = because(f"removed by {operator}", reason)
+    return [task_life.end_task(task, TaskState.REMOVED, at, why) for task in tasks]
 
 
 class QueueEditor:
@@ -223,6 +258,56 @@ class QueueEditor:
                 await self._book.stored(names, self._database.run(write))
             return [self._book.accept(after[name]) for name in names]
 
+    async def enter(self, entries: QueueEntries, operator: str, also: Also) -> list[QueueReport]:
+        """Give several robots their tasks in one transaction, in which ``also`` is written; see there."""
+        names = [*entries.tasks, *(name for name in entries.away if name not in entries.tasks)]
+        async with self._book.holding(names):
+            for name in names:
+                self._robots.check_known(name)
+                self._check_revision(name, entries.revisions.get(name, self._book.get(name).revision))
+            leaving = {task.id for name in entries.tasks for task in self._book.get(name).waiting}
+            leaving |= set(entries.withdrawn)
+            changes = [await self._entered(name, entries, leaving, operator) for name in entries.tasks]
+            changes += [self._withdrawn(name, entries, operator) for name in entries.away]
+            aborts = [
+                CommandOrder(
+                    task_life.abort_id(task), before.robot, Abort(), operator,
+                    f"task {task.id} is taken over by another robot", task=task.id,
+                )
+                for before, after, _ in changes
+                if (task := before.current) is not None and after.current is None
+                and task.command is not None and self._commands.is_open(task.command)
+            ]  # fmt: skip
+            write = partial(_write_entries, changes, also)
+            writing = self._commands.issue(aborts, write) if aborts else self._database.run(write)
+            await self._book.stored(names, writing)
+            return [self._book.accept(after, ended) for _, after, ended in changes]
+
+    async def _entered(
+        self, name: str, entries: QueueEntries, leaving: set[str], operator: str
+    ) -> QueueChange:
+        before, tasks, now = self._book.get(name), entries.tasks[name], self._clock()
+        after = before
+        if tasks is not None:
+            request = SetQueue(name, before.revision, list(tasks), entries.override)
+            known = await self._checked(request, before, leaving)
+            after = task_queue.replace_tasks(before, tasks, known, operator, now)
+        if name in entries.resumed and not after.running:
+            after, current = task_queue.resume_queue(after, operator, now), after.current
+            if current is not None and self._is_being_aborted(name, current):
+                after = after.with_head(task_queue.return_task(current, task_life.STOPS_FIRST))
+        kept = {task.id for task in after.tasks}
+        gone = [task for task in before.tasks if task.id not in kept]
+        return before, after, _removed(gone, "another list took its place", operator, now)
+
+    def _withdrawn(self, name: str, entries: QueueEntries, operator: str) -> QueueChange:
+        before, now = self._book.get(name), self._clock()
+        gone = [task for task in before.tasks if task.id in entries.withdrawn]
+        kept = [task for task in before.tasks if task.id not in entries.withdrawn]
+        reason = because("its tasks were taken over", entries.reason)
+        after = before.with_tasks(kept, edited=not before.running).paused(reason, operator, now)
+        return before, after, _removed(gone, reason, operator, now)
+
     async def end(self, robot: str, operator: str, reason: str) -> None:
         """End every task of a robot's queue, begun or not: nobody is left to do it."""
         async with self._book.holding([robot]):
@@ -283,8 +368,12 @@ class QueueEditor:
                 robot, f"the queue of robot {robot!r} is at revision {now}, not {revision}; look at it again"
             )
 
-    async def _checked(self, request: SetQueue | AddTasks, queue: Queue) -> dict[str, task_queue.Whereabouts]:
+    async def _checked(
+        self, request: SetQueue | AddTasks, queue: Queue, leaving: Collection[str] = ()
+    ) -> dict[str, task_queue.Whereabouts]:
         """Return which of the tasks were given before; raises RefusedError for one that cannot be driven.
+
+        Cones that tasks ``leaving`` their queues collect are free.
 
         What stands in the robot's ``queue`` as it is asked for may lead into a keepout: that was overridden.
         """
@@ -297,7 +386,9 @@ class QueueEditor:
         wanted = {task.placement: task.task for task in tasks if task.placement is not None}
         for name, queue in ((n, self._book.get(n)) for n in self._book.names()):
             for queued in queue.tasks:
-                if queued.task.placement in wanted and wanted[queued.task.placement] != queued.id:
+                if queued.id in leaving or queued.task.placement not in wanted:
+                    continue
+                if wanted[queued.task.placement] != queued.id:
                     raise RefusedError(
                         f"placed cone {queued.task.placement} is collected by task {queued.id} of robot "
                         f"{name!r} already; leave it out"

@@ -191,6 +191,39 @@ queue_tasks = Table(
     Index("ix_queue_tasks_robot_ended_at", "robot", "ended_at"),
 )
 
+# Cone plans; ``content`` is what they were submitted with beside the plan, ``document`` the plan itself,
+# ``proposal`` that of what is left, ``held`` the robots that wait for it, all JSON.
+plans = Table(
+    "plans",
+    metadata,
+    Column("name", String(128), primary_key=True),
+    Column("revision", BigInteger, nullable=False),
+    Column("state", String(16), nullable=False, index=True),
+    Column("submitted_by", String(128), nullable=False),
+    Column("submitted_at", Double, nullable=False),
+    Column("by_itself", SmallInteger, nullable=False),
+    Column("content", _LongText, nullable=False),
+    Column("document", _LongText, nullable=False),
+    Column("proposal", _LongText, nullable=True),
+    Column("held", _LongText, nullable=False),
+    Column("reason", Text, nullable=True),
+    Column("by", String(128), nullable=True),
+    Column("at", Double, nullable=True),
+    Column("ended_at", Double, nullable=True, index=True),
+)
+
+# The stops of a plan that are tasks of a queue; ``place`` orders them, ``content`` is the stop, JSON.
+plan_stops = Table(
+    "plan_stops",
+    metadata,
+    Column("task", String(64), primary_key=True),
+    Column("plan", String(128), nullable=False, index=True),
+    _robot(index=False),
+    Column("place", Integer, nullable=False),
+    Column("number", Integer, nullable=False),
+    Column("content", _LongText, nullable=False),
+)
+
 # Cones that robots put down; ``task`` is unique, so that none is written twice.
 placements = Table(
     "placements",

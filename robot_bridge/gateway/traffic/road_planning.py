@@ -16,7 +16,7 @@ from ...core.errors import NoRouteError, OffNetworkError, RefusedError, RoadsErr
 from ...core.messages import GetRoute, RouteReport, SurfaceMetres
 from ...core.roads.centrelines import Floats
 from ...core.roads.path_smoothing import DensePath, Driving, dense_path
-from ...core.roads.routes import Restrictions, Route, with_ends
+from ...core.roads.routes import Restrictions, Route, Router, with_ends
 from ...core.sites.site import Site
 from ..model.planner import PlannedPath, Point
 from ..model.robots import Robots
@@ -133,6 +133,19 @@ class RoadPlanner:
     def closed(self) -> ClosedRoads:
         """What is closed now; another one whenever that changes."""
         return self._closed
+
+    def router_of_its_own(self) -> Router | None:
+        """Return a router on the roads as they are open now, for one thread alone; None without roads.
+
+        What asks it for seconds keeps nobody else from the roads. Raises RefusedError.
+        """
+        with self._in_use() as roads:
+            if roads.router is None:
+                return None
+            network, closed = roads.router.network, roads.router.closed
+        router = Router(network)
+        router.close(np.flatnonzero(closed).tolist())
+        return router
 
     def renew(self) -> dict[str, int]:
         """Take over the roads of a new publication; return how many edges each closure closes there."""

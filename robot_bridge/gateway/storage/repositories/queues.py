@@ -7,14 +7,14 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, NamedTuple
 
 import msgspec
-from sqlalchemy import Connection, Select, bindparam, exists, insert, or_, select, update
+from sqlalchemy import Connection, Select, bindparam, delete, exists, insert, or_, select, update
 
 from ....core.errors import RefusedError
 from ....core.json_decoder import decode_json
 from ....core.messages import QueueState, QueueTask, TaskState, to_json
 from ...model.task_queue import ENDS, Queue, QueuedTask, Whereabouts
 from ..rows import beside_the_time, delete_oldest, readable
-from ..schema import queue_tasks, queues
+from ..schema import plan_stops, plans, queue_tasks, queues
 
 _ENDED = [state.value for state in ENDS]
 _OPEN = [state.value for state in TaskState if state not in ENDS]
@@ -68,6 +68,16 @@ def newest_ended(connection: Connection, robot: str, limit: int) -> list[QueuedT
     return _tasks(connection, query.order_by(c.ended_at.desc(), c.place.desc()).limit(limit))
 
 
+def find_all(connection: Connection, tasks: Sequence[str]) -> dict[str, tuple[str, QueuedTask]]:
+    """Return some tasks, each with the robot whose queue it is or was in; those that are not stored lack."""
+    found: dict[str, tuple[str, QueuedTask]] = {}
+    for begin in range(0, len(tasks), 500):
+        query = select(queue_tasks).where(queue_tasks.c.id.in_(tasks[begin : begin + 500]))
+        rows = connection.execute(query).mappings()
+        found.update(readable(rows, lambda row: (row["id"], (row["robot"], _task(row))), _name_of_task))
+    return found
+
+
 def whereabouts(connection: Connection, tasks: Sequence[str]) -> dict[str, Whereabouts]:
     """Return where those of some tasks are that were given before."""
     c = queue_tasks.c
@@ -88,6 +98,14 @@ def save(connection: Connection, before: Queue, after: Queue, ended: Iterable[Qu
     _save_queue(connection, before, after)
     old = {task.id: task for task in before.tasks}
     _save_tasks(connection, after.robot, old, [*after.tasks, *ended])
+
+
+def save_each(
+    connection: Connection, changes: Sequence[tuple[Queue, Queue, Sequence[QueuedTask]]]
+) -> None:
+    """Write several queues, each as :func:`save` does; raises ChangedError, and nothing is to be written."""
+    for before, after, ended in changes:
+        save(connection, before, after, ended)
 
 
 def save_many(connection: Connection, changes: Sequence[tuple[Queue, Queue]]) -> None:
@@ -131,6 +149,14 @@ def forget(connection: Connection, before: float, limit: int) -> int:
     c = queue_tasks.c
     has_ended = beside_the_time(c.state).in_(_ENDED)
     return len(delete_oldest(connection, c.id, c.ended_at, before, limit, has_ended))
+
+
+def forget_plans(connection: Connection, before: float, limit: int) -> int:
+    """Delete at most ``limit`` plans that ended before a time, with their stops; return how many."""
+    gone = delete_oldest(connection, plans.c.name, plans.c.ended_at, before, limit)
+    for name in gone:
+        connection.execute(delete(plan_stops).where(plan_stops.c.plan == name))
+    return len(gone)
 
 
 def _save_queue(connection: Connection, before: Queue, after: Queue) -> None:

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from fleet_supervisor.plugin.planning.proposal import meetings, robot_positions
+from fleet_supervisor.plugin.planning.proposal import meeting_in_words
 from fleet_supervisor.robot_bridge.core.assignment.job import PlanRobot
+from fleet_supervisor.robot_bridge.core.assignment.meetings import meetings, robot_positions
 from fleet_supervisor.robot_bridge.core.assignment.plan import ConePlan, PlannedTrip, PlanStop, RobotPlan
 
 
@@ -48,7 +49,9 @@ def test_two_that_meet_head_on_are_named_with_the_time_and_place():
     assert (found.robot, found.other) == ("a", "b")
     assert found.at_s == pytest.approx(10, abs=0.6) and (found.x, found.y) == pytest.approx((10, 0), abs=0.6)
     assert (
-        found.metres < 0.6 and "a and b come within" in found.in_words() and "after 0:10" in found.in_words()
+        found.metres < 0.6
+        and "a and b come within" in meeting_in_words(found)
+        and "after 0:10" in meeting_in_words(found)
     )
 
 

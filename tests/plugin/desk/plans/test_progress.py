@@ -6,17 +6,9 @@ import itertools
 from dataclasses import replace
 
 import pytest
-from fleet_supervisor.plugin.planning.plan_settings import ConeFacts
 from fleet_supervisor.plugin.planning.plan_views import stop_rows
-from fleet_supervisor.plugin.planning.progress import (
-    PlanProblem,
-    PlanProgress,
-    current_stops,
-    problem_of,
-    situation_of,
-)
-from fleet_supervisor.plugin.planning.proposal import ClosedWay, PlanProposal
-from fleet_supervisor.plugin.planning.queue_steps import sent_stops, tasks_of
+from fleet_supervisor.plugin.planning.progress import problem_in_words
+from fleet_supervisor.plugin.planning.proposal import PlanProposal
 from fleet_supervisor.robot_bridge.core.assignment.job import (
     AssignmentJob,
     ConeTarget,
@@ -25,6 +17,17 @@ from fleet_supervisor.robot_bridge.core.assignment.job import (
     StraightTravel,
 )
 from fleet_supervisor.robot_bridge.core.assignment.plan_changes import plan_with_trips, replan
+from fleet_supervisor.robot_bridge.core.assignment.progress import (
+    ClosedWay,
+    ConeFacts,
+    PlanProblem,
+    PlanProgress,
+    current_stops,
+    problem_of,
+    sent_stops,
+    situation_of,
+    tasks_of,
+)
 from fleet_supervisor.robot_bridge.core.assignment.solver import Objective, assign
 from fleet_supervisor.robot_bridge.core.messages import (
     PlacementReport,
@@ -137,7 +140,7 @@ def test_a_lost_robot_with_cones_to_come_is_trouble_and_one_that_has_finished_is
         "r2": driven.tell("r2", [DONE, DONE, DONE], RobotState.OFFLINE),
     }
     trouble = problem_of(driven.plan, driven.progress, queues)
-    assert trouble == PlanProblem(("r1",)) and "r1 is lost" in trouble.in_words()
+    assert trouble == PlanProblem(("r1",)) and "r1 is lost" in problem_in_words(trouble)
 
 
 def test_what_a_lost_robot_was_doing_and_what_waited_is_shared_out_and_the_rest_stays(driven):
@@ -260,7 +263,7 @@ def test_trouble_with_many_ways_cones_and_robots_names_the_first_and_counts_the_
         tuple((f"c{k}", "stuck") for k in range(4)),
         tuple(ClosedWay("r1", f"c{k}", "anna") for k in range(58)),
     )
-    assert trouble.in_words().split("; ") == [
+    assert problem_in_words(trouble).split("; ") == [
         "r0 is lost or offline",
         "r1 is lost or offline",
         "r2 is lost or offline",

@@ -1,0 +1,324 @@
+"""Progress of a plan that robots drive: its tasks, what became of them, what keeps it from going on."""
+
+from __future__ import annotations
+
+import uuid
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, field, replace
+
+from ..messages import PlacementReport, QueueReport, QueueTask, RobotState, TaskKind, TaskReport, TaskState
+from .job import COLLECT, PLACE, PlanRobot
+from .plan import HOME, STORE, ConePlan, PlanStop, RobotPlan
+from .plan_changes import PlanSituation
+
+# --- A plan as tasks for the robots' queues ---
+
+
+@dataclass(frozen=True)
+class ConeFacts:
+    """What is written down of a target: the operator's name of the cone and its layout.
+
+    ``placement`` is the number of the placed cone that is collected, None for one to be placed.
+    """
+
+    cone: str
+    layout: str = ""
+    placement: int | None = None
+    theta: float | None = None
+
+
+_KINDS = {PLACE: TaskKind.PLACE, COLLECT: TaskKind.COLLECT}
+_LABELS = {STORE: "store", HOME: "end"}
+
+
+@dataclass(frozen=True)
+class SentStop:
+    """A stop of the plan that was sent: who makes it, as which number of its day, by which task."""
+
+    robot: str
+    number: int
+    stop: PlanStop
+    task: str
+
+
+def tasks_of(
+    plan: ConePlan,
+    name: str,
+    facts: Mapping[str, ConeFacts],
+    new_id: Callable[[], str] = lambda: str(uuid.uuid4()),
+    under_way: Mapping[str, SentStop] | None = None,
+) -> dict[str, list[QueueTask]]:
+    """Return the tasks of each robot that is not lost, in their order; ``name`` is the plan's own.
+
+    A cone comes after all cones of lower stages that other robots see to, also those that they are at
+    (``under_way``, by the robot).
+
+    :raises MessageError: naming a task that no gateway would take.
+    """
+    staying = [one for one in plan.robots if not one.lost]
+    ids = {one.robot.id: [new_id() for _ in one.stops] for one in staying}
+    stages = {target.id: target.stage for target in plan.targets}
+    staged: dict[int, list[tuple[str, str]]] = {}
+    for one in staying:
+        sent = list(zip(one.stops, ids[one.robot.id], strict=True))
+        now = (under_way or {}).get(one.robot.id)
+        if now is not None:
+            sent.append((now.stop, now.task))
+        for stop, task in sent:
+            if stop.is_target:
+                staged.setdefault(stages[stop.id], []).append((one.robot.id, task))
+
+    def after(robot: str, stop: PlanStop) -> list[str] | None:
+        lower = [stage for stage in sorted(staged) if stop.is_target and stage < stages[stop.id]]
+        return [task for stage in lower for by, task in staged[stage] if by != robot] or None
+
+    return {
+        one.robot.id: [
+            _task(stop, name, facts, task, after(one.robot.id, stop))
+            for stop, task in zip(one.stops, ids[one.robot.id], strict=True)
+        ]
+        for one in staying
+    }
+
+
+def sent_stops(one: RobotPlan, tasks: list[QueueTask]) -> list[SentStop]:
+    """Return the stops of one robot together with the tasks that :func:`tasks_of` made of them."""
+    return [
+        SentStop(one.robot.id, number, stop, task.task)
+        for number, (stop, task) in enumerate(zip(one.stops, tasks, strict=True))
+    ]
+
+
+def _task(
+    stop: PlanStop, name: str, facts: Mapping[str, ConeFacts], task: str, after: list[str] | None
+) -> QueueTask:
+    path = [*stop.path[:-1], (stop.x, stop.y)]
+    if not stop.is_target:
+        label = f"{_LABELS[stop.kind]} {stop.id}"
+        return QueueTask(task, stop.x, stop.y, path=path, label=label, plan=name)
+    known = facts[stop.id]
+    # A collected cone is approached as it was placed, a placed one in its own heading.
+    theta = known.theta if stop.kind == COLLECT else stop.theta
+    return QueueTask(
+        task, stop.x, stop.y, theta, _KINDS[stop.kind], path, known.cone, stop.id, known.layout, name,
+        known.placement, after,
+    )  # fmt: skip
+
+
+# --- How far the robots are with a plan that was sent, from what the gateway tells of their queues ---
+
+AWAY = (RobotState.LOST, RobotState.OFFLINE)
+_OPEN = (TaskState.WAITING, TaskState.CURRENT, TaskState.FAILED)
+_GIVEN_UP = (TaskState.SKIPPED, TaskState.REMOVED, TaskState.FAILED)
+
+
+@dataclass
+class PlanProgress:
+    """What became of each stop that was sent, by its task, and of each cone, by its target's id.
+
+    Only the newest ends of a queue are told, so what was heard once is kept.
+    """
+
+    name: str
+    facts: Mapping[str, ConeFacts]
+    began_at: float
+    stops: dict[str, SentStop] = field(default_factory=dict)
+    reports: dict[str, TaskReport] = field(default_factory=dict)
+    placed: dict[str, PlacementReport] = field(default_factory=dict)
+    done: set[str] = field(default_factory=set)
+    _sent_for: dict[str, list[str]] = field(default_factory=dict, init=False, repr=False)
+    """The tasks that were sent for a target, the newest last."""
+
+    def sent(self, stops: Iterable[SentStop]) -> None:
+        """Note stops that are in a robot's queue from now on."""
+        for one in stops:
+            self.stops[one.task] = one
+            self._sent_for.setdefault(one.stop.id, []).append(one.task)
+
+    def forget(self, tasks: Iterable[str]) -> None:
+        """Pass over tasks that others took the place of."""
+        for task in tasks:
+            known = self.stops.pop(task, None)
+            if known is not None:
+                self._sent_for[known.stop.id].remove(task)
+
+    def take_queue(self, queue: QueueReport) -> None:
+        """Take in how a robot's queue stands."""
+        open_ones = {task.task for task in queue.tasks}
+        for task in (*reversed(queue.ended), *queue.tasks):
+            self._note(task)
+        theirs = [task for task, one in self.stops.items() if one.robot == queue.robot]
+        for task in theirs:
+            known = self.reports.get(task)
+            if task not in open_ones and known is not None and known.state in _OPEN:
+                # It ended while nobody listened; of a cone, what was written down says the rest.
+                self.reports[task] = replace(known, state=TaskState.DONE)
+
+    def take_placement(self, report: PlacementReport) -> None:
+        """Take in a cone that was put down or collected."""
+        for target, facts in self.facts.items():
+            if facts.placement is not None:
+                if facts.placement == report.placement and report.collected_at is not None:
+                    self.placed[target] = report
+                    self.done.add(target)
+            elif report.plan == self.name and report.cone == facts.cone:
+                self.placed[target] = report
+                self.done.add(target)
+
+    def state_of(self, target: str) -> TaskState | None:
+        """Return what became of a cone, None before it was sent."""
+        if target in self.done:
+            return TaskState.DONE
+        found = self._newest(target)
+        return None if found is None else found.state
+
+    def why_not(self, target: str) -> str:
+        """Return why a cone failed or was given up, nothing for another."""
+        found = self._newest(target)
+        return (found.reason or "") if found is not None and found.state in _GIVEN_UP else ""
+
+    def remark_on(self, target: str) -> str:
+        """Return what is said of a cone: why it failed, was given up, or is not begun yet."""
+        if target in self.done:
+            return ""
+        found = self._newest(target)
+        said = found is not None and found.state in (*_GIVEN_UP, TaskState.WAITING)
+        return (found.reason or "") if said else ""
+
+    def is_finished(self, plan: ConePlan) -> bool:
+        """Tell whether every cone of ``plan`` is done or left out."""
+        out = {one.target.id for one in plan.left_out}
+        return all(target.id in self.done or target.id in out for target in plan.targets)
+
+    def _note(self, task: TaskReport) -> None:
+        stop = self.stops.get(task.task)
+        if stop is None:
+            return
+        self.reports[task.task] = task
+        if task.state is TaskState.DONE and stop.stop.is_target:
+            self.done.add(stop.stop.id)
+
+    def _newest(self, target: str) -> TaskReport | None:
+        sent = reversed(self._sent_for.get(target, []))
+        return next((self.reports[task] for task in sent if task in self.reports), None)
+
+
+@dataclass(frozen=True)
+class ClosedWay:
+    """The way of ``robot`` to ``stop`` leads along a road that ``by`` closed."""
+
+    robot: str
+    stop: str
+    by: str
+    reason: str = ""
+    at: PlanStop | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True)
+class PlanProblem:
+    """Why a plan does not go on as it is: robots that are away, cones that failed, with why, closed roads."""
+
+    away: tuple[str, ...] = ()
+    failed: tuple[tuple[str, str], ...] = ()
+    closed: tuple[ClosedWay, ...] = ()
+
+    def __bool__(self) -> bool:
+        return bool(self.away or self.failed or self.closed)
+
+
+def problem_of(
+    plan: ConePlan,
+    progress: PlanProgress,
+    queues: Mapping[str, QueueReport],
+    closed: tuple[ClosedWay, ...] = (),
+) -> PlanProblem:
+    """Return what is wrong: a robot with cones to come that is away, a cone of this plan that failed, a
+    way that is ``closed``."""
+    away, failed = [], []
+    for one in plan.robots:
+        if one.lost:
+            continue
+        left = [stop.id for stop in one.stops if stop.is_target and stop.id not in progress.done]
+        report = queues.get(one.robot.id)
+        if left and report is not None and report.robot_state in AWAY:
+            away.append(one.robot.id)
+        failed += [
+            (target, progress.why_not(target))
+            for target in left
+            if progress.state_of(target) in (TaskState.FAILED, TaskState.SKIPPED)
+        ]
+    return PlanProblem(tuple(away), tuple(failed), closed)
+
+
+def situation_of(
+    plan: ConePlan,
+    progress: PlanProgress,
+    places: Mapping[str, tuple[float, float]],
+    trouble: PlanProblem,
+    now: float,
+    *,
+    try_again: bool,
+) -> PlanSituation:
+    """Return how things are at ``now``, seconds since 1970, for a plan of what is left.
+
+    What a robot is doing it finishes: that counts as done, and the robot is where it ends. ``places`` is
+    where robots are (metres, site frame). With ``try_again`` cones that failed are tried by somebody again.
+    """
+    now_s = max(now - progress.began_at, 0.0)
+    done, robots, currents = set(progress.done), {}, current_tasks(progress)
+    for one in plan.robots:
+        name = one.robot.id
+        if one.lost or name in trouble.away:
+            continue
+        robot = replace(one.robot, ready_s=now_s)
+        if name in places:
+            robot = replace(robot, x=places[name][0], y=places[name][1])
+        robot = _loaded(robot, plan, progress, name)
+        if name in currents:
+            current = progress.stops[currents[name]].stop
+            done |= {current.id} if current.is_target else set()
+            robot = replace(robot, x=current.x, y=current.y, ready_s=max(current.end_s, now_s))
+        robots[name] = robot
+    failed = {} if try_again else {cone: why or "failed" for cone, why in trouble.failed}
+    return PlanSituation(now_s, frozenset(done), frozenset(trouble.away), failed, robots)
+
+
+def current_tasks(progress: PlanProgress) -> dict[str, str]:
+    """Return the task that each robot is doing, by the robot."""
+    return {
+        one.robot: task
+        for task, one in progress.stops.items()
+        if task in progress.reports and progress.reports[task].state is TaskState.CURRENT
+    }
+
+
+def committed_stops(progress: PlanProgress) -> list[PlanStop]:
+    """Return the stops that robots have made or are on their way to: the gateway leads them on itself."""
+    return [one.stop for task, one in progress.stops.items() if _is_behind(progress, task)]
+
+
+def current_stops(progress: PlanProgress) -> dict[str, SentStop]:
+    """Return what each robot is at, by the robot."""
+    return {robot: progress.stops[task] for robot, task in current_tasks(progress).items()}
+
+
+def current_cones(progress: PlanProgress) -> set[str]:
+    """Return the cones that robots are at."""
+    return {one.stop.id for one in current_stops(progress).values()}
+
+
+def _loaded(robot: PlanRobot, plan: ConePlan, progress: PlanProgress, name: str) -> PlanRobot:
+    """Return the robot with what it carries once what it is doing is done."""
+    own = plan.robot(name)
+    theirs = [(task, one.stop) for task, one in progress.stops.items() if one.robot == name]
+    behind = [stop for task, stop in theirs if _is_behind(progress, task)]
+    stops = [stop for stop in (own.stops if own is not None else ()) if stop in behind]
+    if not stops:
+        return robot
+    return replace(robot, aboard=stops[-1].aboard, collected=stops[-1].collected)
+
+
+def _is_behind(progress: PlanProgress, task: str) -> bool:
+    report, stop = progress.reports.get(task), progress.stops[task].stop
+    done = stop.is_target and stop.id in progress.done
+    return done or (report is not None and report.state in (TaskState.DONE, TaskState.CURRENT))

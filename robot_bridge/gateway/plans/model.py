@@ -1,0 +1,208 @@
+"""A cone plan as the gateway drives it: its state, its tasks, its problems, and the report of it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+from ...core.assignment.plan import ConePlan, document_of
+from ...core.assignment.progress import (
+    ConeFacts,
+    PlanProblem,
+    PlanProgress,
+    SentStop,
+    current_cones,
+    sent_stops,
+)
+from ...core.errors import RefusedError
+from ...core.messages import (
+    PlanProblemKind,
+    PlanProblemReport,
+    PlanReport,
+    PlanState,
+    PlanStopReport,
+    QueueTask,
+    SubmitPlan,
+    TaskState,
+)
+
+ENDS = (PlanState.FINISHED, PlanState.CLEARED)
+LONGEST_PAUSE_REASON = 200
+"""characters of the reason that a queue is paused for."""
+
+
+@dataclass(frozen=True)
+class PlanTerms:
+    """What a plan was submitted with beside its document: what is known of its cones, and how to plan again.
+
+    Distances are metres, ``stand`` (x, y) in the site frame.
+    """
+
+    cones: Mapping[str, ConeFacts]
+    stand: Sequence[tuple[float, float]] = ()
+    on_roads: bool = True
+    direct_m: float = 25.0
+    clearance_m: float = 0.8
+    apart_m: float = 2.0
+    seconds: float = 2.0
+
+    @classmethod
+    def of(cls, request: SubmitPlan) -> PlanTerms:
+        """Return the terms of a request."""
+        cones = {one.id: ConeFacts(one.cone, one.layout, one.placement, one.theta) for one in request.cones}
+        return cls(
+            cones, request.stand, request.on_roads, request.direct_m, request.clearance_m, request.apart_m,
+            request.seconds,
+        )  # fmt: skip
+
+    @property
+    def off_standing_m(self) -> float:
+        """How far to keep from a robot that stands: half of what two keep that drive, for only one errs."""
+        return max(self.clearance_m, self.apart_m / 2)
+
+
+@dataclass(frozen=True)
+class DrivenPlan:
+    """A plan as it is stored. ``held`` robots wait for a plan of what is left, paused since that time (s)."""
+
+    name: str
+    document: ConePlan
+    terms: PlanTerms
+    submitted_by: str
+    submitted_at: float
+    by_itself: bool = False
+    state: PlanState = PlanState.DRIVEN
+    revision: int = 1
+    proposal: ConePlan | None = None
+    held: Mapping[str, float | None] = field(default_factory=dict)
+    reason: str | None = None
+    by: str | None = None
+    at: float | None = None
+    ended_at: float | None = None
+
+    @property
+    def staying(self) -> list[str]:
+        """The robots that drive by it."""
+        return [one.robot.id for one in self.document.robots if not one.lost]
+
+    def changed(self, state: PlanState, by: str, at: float, reason: str | None, **more: Any) -> DrivenPlan:
+        """Return the plan in another state, one revision further."""
+        ended_at = at if state in ENDS else None
+        return replace(
+            self,
+            state=state,
+            by=by,
+            at=at,
+            reason=reason,
+            ended_at=ended_at,
+            revision=self.revision + 1,
+            **more,
+        )
+
+
+def progress_from(plan: DrivenPlan, stops: Iterable[SentStop]) -> PlanProgress:
+    """Return the progress of a plan of which ``stops`` are in queues, as if nothing had come of them."""
+    progress = PlanProgress(plan.name, plan.terms.cones, plan.submitted_at)
+    progress.sent(stops)
+    return progress
+
+
+def stops_of(document: ConePlan, tasks: Mapping[str, Sequence[QueueTask]]) -> list[SentStop]:
+    """Return the stops of ``document`` with their ``tasks``."""
+    return [
+        stop
+        for one in document.robots
+        if one.robot.id in tasks
+        for stop in sent_stops(one, list(tasks[one.robot.id]))
+    ]
+
+
+def superseded(progress: PlanProgress, away: Iterable[str]) -> list[str]:
+    """Return the tasks whose place a plan of what is left takes: not those that are done or being done."""
+    kept, gone = (TaskState.DONE, TaskState.CURRENT), set(away)
+    return [
+        task
+        for task, stop in progress.stops.items()
+        if task not in progress.reports
+        or progress.reports[task].state not in kept
+        or (stop.robot in gone and progress.reports[task].state is TaskState.CURRENT)
+    ]
+
+
+def check_proposal(plan: DrivenPlan, progress: PlanProgress) -> ConePlan:
+    """Return the proposed plan; raises RefusedError where there is none, or it counts on what is given up."""
+    if plan.proposal is None or plan.state is not PlanState.PROPOSED:
+        raise RefusedError(f"plan {plan.name!r} has no plan of what is left to confirm; ask for replan first")
+    given_up = sorted(plan.proposal.done - progress.done - current_cones(progress))
+    if given_up:
+        raise RefusedError(
+            f"given up since the plan of what is left was made: {', '.join(given_up[:10])}; replan"
+        )
+    return plan.proposal
+
+
+def problem_in_words(problem: PlanProblem) -> str:
+    """Return why a plan does not go on, for queues and logs."""
+    away = [f"{robot} is lost or offline" for robot in problem.away]
+    failed = [f"cone {cone} failed{f': {why}' if why else ''}" for cone, why in problem.failed]
+    closed = [f"the way of {one.robot} to {one.stop} leads along a closed road" for one in problem.closed]
+    found = [*away, *failed, *closed]
+    more = f"; and {len(found) - 5} more" if len(found) > 5 else ""
+    return "; ".join(found[:5]) + more
+
+
+def plan_report(
+    plan: DrivenPlan,
+    progress: PlanProgress,
+    problem: PlanProblem,
+    *,
+    meetings: int | None = None,
+    closed: int | None = None,
+    documents: bool = False,
+) -> PlanReport:
+    """Return what operators are told of a plan."""
+    shown = plan.document
+    out = [one.target.id for one in shown.left_out]
+    proposal = plan.proposal
+    return PlanReport(
+        plan=plan.name,
+        revision=plan.revision,
+        state=plan.state,
+        submitted_by=plan.submitted_by,
+        submitted_at=plan.submitted_at,
+        by_itself=plan.by_itself,
+        cones=len(shown.targets),
+        done=len(progress.done),
+        robots=plan.staying,
+        stops=[_stop_report(progress, stop) for stop in progress.stops.values()],
+        problems=_problem_reports(problem),
+        left_out=out,
+        reason=plan.reason,
+        by=plan.by,
+        at=plan.at,
+        ended_at=plan.ended_at,
+        meetings=meetings,
+        closed=closed,
+        document=document_of(shown) if documents else None,
+        proposal=document_of(proposal) if documents and proposal is not None else None,
+    )
+
+
+def _stop_report(progress: PlanProgress, sent: SentStop) -> PlanStopReport:
+    report, stop = progress.reports.get(sent.task), sent.stop
+    done = stop.is_target and stop.id in progress.done
+    state = TaskState.DONE if done else TaskState.WAITING if report is None else report.state
+    reason = None if done or report is None else report.reason
+    return PlanStopReport(sent.task, sent.robot, stop.kind, stop.id, stop.x, stop.y, state, reason)
+
+
+def _problem_reports(problem: PlanProblem) -> list[PlanProblemReport]:
+    return [
+        *(PlanProblemReport(PlanProblemKind.AWAY, robot) for robot in problem.away),
+        *(PlanProblemReport(PlanProblemKind.FAILED, None, cone, why or None) for cone, why in problem.failed),
+        *(
+            PlanProblemReport(PlanProblemKind.CLOSED, one.robot, one.stop, one.reason or None)
+            for one in problem.closed
+        ),
+    ]
