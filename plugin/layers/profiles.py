@@ -10,8 +10,7 @@ from typing import Any
 
 from qgis.core import QgsExpression, QgsMapLayer, QgsVectorLayer, QgsWkbTypes
 
-from ...robot_bridge.core.json_decoder import decode_json
-from ...robot_bridge.core.sites.settings_tables import LARGEST_TOML, toml_tables
+from ...robot_bridge.core.json_decoder import LARGEST_TOML, decode_json, toml_tables
 from ..ui.language import tr
 from .errors import ProfileError
 from .layer_source import names_of

@@ -1,4 +1,4 @@
-"""The one decoder of JSON that comes from outside: from tables, sockets and files.
+"""The one decoder of JSON that comes from outside: from tables, sockets and files; and of TOML from files.
 
 Whoever wrote the text may mean harm: length, depth, number of values and size of numbers are bounded before
 anything is built, so that decoding takes time and memory in proportion to the text and never recurses deeper
@@ -145,3 +145,32 @@ def _stored(value: Any) -> Any:
     if isinstance(value, dict):
         return {_stored(name): _stored(one) for name, one in value.items()}
     return value
+
+
+LARGEST_TOML = 256_000
+"""characters; a site's settings and profiles of layers have a few thousand."""
+
+_MOST_PARTS = 32
+# tomllib goes over all parts of a dotted key for each of them: n² steps.
+_LONG_KEY = re.compile(
+    rf"""(?:(?<![\w-])(?:[\w-]+|"[^"\n]*"|'[^'\n]*')[ \t]*\.[ \t]*){{{_MOST_PARTS}}}""", re.ASCII
+)
+
+
+def toml_tables(text: str) -> dict[str, Any]:
+    """Return the tables in TOML ``text``, at a cost that goes by its length.
+
+    :raises ValueError: naming what is wrong: no TOML, too long, or nested too deeply.
+    :raises ImportError: on Python before 3.11, which has no ``tomllib``.
+    """
+    import tomllib
+
+    if len(text) > LARGEST_TOML:
+        raise ValueError(f"it has {len(text)} characters, more than {LARGEST_TOML}")
+    if (deep := _LONG_KEY.search(text)) is not None:
+        line = text.count("\n", 0, deep.start()) + 1
+        raise ValueError(f"a key has more than {_MOST_PARTS} parts (line {line})")
+    try:
+        return tomllib.loads(text)
+    except RecursionError:
+        raise ValueError("its arrays or tables are nested too deeply") from None

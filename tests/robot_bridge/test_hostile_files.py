@@ -11,9 +11,10 @@ from sqlalchemy import make_url
 
 from robot_bridge.core.assignment.plan import plan_from_json
 from robot_bridge.core.errors import ConeTableError, PlanFileError, SettingsError, StoreError
+from robot_bridge.core.json_decoder import toml_tables
 from robot_bridge.core.layouts.cone_files import ConeColumns, cones_of, read_csv
 from robot_bridge.core.sites.settings import read_settings
-from robot_bridge.core.sites.settings_tables import toml_tables, value_text
+from robot_bridge.core.sites.settings_tables import value_text
 from robot_bridge.gateway.storage.backup import MARK, PostgreSqlBackups
 from robot_bridge.links.base.errors import LinkError
 from robot_bridge.links.base.settings import read_settings as read_link_settings

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from ..errors import CrsError, SettingsError
+from ..json_decoder import toml_tables
 from .frame import SiteFrame, check_site_crs
 from .settings_tables import (
     AuditSettings,
@@ -30,7 +31,6 @@ from .settings_tables import (
     TrajectorySettings,
     changed_text,
     out_of_range,
-    toml_tables,
     value_text,
 )
 

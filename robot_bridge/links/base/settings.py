@@ -10,8 +10,8 @@ from typing import Any, TypeVar
 
 import msgspec
 
+from ...core.json_decoder import toml_tables
 from ...core.messages import ROBOT_NAME
-from ...core.sites.settings_tables import toml_tables
 from .errors import LinkError
 from .frames import FrameSettings
 

@@ -12,8 +12,6 @@ from numpy.typing import NDArray
 
 from .sensors import Motion, TruePose
 
-# --- What the laser sees in the robot's way: it brakes for it, waits, and goes round it ---
-
 NEAR = 4.0
 """metres: what is farther away is not in the way yet."""
 TOGETHER = 0.3
@@ -167,8 +165,6 @@ def _seen_after(points: NDArray[Any], motion: Motion) -> NDArray[Any]:
     return seen
 
 
-# --- What moves in a simulated world: people who walk about, and other robots. All are upright cylinders
-
 PERSON = 0.25
 """metres: the radius of one."""
 WALKING = 1.2
@@ -235,7 +231,7 @@ class People:
 
 
 class MovingObstacles:
-    """What moves, shared by all robots of one world: ``others`` are asked anew for each scan."""
+    """What moves, shared by all robots of one world: ``others`` are asked again for each scan."""
 
     def __init__(self) -> None:
         self._sources: list[tuple[object, Callable[[], Discs]]] = []

@@ -55,7 +55,7 @@ class ExperimentSettings(LocalisedRobotSettings, frozen=True, forbid_unknown_fie
     ``known`` to ``start_m`` metres and ``start_deg`` degrees (standard deviations), or ``unknown``: then it
     is somewhere on the route. ``length`` ends the drive after so many metres. With ``gps``
     the filter hears the receiver once a second. With ``end_heading_deg``, degrees counter-clockwise from the
-    x axis, the robot is to stand so at the end of its route, and how well it does is measured.
+    x axis, the robot must stand so at the end of its route, and how well it does is measured.
     """
 
     title: Annotated[str, msgspec.Meta(max_length=200)] = ""
@@ -93,7 +93,7 @@ class Record:
     ``truth``, ``odometry`` and ``belief`` are (n, 3): x, y in metres and theta in radians, site frame;
     ``driven`` and ``accuracy`` are (n,) metres, ``lost`` (n,) bool as the robot says it, ``seconds`` (n,) of
     processor time for an update, and ``particles`` (n,) how many there are after it. The robot was carried
-    away before row ``carried``; ``goal`` is where it was to stand in the end. Of a drive at a gateway:
+    away before row ``carried``; ``goal`` is where it should stand in the end. Of a drive at a gateway:
     ``maps`` that the robot was sent, of ``map_bytes`` in all, and the least way, metres, between its body and
     all that it could have hit, ``clearance``; ``accepted`` observations of robots were on its map, None where
     nobody reviewed any. Of one without: what its sensors said, ``log``.
@@ -153,7 +153,7 @@ def run(robot_map: RobotMap, settings: ExperimentSettings, seed: int, compiled: 
 
 
 def goal_of(settings: ExperimentSettings) -> TruePose | None:
-    """Return where the robot is to stand in the end, None where that does not matter."""
+    """Return where the robot should stand in the end, None where that does not matter."""
     heading = settings.end_heading_deg
     return None if heading is None else (*settings.route[-1], math.radians(heading))
 
@@ -280,8 +280,8 @@ class _Drive:
         self._filter.observe(scan)
         belief = self._filter.belief
         seconds = time.process_time() - begin
-        told = belief.pose, self.body.driven, belief.accuracy, belief.lost
-        self._rows.append((self.body.pose, self._odometry, *told, seconds, len(self._filter.particles)))
+        believed = belief.pose, self.body.driven, belief.accuracy, belief.lost
+        self._rows.append((self.body.pose, self._odometry, *believed, seconds, len(self._filter.particles)))
 
     def _hear_receiver(self) -> None:
         fix = self._receiver.fix(self.body.pose) if self._receiver is not None else None

@@ -12,7 +12,7 @@ import numpy as np
 
 from ...core.robotmap.model import RobotMap
 from ..body import before_border
-from .particle_filter import FIX_LASTS, ParticleFilter
+from .particle_filter import ParticleFilter
 from .segments import distances
 from .sensors import (
     BodyReach,
@@ -28,28 +28,6 @@ from .settings import FilterSettings, LaserSettings, ReferenceRobotError
 from .world import Walls, walls_of
 
 log = logging.getLogger(__name__)
-
-LATE = 1.0
-"""seconds by which the filter may be behind the sensors."""
-STANDS = 1e-3, 1e-3
-"""metres and radians between two scans: less is standing."""
-STANDING_SCANS = 10
-"""Of a robot that stands and knows its place every so many scans are weighed: they all see the same."""
-JITTER = 0.01, 0.005
-"""metres and radians by which the particles of a robot that stands are spread before each such scan."""
-STANDING_WORTH = 0.1
-"""metres of driving that a scan of a standing robot counts for until it knows its place for sure."""
-WHERE_EXPECTED = 3.0
-"""metres from where its wheels have it, or a GPS position: there alone a robot that stands finds itself.
-
-Elsewhere it may be in any of several places that look alike until it drives, or is told where it is.
-"""
-LOST_ACCURACY = 2.0
-"""metres: the least accuracy of a robot that has lost itself, as wide as what counts as one place."""
-SEES = 3
-"""beams with an echo: a scan with no more may see nothing of the map."""
-BORDER = 2.0
-"""metres from the border of a map of a part of the site, nearer than which a robot stands."""
 
 _FRAME = ("crs", "origin", "rotation")
 
@@ -90,14 +68,15 @@ class LocaliserSettings:
 class Localiser:
     """Hands readings to a particle filter that works on ``executor``, one after the other.
 
-    :attr:`pose` is the newest belief, moved on by what was measured since. :attr:`trouble` says why it is not
-    to be driven by. Call all methods from one thread.
+    :attr:`pose` is the newest belief, moved on by what was measured since. :attr:`trouble` says why the
+    robot must not drive by it. Call all methods from one thread.
     """
 
     def __init__(
         self, settings: LocaliserSettings, start: InitialBelief, rng: np.random.Generator, executor: Executor
     ) -> None:
         self._settings = settings
+        self._standing = settings.filter.standing
         self._start: InitialBelief | None = start
         self._rng = rng
         self._executor = executor
@@ -113,10 +92,10 @@ class Localiser:
         self._work: Future[Estimate] | None = None
         self._work_t = 0.0
         self._next_map: RobotMap | None = None
-        """What the filter is to use from its next reading on."""
+        """The map that the filter uses from its next reading on."""
         self._tried: tuple[RobotMap | None, InitialBelief | None] = None, None
         self._owed: list[Motion] = []
-        """What the filter has not been told yet, because it was busy."""
+        """Motions that the filter does not have yet, because it was busy."""
         self._number = 0
         self._since: list[tuple[int, Motion]] = []
         """Motions by the number of their reading, that the newest estimate does not know of."""
@@ -139,7 +118,7 @@ class Localiser:
 
     @property
     def lost(self) -> bool:
-        """Tell whether the robot does not know its place."""
+        """Whether the robot does not know its place."""
         return self._estimate.lost
 
     @property
@@ -159,7 +138,7 @@ class Localiser:
 
     @property
     def trouble(self) -> str | None:
-        """Why the robot is not to drive, None when it knows where it is."""
+        """Why the robot must not drive, None when it knows where it is."""
         self._collect()
         if self.map is None:
             return "it has no map yet"
@@ -168,7 +147,8 @@ class Localiser:
         if self._fault is not None:
             return self._fault
         if self._is_late():
-            return f"the filter is more than {LATE:g} s behind the sensors; give it more processor time"
+            late = self._standing.late
+            return f"the filter is more than {late:g} s behind the sensors; give it more processor time"
         if self._estimate.sees_nothing:
             return "nothing of its map is within the reach of its laser; lead it to where something is"
         if self._estimate.lost:
@@ -178,7 +158,7 @@ class Localiser:
                 "by a start position, or wait"
             )
         x, y, _ = self.pose
-        if before_border(self.map, x, y) < BORDER:
+        if before_border(self.map, x, y) < self._standing.border:
             return "it is at the border of its map, and was not sent the next one yet"
         return None
 
@@ -193,7 +173,7 @@ class Localiser:
         self._next_map = robot_map
 
     def place(self, start: InitialBelief) -> None:
-        """Take the robot to be where it is told that it is."""
+        """Take the robot to be at ``start``, whatever the filter believed."""
         self._start = start
         self._estimate = Estimate(self._number, start.pose, start.deviation[0], True, 0.0)
         self._since, self._owed, self._worst = [], [], 0.0
@@ -204,9 +184,9 @@ class Localiser:
         before, self._last_t = self._last_t, reading.t
         if self._done_t is None:
             self._done_t = reading.t
-        fault = motion_fault(reading, before, self._settings.reach)
+        fault = motion_fault(reading, before, self._settings.reach, self._standing)
         if fault is not None:
-            # What the robot did meanwhile nobody knows: the filter is to doubt, and is not told.
+            # What the robot did meanwhile nobody knows: the filter doubts its place.
             self._fault, self._missed, self._done_t = fault, True, reading.t
             return
         self._number += 1
@@ -242,14 +222,17 @@ class Localiser:
             return
         self._failure = None
         if self._start is not None:
-            # It was told another place meanwhile.
+            # It was given another place meanwhile.
             return
         estimate = self._estimate = work.result()
-        self._worst = max(self._worst, estimate.accuracy, LOST_ACCURACY) if estimate.lost else 0.0
+        worst = max(self._worst, estimate.accuracy, self._standing.lost_accuracy)
+        self._worst = worst if estimate.lost else 0.0
         self._since = [(number, motion) for number, motion in self._since if number > estimate.number]
 
     def _is_late(self) -> bool:
-        return self._last_t is not None and self._done_t is not None and self._last_t - self._done_t > LATE
+        if self._last_t is None or self._done_t is None:
+            return False
+        return self._last_t - self._done_t > self._standing.late
 
     def _check(self, robot_map: RobotMap) -> None:
         known = self.map
@@ -307,9 +290,9 @@ class Localiser:
         return Estimate(number, belief.pose, accuracy, belief.lost, belief.agreement, count, nothing)
 
     def _sees_nothing(self, pose: TruePose, ranges: Any) -> bool:
-        """Tell whether neither the scan nor the map has anything there: all places are alike then."""
+        """Return whether neither the scan nor the map has anything there: all places are alike then."""
         reach = self._settings.laser.reach
-        if np.count_nonzero(ranges < reach) > SEES or self._walls is None:
+        if np.count_nonzero(ranges < reach) > self._standing.few_echoes or self._walls is None:
             return False
         return bool(distances(np.array(pose[:2]), self._walls.a, self._walls.b).min() > reach)
 
@@ -328,29 +311,31 @@ class Localiser:
         tracking.observe(ranges)
 
     def _follow(self, tracking: ParticleFilter, motions: list[Motion], ranges: Any, missed: bool) -> None:
+        standing = self._standing
         for motion in motions:
             tracking.move(motion)
             if self._expected is not None:
                 self._expected = moved(self._expected, motion)
         if missed:
             tracking.doubt()
-        if any(abs(m.distance) > STANDS[0] or abs(m.turn) > STANDS[1] for m in motions):
+        if any(abs(m.distance) > standing.still_m or abs(m.turn) > standing.still_rad for m in motions):
             self._quiet_scans = 0
             self._fixed_for += sum(abs(motion.distance) for motion in motions)
-            self._fixed = self._fixed if self._fixed_for < FIX_LASTS else None
+            self._fixed = self._fixed if self._fixed_for < self._settings.filter.gps.lasts else None
             tracking.observe(ranges)
             return
         self._quiet_scans += 1
         lost = tracking.belief.lost
-        if lost or self._quiet_scans % STANDING_SCANS == 0:
-            tracking.jitter(*JITTER)
+        if lost or self._quiet_scans % standing.scans == 0:
+            tracking.jitter(standing.jitter_m, standing.jitter_rad)
             tracking.observe(ranges)
         if lost and self._is_expected(tracking.belief.pose):
-            tracking.settle(STANDING_WORTH)
+            tracking.settle(standing.scan_worth)
 
     def _is_expected(self, pose: TruePose) -> bool:
         places = (self._expected, self._fixed)
-        return any(one is not None and math.dist(pose[:2], one[:2]) < WHERE_EXPECTED for one in places)
+        within = self._standing.expected
+        return any(one is not None and math.dist(pose[:2], one[:2]) < within for one in places)
 
     def _exchange_map(self, robot_map: RobotMap) -> None:
         self._walls = walls_of(robot_map).higher_than(self._settings.laser.height)

@@ -58,7 +58,7 @@ class MapDoubts:
     def __init__(self, robot_map: RobotMap, laser: LaserSettings, bearings: NDArray[Any]) -> None:
         self._laser, self._bearings = laser, bearings
         self._suspects: dict[str, _Suspect] = {}
-        self._told: set[str] = set()
+        self._reported: set[str] = set()
         self._from: tuple[float, float] | None = None
         self.use_map(robot_map)
 
@@ -80,7 +80,7 @@ class MapDoubts:
         passes = self._passes(pose, ways, ranges, expected)
         known = np.isfinite(ranges)
         ends = np.array(pose[:2]) + ranges[known, None] * ways[known]
-        for source in {*passes, *self._suspects} - self._told:
+        for source in {*passes, *self._suspects} - self._reported:
             self._judge(source, passes.get(source), ends)
         return [doubt for source in passes if (doubt := self._doubt(source)) is not None]
 
@@ -118,7 +118,7 @@ class MapDoubts:
 
     def _doubt(self, source: str) -> Doubt | None:
         suspect = self._suspects.get(source)
-        if suspect is None or source in self._told or suspect.passed < OFTEN:
+        if suspect is None or source in self._reported or suspect.passed < OFTEN:
             return None
         if suspect.seen > SEEN * (suspect.seen + suspect.passed):
             return None
@@ -128,7 +128,7 @@ class MapDoubts:
         wide = math.dist(low, high)
         if wide > SMALL and math.dist(suspect.low, suspect.high) < wide / 2:
             return None
-        self._told.add(source)
+        self._reported.add(source)
         del self._suspects[source]
         x, y = (low + high) / 2
         semantics = self._names[self._walls.obstacle[rows[0]]][1]

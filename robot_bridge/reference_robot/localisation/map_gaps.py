@@ -35,7 +35,7 @@ PASSES = 0.3
 WANDERED = 0.5
 """metres that a thing may seem to move while it is passed and its other side is seen."""
 LARGEST = 1.5
-"""metres: the radius of the largest thing that is told of; larger ones are walls for a surveyor."""
+"""metres: the radius of the largest thing that is reported; larger ones are walls for a surveyor."""
 PIXELS, PIXEL = 64, 0.05
 """of the image of a thing, and the side of one in metres."""
 
@@ -58,7 +58,7 @@ class _Thing:
     ends: list[NDArray[Any]] = field(default_factory=list)
     seen: int = 0
     passed: int = 0
-    told: bool = False
+    reported: bool = False
 
 
 class MapGaps:
@@ -86,7 +86,7 @@ class MapGaps:
         for end in ends:
             if all(np.hypot(*(thing.middle - end)) > ONE_THING for thing in self._things):
                 self._things.append(_Thing(end, [end], 1))
-        self._things = [thing for thing in self._things if thing.told or not self._is_gone(thing)]
+        self._things = [thing for thing in self._things if thing.reported or not self._is_gone(thing)]
         return [found for thing in self._things if (found := self._found(thing, pose)) is not None]
 
     def _off_map(self, pose: TruePose, ranges: NDArray[Any]) -> NDArray[Any]:
@@ -132,11 +132,11 @@ class MapGaps:
         """Return a thing once, when it has been seen often and lies behind the robot or beside it."""
         off = thing.middle - pose[:2]
         ahead = off[0] * math.cos(pose[2]) + off[1] * math.sin(pose[2])
-        if thing.told or thing.seen < OFTEN or ahead > 0 or self._is_gone(thing):
+        if thing.reported or thing.seen < OFTEN or ahead > 0 or self._is_gone(thing):
             return None
         if _wandered(thing.ends) > WANDERED:
             return None
-        thing.told = True
+        thing.reported = True
         x, y, radius = _circle(np.array(thing.ends))
         if radius > LARGEST:
             return None

@@ -30,41 +30,6 @@ from .sensors import Motion, TruePose, bearings_of, moved
 from .settings import FilterSettings, LaserSettings, ReferenceRobotError
 from .world import walls_of
 
-SEARCHED = 85.0, 1_500_000
-"""poses for each m² are compared when the robot may be anywhere, and the most of them on a large map."""
-LOOKED_AT = 12.0, 200_000
-"""the same at each look for other places while the robot is lost."""
-AROUND = 6_000
-"""poses are compared when a GPS position tells where to look."""
-SETTLED = 15.0
-"""metres to drive after a search, or after scan and map did not agree, until the robot is no longer lost.
-
-All of them at one place, moved on by the wheels: driving does not count while the particles are in several,
-and begins again when another place comes to fit better. Until then other places are looked for as well: one
-may fit by chance.
-"""
-MOST_OF_THEM = 0.8
-"""of the particles' weight is near the belief of a robot that is not lost."""
-DOUBT = 0.1
-"""Of the particles, the share that is put at such places."""
-LOOK_EVERY = 1.0, 10
-"""metres or scans, whichever comes first, between two looks for other places."""
-FIX_LASTS = 10.0
-"""metres of driving after which a GPS position says nothing any more of where to look."""
-FIX_WRONG = 1e-3
-"""The likelihood of any position, however far away, beside that of a right one, which is 1."""
-FIX_FAR, FIX_OFTEN = 4.0, (2, 3)
-"""Standard deviations from the belief, and how many of the newest positions: the belief is wrong.
-
-Not all in a row: a belief that drives the same alley the other way comes by the robot's true place.
-"""
-WORTH_WHILE_LOST = 0.25
-"""Of a scan's worth, while places are compared: in each of them the same walls are wrong scan after scan."""
-GROUP = 4.0, math.pi / 4
-"""metres and radians: while it is lost, places in as large bins are resampled apart."""
-APART = (2.0, math.radians(30))
-"""metres and radians from the middle of the belief within which particles count for it."""
-
 
 @dataclass(frozen=True, eq=False)
 class Belief:
@@ -122,7 +87,7 @@ class ParticleFilter:
         self._since_look = (math.inf, 0)
         self._fix: tuple[float, float, float] | None = None
         self._since_fix = 0.0
-        self._against: deque[bool] = deque(maxlen=FIX_OFTEN[1])
+        self._against: deque[bool] = deque(maxlen=settings.gps.of)
         """Which of the newest GPS positions are far from the belief."""
         self._place: TruePose | None = None
         """The one place that the particles have been at while it counts as lost, moved on by the wheels."""
@@ -161,8 +126,9 @@ class ParticleFilter:
         used = self._used(ranges)
         if not len(used):
             raise ReferenceRobotError("scan: no beam has a reading; the robot cannot look for its place")
-        self._begin(self._likely(self._settings.most, SEARCHED, ranges, used))
-        self._unsettled = SETTLED
+        search = self._settings.search
+        self._begin(self._likely(self._settings.most, (search.per_area, search.most), ranges, used))
+        self._unsettled = self._settings.recovery.settled
 
     def move(self, motion: Motion) -> None:
         """Move all particles as the odometry says, each a little otherwise."""
@@ -192,7 +158,7 @@ class ParticleFilter:
 
     def doubt(self) -> None:
         """Count the place as not known for sure: something was missed that may have changed it."""
-        self._unsettled = SETTLED
+        self._unsettled = self._settings.recovery.settled
 
     def settle(self, metres: float) -> None:
         """Count as much as ``metres`` of driving towards a place that is known for sure."""
@@ -209,7 +175,8 @@ class ParticleFilter:
             return
         fit, agreement = self._model.log_likelihood(self.particles, self._bearings[used], ranges[used])
         average = float(self.weights @ agreement)
-        worth = min(self._settings.beams_of_worth, len(used)) * (WORTH_WHILE_LOST if self._unsettled else 1.0)
+        worth = min(self._settings.beams_of_worth, len(used))
+        worth *= self._settings.recovery.scan_worth if self._unsettled else 1.0
         logs = np.log(np.maximum(self.weights, 1e-300)) + worth * fit
         weights = np.exp(logs - logs.max())
         self.weights = weights / weights.sum()
@@ -219,7 +186,7 @@ class ParticleFilter:
             # What is usual is not known before the place is.
             self._slow += self._settings.slow * (average - self._slow) if self._slow else self._fast
         if self._fast < self._settings.least_agreement:
-            self._unsettled = SETTLED
+            self._unsettled = self._settings.recovery.settled
         self._resample(ranges, used)
         self._compare_places()
 
@@ -227,16 +194,20 @@ class ParticleFilter:
         """Weigh all particles by a GPS position, metres, of which ``deviation`` is the standard deviation.
 
         Several in a row that are far away show that the belief is wrong.
+
+        :raises ReferenceRobotError: for one that is not finite.
         """
+        if not (math.isfinite(x) and math.isfinite(y)):
+            raise ReferenceRobotError(f"GPS position ({x}, {y}) is not finite; check the receiver")
         self._fix, self._since_fix = (x, y, deviation), 0.0
         squares = np.square(self.particles[:, :2] - (x, y)).sum(axis=1) / deviation**2
-        weights = self.weights * (np.exp(-0.5 * squares) + FIX_WRONG)
+        weights = self.weights * (np.exp(-0.5 * squares) + self._settings.gps.wrong)
         self.weights = weights / weights.sum()
         believed_x, believed_y, _ = self.belief.pose
         away = math.hypot(believed_x - x, believed_y - y)
-        self._against.append(away > FIX_FAR * deviation)
-        if sum(self._against) >= FIX_OFTEN[0]:
-            self._unsettled = SETTLED
+        self._against.append(away > self._settings.gps.far * deviation)
+        if sum(self._against) >= self._settings.gps.against:
+            self._unsettled = self._settings.recovery.settled
 
     @property
     def belief(self) -> Belief:
@@ -250,7 +221,7 @@ class ParticleFilter:
         place = weights @ poses[:, :2]
         off = np.column_stack([poses[:, :2] - place, _wrapped(poses[:, 2] - theta)])
         covariance = (weights[:, None] * off).T @ off
-        lost = self._unsettled > 0 or share < MOST_OF_THEM
+        lost = self._unsettled > 0 or not share >= self._settings.recovery.share
         apart = self.particles[:, :2] - place
         spread = math.sqrt(float(self.weights @ np.square(apart).sum(axis=1)))
         pose = float(place[0]), float(place[1]), theta
@@ -262,9 +233,12 @@ class ParticleFilter:
             self._place = None
             return
         belief = self.belief
-        before, self._place = self._place, belief.pose if belief.share >= MOST_OF_THEM else None
-        if self._place is not None and (before is None or math.dist(before[:2], self._place[:2]) > APART[0]):
-            self._unsettled = SETTLED
+        recovery = self._settings.recovery
+        before, self._place = self._place, belief.pose if belief.share >= recovery.share else None
+        if self._place is None:
+            return
+        if before is None or math.dist(before[:2], self._place[:2]) > recovery.place_m:
+            self._unsettled = recovery.settled
 
     def _used(self, ranges: NDArray[Any]) -> NDArray[Any]:
         if ranges.shape != self._bearings.shape:
@@ -282,7 +256,9 @@ class ParticleFilter:
 
     def _together(self) -> NDArray[Any]:
         """Return the particles around the heaviest place: those of its cell, then those near their mean."""
-        _, row = np.unique(bins_of(self.particles, APART[0], math.pi / 4), return_inverse=True)
+        recovery = self._settings.recovery
+        bins = bins_of(self.particles, recovery.place_m, math.radians(recovery.group_deg))
+        _, row = np.unique(bins, return_inverse=True)
         near = np.flatnonzero(row == np.bincount(row, weights=self.weights).argmax())
         for _ in range(3):
             weights = self.weights[near]
@@ -292,35 +268,37 @@ class ParticleFilter:
             )
             away = np.hypot(*(self.particles[:, :2] - place).T)
             turned = np.abs(_wrapped(self.particles[:, 2] - theta))
-            found = np.flatnonzero((away < APART[0]) & (turned < APART[1]))
+            found = np.flatnonzero((away < recovery.place_m) & (turned < math.radians(recovery.place_deg)))
             if len(found) and self.weights[found].sum() > 0:
                 near = found
         return near
 
     def _resample(self, ranges: NDArray[Any], used: NDArray[Any]) -> None:
-        settings, rng = self._settings, self._rng
+        settings, rng, recovery = self._settings, self._rng, self._settings.recovery
         lost = max(0.0, 1 - self._fast / (settings.recover * self._slow)) if self._slow else 0.0
         if lost:
-            self._unsettled = SETTLED
+            self._unsettled = recovery.settled
         metres, scans = self._since_look
         self._since_look = metres, scans + 1
-        looks = self._unsettled > 0 and (metres >= LOOK_EVERY[0] or scans >= LOOK_EVERY[1])
+        due = metres >= recovery.look_every_m or scans >= recovery.look_every_scans
+        looks = self._unsettled > 0 and due
         crowd = 1 / float(self.weights @ self.weights)
         if not looks and crowd > len(self.weights) / 2:
             return
         drawn = self.particles[low_variance(self.weights, len(self.weights), rng)]
         count = particles_for(occupied_bins(drawn, settings), settings)
-        new = int(rng.binomial(count, max(lost, DOUBT))) if looks else 0
+        new = int(rng.binomial(count, max(lost, recovery.new_particles))) if looks else 0
         if self._unsettled:
-            group = bins_of(self.particles, GROUP[0], GROUP[1])
-            rows, weights = in_groups(self.weights, group, count - new, rng)
+            group = bins_of(self.particles, recovery.group_m, math.radians(recovery.group_deg))
+            rows, weights = in_groups(self.weights, group, count - new, rng, recovery)
         else:
             rows = low_variance(self.weights, count - new, rng)
             weights = np.full(len(rows), 1 / len(rows))
         particles = self.particles[rows]
         if new:
             self._since_look = 0.0, 0
-            particles = np.concatenate([particles, self._likely(new, LOOKED_AT, ranges, used)])
+            again = settings.search.again_per_area, settings.search.again_most
+            particles = np.concatenate([particles, self._likely(new, again, ranges, used)])
             share = new / count
             weights = np.concatenate([weights * (1 - share), np.full(new, share / new)])
         self.particles = particles
@@ -329,7 +307,7 @@ class ParticleFilter:
     @property
     def _near(self) -> tuple[float, float, float] | None:
         """The newest GPS position, x, y and deviation, where it still says where to look."""
-        return self._fix if self._since_fix <= FIX_LASTS else None
+        return self._fix if self._since_fix <= self._settings.gps.lasts else None
 
     def _likely(
         self, count: int, looked_at: tuple[float, int], ranges: NDArray[Any], used: NDArray[Any]
@@ -342,7 +320,9 @@ class ParticleFilter:
         if near is not None:
             near = near[0], near[1], near[2] + self._since_fix
         per_area, most = looked_at
-        poses = AROUND if near is not None else int(min(per_area * self._map.border.area, most))
+        poses = int(min(per_area * self._map.border.area, most))
+        if near is not None:
+            poses = self._settings.search.near_fix
         return self._search.likely(count, max(poses, 1), self._bearings[used], ranges[used], self._rng, near)
 
 

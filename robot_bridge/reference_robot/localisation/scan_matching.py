@@ -11,20 +11,10 @@ from numpy.typing import NDArray
 
 from ...core.robotmap.model import RobotMap
 from .ray_casting import RayCaster
-from .settings import FilterSettings, LaserSettings, ReferenceRobotError
+from .settings import FilterSettings, LaserSettings, RecoverySettings, ReferenceRobotError
 from .world import Walls, inside_solids
 
-# --- How likely a scan is from a pose: the beam model and the likelihood field (Thrun, Burgard, Fox: ---
-# Probabilistic Robotics, sections 6.3 and 6.4).
-
-AGREES = 3.0
-"""standard deviations within which a beam is where the map has something."""
-FIELD_CELL = 0.1
-"""metres: a side of a cell of the likelihood field."""
-FIELD_SIGMAS = 4.0
-"""What is farther from all walls than so many standard deviations is nowhere near one."""
-LARGEST_FIELD = 40_000_000
-"""cells; a larger map has larger cells."""
+# The models of a scan are those of Thrun, Burgard, Fox: Probabilistic Robotics, sections 6.3 and 6.4.
 
 
 def usable_beams(ranges: NDArray[Any]) -> NDArray[Any]:
@@ -51,7 +41,7 @@ class BeamModel:
         """
         expected = self._caster.cast(poses, bearings)
         measured = np.minimum(ranges, self._reach)
-        agreement = (np.abs(expected - measured) < AGREES * self._settings.sigma).mean(axis=1)
+        agreement = (np.abs(expected - measured) < self._settings.agrees * self._settings.sigma).mean(axis=1)
         likelihood = beam_likelihood(expected, measured, self._reach, self._settings)
         np.log(likelihood, out=likelihood)
         return likelihood.mean(axis=1), agreement
@@ -77,7 +67,7 @@ def beam_likelihood(
     likelihood *= settings.hit / (sigma * math.sqrt(2 * math.pi))
     likelihood += settings.random / reach
     likelihood += settings.short * short / np.maximum(expected, sigma)
-    # Without an echo: a point mass, told as a density over one standard deviation.
+    # Without an echo: a point mass, written as a density over one standard deviation.
     likelihood += (settings.far / sigma) * (measured >= reach)
     likelihood /= whole
     return likelihood
@@ -89,11 +79,11 @@ class FieldModel:
     def __init__(self, walls: Walls, laser: LaserSettings, settings: FilterSettings) -> None:
         self._settings = settings
         self._reach = laser.reach
-        self._far = FIELD_SIGMAS * settings.sigma
+        self._far = settings.field_sigmas * settings.sigma
         ends = np.concatenate([walls.a, walls.b, np.zeros((0 if len(walls) else 1, 2))])
         self._low = ends.min(axis=0) - self._far
         size = ends.max(axis=0) + self._far - self._low
-        self._cell = max(FIELD_CELL, math.sqrt(size[0] * size[1] / LARGEST_FIELD))
+        self._cell = max(settings.field_cell, math.sqrt(size[0] * size[1] / settings.field_cells))
         shape = np.ceil(size / self._cell).astype(np.int64) + 1
         nearest = np.full(shape, self._far, dtype=np.float32)
         for a, b in zip(walls.a, walls.b, strict=True):
@@ -103,7 +93,7 @@ class FieldModel:
         near += (settings.random + settings.short) / self._reach
         near /= settings.hit + settings.short + settings.far + settings.random
         self._log = np.log(near)
-        at = settings.hit * math.exp(-0.5 * AGREES**2) / (settings.sigma * math.sqrt(2 * math.pi))
+        at = settings.hit * math.exp(-0.5 * settings.agrees**2) / (settings.sigma * math.sqrt(2 * math.pi))
         at += (settings.random + settings.short) / self._reach
         self._agrees = math.log(at / (settings.hit + settings.short + settings.far + settings.random))
 
@@ -145,13 +135,6 @@ class FieldModel:
             np.minimum(box, np.hypot(x - at * along[0], y - at * along[1]), out=box)
 
 
-# --- Which particles go on, and how many (Thrun, Burgard, Fox: Probabilistic Robotics, 4.3.4 and 8.3.7)
-
-FEWEST = 20
-"""particles of a group."""
-NEGLIGIBLE = 1e-3
-"""of all weight."""
-MOST_GROUPS = 100
 _QUANTILE = 2.3263
 """of the normal distribution at 99 %."""
 
@@ -168,22 +151,27 @@ def low_variance(weights: NDArray[Any], count: int, rng: np.random.Generator) ->
 
 
 def in_groups(
-    weights: NDArray[Any], group: NDArray[Any], count: int, rng: np.random.Generator
+    weights: NDArray[Any],
+    group: NDArray[Any],
+    count: int,
+    rng: np.random.Generator,
+    settings: RecoverySettings,
 ) -> tuple[NDArray[Any], NDArray[Any]]:
     """Return the rows of about ``count`` particles drawn in each group by itself, and their weights of sum 1.
 
-    ``group``, (N,) int64, tells which belong together. A group keeps its weight, and has :data:`FEWEST`
-    particles at least: of places that look alike none dies out by chance, and what scans say of them adds up.
-    Groups of less weight than :data:`NEGLIGIBLE` are left out, and all but the :data:`MOST_GROUPS` heaviest.
+    ``group``, (N,) int64, says which belong together. A group keeps its weight, and has
+    ``group_least`` particles at least: of places that look alike none dies out by chance, and what scans say
+    of them adds up. Groups of less weight than ``group_share`` are left out, and all but the ``most_groups``
+    heaviest.
     """
     _, number = np.unique(group, return_inverse=True)
     total = np.bincount(number, weights=weights) / weights.sum()
-    kept = np.argsort(-total)[:MOST_GROUPS]
-    kept = kept[total[kept] >= min(NEGLIGIBLE, total.max())]
+    kept = np.argsort(-total)[: settings.most_groups]
+    kept = kept[total[kept] >= min(settings.group_share, total.max())]
     rows, drawn = [], []
     for one in kept:
         members = np.flatnonzero(number == one)
-        enough = max(FEWEST, round(float(total[one]) * count))
+        enough = max(settings.group_least, round(float(total[one]) * count))
         own = weights[members] / weights[members].sum()
         rows.append(members[low_variance(own, enough, rng)])
         drawn.append(np.full(enough, total[one] / enough))
@@ -223,18 +211,6 @@ def particles_for(bins: int, settings: FilterSettings) -> int:
     return int(min(max(math.ceil(enough), settings.least), settings.most))
 
 
-# --- Where on a whole map a scan fits: what the filter begins with when the robot may be anywhere ---
-
-WIDE_SIGMA = 0.5
-"""metres: how near a place must be to be noticed at first."""
-KEPT = 500
-"""Places that are looked at more closely."""
-TRIES = 16
-"""around each of them, twice, the second time nearer."""
-ROUNDS = ((0.3, math.radians(6)), (0.1, math.radians(2)))
-"""metres and radians around them: standard deviations."""
-FEW_BEAMS, MORE_BEAMS = 16, 40
-"""of a scan are enough to notice a place, and to compare places."""
 AT_ONCE = 4_000
 """poses: so few that their arrays stay in the processor's cache."""
 
@@ -246,8 +222,11 @@ class PlaceSearch:
         self, robot_map: RobotMap, walls: Walls, laser: LaserSettings, settings: FilterSettings
     ) -> None:
         self._map = robot_map
+        self._settings = settings.search
         self._worth = settings.beams_of_worth
-        self._wide = FieldModel(walls, laser, msgspec.structs.replace(settings, sigma=WIDE_SIGMA))
+        self._wide = FieldModel(
+            walls, laser, msgspec.structs.replace(settings, sigma=settings.search.wide_sigma)
+        )
         self._narrow = FieldModel(walls, laser, settings)
 
     def likely(
@@ -264,25 +243,27 @@ class PlaceSearch:
         ``bearings`` and ``ranges``, (B,), are of beams with a reading. ``near`` is x, y and a standard
         deviation, metres: poses are looked at around there, else all over the map.
         """
+        settings = self._settings
         poses = self.free(looked_at, rng, near)
-        few = _spread(len(ranges), FEW_BEAMS)
+        few = _spread(len(ranges), settings.few_beams)
         parts = np.array_split(poses, 1 + looked_at // AT_ONCE)
         fit = np.concatenate(
             [self._wide.log_likelihood(part, bearings[few], ranges[few])[0] for part in parts]
         )
-        more = _spread(len(ranges), MORE_BEAMS)
+        more = _spread(len(ranges), settings.more_beams)
         bearings, ranges = bearings[more], ranges[more]
-        kept = min(KEPT, looked_at)
+        tries, kept = settings.tries, min(settings.kept, looked_at)
         best = poses[np.argpartition(-fit, kept - 1)[:kept]]
-        for metres, radians in ROUNDS:
-            around = np.repeat(best[:, None], TRIES, axis=1)
-            around[:, 1:] += rng.normal(0, (metres, metres, radians), (kept, TRIES - 1, 3))
+        metres = radians = 0.0
+        for metres, degrees in zip(settings.rounds_m, settings.rounds_deg, strict=True):
+            radians = math.radians(degrees)
+            around = np.repeat(best[:, None], tries, axis=1)
+            around[:, 1:] += rng.normal(0, (metres, metres, radians), (kept, tries - 1, 3))
             fit, _ = self._narrow.log_likelihood(around.reshape(-1, 3), bearings, ranges)
-            fit = fit.reshape(kept, TRIES)
+            fit = fit.reshape(kept, tries)
             best, fit = around[np.arange(kept), fit.argmax(axis=1)], fit.max(axis=1)
         weights = np.exp((fit - fit.max()) * min(self._worth, len(ranges)))
         found = best[low_variance(weights / weights.sum(), count, rng)]
-        metres, radians = ROUNDS[-1]
         spread: NDArray[Any] = found + rng.normal(0, (metres / 2, metres / 2, radians / 2), found.shape)
         return spread
 

@@ -8,8 +8,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-# --- Segments on one line that touch or overlap, made one: what hides others is then as wide as it can be
-
 SAME_LINE = 1e-4
 """metres that an end may lie beside the line that it is taken to be on, and apart from its neighbour."""
 
@@ -23,7 +21,7 @@ def merge_collinear(a: NDArray[Any], b: NDArray[Any]) -> tuple[NDArray[Any], NDA
     a, b = a[(a != b).any(axis=1)], b[(a != b).any(axis=1)]
     if not len(a):
         return a, b
-    # One direction for either sense, from -90° on; the line is told by its direction and distance from 0.
+    # One direction for either sense, from -90° on; the line is known by its direction and distance from 0.
     turn = (a[:, 0] > b[:, 0]) | ((a[:, 0] == b[:, 0]) & (a[:, 1] > b[:, 1]))
     a, b = np.where(turn[:, None], b, a), np.where(turn[:, None], a, b)
     unit = (b - a) / np.hypot(*(b - a).T)[:, None]
@@ -44,22 +42,20 @@ def merge_collinear(a: NDArray[Any], b: NDArray[Any]) -> tuple[NDArray[Any], NDA
 
 
 def _runs(angle: NDArray[Any], off: NDArray[Any], start: NDArray[Any], end: NDArray[Any]) -> NDArray[Any]:
-    """Tell which segments, sorted by line and start, do not go on where those before them end."""
+    """Return which segments, sorted by line and start, do not go on where those before them end."""
     begins = np.ones(len(start), dtype=bool)
     same = (np.diff(angle) == 0) & (np.diff(off) == 0)
     line = np.concatenate([[0], np.cumsum(~same)])
-    # The farthest end so far on the same line: a running maximum that begins anew with each line.
+    # The farthest end so far on the same line: a running maximum that begins again with each line.
     width = float(end.max() - start.min()) + 1.0
     reached = np.maximum.accumulate(end + line * width) - line * width
     begins[1:] = ~same | (start[1:] > reached[:-1] + SAME_LINE)
     return begins
 
 
-# --- Which segments a ray can hit first, by where it begins and where it goes ---
-# Space is cut into square cells and the circle into bins. For a cell and a bin, a segment that every ray of
-# the bin from anywhere in the cell hits hides all that lies beyond it: what is left are a few candidates
-# for
-# each ray, and the nearest of them is the nearest of all.
+# Which segments a ray can hit first: space is cut into square cells and the circle into bins. For a cell and
+# a bin, a segment that every ray of the bin from anywhere in the cell hits hides all that lies beyond it:
+# what is left are a few candidates for each ray, and the nearest of them is the nearest of all.
 
 BINS = 240
 """of the circle, 1.5° each."""

@@ -10,10 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .ray_casting import RayCaster
-from .settings import GpsSettings, GyroscopeSettings, LaserSettings, OdometrySettings
+from .settings import GpsSettings, GyroscopeSettings, LaserSettings, OdometrySettings, StandingSettings
 from .world import Walls
-
-# --- Simulated sensors: each measures the true motion or place, wrong in its own way, alike for one seed
 
 TruePose = tuple[float, float, float]
 """x, y in metres and theta in radians."""
@@ -127,7 +125,7 @@ class SimulatedGps:
         self._settings = settings
         self._rng = rng
         slope = math.tan(math.radians(settings.mask_deg))
-        # Walls of one height class shade as far as the lower edge of the class tells.
+        # Walls of one height class shade as far as the lower edge of the class says.
         self._casters = []
         for low, high in ((2.0, 5.0), (5.0, 10.0), (10.0, 20.0), (20.0, np.inf)):
             some = (walls.height >= low) & (walls.height < high)
@@ -144,14 +142,6 @@ class SimulatedGps:
             return None
         east, north = self._rng.normal(0, self._settings.noise, 2)
         return pose[0] + east, pose[1] + north
-
-
-# --- What a robot's sensors say between two scans, and what in it cannot be right ---
-
-LONGEST_PAUSE = 2.0
-"""seconds between two readings, beyond which nobody knows what the robot did meanwhile."""
-LEAST_JUMP = 0.3
-"""metres and radians that a motion may be beyond what the body can do: the noise of its sensors."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -176,16 +166,20 @@ class BodyReach:
     turn_rate: float
 
 
-def motion_fault(reading: SensorReading, before: float | None, reach: BodyReach) -> str | None:
+def motion_fault(
+    reading: SensorReading, before: float | None, reach: BodyReach, settings: StandingSettings
+) -> str | None:
     """Return what is wrong with the time and the motion of a reading, None where nothing is.
 
     ``before`` is the time of the one before, None for the first.
     """
     passed = 0.0 if before is None else reading.t - before
-    if not math.isfinite(reading.t) or (before is not None and not 0 < passed <= LONGEST_PAUSE):
-        return f"the sensors' clock jumped by {passed:+.2f} s; set it, or let the robot start anew"
+    if not math.isfinite(reading.t) or (before is not None and not 0 < passed <= settings.pause):
+        return f"the sensors' clock jumped by {passed:+.2f} s; set it, or restart the robot"
     far, turned = abs(reading.motion.distance), abs(reading.motion.turn)
-    if not (far <= reach.speed * passed + LEAST_JUMP and turned <= reach.turn_rate * passed + LEAST_JUMP):
+    if not (
+        far <= reach.speed * passed + settings.jump and turned <= reach.turn_rate * passed + settings.jump
+    ):
         return (
             f"the odometry jumped by {reading.motion.distance:.2f} m and {reading.motion.turn:.2f} rad in "
             f"{passed:.2f} s; check the wheels' encoders and the gyroscope"
@@ -194,11 +188,13 @@ def motion_fault(reading: SensorReading, before: float | None, reach: BodyReach)
 
 
 def scan_fault(reading: SensorReading, beams: int) -> str | None:
-    """Return what is wrong with the scan of a reading, None where nothing is."""
+    """Return what is wrong with the scan or the GPS position of a reading, None where nothing is."""
     if reading.ranges.shape != (beams,):
         return f"the laser gives {reading.ranges.size} ranges and not {beams}; see the laser's settings"
     if not (reading.ranges >= 0).any():
         return "no beam of the laser has a reading; check its power and its window"
+    if reading.fix is not None and not all(math.isfinite(metres) for metres in reading.fix):
+        return f"the GPS receiver gives the position {reading.fix}; check the receiver and its driver"
     return None
 
 

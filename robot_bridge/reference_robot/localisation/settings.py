@@ -6,16 +6,13 @@ from pathlib import Path
 from typing import Annotated, Literal
 
 import msgspec
-import tomllib
 
-# --- The exception family of the reference robot ---
+from ...core.json_decoder import toml_tables
 
 
 class ReferenceRobotError(Exception):
     """Something the robot cannot do; the text names what was wrong, where, and what to do."""
 
-
-# --- What the robot and its simulated world are set to: one TOML file, a table for each part ---
 
 LARGEST = 64_000
 """bytes of a settings file."""
@@ -24,6 +21,9 @@ Share = Annotated[float, msgspec.Meta(ge=0, le=1)]
 Metres = Annotated[float, msgspec.Meta(ge=0, le=1000)]
 Positive = Annotated[float, msgspec.Meta(gt=0, le=1000)]
 Degrees = Annotated[float, msgspec.Meta(ge=0, le=360)]
+Angle = Annotated[float, msgspec.Meta(gt=0, le=360)]
+Radians = Annotated[float, msgspec.Meta(ge=0, le=6.2832)]
+Count = Annotated[int, msgspec.Meta(ge=1, le=10_000_000)]
 
 
 class WorldSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -87,8 +87,113 @@ class GpsSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     directions: Annotated[int, msgspec.Meta(ge=4, le=360)] = 24
 
 
+class SearchSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """Where on a map a scan fits, when the robot may be anywhere: table ``[filter.search]``.
+
+    ``per_area`` random poses for each m² are compared at first, ``most`` of them on a large map: a pose of
+    them is then some 0.2 m and at most 10° from the robot. While it is lost it looks for other places again,
+    with ``again_per_area`` for each m² and ``again_most``: fewer, because it does so every metre.
+    ``near_fix`` poses are compared around a GPS position. ``few_beams`` of a scan are enough to notice a
+    place, by a likelihood field of ``wide_sigma`` metres: a pose beside the right one must be noticed, too.
+    The ``kept`` best are tried ``tries`` times around, in two rounds, with standard deviations of
+    ``rounds_m`` metres and ``rounds_deg`` degrees, by ``more_beams``.
+    """
+
+    per_area: Positive = 85.0
+    most: Count = 1_500_000
+    again_per_area: Positive = 12.0
+    again_most: Count = 200_000
+    near_fix: Count = 6_000
+    few_beams: Count = 16
+    more_beams: Count = 40
+    wide_sigma: Positive = 0.5
+    kept: Count = 500
+    tries: Count = 16
+    rounds_m: tuple[Metres, Metres] = (0.3, 0.1)
+    rounds_deg: tuple[Degrees, Degrees] = (6.0, 2.0)
+
+
+class RecoverySettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """How a robot that does not know its place finds it: table ``[filter.recovery]``.
+
+    It is lost until it has driven ``settled`` metres at one place, moved on by the wheels: another place may
+    fit by chance for some metres, and façades repeat every few. It is at one place when ``share`` of the
+    particles' weight is within ``place_m`` metres and ``place_deg`` degrees of the middle. Every
+    ``look_every_m`` metres or ``look_every_scans`` scans it looks for other places, and puts
+    ``new_particles`` of its particles there. A scan counts for ``scan_worth`` of what it does otherwise: in
+    each place the same walls are wrong scan after scan. Particles of one bin of ``group_m`` metres and
+    ``group_deg`` degrees are resampled apart from others, ``group_least`` of each, in the ``most_groups``
+    heaviest, down to ``group_share`` of the weight: none of several that look alike dies out by chance.
+    """
+
+    settled: Metres = 15.0
+    share: Share = 0.8
+    place_m: Positive = 2.0
+    place_deg: Angle = 30.0
+    look_every_m: Metres = 1.0
+    look_every_scans: Count = 10
+    new_particles: Share = 0.1
+    scan_worth: Share = 0.25
+    group_m: Positive = 4.0
+    group_deg: Angle = 45.0
+    group_least: Count = 20
+    group_share: Share = 1e-3
+    most_groups: Count = 100
+
+
+class FixSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """How far a GPS position is trusted: table ``[filter.gps]``.
+
+    ``wrong`` is the likelihood of a position however far away, beside that of a right one, which is 1:
+    reflections at walls rule no place out. The belief is wrong when ``against`` of the newest ``of``
+    positions are more than ``far`` standard deviations from it: not all in a row, because a belief that
+    drives the same alley the other way comes by the robot's true place. A position says where to look for
+    ``lasts`` metres of driving.
+    """
+
+    wrong: Share = 1e-3
+    far: Positive = 4.0
+    against: Count = 2
+    of: Count = 3
+    lasts: Metres = 10.0
+
+    def __post_init__(self) -> None:
+        """Refuse what could never be."""
+        if self.against > self.of:
+            raise ValueError(f"against = {self.against} is more than of = {self.of}")
+
+
+class StandingSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """When the robot stands, and what it learns then: table ``[filter.standing]``.
+
+    Less than ``still_m`` metres and ``still_rad`` radians between two scans is standing. Of a robot that
+    stands and knows its place every ``scans`` scans one is weighed, for they all see the same, with the
+    particles spread by ``jitter_m`` and ``jitter_rad`` before. One that is lost counts each scan as
+    ``scan_worth`` metres of driving, within ``expected`` metres of where its wheels or GPS have it: elsewhere
+    it may be in any of several places that look alike. It says that its accuracy is ``lost_accuracy`` metres
+    at least, as wide as one place. It sees nothing of its map where ``few_echoes`` beams or fewer have an
+    echo. It stands ``border`` metres from the border of a map of a part of the site, when the filter is
+    ``late`` seconds behind the sensors, and after a pause of more than ``pause`` seconds between readings or
+    a motion ``jump`` metres or radians beyond what its body can do: the noise of sensors is less.
+    """
+
+    still_m: Metres = 1e-3
+    still_rad: Radians = 1e-3
+    scans: Count = 10
+    jitter_m: Metres = 0.01
+    jitter_rad: Radians = 0.005
+    scan_worth: Metres = 0.1
+    expected: Metres = 3.0
+    lost_accuracy: Metres = 2.0
+    few_echoes: Annotated[int, msgspec.Meta(ge=0, le=10_000)] = 3
+    border: Metres = 2.0
+    late: Positive = 1.0
+    pause: Positive = 2.0
+    jump: Metres = 0.3
+
+
 class FilterSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """The particle filter: motion, beams, number of particles and recovery.
+    """The particle filter: motion, beams, number of particles, and when scans do not fit any more.
 
     ``distance_noise`` is of the distance, ``turn_noise`` of the turn, ``drift_deg`` degrees for each
     metre, ``slip`` metres sideways for each metre: standard deviations by which particles are spread.
@@ -99,7 +204,10 @@ class FilterSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     error (Kullback-Leibler) is below ``kld_error`` over bins of ``bin_size`` metres and ``bin_turn_deg``
     degrees. ``slow`` and ``fast`` are the rates at which the agreement of scans and map is averaged;
     particles are put where a scan fits once the fast average is below ``recover`` times the slow one. Below
-    ``least_agreement`` the place is not known, whatever is usual.
+    ``least_agreement`` the place is not known, whatever is usual. A beam agrees when it is within ``agrees``
+    times ``sigma`` of what the map has there. A likelihood field has cells of ``field_cell`` metres, larger
+    ones where it would have more than ``field_cells``, and is even farther than ``field_sigmas`` times
+    ``sigma`` from all walls, where hardly any beam that sees one ends.
     """
 
     model: Literal["beam", "field"] = "beam"
@@ -122,6 +230,14 @@ class FilterSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     fast: Share = 0.2
     recover: Share = 0.6
     least_agreement: Share = 0.3
+    agrees: Positive = 3.0
+    field_cell: Positive = 0.1
+    field_sigmas: Positive = 4.0
+    field_cells: Annotated[int, msgspec.Meta(ge=10_000, le=400_000_000)] = 40_000_000
+    search: SearchSettings = SearchSettings()
+    recovery: RecoverySettings = RecoverySettings()
+    gps: FixSettings = FixSettings()
+    standing: StandingSettings = StandingSettings()
 
 
 class LocalisedRobotSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -138,13 +254,14 @@ class LocalisedRobotSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=
 def settings_tables(file: Path) -> dict[str, object]:
     """Return the tables in a TOML ``file``; raises ReferenceRobotError."""
     try:
-        content = file.read_bytes()
+        with file.open("rb") as opened:
+            content = opened.read(LARGEST + 1)
         if len(content) > LARGEST:
-            raise ReferenceRobotError(f"settings {file}: {len(content)} bytes, more than {LARGEST}")
-        return tomllib.loads(content.decode())
+            raise ReferenceRobotError(f"settings {file}: more than {LARGEST} bytes")
+        return toml_tables(content.decode())
     except OSError as error:
         raise ReferenceRobotError(
             f"settings {file} cannot be read: {error.strerror or error}; name another file"
         ) from None
-    except (ValueError, RecursionError) as error:
+    except ValueError as error:
         raise ReferenceRobotError(f"settings {file} are no TOML: {error}") from None

@@ -37,8 +37,6 @@ from .sensors import (
 from .settings import LocalisedRobotSettings, ReferenceRobotError, settings_tables
 from .world import Walls, changed, inside_solids, walls_of
 
-# --- An executor that works at once, in the thread that asks: for time that runs faster than the clock
-
 P = ParamSpec("P")
 T = TypeVar("T")
 
@@ -55,8 +53,6 @@ class InlineExecutor(Executor):
             future.set_exception(error)
         return future
 
-
-# --- A simulated body that knows its place by its sensors alone: it drives in a world, and believes in a map
 
 BLOCKED_SAID = 1.0
 """seconds after which a robot says that something is in its way."""
@@ -132,7 +128,7 @@ class LocalisedBody:
         self._doubts: MapDoubts | None = None
         self._found: list[FoundObject] = []
         self._doubted: list[Doubt] = []
-        self._told, self._run = 0, secrets.token_hex(3)
+        self._reported, self._run = 0, secrets.token_hex(3)
         self.readings = 0
         """How many scans there have been."""
         world.surroundings.add(self, lambda: self.discs)
@@ -189,7 +185,7 @@ class LocalisedBody:
         return np.array([[x, y, self._settings.shape.radius]])
 
     def place(self, pose: TruePose) -> None:
-        """Take itself to be at ``pose``, as a robot that is told where it stands."""
+        """Take itself to be at ``pose``, as a robot that an operator gives a start position."""
         if self.localiser.map is None:
             # It is switched on there.
             self._body.place(pose)
@@ -222,8 +218,8 @@ class LocalisedBody:
         for doubt in doubted:
             if len(doubt.source) > SetObject.texts["doubts"]:
                 continue
-            self._told += 1
-            name, source = f"missing-{self._run}-{self._told}", f"{self._run}-{self._told}"
+            self._reported += 1
+            name, source = f"missing-{self._run}-{self._reported}", f"{self._run}-{self._reported}"
             observed.append(
                 SetObject(
                     doubt.x,
@@ -236,8 +232,8 @@ class LocalisedBody:
                 )
             )
         for thing in found:
-            self._told += 1
-            name, source = f"seen-{self._run}-{self._told}", f"{self._run}-{self._told}"
+            self._reported += 1
+            name, source = f"seen-{self._run}-{self._reported}", f"{self._run}-{self._reported}"
             height = self._settings.robot.laser.height
             observed.append(
                 SetObject(thing.x, thing.y, name, "obstacle", height + LASER_UP, thing.radius, source=source)
@@ -303,8 +299,6 @@ class LocalisedBody:
         found.append(np.hypot(others[:, 0] - x, others[:, 1] - y) - others[:, 2])
         return float(np.concatenate(found).min(initial=math.inf)) - self._settings.shape.radius
 
-
-# --- A world made of a site's map, and robots in it that know their place by their sensors alone ---
 
 MAP_MARGIN = 20.0
 """metres from the border of its map at which such a robot asks for the next one."""

@@ -20,7 +20,7 @@ _DRIVEN_ON = (ShapeType.STAIRS, ShapeType.RAMP)
 class Walls:
     """S segments from ``a`` to ``b``, (S, 2) metres, with ``height``, (S,) metres above the ground.
 
-    ``obstacle``, (S,) int64, tells which belong together.
+    ``obstacle``, (S,) int64, says which belong together.
     """
 
     a: NDArray[Any]
@@ -78,7 +78,7 @@ def changed(walls: Walls, settings: WorldSettings, rng: np.random.Generator) -> 
 
 
 def _is_small(walls: Walls, size: float) -> NDArray[Any]:
-    """Tell which segments belong to what is less than ``size`` wide and deep, and is no single line."""
+    """Return which segments belong to what is less than ``size`` wide and deep, and is no single line."""
     count = int(walls.obstacle.max(initial=-1)) + 1
     low, high = np.full((count, 2), np.inf), np.full((count, 2), -np.inf)
     for ends in (walls.a, walls.b):
@@ -90,7 +90,7 @@ def _is_small(walls: Walls, size: float) -> NDArray[Any]:
 
 
 def inside_solids(robot_map: RobotMap, points: NDArray[Any]) -> NDArray[Any]:
-    """Tell which of ``points``, (n, 2), lie in something solid: (n,) bool.
+    """Return which of ``points``, (n, 2), lie in something solid: (n,) bool.
 
     Solid rings run counter-clockwise and courtyards clockwise: a point is inside where the rings go round it
     more often one way than the other. Rings that the border cuts say nothing.

@@ -114,9 +114,13 @@ def test_the_settings_that_come_with_the_program_can_be_read(name):
         ("route = [[0, 0]]", r"\$\.route"),
         ("route = [[0, 0], [1, 1]]\n[laser]\nbeams = 0", r"\$\.laser\.beams"),
         ("route = [[0, 0], [1, 1]]\n[filter]\nsigmas = 1", "sigmas"),
+        ("route = [[0, 0], [1, 1]]\n[filter.gps]\nagainst = 4", "against = 4 is more than of = 3"),
         ("route = [[0, 0], [1, inf]]", "route"),
         ("route = ", "no TOML"),
         ("#" * 70_000, "more than 64000"),
+        # What tomllib alone takes seconds for.
+        ("a" + ".a" * 30_000 + " = 1", "more than 32 parts"),
+        ("route = " + "[" * 30_000, "nested too deeply"),
     ],
 )
 def test_wrong_settings_are_named(tmp_path, text, said):

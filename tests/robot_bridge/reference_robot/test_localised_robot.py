@@ -158,6 +158,7 @@ FAULTS = {
     "the odometry jumped by 5": lambda r: replace(r, motion=Motion(r.motion.distance + 5.0, r.motion.turn)),
     "the odometry jumped by nan": lambda r: replace(r, motion=Motion(math.nan, 0.0)),
     "sensors' clock jumped by": lambda r: replace(r, t=r.t - 3600.0),
+    "the GPS receiver gives the position (nan, 3.0)": lambda r: replace(r, fix=(math.nan, 3.0)),
     "gives 3 ranges and not 60": lambda r: replace(r, ranges=np.ones(3)),
 }
 

@@ -10,7 +10,7 @@ import pytest
 from robot_bridge.core.robotmap.builder import build_map
 from robot_bridge.core.robotmap.model import Window
 from robot_bridge.core.robotmap.outlines import Outlines
-from robot_bridge.reference_robot.localisation.particle_filter import FIX_WRONG, ParticleFilter
+from robot_bridge.reference_robot.localisation.particle_filter import ParticleFilter
 from robot_bridge.reference_robot.localisation.sensors import (
     Motion,
     SimulatedLaser,
@@ -117,9 +117,19 @@ def test_a_gps_position_weighs_particles_by_their_distance_and_rules_none_out(ya
     tracking.place(CIRCLE[0], (1.0, 0.1))
     tracking.observe_fix(15.0, 5.0, 1.5)
     away = np.hypot(*(tracking.particles[:, :2] - (15.0, 5.0)).T)
-    direct = np.array([math.exp(-(metres**2) / (2 * 1.5**2)) + FIX_WRONG for metres in away])
+    direct = np.array([math.exp(-(metres**2) / (2 * 1.5**2)) + SETTINGS.gps.wrong for metres in away])
     np.testing.assert_allclose(tracking.weights, direct / direct.sum())
     assert not tracking.belief.lost
+
+
+def test_a_gps_position_that_is_no_number_is_refused_and_changes_nothing(yard):
+    tracking = Run(yard).filter
+    tracking.place(CIRCLE[0], (0.1, 0.05))
+    before = tracking.weights.copy()
+    for x, y in ((math.nan, 3.5), (14.5, math.inf)):
+        with pytest.raises(ReferenceRobotError, match=r"GPS position .* is not finite"):
+            tracking.observe_fix(x, y, 1.5)
+    np.testing.assert_array_equal(tracking.weights, before)
 
 
 def test_gps_positions_far_from_the_belief_bring_it_back(yard):

@@ -13,7 +13,7 @@ from robot_bridge.reference_robot.localisation.scan_matching import (
     occupied_bins,
     particles_for,
 )
-from robot_bridge.reference_robot.localisation.settings import FilterSettings
+from robot_bridge.reference_robot.localisation.settings import FilterSettings, RecoverySettings
 
 weights = st.lists(st.floats(0, 1), min_size=1, max_size=40).filter(lambda given: sum(given) > 1e-3)
 
@@ -59,7 +59,7 @@ def test_groups_keep_their_weight_and_none_of_note_dies_out(groups, count, seed)
     rng = np.random.default_rng(seed)
     group = rng.integers(0, groups, 300)
     weights = rng.dirichlet(np.ones(300))
-    rows, drawn = in_groups(weights, group, count, rng)
+    rows, drawn = in_groups(weights, group, count, rng, RecoverySettings())
     assert drawn.sum() == pytest.approx(1)
     for one in np.unique(group):
         assert drawn[group[rows] == one].sum() == pytest.approx(weights[group == one].sum())
@@ -69,5 +69,5 @@ def test_groups_keep_their_weight_and_none_of_note_dies_out(groups, count, seed)
 def test_groups_that_weigh_nothing_are_left_out():
     group = np.repeat([0, 1, 2], 10)
     weights = np.repeat([0.06, 0.03999, 0.00001], 10)
-    rows, _ = in_groups(weights, group, 100, np.random.default_rng(1))
+    rows, _ = in_groups(weights, group, 100, np.random.default_rng(1), RecoverySettings())
     assert set(group[rows]) == {0, 1}

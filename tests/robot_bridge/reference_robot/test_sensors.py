@@ -11,20 +11,25 @@ from hypothesis import strategies as st
 
 from robot_bridge.reference_robot.localisation.ray_casting import RayCaster
 from robot_bridge.reference_robot.localisation.sensors import (
+    BodyReach,
     Motion,
+    SensorReading,
     SimulatedGps,
     SimulatedGyroscope,
     SimulatedLaser,
     SimulatedOdometry,
     bearings_of,
     motion_between,
+    motion_fault,
     moved,
+    scan_fault,
 )
 from robot_bridge.reference_robot.localisation.settings import (
     GpsSettings,
     GyroscopeSettings,
     LaserSettings,
     OdometrySettings,
+    StandingSettings,
 )
 from robot_bridge.reference_robot.localisation.world import walls_of
 
@@ -105,3 +110,42 @@ def test_gps_has_a_fix_in_the_open_and_none_between_walls(yard):
     fixes = np.array([gps.fix((15.0, 8.0, 0.0)) for _ in range(400)])
     assert fixes.mean(axis=0) == pytest.approx((15, 8), abs=0.2)
     assert fixes.std(axis=0) == pytest.approx((1, 1), rel=0.15)
+
+
+@pytest.mark.parametrize(
+    ("t", "motion", "said"),
+    [
+        (10.2, Motion(0.2, 0.1), None),
+        (10.2, Motion(-0.4, 0.0), None),
+        (10.0, Motion(0.0, 0.0), "clock jumped by"),
+        (9.8, Motion(0.2, 0.0), "clock jumped by -0.20 s"),
+        (12.1, Motion(0.2, 0.0), "clock jumped by +2.10 s"),
+        (math.nan, Motion(0.2, 0.0), "clock jumped by +nan s"),
+        (math.inf, Motion(0.2, 0.0), "clock jumped by +inf s"),
+        (10.2, Motion(0.6, 0.0), "odometry jumped by 0.60 m"),
+        (10.2, Motion(0.0, -0.6), "and -0.60 rad"),
+        (10.2, Motion(math.nan, 0.0), "odometry jumped by nan m"),
+        (10.2, Motion(0.2, math.inf), "and inf rad"),
+    ],
+)
+def test_time_and_motion_that_cannot_be_right_are_named(t, motion, said):
+    reading = SensorReading(t, motion, np.ones(5))
+    found = motion_fault(reading, 10.0, BodyReach(1.0, 1.0), StandingSettings())
+    assert found is None if said is None else said in found
+
+
+@pytest.mark.parametrize(
+    ("ranges", "fix", "said"),
+    [
+        ([1.0, math.nan, math.inf], None, None),
+        ([1.0, 2.0, 3.0], (1e4, -1e4), None),
+        ([1.0, 2.0], None, "gives 2 ranges and not 3"),
+        ([math.nan, math.nan, -1.0], None, "no beam of the laser has a reading"),
+        ([1.0, 2.0, 3.0], (math.nan, 2.0), "GPS receiver gives the position (nan, 2.0)"),
+        ([1.0, 2.0, 3.0], (1.0, math.inf), "GPS receiver gives the position (1.0, inf)"),
+    ],
+)
+def test_scans_and_positions_that_cannot_be_right_are_named(ranges, fix, said):
+    reading = SensorReading(10.0, Motion(0.0, 0.0), np.array(ranges), fix)
+    found = scan_fault(reading, 3)
+    assert found is None if said is None else said in found
