@@ -117,6 +117,8 @@ class Adapter(ABC):
 
     kind: ClassVar[str]
     """Its name on the command line."""
+    holds_s: float = 0.0
+    """seconds for which it may hold a command before the robot's side is asked."""
 
     @abstractmethod
     async def run(self, link: Link) -> None:

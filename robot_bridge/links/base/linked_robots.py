@@ -236,13 +236,14 @@ class Commanding:
 
     async def _told(self, command: Command) -> CompletedCall:
         what = type(command.message).__name__
+        longest = self._answer_within + self._adapter.holds_s
         try:
-            async with asyncio.timeout(self._answer_within):
+            async with asyncio.timeout(longest):
                 await self._adapter.command(command)
         except CommandRefusedError as error:
             return CompletedCall(str(error))
         except TimeoutError:
-            return CompletedCall(f"the robot did not take it on within {self._answer_within:g} s")
+            return CompletedCall(f"the robot did not take it on within {longest:g} s")
         except Exception:
             log.exception("robot %s: %s %d failed", command.robot, what, command.id)
             return CompletedCall("the link failed; its log says more")

@@ -76,6 +76,7 @@ class RosAdapter(Adapter, Generic[Network]):
     """The robots of one network; with ``keeps_servers`` its notes are of who has their tasks."""
 
     def __init__(self, settings: RobotSettings, notes: RobotNotes, *, keeps_servers: bool = True) -> None:
+        self.holds_s = settings.hold_s
         self._patterns = settings.patterns
         self._named = settings.robots
         self._notes = notes

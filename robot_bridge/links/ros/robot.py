@@ -207,7 +207,9 @@ class RosRobot(Generic[Network]):
         self._masks = masks
         self._masking: asyncio.Task[None] | None = None
         self._tasks = Tasks(
-            cones=settings.topics.place_cone is not None, path_actions=settings.actions_for_paths
+            cones=settings.topics.place_cone is not None,
+            path_actions=settings.actions_for_paths,
+            hold_s=settings.hold_s,
         )
         self._camera = None if settings.topics.image is None else Camera(name, settings, link, sensing)
         self._commands: dict[int, asyncio.Future[None]] = {}
@@ -256,7 +258,8 @@ class RosRobot(Generic[Network]):
             self._acting.feedback = None
             if self._told is None:
                 self._is_anew = True
-            else:
+            elif not self._tasks.is_only_held:
+                # What is held it has never had: that would only be refused, and sent once more.
                 self._link.restarted(self.name)
 
     def step(self, now: float) -> None:
@@ -314,6 +317,7 @@ class RosRobot(Generic[Network]):
             await taken
         except asyncio.CancelledError:
             self._overtaken.add(id)
+            self._tasks.withdraw(id)
             raise
         finally:
             self._commands.pop(id, None)

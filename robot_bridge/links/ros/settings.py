@@ -106,7 +106,8 @@ class RobotSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """What is said of the robots. Without ``robots`` those are led whose position topic is found.
 
     A path goes to the first of ``path_actions`` that the robot offers. An image is an observation every
-    ``image_every_s`` seconds at most.
+    ``image_every_s`` seconds at most. A target or a path waits ``hold_s`` seconds for an action server or a
+    listener that is not found, as just after a reconnect, before it is refused.
     """
 
     distribution: str = "jazzy"
@@ -117,6 +118,7 @@ class RobotSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     image_every_s: float = 60.0
     largest_image_bytes: int = 500_000
     path_actions: tuple[PathAction, ...] = ("FollowPath", "NavigateThroughPoses", "FollowWaypoints")
+    hold_s: float = 10.0
     topics: TopicSettings = TopicSettings()
 
     @property
@@ -180,6 +182,8 @@ def _check_numbers(settings: RobotSettings, where: str) -> None:
         )
     if not 1.0 <= settings.image_every_s <= 86_400.0:
         raise LinkError(f"{where}.image_every_s = {settings.image_every_s}: give seconds from 1 to 86400")
+    if not 0.0 <= settings.hold_s <= 60.0:
+        raise LinkError(f"{where}.hold_s = {settings.hold_s}: give seconds from 0 to 60")
     if not 1024 <= settings.largest_image_bytes <= LARGEST_IMAGE:
         raise LinkError(
             f"{where}.largest_image_bytes = {settings.largest_image_bytes}: give bytes from 1024 to "

@@ -166,16 +166,30 @@ class RosTask:
     """When its server said so, where only the result says whether all points were driven to."""
 
 
+@dataclass(frozen=True)
+class _Held:
+    """An order for which nobody was found yet on the robot's side, and the time at which it is refused."""
+
+    message: int
+    order: SetPosEnd | SetPath
+    again: bool
+    until: float
+
+
 class Tasks:
     """Decides what one robot is told.
 
     ``cones`` tells whether the settings name a service for cones; a path goes to the first of
-    ``path_actions`` that is there.
+    ``path_actions`` that is there. An order for which nobody is there is held for ``hold_s`` seconds.
     """
 
-    def __init__(self, *, cones: bool, path_actions: Sequence[RosAction] = PATH_ACTIONS) -> None:
+    def __init__(
+        self, *, cones: bool, path_actions: Sequence[RosAction] = PATH_ACTIONS, hold_s: float = 0.0
+    ) -> None:
         self._cones = cones
         self._path_actions = path_actions
+        self._hold_s = hold_s
+        self._held: _Held | None = None
         self._task: RosTask | None = None
         self._waiting: RosTask | None = None
         """The task that is sent when the one before, or a stop, has ended."""
@@ -186,7 +200,13 @@ class Tasks:
     @property
     def is_busy(self) -> bool:
         """Whether the robot has something to do, or is being stopped."""
-        return self._task is not None or self._waiting is not None or self._stop is not None
+        waits = self._waiting is not None or self._held is not None
+        return self._task is not None or waits or self._stop is not None
+
+    @property
+    def is_only_held(self) -> bool:
+        """Whether there is an order that waits for somebody to carry it out, and none that anybody has."""
+        return self._held is not None and self._task is None and self._waiting is None
 
     @property
     def goal(self) -> bytes | None:
@@ -208,10 +228,13 @@ class Tasks:
         """
         if self._task is not None and self._task.message == message and again:
             return [Answered(message)] if self._task.taken else []
+        effects = self._end_held("another task came before it was begun")
         refusal = self._refusal(order, abilities)
+        if refusal is not None and self._hold_s > 0.0:
+            self._held = _Held(message, order, again, now + self._hold_s)
+            return effects
         if refusal is not None:
-            return [Answered(message, refusal)]
-        effects: list[Effect] = []
+            return [*effects, Answered(message, refusal)]
         if self._waiting is not None:
             effects.append(_refused(self._waiting, "another task came before it was begun"))
         task = RosTask(message, order, goal_id(message), self._action_for(order, abilities))
@@ -227,7 +250,7 @@ class Tasks:
 
     def abort(self, abilities: Abilities, now: float) -> list[Effect]:
         """Stop the robot, whatever it does and whoever asked for that."""
-        effects: list[Effect] = []
+        effects = self._end_held("it was aborted before it was begun")
         if self._waiting is not None:
             effects.append(_refused(self._waiting, "it was aborted before it was begun"))
         self._task = self._waiting = None
@@ -236,6 +259,11 @@ class Tasks:
         elif self._stop.is_refused:
             self._stop.restart(now)
         return [*effects, *self.step(abilities, now)]
+
+    def withdraw(self, message: int) -> None:
+        """Forget an order that is held: nobody waits for it any more."""
+        if self._held is not None and self._held.message == message:
+            self._held = None
 
     def goal_answered(self, action: RosAction, accepted: bool, now: float) -> None:
         """Take in a reply to ``send_goal``, maybe to another client: the status topic says more."""
@@ -306,7 +334,10 @@ class Tasks:
             self._stop.seen(speed)
 
     def forget(self) -> None:
-        """Take it that the robot has started anew and knows of nothing; a stop goes on."""
+        """Take it that the robot has started anew and knows of nothing; a stop goes on.
+
+        What is held goes on, too: the robot never knew of it.
+        """
         self._task = self._waiting = None
         self._goals.clear()
 
@@ -316,6 +347,14 @@ class Tasks:
 
     def step(self, abilities: Abilities, now: float) -> list[Effect]:
         """Let time pass: repeat a stop, send what waits, give up what nobody answers."""
+        held = self._held
+        if held is not None:
+            refusal = self._refusal(held.order, abilities)
+            if refusal is None:
+                self._held = None
+                return self.order(held.message, held.order, abilities, now, again=held.again)
+            if now >= held.until:
+                return self._end_held(f"{refusal} It was held for {self._hold_s:g} s")
         if self._stop is not None:
             effects = self._stop.step(abilities, self._goals, now)
             if self._stop.is_over:
@@ -329,6 +368,11 @@ class Tasks:
         if self._waiting is not None:
             return self._send(abilities, now)
         return self._overdue(now)
+
+    def _end_held(self, reason: str) -> list[Effect]:
+        """Refuse what is held, if anything is."""
+        held, self._held = self._held, None
+        return [] if held is None else [Answered(held.message, reason)]
 
     def _action_for(self, order: SetPosEnd | SetPath, abilities: Abilities) -> RosAction | None:
         """Return the action that carries out an order, None where the robot has none for it."""

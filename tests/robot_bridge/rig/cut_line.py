@@ -181,25 +181,8 @@ def outlast_a_cut(
     # What was sent off is taken back, should it have come out of the line after all.
     wait_until(lambda: len(happened(ordered, "goal")) == len(happened(ordered, "goal ended")), 60)
     assert desk.commands[f"go-{ordered}"]["state"] == "failed"
-    send_on(desk, ordered)
+    desk.send(f"on-{ordered}", ordered, "SetPosEnd", x=desk.robots[ordered]["x"] + 0.5, y=8.0)
+    desk.wait_for_step(f"on-{ordered}", "reached", 30)
     desk.wait_for_step(f"go-{driving}", "reached")
     assert [len(happened(name, "goal")) for name in (driving, stopped)] == [1, 1]
     assert len(happened(ordered, "goal")) <= 2
-
-
-def send_on(desk: Any, name: str) -> None:
-    """Send a robot 0.5 m on, which it reaches.
-
-    Its positions are back before its action server has been found again; what is sent between is refused,
-    with that reason, and the operator sends it once more.
-    """
-    for attempt in range(60):
-        command = f"on-{name}-{attempt}"
-        desk.send(command, name, "SetPosEnd", x=desk.robots[name]["x"] + 0.5, y=8.0)
-        desk.until(lambda id=command: desk.commands.get(id, {}).get("state") in ("reached", "failed"), 30)
-        ended = desk.commands[command]
-        if ended["state"] == "reached":
-            return
-        assert "nobody on the robot's side drives to targets" in ended["steps"][-1]["reason"], ended
-        desk.listen(0.5)
-    raise AssertionError(f"{name} was never sent on: {desk.state()}")

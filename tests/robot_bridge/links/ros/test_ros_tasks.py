@@ -309,3 +309,41 @@ def test_a_stop_finds_what_was_waiting(tasks):
     statuses(tasks, GoalStatus.EXECUTING)
     tasks.order(8, PATH, NAV2, 1.0)
     assert Answered(8, "it was aborted before it was begun") in tasks.abort(NAV2, 1.1)
+
+
+@pytest.fixture
+def patient():
+    """Tasks of a robot whose server was just lost from sight, with an order that waits for it."""
+    tasks = Tasks(cones=False, hold_s=10.0)
+    assert tasks.order(7, TARGET, Abilities(), 0.0) == [] and tasks.is_only_held
+    return tasks
+
+
+def test_a_target_waits_for_its_server_and_is_sent_once(patient):
+    assert patient.step(Abilities(), 9.0) == []
+    patient.forget()  # its server is there again, and is taken for another one
+    assert patient.step(NAV2, 9.5) == [SendGoal(RosAction.TO_POSE, goal_id(7), TARGET, 7)]
+    assert patient.step(NAV2, 9.6) == [] and not patient.is_only_held
+
+
+def test_a_target_that_waits_is_refused_in_the_end(patient):
+    (answer,) = patient.step(Abilities(), 10.0)
+    assert "nobody on the robot's side drives to targets" in answer.refusal and "10 s" in answer.refusal
+    assert patient.step(NAV2, 10.5) == [] and not patient.is_busy
+
+
+def test_a_stop_ends_a_target_that_waits_and_goes_out_at_once(patient):
+    able = Abilities(velocity=True)
+    effects = patient.abort(able, 1.0)
+    assert Answered(7, "it was aborted before it was begun") in effects and ZeroTwist() in effects
+    assert not any(isinstance(one, SendGoal) for one in patient.step(NAV2, 1.1))
+
+
+def test_a_target_that_waits_is_not_sent_once_nobody_waits_for_it(patient):
+    patient.withdraw(7)
+    assert patient.step(NAV2, 1.0) == []
+
+
+def test_a_newer_target_takes_the_place_of_one_that_waits(patient):
+    refused, sent = patient.order(8, TARGET, NAV2, 1.0)
+    assert refused == Answered(7, "another task came before it was begun") and sent.message == 8
