@@ -6,6 +6,7 @@ import json
 
 import pytest
 
+from robot_bridge.core.clock import ManualClock
 from robot_bridge.core.messages import PositionForm, SendPos
 from robot_bridge.gateway.fleet.operator_updates import EVERYTHING, MOST_RATES, Snapshots, Tick
 from robot_bridge.gateway.model.robots import Robots
@@ -19,7 +20,7 @@ class Counted(Snapshots):
         self.encoded = 0
         for name in ("a", "b"):
             self.robots.ready(name, 1, "websocket", 0.0)
-        super().__init__(self.robots, lambda: 0.0)
+        super().__init__(self.robots, ManualClock(wall=0.0))
 
     def _encoded(self, revision, form):
         self.encoded += 1

@@ -61,7 +61,8 @@ def obstacle_distances(points: Floats, obstacles: Floats) -> Floats:
     length = np.maximum((step**2).sum(axis=1), 1e-18)
     part = ((obstacles[:, None, :] - start[None]) * step[None]).sum(axis=2) / length
     nearest = start[None] + np.clip(part, 0.0, 1.0)[:, :, None] * step[None]
-    return np.hypot(*(nearest - obstacles[:, None, :]).transpose(2, 0, 1)).min(axis=1)
+    away: Floats = np.hypot(*(nearest - obstacles[:, None, :]).transpose(2, 0, 1)).min(axis=1)
+    return away
 
 
 def _first_met(points: Floats, standing: Floats, room: Floats) -> int | None:

@@ -92,7 +92,7 @@ def _beside(way: Floats, places: Floats, reach: float) -> list[int]:
     begins = np.arange(0, len(way), _RUN)
     low, high = (reduce.reduceat(way, begins, axis=0) for reduce in (np.minimum, np.maximum))
     is_in = (places[:, None] >= low - reach) & (places[:, None] <= high + reach)
-    return np.flatnonzero(is_in.all(axis=2).any(axis=1)).tolist()
+    return [int(which) for which in np.flatnonzero(is_in.all(axis=2).any(axis=1))]
 
 
 def _first(

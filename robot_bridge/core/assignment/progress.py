@@ -145,8 +145,8 @@ class PlanProgress:
     def take_queue(self, queue: QueueReport) -> None:
         """Take in how a robot's queue stands."""
         open_ones = {task.task for task in queue.tasks}
-        for task in (*reversed(queue.ended), *queue.tasks):
-            self._note(task)
+        for report in (*reversed(queue.ended), *queue.tasks):
+            self._note(report)
         theirs = [task for task, one in self.stops.items() if one.robot == queue.robot]
         for task in theirs:
             known = self.reports.get(task)
@@ -182,8 +182,9 @@ class PlanProgress:
         if target in self.done:
             return ""
         found = self._newest(target)
-        said = found is not None and found.state in (*_GIVEN_UP, TaskState.WAITING)
-        return (found.reason or "") if said else ""
+        if found is None or found.state not in (*_GIVEN_UP, TaskState.WAITING):
+            return ""
+        return found.reason or ""
 
     def is_finished(self, plan: ConePlan) -> bool:
         """Tell whether every cone of ``plan`` is done or left out."""

@@ -139,7 +139,7 @@ class PlanService:
         self._plans: dict[str, _Followed] = {}
         self._lock = asyncio.Lock()
         self._tasks: set[asyncio.Task[None]] = set()
-        self._began = context.clock()
+        self._began = context.clock.time()
 
     async def restore(self) -> None:
         """Go on with the plans that an earlier gateway left."""
@@ -162,7 +162,7 @@ class PlanService:
                 return known
             self._check_no_emergency()
             self._check_free(document)
-            now = self._context.clock()
+            now = self._context.clock.time()
             terms = PlanTerms.of(request)
             plan = DrivenPlan(
                 request.plan, document, terms, operator, now, request.by_itself, by=operator, at=now
@@ -300,7 +300,7 @@ class PlanService:
 
     def _is_settling(self) -> bool:
         """Tell whether the gateway has only begun: robots that drive on are not heard of yet."""
-        return self._context.clock() < self._began + self._context.site.report.lost_after
+        return self._context.clock.time() < self._began + self._context.site.report.lost_after
 
     async def _follow(self, one: _Followed) -> bool:
         """Take in how the plan's queues, robots and roads are; false when nothing has changed."""
@@ -377,7 +377,7 @@ class PlanService:
             (report.x, report.y) for report in one.progress.placed.values() if report.collected_at is None
         ]
         standing = {name: place for name, place in places.items() if name not in drive}
-        now = self._context.clock()
+        now = self._context.clock.time()
         situation = situation_of(plan.document, one.progress, places, one.problem, now, try_again=try_again)
         ground = ReplanGround(plan.terms, placed, standing, self._planner)
         one.making = making = Replanning(plan.document, ground, situation)
@@ -436,7 +436,7 @@ class PlanService:
         after = plan.changed(
             PlanState.DRIVEN,
             operator,
-            self._context.clock(),
+            self._context.clock.time(),
             plan.reason,
             document=proposal,
             proposal=None,
@@ -462,7 +462,7 @@ class PlanService:
     # --- small parts ----------------------------------------------------------------------------------
 
     async def _let_go_on(self, one: _Followed, robots: Sequence[str], operator: str) -> PlanReport:
-        now = self._context.clock()
+        now = self._context.clock.time()
         after = one.plan.changed(PlanState.DRIVEN, operator, now, None, proposal=None, held={})
         entries = QueueEntries(dict.fromkeys(robots), resumed=robots)
         await self._editor.enter(entries, operator, partial(_save, plan=after))
@@ -472,7 +472,7 @@ class PlanService:
     async def _put(
         self, one: _Followed, state: PlanState, by: str, reason: str | None, **more: Any
     ) -> PlanReport:
-        after = one.plan.changed(state, by, self._context.clock(), reason, **more)
+        after = one.plan.changed(state, by, self._context.clock.time(), reason, **more)
         await self._context.database.run(save_plan, after)
         one.plan = after
         if state in ENDS:

@@ -284,9 +284,9 @@ class QueueEditor:
             return [self._book.accept(after, ended) for _, after, ended in changes]
 
     async def _entered(
-        self, name: str, entries: QueueEntries, leaving: set[str], operator: str
+        self, name: str, entries: QueueEntries, leaving: Collection[str], operator: str
     ) -> QueueChange:
-        before, tasks, now = self._book.get(name), entries.tasks[name], self._clock()
+        before, tasks, now = self._book.get(name), entries.tasks[name], self._clock.time()
         after = before
         if tasks is not None:
             request = SetQueue(name, before.revision, list(tasks), entries.override)
@@ -301,7 +301,7 @@ class QueueEditor:
         return before, after, _removed(gone, "another list took its place", operator, now)
 
     def _withdrawn(self, name: str, entries: QueueEntries, operator: str) -> QueueChange:
-        before, now = self._book.get(name), self._clock()
+        before, now = self._book.get(name), self._clock.time()
         gone = [task for task in before.tasks if task.id in entries.withdrawn]
         kept = [task for task in before.tasks if task.id not in entries.withdrawn]
         reason = because("its tasks were taken over", entries.reason)
