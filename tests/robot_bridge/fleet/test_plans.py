@@ -307,11 +307,16 @@ async def test_planning_that_takes_too_long_leaves_the_robots_standing_and_says_
 
 
 @pytest.fixture(params=["postgresql", "mariadb"])
-async def server_drive(request, site_maps, new_database):
+def server_url(request, new_database):
+    return new_database(request.param)
+
+
+@pytest.fixture
+async def server_drive(server_url, site_maps):
     from queue_line import Line
     from yard import Yard
 
-    yard = Yard(site_maps, new_database(request.param))
+    yard = Yard(site_maps, server_url)
     await yard.start()
     for robot in ("r1", "r2"):
         await yard.ready(robot)
