@@ -14,21 +14,25 @@ STAGE = ".writing-"
 """What the name of a folder begins with in which files are made; a program that was killed leaves it."""
 
 
-def write_state(file: Path, content: bytes, mode: int = 0o666) -> None:
+def write_state(file: Path, content: bytes, mode: int = 0o666, *, synced: bool = True) -> None:
     """Replace what a program keeps in ``file`` for its next start; ``mode`` are the rights of a new one.
 
-    It is on the disk when this returns. The name beside ``file`` is always the same, so that what a program
-    leaves that is killed on the way is written over by the next: there is one writer at a time.
+    It is on the disk when this returns, unless ``synced`` is false: for programs that may not wait for a
+    busy disk, such as an adapter that stops vehicles from the same loop. The name beside ``file`` is always
+    the same, so that what a program leaves that is killed on the way is written over by the next: there is
+    one writer at a time.
 
     :raises OSError: ``file`` is as it was.
     """
     beside = file.with_name(f".{file.name}.new")
     with open(beside, "wb", opener=partial(os.open, mode=mode)) as stream:
         stream.write(content)
-        stream.flush()
-        os.fsync(stream.fileno())
+        if synced:
+            stream.flush()
+            os.fsync(stream.fileno())
     beside.replace(file)
-    _sync_folder(file.parent)
+    if synced:
+        _sync_folder(file.parent)
 
 
 @contextmanager

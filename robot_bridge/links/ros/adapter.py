@@ -51,7 +51,7 @@ class RobotNotes:
     def write(self, notes: Mapping[str, Any]) -> None:
         """Write notes in place of what was; what is wrong with that is logged once, and kept as ``fault``."""
         try:
-            write_state(self._file, json.dumps(notes).encode())
+            write_state(self._file, json.dumps(notes).encode(), synced=False)
         except OSError as error:
             fault = f"{self._file} cannot be written: {error.strerror or error}"
             if self.fault is None:

@@ -258,7 +258,7 @@ class Memory:
         file = self._file(vehicle)
         try:
             self._folder.mkdir(mode=0o700, parents=True, exist_ok=True)
-            write_state(file, msgspec.json.encode(remembered))
+            write_state(file, msgspec.json.encode(remembered), synced=False)
         except OSError as error:
             raise Vda5050Error(
                 f"memory {file} cannot be written: {error.strerror or error}; check its folder and free space"

@@ -100,9 +100,7 @@ def save(connection: Connection, before: Queue, after: Queue, ended: Iterable[Qu
     _save_tasks(connection, after.robot, old, [*after.tasks, *ended])
 
 
-def save_each(
-    connection: Connection, changes: Sequence[tuple[Queue, Queue, Sequence[QueuedTask]]]
-) -> None:
+def save_each(connection: Connection, changes: Sequence[tuple[Queue, Queue, Sequence[QueuedTask]]]) -> None:
     """Write several queues, each as :func:`save` does; raises ChangedError, and nothing is to be written."""
     for before, after, ended in changes:
         save(connection, before, after, ended)
