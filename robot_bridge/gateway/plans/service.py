@@ -25,7 +25,7 @@ from ...core.assignment.progress import (
     tasks_of,
 )
 from ...core.errors import AssignmentError, OutdatedError, PlanFileError, RefusedError, RoadsError, StoreError
-from ...core.logs import log_unforeseen
+from ...core.logs import log_and_continue, log_unforeseen
 from ...core.messages import (
     ClearPlan,
     ConfirmReplan,
@@ -144,11 +144,12 @@ class PlanService:
     async def restore(self) -> None:
         """Go on with the plans that an earlier gateway left."""
         for plan in await self._context.database.run(load_open):
-            stops = await self._context.database.run(load_stops, plan.name)
-            one = self._plans[plan.name] = _Followed(plan, progress_from(plan, stops))
-            await self._follow(one)
-            if plan.state is PlanState.REPLANNING:
-                self._begin(one, try_again=False)
+            with log_and_continue(log, f"plan {plan.name}", except_for=StoreError):
+                stops = await self._context.database.run(load_stops, plan.name)
+                one = self._plans[plan.name] = _Followed(plan, progress_from(plan, stops))
+                await self._follow(one)
+                if plan.state is PlanState.REPLANNING:
+                    self._begin(one, try_again=False)
 
     async def submit(self, request: SubmitPlan, operator: str) -> PlanReport:
         """Enter all tasks of a plan, and follow it; the same again changes nothing.
@@ -263,9 +264,11 @@ class PlanService:
     async def watch(self) -> None:
         """Follow all plans; called twice a second. Raises StoreError."""
         for one in list(self._plans.values()):
-            async with self._lock:
-                if self._plans.get(one.plan.name) is one:
-                    await self._look(one)
+            # What nobody foresaw of one plan must not keep the others from being followed.
+            with log_and_continue(log, f"plan {one.plan.name}", except_for=StoreError):
+                async with self._lock:
+                    if self._plans.get(one.plan.name) is one:
+                        await self._look(one)
 
     async def finish(self) -> None:
         """Wait for what is being planned, after it was cancelled: the gateway ends."""
