@@ -27,6 +27,8 @@ from ...core.messages import (
 from ...core.messages.validation import LONGEST_OPERATOR, one_line
 from ..commands.active_command import CommandOrder
 from ..commands.service import CommandService
+from ..model.listeners import Listeners
+from ..model.robots import Robots
 from ..storage.database import Database
 from ..storage.repositories import commands, emergency_stops
 from ..storage.repositories.emergency_stops import StopRow
@@ -127,7 +129,7 @@ NAME_PREFIX = "emergency-"
 class EmergencyStops:
     """The stop in force, if one is, and what the robots say to it.
 
-    ``robots`` returns the names of the robots known, ``announce`` tells every operator. What is not stored
+    Every operator hears of it through ``listeners``. What is not stored
     yet is noted in ``journal``, where there is one.
     """
 
@@ -136,15 +138,15 @@ class EmergencyStops:
         book: CommandService,
         database: Database,
         clock: Clock,
-        robots: Callable[[], list[str]],
-        announce: Callable[[str, str, dict[str, Any]], None],
+        robots: Robots,
+        listeners: Listeners,
         journal: StopJournal | None = None,
     ) -> None:
         self._book = book
         self._database = database
         self._clock = clock
         self._robots = robots
-        self._tell_operators = announce
+        self._listeners = listeners
         self._journal = journal
         self._links: list[Callable[[str], None]] = []
         self._stop: StopRow | None = None
@@ -194,13 +196,15 @@ class EmergencyStops:
         Raises StoreError when it cannot be known whether there is one.
         """
         self._stop, self._seen, aborts = await self._database.run(_load)
-        self._tally.begin(self._robots())
+        self._tally.begin(self._robots.commanded())
         for report in aborts:
             self._tally.note_step(report)
         if self._stop is not None and self.in_force:
             # That gateway may have died before all of them were stored.
             reached = {report.robot for report in aborts}
-            self._writer.owe(self._stop, [robot for robot in self._robots() if robot not in reached])
+            self._writer.owe(
+                self._stop, [robot for robot in self._robots.commanded() if robot not in reached]
+            )
         noted = await asyncio.to_thread(self._journal.read) if self._journal else []
         for stop in noted:
             if stop.id not in self._seen:
@@ -299,7 +303,7 @@ class EmergencyStops:
         self._seen.add(stop.id)
         self._stop = stop
         self._unstored.append(stop)
-        self._tally.begin(self._robots())
+        self._tally.begin(self._robots.commanded())
 
     async def _begin(self, stop: StopRow) -> None:
         self._put_in_force(stop)
@@ -330,7 +334,7 @@ class EmergencyStops:
     async def _store(self) -> None:
         while self._unstored:
             stop = self._unstored[0]
-            if not await self._writer.write(stop, self._robots()):
+            if not await self._writer.write(stop, self._robots.commanded()):
                 self._unlisted.append(stop)
             self._unstored.remove(stop)
             with log_and_continue(log, "noting that an emergency stop is stored"):
@@ -340,7 +344,7 @@ class EmergencyStops:
 
     def _announce(self) -> None:
         with log_and_continue(log, "announcing an emergency stop"):
-            self._tell_operators("emergency", "emergency", to_json(self.report()))
+            self._listeners.announce("emergency", "emergency", to_json(self.report()))
 
 
 def _load(connection: Connection) -> tuple[StopRow | None, set[str], list[CommandReport]]:

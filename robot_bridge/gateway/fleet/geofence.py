@@ -6,7 +6,7 @@ import asyncio
 import logging
 import time
 import uuid
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any, NamedTuple, Protocol
 
@@ -21,6 +21,7 @@ from ...core.sites.fences import FencedAreas, Fences
 from ...core.sites.frame import Points
 from ...core.sites.settings_tables import GeofenceSettings
 from ..commands.requests import CommandRequests
+from ..model.listeners import Listeners
 from ..model.robots import Robot, Robots
 from ..queues.requests import PauseService
 from ..site.places import ServedSite
@@ -231,7 +232,7 @@ class GeofenceWatch:
         pauses: PauseService,
         emergency: EmergencyStops,
         clock: Clock,
-        announce: Callable[[str, str, dict[str, Any]], None],
+        listeners: Listeners,
         note: AuditNote | None = None,
     ) -> None:
         self._site = site
@@ -240,7 +241,7 @@ class GeofenceWatch:
         self._pauses = pauses
         self._emergency = emergency
         self._clock = clock
-        self._announce = announce
+        self._listeners = listeners
         self._note = note
         self._stays = Stays()
         self._fenced: Fences | None = None
@@ -379,7 +380,7 @@ class GeofenceWatch:
         changed = told is None or _without_time(report) != _without_time(told)
         if changed or waited >= TOLD_UNCHANGED_EVERY_S:
             self._told = time.monotonic(), report
-            self._announce("geofence", "geofence", to_json(report))
+            self._listeners.announce("geofence", "geofence", to_json(report))
 
     def _alarm(self, stay: Stay) -> FenceAlarm:
         return FenceAlarm(

@@ -30,6 +30,7 @@ from ...core.messages.administration import (
 )
 from ...core.messages.links import LinkStatus
 from ...core.sites.settings_tables import LinkOptions
+from ..model.listeners import Listeners
 from ..model.robots import Robots
 from ..storage.database import Database
 from ..storage.roles import blocking_sessions
@@ -43,7 +44,6 @@ AWAY = "it is not connected"
 REPLAY = "replay"
 """The kind of links that play recordings."""
 
-Announce = Callable[[str, str, dict[str, Any]], None]
 Ask = Callable[[str, dict[str, Any]], Awaitable[Any]]
 """Calls a method of a link, and returns its result; raises RefusedError."""
 
@@ -85,9 +85,9 @@ class _Known:
 class LinkWatch:
     """The links that a site names, and those that have been connected. Operators are told of each change."""
 
-    def __init__(self, robots: Robots, announce: Announce, clock: Clock = SYSTEM_CLOCK) -> None:
+    def __init__(self, robots: Robots, listeners: Listeners, clock: Clock = SYSTEM_CLOCK) -> None:
         self._robots = robots
-        self._announce = announce
+        self._listeners = listeners
         self._clock = clock
         self._known: dict[str, _Known] = {}
         self._told = Links()
@@ -107,7 +107,7 @@ class LinkWatch:
         report = self.report()
         if report != self._told:
             self._told = report
-            self._announce("links", "", to_json(report))
+            self._listeners.announce("links", "", to_json(report))
 
     def introduce(self, link: str, kind: str, ask: Ask) -> None:
         """Note the kind of a link that has said hello, before it speaks for any robot, and how to ask it."""
@@ -317,12 +317,12 @@ class AccountSuspensions:
         self,
         database: Database,
         commands: SuspendedCommands,
-        announce: Announce,
+        listeners: Listeners,
         clock: Clock = SYSTEM_CLOCK,
     ) -> None:
         self._database = database
         self._commands = commands
-        self._announce = announce
+        self._listeners = listeners
         self._clock = clock
         self._offences: defaultdict[str, deque[float]] = defaultdict(deque)
         self._last: dict[str, tuple[float, float]] = {}
@@ -396,4 +396,4 @@ class AccountSuspensions:
         self._tell()
 
     def _tell(self) -> None:
-        self._announce("suspensions", "", to_json(self.report()))
+        self._listeners.announce("suspensions", "", to_json(self.report()))

@@ -6,17 +6,18 @@ import asyncio
 import logging
 import math
 import time
-from collections.abc import Callable, Container, Sequence
+from collections.abc import Container, Sequence
 from dataclasses import replace
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from ...core.clock import Clock
 from ...core.messages import RobotState, SendPos, to_json
 from ...core.messages.safety import Nearness, NearnessAlarm
-from ...core.sites.settings_tables import NearnessSettings
+from ..model.listeners import Listeners
 from ..model.robots import Robot, Robots
+from ..site.places import ServedSite
 from ..traffic.conflicts import Movement, OtherMovements
 from ..traffic.robot_paths import TrafficSnapshot
 from ..traffic.service import TrafficControl
@@ -128,7 +129,7 @@ HEARD = (RobotState.FRESH, RobotState.STALE)
 class NearnessWatch:
     """Holds some times a second all that is only seen against all robots; it stops nobody.
 
-    ``settings`` are the site's. ``announce`` tells every operator.
+    Every operator hears of it through ``listeners``.
     """
 
     def __init__(
@@ -136,16 +137,16 @@ class NearnessWatch:
         robots: Robots,
         links: LinkWatch,
         traffic: TrafficControl,
-        settings: Callable[[], NearnessSettings],
+        site: ServedSite,
         clock: Clock,
-        announce: Callable[[str, str, dict[str, Any]], None],
+        listeners: Listeners,
     ) -> None:
         self._robots = robots
         self._links = links
         self._traffic = traffic
-        self._settings = settings
+        self._site = site
         self._clock = clock
-        self._announce = announce
+        self._listeners = listeners
         self._since: dict[Pair, tuple[bool, float]] = {}
         """Whether they are near now, and since when that or the prediction holds."""
         self._found: list[Meeting] = []
@@ -155,7 +156,7 @@ class NearnessWatch:
 
     async def watch(self) -> None:
         """Judge where everybody is now, and tell of it."""
-        now, limits = self._clock.time(), self._settings()
+        now, limits = self._clock.time(), self._site.settings.nearness
         try:
             found = await self._meetings(now, NearnessLimits(limits.metres, limits.within_s))
         except Exception as error:
@@ -169,7 +170,7 @@ class NearnessWatch:
 
     def report(self) -> Nearness:
         """Return what operators are told."""
-        limits, now = self._settings(), self._clock.time()
+        limits, now = self._site.settings.nearness, self._clock.time()
         alarms = [
             NearnessAlarm(
                 one.seen,
@@ -222,7 +223,7 @@ class NearnessWatch:
         something = bool(self._found or self._fault)
         if something is not told or (something and time.monotonic() - told_at >= TOLD_EVERY_S):
             self._told = time.monotonic(), something
-            self._announce("nearness", "nearness", to_json(self.report()))
+            self._listeners.announce("nearness", "nearness", to_json(self.report()))
 
 
 def _mover(robot: Robot, pose: SendPos) -> tuple[Mover, Robot]:

@@ -38,6 +38,7 @@ from ..commands.active_command import CommandOrder
 from ..commands.requests import CommandRequests
 from ..commands.service import CommandService
 from ..commands.validation import CommandRules
+from ..model.listeners import Listeners
 from ..model.planner import Planner, StraightPlanner
 from ..model.position_checks import NO_FIX, GroundTracks, PlaceChecks
 from ..model.robots import Robot, RobotPose, Robots
@@ -59,7 +60,7 @@ from .emergency_stop import EmergencyStops
 from .geofence import AuditNote, GeofenceWatch
 from .link_supervision import AccountSuspensions, LinkWatch
 from .nearness import NearnessWatch
-from .operator_updates import Listeners, ObservationService, ReportRow, Snapshots
+from .operator_updates import ObservationService, ReportRow, Snapshots
 from .outbox import RequestOutcome, RobotOutboxes
 from .registration import Decommissioning, Registration
 from .robot_answers import MapSender, RobotAnswers
@@ -89,9 +90,8 @@ class Fleet:
         self._clock = clock
         self.listeners = Listeners()
         """the operators' sessions, told what happens."""
-        announce = self.listeners.announce
         self.robots = Robots(site.report.stale_after, site.report.lost_after)
-        self.links = LinkWatch(self.robots, announce)
+        self.links = LinkWatch(self.robots, self.listeners)
         self.snapshots = Snapshots(self.robots, clock)
         self._book = CommandService(
             database,
@@ -103,8 +103,8 @@ class Fleet:
             self._outbox_changed,
         )
         self.orders = CommandRequests(site, self.robots, self._book, database)
-        self.emergency = EmergencyStops(self._book, database, clock, self.robots.commanded, announce, stops)
-        self._queue_book = QueueRegistry(database, self.robots, announce)
+        self.emergency = EmergencyStops(self._book, database, clock, self.robots, self.listeners, stops)
+        self._queue_book = QueueRegistry(database, self.robots, self.listeners)
         planner = planner or StraightPlanner()
         about_queues = QueueContext(site, self.robots, self._book, self._queue_book, database, clock, planner)
         self.queues = QueueEditor(about_queues)
@@ -118,14 +118,14 @@ class Fleet:
             database,
             clock,
             planner if isinstance(planner, RoadPlanner) else None,
-            announce,
+            self.listeners,
         )
         self.pauses = PauseService(about_queues, self.roads.waiting.row_of)
         self.geofence = GeofenceWatch(
-            site, self.robots, self.orders, self.pauses, self.emergency, clock, announce, note
+            site, self.robots, self.orders, self.pauses, self.emergency, clock, self.listeners, note
         )
         self.nearness = NearnessWatch(
-            self.robots, self.links, self.roads.traffic, lambda: site.settings.nearness, clock, announce
+            self.robots, self.links, self.roads.traffic, site, clock, self.listeners
         )
         self.plans = PlanService(
             about_queues, self.queues, self.roads.closures, self.emergency, self.listeners
@@ -159,7 +159,7 @@ class Fleet:
         self._tracks = GroundTracks()
         self._places = PlaceChecks(lambda: site.settings)
         self._steps = Steps("save")
-        self.suspensions = AccountSuspensions(database, self._book, announce, clock)
+        self.suspensions = AccountSuspensions(database, self._book, self.listeners, clock)
         self.tally = Counters()
         self.repeated = RepeatedLines()
 

@@ -45,6 +45,7 @@ from ...core.messages import (
     to_json,
 )
 from ...core.messages.plans import MOST_CONES
+from ..model.listeners import Listeners
 from ..model.robots import AWAY
 from ..model.task_queue import ENDS as TASK_ENDS
 from ..model.task_queue import Queue, queue_report, task_report
@@ -84,13 +85,6 @@ class Stops(Protocol):
         """Whether it is."""
 
 
-class Audience(Protocol):
-    """The operators."""
-
-    def announce(self, method: str, key: str, params: dict[str, Any]) -> None:
-        """Send ``params`` to all of them."""
-
-
 @dataclass
 class _Followed:
     """A plan that is driven, and what is known of it."""
@@ -128,14 +122,14 @@ class PlanService:
         editor: QueueEditor,
         closures: ClosureService,
         stops: Stops,
-        audience: Audience,
+        listeners: Listeners,
     ) -> None:
         self._context = context
         self._editor = editor
         self._closures = closures
         self._planner = context.planner if isinstance(context.planner, RoadPlanner) else None
         self._stops = stops
-        self._audience = audience
+        self._listeners = listeners
         self._plans: dict[str, _Followed] = {}
         self._lock = asyncio.Lock()
         self._tasks: set[asyncio.Task[None]] = set()
@@ -484,7 +478,7 @@ class PlanService:
 
     def _announced(self, one: _Followed) -> PlanReport:
         report = one.report()
-        self._audience.announce("plan", one.plan.name, to_json(report))
+        self._listeners.announce("plan", one.plan.name, to_json(report))
         return report
 
     def _queue(self, robot: str) -> Queue:

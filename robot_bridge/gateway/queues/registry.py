@@ -6,12 +6,13 @@ import asyncio
 import contextlib
 from collections.abc import AsyncIterator, Awaitable, Callable, Iterable, Sequence
 from dataclasses import dataclass, field
-from typing import Any, TypeVar
+from typing import TypeVar
 
 from ...core.clock import Clock
 from ...core.errors import OutdatedError
 from ...core.messages import PlacementReport, QueueReport, to_json
 from ..commands.service import CommandService
+from ..model.listeners import Listeners
 from ..model.planner import Planner, StraightPlanner
 from ..model.robots import Robots
 from ..model.task_queue import Queue, QueuedTask, queue_report
@@ -37,11 +38,11 @@ class QueueRegistry:
         self,
         database: Database,
         robots: Robots,
-        announce: Callable[[str, str, dict[str, Any]], None],
+        listeners: Listeners,
     ) -> None:
         self._database = database
         self._robots = robots
-        self._tell = announce
+        self._listeners = listeners
         self._queues: dict[str, Queue] = {}
         self._ended: dict[str, list[QueuedTask]] = {}
         self._locks: dict[str, asyncio.Lock] = {}
@@ -120,12 +121,12 @@ class QueueRegistry:
     def announce(self, robot: str) -> QueueReport:
         """Tell operators of a robot's queue."""
         report = queue_report(self.get(robot), self._robots.get(robot).state, self._ended.get(robot, ()))
-        self._tell("queue", robot, to_json(report))
+        self._listeners.announce("queue", robot, to_json(report))
         return report
 
     def announce_placement(self, report: PlacementReport) -> None:
         """Tell operators of a cone that was put down or collected."""
-        self._tell("placement", str(report.placement), to_json(report))
+        self._listeners.announce("placement", str(report.placement), to_json(report))
 
     async def _read_again(self, robot: str) -> None:
         found = await self._database.run(queues.load, [robot])

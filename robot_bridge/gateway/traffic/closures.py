@@ -38,7 +38,9 @@ from ..commands.active_command import NOTHING, CommandOrder, because
 from ..commands.persistence import Also, AlsoOf
 from ..commands.requests import CommandRequests
 from ..commands.service import CommandService
+from ..model.listeners import Listeners
 from ..model.planner import Point
+from ..site.places import ServedSite
 from ..storage.database import Database
 from ..storage.repositories import closures, requests
 from ..storage.repositories.closures import ClosureRow
@@ -78,7 +80,7 @@ class DetourQueues(Protocol):
 
 
 class Detours:
-    """Finds and sends other ways; ``stops`` tells whether a robot without another way is to stop."""
+    """Finds and sends other ways; the site's settings say whether a robot without another way stops."""
 
     def __init__(
         self,
@@ -87,14 +89,14 @@ class Detours:
         orders: CommandRequests,
         queues: DetourQueues,
         book: CommandService,
-        stops: Callable[[], bool],
+        site: ServedSite,
     ) -> None:
         self._ways = ways
         self._roads = roads
         self._orders = orders
         self.queues = queues
         self._book = book
-        self._stops = stops
+        self._site = site
         self._later: set[str] = set()
 
     def restore(self) -> None:
@@ -201,7 +203,7 @@ class Detours:
         return (None, planned.note) if planned.note else (list(planned.points), "")
 
     async def _without_way(self, way: RobotPath, why: str, operator: str) -> ReplannedRobot:
-        if not self._stops():
+        if self._site.settings.routes.no_way != "stop":
             text = f"{way.robot} drives on as it was told, though {why}. Look after it."
             return ReplannedRobot(way.robot, "told only", text)
         command = await self.stop(way.robot, f"no other way: {why}"[:500], operator)
@@ -224,8 +226,8 @@ MOST_CONSIDERED = 16
 class ClosureService:
     """Every closure that is in force. ``roads`` is None where the gateway plans without roads.
 
-    ``announce`` tells every operator; a closure is stored before anybody is told, and in force before any
-    robot is sent another way.
+    Every operator hears of it through ``listeners``; a closure is stored before that, and in force before
+    any robot is sent another way.
     """
 
     def __init__(
@@ -234,13 +236,13 @@ class ClosureService:
         clock: Clock,
         roads: RoadPlanner | None,
         detours: Detours,
-        announce: Callable[[str, str, dict[str, Any]], None],
+        listeners: Listeners,
     ) -> None:
         self._database = database
         self._clock = clock
         self._roads = roads
         self._detours = detours
-        self._announce_news = announce
+        self._listeners = listeners
         self._rows: dict[str, ClosureRow] = {}
         self._edges: dict[str, int] = {}
         self._considered: deque[tuple[SetPath, ClosedRoads, str | None]] = deque(maxlen=MOST_CONSIDERED)
@@ -376,7 +378,7 @@ class ClosureService:
     async def _lead_round(self, row: ClosureRow, only: Collection[str] | None = None) -> list[ReplannedRobot]:
         robots = await self._detours.around(row.id, row.reason, row.closed_by, only)
         for robot in robots:
-            self._announce_news("replanned", robot.robot, to_json(robot))
+            self._listeners.announce("replanned", robot.robot, to_json(robot))
         return robots
 
     async def _run(self, work: Callable[..., None], *arguments: Any) -> None:
@@ -420,7 +422,7 @@ class ClosureService:
         )
 
     def _announce(self) -> None:
-        self._announce_news("closures", "closures", to_json(self.report()))
+        self._listeners.announce("closures", "closures", to_json(self.report()))
 
 
 def _on_the_way(closed: ClosedRoads, path: SetPath) -> str | None:

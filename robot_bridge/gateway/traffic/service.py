@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 import math
 import time
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from typing import Any, NamedTuple
 
 from ...core.clock import Clock
@@ -24,6 +24,7 @@ from ...core.messages import (
 from ...core.sites.site import Site
 from ..commands.requests import CommandRequests
 from ..commands.service import CommandService
+from ..model.listeners import Listeners
 from ..model.planner import Point
 from ..model.robots import Robots
 from ..monitoring.tasks import Steps
@@ -69,8 +70,8 @@ class TrafficControl:
         roads: RoadPlanner | None,
         detours: Detours,
         waiting: YieldManager,
-        site: Callable[[], Site],
-        announce: Callable[[str, str, dict[str, Any]], None],
+        site: ServedSite,
+        listeners: Listeners,
     ) -> None:
         self._clock = clock
         self._robots = robots
@@ -79,7 +80,7 @@ class TrafficControl:
         self._detours = detours
         self._waiting = waiting
         self._site = site
-        self._announce = announce
+        self._listeners = listeners
         self._lock = asyncio.Lock()
         self._told = False
         self._next = 0.0
@@ -104,12 +105,12 @@ class TrafficControl:
         report = Conflicts(seen.now, found, self._waiting.report())
         something = bool(report.conflicts or report.waiting)
         if something or self._told:
-            self._announce("conflicts", "conflicts", to_json(report))
+            self._listeners.announce("conflicts", "conflicts", to_json(report))
         self._told = something
 
     async def ways_out(self, request: GetWaysOut) -> WaysOut:
         """Return what each of two robots in each other's way can do; nothing is done, nobody is told."""
-        return await asyncio.to_thread(self._ways_out, self.situation(), request, self._site())
+        return await asyncio.to_thread(self._ways_out, self.situation(), request, self._site.site)
 
     async def resolve(self, request: ResolveConflict, operator: str) -> ConflictResolved:
         """Let ``robot`` wait for ``other``, or send it another way.
@@ -127,7 +128,7 @@ class TrafficControl:
 
         Of what is only seen nobody knows the way: :mod:`...nearness` tells of that.
         """
-        settings, places = self._site().settings.routes, {}
+        settings, places = self._site.settings.routes, {}
         for name in self._robots.commanded() if names is None else names:
             pose = self._robots.get(name).pose
             if pose is not None:
@@ -289,7 +290,7 @@ def _unresolved(request: ResolveConflict, other_moves: bool) -> str:
 class RoadTraffic:
     """The ways that robots are on, the roads that are closed to them, and who waits for whom.
 
-    ``planner`` is None where the gateway plans without roads. ``announce`` tells every operator.
+    ``planner`` is None where the gateway plans without roads. Every operator hears through ``listeners``.
     """
 
     def __init__(
@@ -302,15 +303,13 @@ class RoadTraffic:
         database: Database,
         clock: Clock,
         planner: RoadPlanner | None,
-        announce: Callable[[str, str, dict[str, Any]], None],
+        listeners: Listeners,
     ) -> None:
         self.planner = planner
         self._steps = Steps("roads")
         self.ways = RobotPaths(robots, commands)
-        detours = Detours(
-            self.ways, planner, orders, queues, commands, lambda: site.settings.routes.no_way == "stop"
-        )
-        self.closures = ClosureService(database, clock, planner, detours, announce)
+        detours = Detours(self.ways, planner, orders, queues, commands, site)
+        self.closures = ClosureService(database, clock, planner, detours, listeners)
         self.waiting = YieldManager(database, commands, detours)
         self.traffic = TrafficControl(
             clock,
@@ -319,8 +318,8 @@ class RoadTraffic:
             planner,
             detours,
             self.waiting,
-            lambda: site.site,
-            announce,
+            site,
+            listeners,
         )
 
     async def restore(self) -> None:

@@ -9,7 +9,7 @@ import pytest
 
 from robot_bridge.core.errors import DataRefusedError, StoreError
 from robot_bridge.core.messages import EmergencyStop, QueueTask, SetObject, SetQueue
-from robot_bridge.gateway.fleet.operator_updates import Listeners
+from robot_bridge.gateway.model.listeners import Listeners
 
 
 @pytest.fixture
@@ -122,7 +122,7 @@ def no_link(fleet):
 
 
 def no_operators(fleet):
-    fleet.emergency._tell_operators = fail
+    fleet.emergency._listeners = SimpleNamespace(announce=fail)
 
 
 def no_command_told(fleet):

@@ -6,6 +6,7 @@ import asyncio
 import json
 import threading
 import time
+from types import SimpleNamespace
 
 import pytest
 from database_client import DatabaseClient
@@ -427,7 +428,7 @@ async def test_robots_are_told_whatever_else_goes_wrong(driven, caplog):
 
 @ON_ONE
 async def test_operators_who_cannot_be_told_are_named_and_the_stop_goes_on(driven, monkeypatch, caplog):
-    monkeypatch.setattr(driven.fleet.emergency, "_tell_operators", fail)
+    monkeypatch.setattr(driven.fleet.emergency, "_listeners", SimpleNamespace(announce=fail))
     assert (await stop(driven)).stored
     assert outbox(driven) == ["Abort"]
     assert "announcing an emergency stop failed;" in caplog.text

@@ -78,7 +78,7 @@ def can_connect(yard, robot=MINE):
 @pytest.mark.parametrize("times", [2, 3])
 async def test_who_blocks_three_times_in_a_minute_is_locked_out_and_let_in_again(yard, database, times):
     clock, desks = ManualClock(), Desks()
-    suspensions = AccountSuspensions(database, Commands(), desks.announce, clock)
+    suspensions = AccountSuspensions(database, Commands(), desks, clock)
     with yard.session(MINE) as mine, yard.session(OTHER) as other:
         for _ in range(times):
             database.offences.add_blocking([MINE])
@@ -92,7 +92,7 @@ async def test_who_blocks_three_times_in_a_minute_is_locked_out_and_let_in_again
             mine.run("select 1")
     assert desks.told == [[(MINE, True)]] and not can_connect(yard)
     # The gateway is killed meanwhile, and the next one lets the robot in again.
-    after = AccountSuspensions(database, Commands(), desks.announce, clock)
+    after = AccountSuspensions(database, Commands(), desks, clock)
     await after.restore()
     clock.advance(link_supervision.FIRST_S - 1)
     await after.update()
@@ -105,7 +105,7 @@ async def test_who_blocks_three_times_in_a_minute_is_locked_out_and_let_in_again
 
 async def test_who_does_it_again_is_locked_out_for_twice_as_long(yard, database):
     clock, desks = ManualClock(), Desks()
-    suspensions = AccountSuspensions(database, Commands(), desks.announce, clock)
+    suspensions = AccountSuspensions(database, Commands(), desks, clock)
     for seconds in (60, 120, 240):
         database.offences.add_blocking([MINE] * 3)
         await suspensions.update()
@@ -118,7 +118,7 @@ async def test_who_does_it_again_is_locked_out_for_twice_as_long(yard, database)
 
 async def test_no_account_is_locked_while_its_robot_awaits_an_abort(yard, database):
     clock, desks, commands = ManualClock(), Desks(), Commands()
-    suspensions = AccountSuspensions(database, commands, desks.announce, clock)
+    suspensions = AccountSuspensions(database, commands, desks, clock)
     database.offences.add_blocking([MINE] * 3)
     await suspensions.update()
     assert not can_connect(yard)
@@ -137,7 +137,7 @@ async def test_no_account_is_locked_while_its_robot_awaits_an_abort(yard, databa
 async def test_a_gateway_that_dies_before_the_lock_is_set_unlocks_all_the_same(yard, database):
     clock, desks = ManualClock(), Desks()
     await database.run(blocking_sessions.store_suspensions, {MINE: (clock.wall + 60, "blocks")})
-    suspensions = AccountSuspensions(database, Commands(), desks.announce, clock)
+    suspensions = AccountSuspensions(database, Commands(), desks, clock)
     await suspensions.restore()
     clock.advance(61)
     await suspensions.update()
@@ -182,7 +182,7 @@ async def test_an_older_set_up_is_said_and_an_upgrade_mends_it(yard, database, c
     yard.sql(f"drop {routine}")
     yard.sql(comment.format("robots'' side of the fleet, version 1"))
     clock, desks = ManualClock(), Desks()
-    suspensions = AccountSuspensions(database, Commands(), desks.announce, clock)
+    suspensions = AccountSuspensions(database, Commands(), desks, clock)
     database.offences.add_blocking([MINE] * 3)
     await suspensions.update()
     assert desks.told == [[(MINE, False)]] and can_connect(yard)
