@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import sys
+from urllib.request import urlopen
 
 import pytest
 from fleet_supervisor.plugin.panel.emergency import ClearDialog
@@ -148,3 +149,28 @@ def test_a_linked_robot_is_led_from_the_canvas(kind, loop, operator, start_linke
     clear_emergency(operator)
     send_to(operator, operator.report(ROBOT).x + 5)
     wait_for_newest(operator, CommandState.REACHED)
+
+
+def test_a_tracker_is_only_seen_and_a_target_for_it_is_refused_with_the_reason(loop, operator, tmp_path):
+    port = free_port()
+    file = tmp_path / "phones.toml"
+    text = f'[tracker]\nhttp = "127.0.0.1:{port}"\n[tracker.names]\n845213 = "{ROBOT}"\n'
+    file.write_text(f'[gateway]\nurl = "{loop.address}/link"\n{text}', encoding="utf-8")
+
+    def report():
+        place = "id=845213&lat=46.8805&lon=16.8436&speed=0&bearing=90&accuracy=4"
+        try:
+            return urlopen(f"http://127.0.0.1:{port}/?{place}", timeout=5).status == 200
+        except OSError:
+            return False
+
+    with Processes(tmp_path / "peers") as processes:
+        start_adapter(processes, "tracker", file)
+        operator.wait("the report of the phone", report, 20)
+        operator.connect_to(loop, [ROBOT])
+        operator.wait("where it is", lambda: operator.report(ROBOT).x is not None, 20)
+        operator.set_cone(ROBOT, 26.0, 8.0)
+        operator.wait(
+            "the reason", lambda: "was not sent: linked is only seen" in str(operator.notices()), 20
+        )
+        assert operator.sent_to(ROBOT) == []
