@@ -177,6 +177,7 @@ LONG = (
     "packaging/test_walkthrough.py",
     "robot_bridge/fleet/crashes/test_transaction_fails.py",
     "plugin/desk/loop/test_queue.py",
+    "plugin/desk/loop/test_linked_robots.py",
     "robot_bridge/running/test_choosing_a_site.py",
     "packaging/test_qgis4.py",
     "robot_bridge/running/test_backup.py",

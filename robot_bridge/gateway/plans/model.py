@@ -161,7 +161,7 @@ def plan_report(
     closed: int | None = None,
     documents: bool = False,
 ) -> PlanReport:
-    """Return what operators are told of a plan."""
+    """Return the report of a plan for operators."""
     shown = plan.document
     out = [one.target.id for one in shown.left_out]
     proposal = plan.proposal

@@ -101,6 +101,10 @@ class _Followed:
     meetings: int | None = None
     closed: int | None = None
 
+    def cancel_planning(self) -> None:
+        if self.making is not None:
+            self.making.cancel()
+
     def report(self, *, documents: bool = False) -> PlanReport:
         proposed = self.plan.proposal is not None
         return plan_report(
@@ -196,8 +200,7 @@ class PlanService:
                 await self._editor.pause(PauseQueue(robot, why[:LONGEST_PAUSE_REASON]), operator)
         async with self._lock:
             one = self._plan(request.plan)
-            if one.making is not None:
-                one.making.cancel()
+            one.cancel_planning()
             return await self._put(one, PlanState.PAUSED, operator, request.reason, proposal=None, held={})
 
     async def resume(self, request: ResumePlan, operator: str) -> PlanReport:
@@ -240,8 +243,7 @@ class PlanService:
                 raise RefusedError(
                     f"plan {request.plan!r} has no plan of what is left; there is nothing to discard"
                 )
-            if one.making is not None:
-                one.making.cancel()
+            one.cancel_planning()
             return await self._let_go_on(one, self._still_held(one.plan), operator)
 
     async def clear(self, request: ClearPlan, operator: str) -> PlanReport:
@@ -250,8 +252,7 @@ class PlanService:
             if request.plan not in self._plans and (known := await self._known(request.plan)) is not None:
                 return known
             one = self._plan(request.plan)
-            if one.making is not None:
-                one.making.cancel()
+            one.cancel_planning()
             await self._follow(one)
             return await self._put(one, PlanState.CLEARED, operator, None, proposal=None, held={})
 
@@ -269,7 +270,7 @@ class PlanService:
         for one in self._plans.values():
             if one.making is not None:
                 one.making.cancel()
-                # It stays stored as being planned again: the next gateway begins that anew.
+                # It stays stored as being planned again: the next gateway begins that again.
                 one.making = None
         await asyncio.gather(*self._tasks, return_exceptions=True)
 
@@ -358,9 +359,9 @@ class PlanService:
                 report = await self._editor.pause(PauseQueue(robot, why[:LONGEST_PAUSE_REASON]), operator)
                 held[robot] = report.at
         one.seen_to = one.problem
-        told = await self._put(one, PlanState.REPLANNING, operator, why, proposal=None, held=held)
+        begun = await self._put(one, PlanState.REPLANNING, operator, why, proposal=None, held=held)
         self._begin(one, try_again=try_again)
-        return told
+        return begun
 
     def _begin(self, one: _Followed, *, try_again: bool) -> None:
         plan, robots = one.plan, self._context.robots
@@ -395,6 +396,7 @@ class PlanService:
         except (AssignmentError, RoadsError, RefusedError) as error:
             await self._made(one, making, None, str(error))
         except Exception:
+            # Else the robots would stay held, and nobody would hear why.
             log_unforeseen(log, f"plan of what is left of {one.plan.name}")
             await self._made(one, making, None, "it could not be planned; see the gateway's log")
         else:

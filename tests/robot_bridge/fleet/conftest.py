@@ -11,7 +11,7 @@ import pytest
 sys.path.insert(0, str(Path(__file__).parent))
 
 from queue_line import Line
-from yard import Yard
+from yard import Yard, yard_of_two
 
 from robot_bridge.core.errors import UncertainError
 from robot_bridge.core.messages import CloseRoad, GetRoute, OpenRoad, ResolveConflict
@@ -144,14 +144,8 @@ def sqlite_url(new_database) -> str:
 @pytest.fixture
 async def two(site_maps, sqlite_url):
     """A yard on SQLite whose robots r1 and r2 have taken their maps."""
-    yard = Yard(site_maps, sqlite_url)
-    await yard.start()
-    for robot in ("r1", "r2"):
-        await yard.ready(robot)
-        await yard.take(robot)
-    yield yard
-    await yard.database.close()
-    yard.client.close()
+    async with yard_of_two(site_maps, sqlite_url) as yard:
+        yield yard
 
 
 @pytest.fixture

@@ -314,17 +314,12 @@ def server_url(request, new_database):
 @pytest.fixture
 async def server_drive(server_url, site_maps):
     from queue_line import Line
-    from yard import Yard
+    from yard import yard_of_two
 
-    yard = Yard(site_maps, server_url)
-    await yard.start()
-    for robot in ("r1", "r2"):
-        await yard.ready(robot)
-        await yard.take(robot)
-        await yard.at(20.0, 40.0, robot=robot)
-    yield Drive(Line(yard))
-    await yard.database.close()
-    yard.client.close()
+    async with yard_of_two(site_maps, server_url) as yard:
+        for robot in ("r1", "r2"):
+            await yard.at(20.0, 40.0, robot=robot)
+        yield Drive(Line(yard))
 
 
 async def test_a_server_keeps_it_as_well(server_drive):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from contextlib import asynccontextmanager
 
 from database_client import DatabaseClient
 
@@ -106,3 +107,16 @@ class Yard:
 
     def waiting(self, robot="r1"):
         return [op for (op,) in self.sql("select op from sa where robot = ? order by id", robot)]
+
+
+@asynccontextmanager
+async def yard_of_two(site_maps, url):
+    """A yard whose robots r1 and r2 have taken their maps."""
+    yard = Yard(site_maps, url)
+    await yard.start()
+    for robot in ("r1", "r2"):
+        await yard.ready(robot)
+        await yard.take(robot)
+    yield yard
+    await yard.database.close()
+    yard.client.close()

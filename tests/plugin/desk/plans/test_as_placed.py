@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import csv
+import errno
+import os
 from dataclasses import replace
 
 import pytest
@@ -78,14 +80,20 @@ def test_no_name_in_the_csv_is_a_formula_to_a_spreadsheet(page, tmp_path):
     assert "\n'=cmd(),row," in (tmp_path / "placed.csv").read_text(encoding="utf-8-sig")
 
 
-def test_what_was_written_is_told_and_what_cannot_be_written_harms_no_older_file(page, iface, tmp_path):
+def test_what_was_written_is_told_and_what_cannot_be_written_harms_no_older_file(
+    page, iface, tmp_path, monkeypatch
+):
     told = []
     page._desk.noted.connect(told.append)
     target = tmp_path / "placed.csv"
     page.save(str(target))
     assert told == [f"2 cones written to {target}"]
     before = target.read_bytes()
-    (tmp_path / "placed.csv.part").mkdir()
+
+    def full(_descriptor):
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    monkeypatch.setattr(os, "fsync", full)
     page.save(str(target))
     assert any(f"{target} was not written" in text for text in iface.texts())
     assert (target.read_bytes(), len(told)) == (before, 1)
