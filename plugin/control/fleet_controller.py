@@ -153,6 +153,7 @@ class FleetController(QObject):
         self.pulled, self.site_changed = state.updated, state.site_changed
         self.link_changed, self.queues_changed = state.link_changed, state.queues_changed
         self.placements_changed = state.placed_cones_changed
+        self.plans, self.plans_changed = state.plans, state.plans_changed
         self.ask, self.answered = self.orders.ask, self.orders.answered
 
     @property

@@ -62,9 +62,7 @@ NO_DRAFT = Topic("no_draft")
 PLAN_ASKED = Topic("plan", "asked")
 """Something was asked of cone plans; it ends when something else is."""
 PLAN_SENT = Topic("plan", "sent")
-"""What robots have of the cone plan; it ends when something of it is sent or it is watched no more."""
-PLAN_TROUBLE = Topic("plan", "trouble")
-"""The cone plan cannot go on as it is."""
+"""What the gateway said of a cone plan; it ends when something else is asked of one, or none is shown."""
 REPLAY = Topic("replay")
 """What was loaded to be replayed; it ends when something else is."""
 
@@ -77,6 +75,11 @@ def request_topic(method: str, about: Hashable) -> Topic:
 def draft_topic(draft: Hashable) -> Topic:
     """Return the topic of a draft on the map: it ends when another one is there, or none."""
     return Topic("draft", draft)
+
+
+def plan_topic(plan: str, what: str) -> Topic:
+    """Return the topic of what is the matter with a cone plan that is driven: it ends when that is over."""
+    return Topic("plan", (plan, what))
 
 
 def conflict_topic(robot: str, other: str) -> Topic:

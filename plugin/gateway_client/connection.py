@@ -14,7 +14,14 @@ from qgis.PyQt.QtCore import QObject, QThread
 from ...robot_bridge.core.clock import Clock, steady_time
 from ..ui.errors import AddressError, GatewayLinkError, NotSentError
 from ..ui.language import tr
-from .connection_status import ConnectionPhase, ConnectionStatus, OperatorCredentials, check_address, explain
+from .connection_status import (
+    TOO_LARGE,
+    ConnectionPhase,
+    ConnectionStatus,
+    OperatorCredentials,
+    check_address,
+    explain,
+)
 from .fleet_state import StateUpdate, UpdateBuffer
 from .protocol import GatewayProtocol
 from .requests import OperatorRequest
@@ -119,6 +126,8 @@ class GatewayClient:
         except AddressError as error:
             return GatewayLinkError(str(error), final=True, wants_token=True)
         except Exception as error:
+            if getattr(getattr(error, "rcvd", None), "code", None) == TOO_LARGE:
+                self._protocol.hand_back_largest()
             explained = explain(error, self._url, self._library.exceptions)
             if explained is None:
                 raise

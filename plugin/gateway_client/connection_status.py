@@ -181,6 +181,8 @@ class ConnectionStatus:
 REVOKED = 4003
 ENDED = 4004
 """Close codes of the gateway: the token does not hold any more; a supervisor ended the session."""
+TOO_LARGE = 1009
+"""The close code of WebSocket for a message that is larger than the other side takes."""
 _UNKNOWN_AUTHORITY = {18, 19, 20, 21}
 _OTHER_NAME = {62, 64}
 _NOT_YET_VALID, _EXPIRED = 9, 10

@@ -30,7 +30,16 @@ from ..ui.language import tr
 from ..ui.scheduling import PULL_EVERY_MS
 from .command_cache import CommandCache
 from .connection_status import ConnectionPhase, ConnectionStatus
-from .report_caches import GeofenceState, NearnessState, ObservationCache, PlacedConeCache, QueueCache
+from .report_caches import (
+    GeofenceState,
+    KnownPlan,
+    NearnessState,
+    ObservationCache,
+    PlacedConeCache,
+    PlanCache,
+    QueueCache,
+    newer_plan,
+)
 from .requests import RequestResult
 from .robot_states import RobotStates, RobotView
 from .robot_table import RobotTable
@@ -48,7 +57,8 @@ class StateUpdate:
     Only the newest of each thing is kept, so that a window that is busy for a while costs no memory and then
     paints what is true now. ``site`` is set when a gateway said which site it serves; ``greeting_of`` names
     its database where that was the first word on a link, empty where it does not say: it may be another
-    gateway than before. With ``are_all_queues`` there are no others.
+    gateway than before. With ``are_all_queues`` there are no others, and with ``is_driving``, which says
+    whether the gateway drives cone plans, no other plans.
     """
 
     link: ConnectionStatus
@@ -58,6 +68,8 @@ class StateUpdate:
     commands: dict[str, CommandReport] = field(default_factory=dict)
     queues: dict[str, QueueReport] = field(default_factory=dict)
     are_all_queues: bool = False
+    plans: dict[str, KnownPlan] = field(default_factory=dict)
+    is_driving: bool | None = None
     placed_cones: dict[int, PlacementReport] = field(default_factory=dict)
     observations: dict[int, ObservationReport] = field(default_factory=dict)
     closures: Closures | None = None
@@ -75,13 +87,19 @@ class StateUpdate:
         if reports.pop("are_all_queues", False):
             self.queues.clear()
             self.are_all_queues = True
+        if reports.get("is_driving") is not None:
+            self.plans.clear()
         for topic, report in reports.items():
             if topic == "robots":
                 self._add_robots(report)
+            elif topic == "plans":
+                self.plans.update({one.plan: newer_plan(self.plans.get(one.plan), one) for one in report})
             elif topic in KEYS:
                 self._add_keyed(topic, report)
             elif topic == "replanned":
                 self.replanned += report
+            elif topic == "is_driving" and report is None:
+                continue
             else:
                 setattr(self, topic, report)
 
@@ -113,7 +131,7 @@ class UpdateBuffer:
     def add(self, **reports: Any) -> None:
         """Add reports by their topics, the fields of :class:`StateUpdate`, all at once.
 
-        ``commands``, ``queues``, ``placed_cones``, ``observations`` and ``replanned`` take several reports.
+        ``commands``, ``queues``, ``plans``, ``placed_cones``, ``observations``, ``replanned`` take several.
         """
         with self._lock:
             self._update.add(**reports)
@@ -168,6 +186,8 @@ class FleetState(QObject):
     """The CommandReports that told something new."""
     queues_changed = pyqtSignal(list)
     """The robots of whose queues something new is known."""
+    plans_changed = pyqtSignal(list)
+    """The names of the cone plans of which something new is known."""
     placed_cones_changed = pyqtSignal(list)
     """The numbers of the placed cones of which something new is known."""
     observations_changed = pyqtSignal(list)
@@ -192,6 +212,7 @@ class FleetState(QObject):
         self.robots = RobotStates()
         self.commands = CommandCache()
         self.queues = QueueCache()
+        self.plans = PlanCache()
         self.placed_cones = PlacedConeCache()
         self.observations = ObservationCache()
         self.closures: tuple = ()
@@ -274,6 +295,9 @@ class FleetState(QObject):
             self.nearness.update(update.nearness)
         if queues := self.queues.merge(update.queues, are_all=update.are_all_queues):
             self.queues_changed.emit(queues)
+        plans = self.plans.merge(update.plans, update.is_driving)
+        if plans or update.is_driving is not None:
+            self.plans_changed.emit(plans)
         if placed := self.placed_cones.merge(update.placed_cones):
             self.placed_cones_changed.emit(placed)
         if seen := self.observations.merge(update.observations):
@@ -358,7 +382,9 @@ class FleetState(QObject):
         return (site.crs, site.origin, site.rotation) != (was.crs, was.origin, was.rotation)
 
     def _forget(self) -> None:
-        for part in (self.robots, self.commands, self.queues, self.placed_cones, self.observations):
+        for part in (
+            self.robots, self.commands, self.queues, self.plans, self.placed_cones, self.observations,
+        ):  # fmt: skip
             part.clear()
         self.emergency = None
         self.suspensions, self.links = Suspensions(), Links()

@@ -16,6 +16,7 @@ from ...robot_bridge.core.messages import (
     EmergencyStop,
     GetClosures,
     GetCommands,
+    GetPlans,
     GetQueue,
     Hello,
     PositionForm,
@@ -41,7 +42,7 @@ from ..ui.language import tr
 from .command_cache import command_in, commands_in
 from .connection_status import DEFAULT_URL
 from .fleet_state import UpdateBuffer
-from .report_caches import observations_in, placements_in, queues_in
+from .report_caches import observations_in, placements_in, plan_in, plans_in, queues_in
 from .requests import OperatorRequest, RequestResult
 from .robot_table import table_from_frame, table_from_rows
 
@@ -64,6 +65,7 @@ NEWEST_COUNTS = {
 EACH_COUNTS = {
     "command": ("commands", command_in),
     "queue": ("queues", queue_report),
+    "plan": ("plans", plan_in),
     "placement": ("placed_cones", placement_report),
     "observation": ("observations", observation_report),
     "replanned": ("replanned", replanned_robot),
@@ -72,6 +74,8 @@ EACH_COUNTS = {
 
 ALL_QUEUES = "every queue"
 """The key of what asks for all queues when a link begins."""
+ALL_PLANS = "every plan"
+"""The key of what asks for all cone plans when a link begins; older gateways know no such request."""
 
 
 class RequestOutbox:
@@ -106,6 +110,14 @@ class RequestOutbox:
         for order in too_old:
             del self._waiting[order.key]
         return list(self._waiting.values()), too_old
+
+    def largest(self) -> tuple[OperatorRequest | None, int]:
+        """Take out the largest order that still waits, and return it with its bytes; a stop is never it."""
+        sizes = {key: len(json.dumps(one.params)) for key, one in self._waiting.items() if not one.lasting}
+        if not sizes:
+            return None, 0
+        key = max(sizes, key=sizes.__getitem__)
+        return self._waiting.pop(key), sizes[key]
 
     def clear(self) -> list[OperatorRequest]:
         """Take out every order that still waits and return them."""
@@ -151,6 +163,17 @@ class GatewayProtocol:
     def end_link(self) -> None:
         """Send nothing until the next link has been greeted."""
         self.ready = False
+
+    def hand_back_largest(self) -> None:
+        """Hand back the largest order: the gateway ended the link over its size, and would do so again."""
+        order, size = self._outbox.largest()
+        if order is not None:
+            text = tr(
+                "the gateway takes no message as large as this one of {size} kB. Ask for less at once, or "
+                "have largest_message_bytes raised in the site's settings.",
+                size=-(-size // 1000),
+            )
+            self._buffer.add_answer(RequestResult(order, error=text))
 
     def end(self) -> None:
         """Hand back every order that was not answered: nobody will ask for an answer any more."""
@@ -292,6 +315,7 @@ class GatewayProtocol:
             OperatorRequest("get_commands", GetCommands.method, to_json(GetCommands())),
             OperatorRequest("get_closures", GetClosures.method),
             OperatorRequest(ALL_QUEUES, GetQueue.method, to_json(GetQueue())),
+            OperatorRequest(ALL_PLANS, GetPlans.method, to_json(GetPlans())),
         ]
         return [self._request(order) for order in (*first, *orders)]
 
@@ -300,7 +324,10 @@ class GatewayProtocol:
         if "error" in message:
             outdated = _code(message) == OUTDATED
             if outdated:
-                self._buffer.add(queues=queues_in(message["error"].get("data") or {}))
+                newer = message["error"].get("data") or {}
+                self._buffer.add(queues=queues_in(newer), plans=plans_in(newer))
+            if order.key == ALL_PLANS and _code(message) == UNKNOWN_METHOD:
+                self._buffer.add(is_driving=False)
             if waiting is not None:
                 found = _found(message) if _code(message) == OVERRIDABLE else ()
                 self._buffer.add_answer(
@@ -315,6 +342,8 @@ class GatewayProtocol:
         self._buffer.add(
             queues=queues_in(result),
             are_all_queues=order.key == ALL_QUEUES,
+            plans=plans_in(result),
+            is_driving=True if order.key == ALL_PLANS else None,
             commands=commands_in(result),
             placed_cones=placements_in(result),
             observations=observations_in(result),

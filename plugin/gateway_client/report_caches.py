@@ -1,11 +1,14 @@
-"""Queues, placed cones, observations, geofence and nearness: decoded, and as last reported."""
+"""Queues, cone plans, placed cones, observations, geofence and nearness: decoded, and as last reported."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, replace
 from typing import Any
 
+from ...robot_bridge.core.assignment.plan import ConePlan, plan_of_document
 from ...robot_bridge.core.clock import Clock
+from ...robot_bridge.core.errors import PlanFileError
 from ...robot_bridge.core.messages import (
     FenceAlarm,
     Geofence,
@@ -14,9 +17,12 @@ from ...robot_bridge.core.messages import (
     ObservationReport,
     ObservationState,
     PlacementReport,
+    PlanReport,
+    PlanState,
     QueueReport,
     observation_report,
     placement_report,
+    plan_report,
     queue_report,
 )
 from ..ui.language import tr
@@ -73,6 +79,128 @@ def queues_in(values: dict[str, Any]) -> list[QueueReport]:
     if {"robot", "revision", "tasks", "robot_state"} <= values.keys():
         return [queue_report(values)]
     return [queue_report(queue) for queue in values.get("queues") or ()]
+
+
+PLAN_ENDS = (PlanState.FINISHED, PlanState.CLEARED)
+MOST_ENDED_PLANS = 10
+MOST_STOPS = 20_000
+"""of one plan; a gateway drives 5000 cones in one, with stores between them."""
+
+
+@dataclass(frozen=True)
+class KnownPlan:
+    """A cone plan as the gateway reported it last.
+
+    ``document`` is what its robots drive by, ``proposal`` what is proposed of what is left; both as they were
+    at the plan's revision ``whole_at``, which is -1 before they came.
+    """
+
+    report: PlanReport
+    document: ConePlan | None = None
+    proposal: ConePlan | None = None
+    whole_at: int = -1
+
+    @property
+    def plan(self) -> str:
+        """The plan's name."""
+        return self.report.plan
+
+    @property
+    def is_open(self) -> bool:
+        """Whether the gateway drives it."""
+        return self.report.state not in PLAN_ENDS
+
+    @property
+    def is_whole(self) -> bool:
+        """Whether its documents are those of what was reported last."""
+        return self.whole_at == self.report.revision
+
+
+def newer_plan(known: KnownPlan | None, told: KnownPlan) -> KnownPlan:
+    """Return what is known of a plan once ``told`` was heard, which may have been overtaken on its way."""
+    if known is None:
+        return told
+    if told.report.revision < known.report.revision:
+        return known
+    return replace(known, report=told.report) if told.whole_at < 0 else told
+
+
+class PlanCache:
+    """The newest report of each cone plan, by its name; of those that ended only some."""
+
+    def __init__(self) -> None:
+        self._plans: dict[str, KnownPlan] = {}
+        self.is_driving: bool | None = None
+        """Whether this gateway drives cone plans, None before it has said so."""
+
+    def __iter__(self) -> Iterator[KnownPlan]:
+        return iter(self._plans.values())
+
+    def get(self, name: str | None) -> KnownPlan | None:
+        """Return a plan, None for one that is not known."""
+        return None if name is None else self._plans.get(name)
+
+    def open(self) -> list[KnownPlan]:
+        """Return the plans that the gateway drives, the newest first."""
+        return sorted(
+            (one for one in self if one.is_open), key=lambda one: one.report.submitted_at, reverse=True
+        )
+
+    def merge(self, told: Mapping[str, KnownPlan], is_driving: bool | None = None) -> list[str]:
+        """Take in plans by their names and return those of which they tell something new.
+
+        With ``is_driving``, which begins a link, there are no others.
+        """
+        gone: list[str] = []
+        if is_driving is not None:
+            self.is_driving = is_driving
+            gone = [name for name in self._plans if name not in told]
+            for name in gone:
+                del self._plans[name]
+        new = []
+        for name, one in told.items():
+            known = self._plans.get(name)
+            if is_driving is not None and known is not None and one.whole_at < 0:
+                one = replace(known, report=one.report)
+            elif is_driving is None:
+                one = newer_plan(known, one)
+            if one != known:
+                self._plans[name] = one
+                new.append(name)
+        ended = sorted((one for one in self if not one.is_open), key=lambda one: one.report.ended_at or 0.0)
+        for one in ended[: max(0, len(ended) - MOST_ENDED_PLANS)]:
+            del self._plans[one.plan]
+        return [*gone, *new]
+
+    def clear(self) -> None:
+        """Forget everything: it is another site's."""
+        self._plans.clear()
+        self.is_driving = None
+
+
+def plan_in(values: dict[str, Any]) -> KnownPlan:
+    """Return the plan that a gateway sent as JSON.
+
+    :raises KeyError: for what is none; ValueError and TypeError likewise.
+    """
+    if len(values.get("stops") or ()) > MOST_STOPS:
+        raise ValueError(f"plan {values['plan']!r} has more than {MOST_STOPS} stops")
+    report = replace(plan_report(values), document=None, proposal=None)
+    try:
+        document, proposal = (
+            None if values.get(name) is None else plan_of_document(values[name])
+            for name in ("document", "proposal")
+        )
+    except PlanFileError as error:
+        raise ValueError(str(error)) from error
+    return KnownPlan(report, document, proposal, -1 if document is None else report.revision)
+
+
+def plans_in(values: dict[str, Any]) -> list[KnownPlan]:
+    """Return the plans in an answer, or in what comes with a refusal; raises as :func:`plan_in`."""
+    if {"plan", "revision", "state", "submitted_by"} <= values.keys():
+        return [plan_in(values)]
+    return [plan_in(one) for one in values.get("plans") or ()]
 
 
 MOST_PLACEMENTS = 20_000

@@ -98,6 +98,12 @@ class PlanEditor(QObject):
         self.draft = draft
         self.changed.emit()
 
+    def drop(self, draft: PlanProposal) -> None:
+        """Show ``draft`` no longer, if it is the plan; what is being made goes on."""
+        if self.draft is draft:
+            self.draft = None
+            self.changed.emit()
+
     def run(
         self,
         title: str,

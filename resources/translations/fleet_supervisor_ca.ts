@@ -1978,6 +1978,11 @@
             <translation>El que respon a {url} ha enviat una cosa que no és el protocol de la consola: {text} ({kind}: {error}). Comproveu que l'URL porta a una passarel·la de Fleet Supervisor d'aquesta versió.</translation>
         </message>
         <message>
+            <location filename="../../plugin/gateway_client/protocol.py" />
+            <source>the gateway takes no message as large as this one of {size} kB. Ask for less at once, or have largest_message_bytes raised in the site's settings.</source>
+            <translation>la passarel·la no accepta cap missatge tan gran com aquest, de {size} kB. Demaneu menys d'una vegada, o feu apujar largest_message_bytes a la configuració del recinte.</translation>
+        </message>
+        <message>
             <location filename="../../plugin/gateway_client/report_caches.py" />
             <source>Keepouts and obstacles are not watched: the gateway tells nothing of them. It may be older than this plugin.</source>
             <translation>Les zones prohibides i els obstacles no es vigilen: la passarel·la no en diu res. Potser és més antiga que aquest connector.</translation>
@@ -5321,18 +5326,33 @@
         </message>
         <message>
             <location filename="../../plugin/planning/execution.py" />
-            <source>A new plan is sent by itself, as you switched on: {why}</source>
-            <translation>S'envia sol un pla nou, com vau activar: {why}</translation>
+            <source>A new plan was sent by itself, as was switched on: {why}</source>
+            <translation>S'ha enviat un pla nou tot sol, tal com estava activat: {why}</translation>
         </message>
         <message>
             <location filename="../../plugin/planning/execution.py" />
-            <source>An emergency stop is in force. It has to be cleared first.</source>
-            <translation>Hi ha una parada d'emergència en vigor. Abans s'ha d'aixecar.</translation>
+            <source>A plan is being driven. Plan what is left, choose New plan to plan for other robots, or press Clear: nobody follows it then, and robots go on with their queues.</source>
+            <translation>S'està executant un pla. Planifiqueu el que queda, trieu Pla nou per planificar per a altres robots, o premeu Neteja: llavors ningú no el segueix i els robots continuen amb les seves cues.</translation>
         </message>
         <message>
             <location filename="../../plugin/planning/execution.py" />
-            <source>Given up since this plan was made: {cones}. Plan what is left again.</source>
-            <translation>Abandonats des que es va fer aquest pla: {cones}. Torneu a planificar el que queda.</translation>
+            <source>Clearing the cone plan</source>
+            <translation>Esborrat del pla de cons</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/execution.py" />
+            <source>Going on as before</source>
+            <translation>Continuació com abans</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/execution.py" />
+            <source>Going on with the cone plan</source>
+            <translation>Continuació del pla de cons</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/execution.py" />
+            <source>No new cone plan was sent by itself: {why}.</source>
+            <translation>No s'ha enviat tot sol cap pla de cons nou: {why}.</translation>
         </message>
         <message>
             <location filename="../../plugin/planning/execution.py" />
@@ -5341,23 +5361,13 @@
         </message>
         <message>
             <location filename="../../plugin/planning/execution.py" />
-            <source>No queue of the plan is paused, or something is still being sent.</source>
-            <translation>Cap cua del pla no està en pausa, o encara s'està enviant alguna cosa.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/execution.py" />
-            <source>No robot is left to take over: connect one, and plan anew.</source>
-            <translation>No queda cap robot que se'n faci càrrec: connecteu-ne un i torneu a planificar.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/execution.py" />
-            <source>Nothing of the plan waits to be overridden.</source>
-            <translation>Res del pla no espera ser imposat.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/execution.py" />
             <source>Nothing was overridden: what was refused is no longer being sent. Look at the plan.</source>
             <translation>No s'ha imposat res: el que es va rebutjar ja no s'està enviant. Mireu el pla.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/execution.py" />
+            <source>Pause of the cone plan</source>
+            <translation>Pausa del pla de cons</translation>
         </message>
         <message>
             <location filename="../../plugin/planning/execution.py" />
@@ -5371,18 +5381,38 @@
         </message>
         <message>
             <location filename="../../plugin/planning/execution.py" />
+            <source>Sending the cone plan</source>
+            <translation>Enviament del pla de cons</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/execution.py" />
+            <source>The cone plan cannot go on as it is: {why}. Plan what is left.</source>
+            <translation>El pla de cons no pot seguir com és: {why}. Planifiqueu el que queda.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/execution.py" />
             <source>The cone plan is in the robots' queues.</source>
             <translation>El pla de cons és a les cues dels robots.</translation>
         </message>
         <message>
             <location filename="../../plugin/planning/execution.py" />
-            <source>The cone plan is not sent any further. {words}: {found} Override… in the panel Cone plan sends it all the same, where your role may.</source>
-            <translation>El pla de cons no es continua enviant. {words}: {found} Imposa… al tauler Pla de cons ho envia igualment, on el vostre paper ho permeti.</translation>
+            <source>The cone plan is paused: {why}.</source>
+            <translation>El pla de cons està en pausa: {why}.</translation>
         </message>
         <message>
             <location filename="../../plugin/planning/execution.py" />
-            <source>The cone plan was not sent as a whole. {why}</source>
-            <translation>El pla de cons no s'ha enviat sencer. {why}</translation>
+            <source>The cone plan was not sent. {words}: {found} Override… in the panel Cone plan sends it all the same, where your role may.</source>
+            <translation>El pla de cons no s'ha enviat. {words}: {found} Imposa… al tauler Pla de cons ho envia igualment, on el vostre paper ho permeti.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/execution.py" />
+            <source>The gateway is older than this plugin and drives no cone plans: plans are made and looked at here, and nothing of them is sent. Update the gateway, or give robots their cones with Add to queue.</source>
+            <translation>La passarel·la és més antiga que aquest connector i no executa plans de cons: aquí es fan i es miren plans, i no se n'envia res. Actualitzeu la passarel·la, o doneu els cons als robots amb Afegeix a la cua.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/execution.py" />
+            <source>The new cone plan</source>
+            <translation>El pla de cons nou</translation>
         </message>
         <message>
             <location filename="../../plugin/planning/execution.py" />
@@ -5401,18 +5431,8 @@
         </message>
         <message>
             <location filename="../../plugin/planning/execution.py" />
-            <source>its robot is lost</source>
-            <translation>el seu robot s'ha perdut</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/execution.py" />
-            <source>plan of what is left</source>
-            <translation>pla del que queda</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/execution.py" />
-            <source>plan of what is left: {in_words}</source>
-            <translation>pla del que queda: {in_words}</translation>
+            <source>{by} cleared the cone plan: nobody follows it any more, and robots go on with their queues.</source>
+            <translation>{by} ha esborrat el pla de cons: ja ningú no el segueix, i els robots continuen amb les seves cues.</translation>
         </message>
         <message>
             <location filename="../../plugin/planning/forms.py" />
@@ -5630,6 +5650,14 @@
                 <numerusform>{wrong} de %n cons no haurien de ser allà: {text} Tots són a la capa {layer}.</numerusform>
             </translation>
         </message>
+        <message numerus="yes">
+            <location filename="../../plugin/planning/plan_dock.py" />
+            <source>%n ways lead along closed roads</source>
+            <translation>
+                <numerusform>%n camí passa per vies tancades</numerusform>
+                <numerusform>%n camins passen per vies tancades</numerusform>
+            </translation>
+        </message>
         <message>
             <location filename="../../plugin/planning/plan_dock.py" />
             <source>A good plan, within the time that is given</source>
@@ -5637,8 +5665,8 @@
         </message>
         <message>
             <location filename="../../plugin/planning/plan_dock.py" />
-            <source>A plan is being driven. Plan what is left, or press Clear to watch it no more; robots go on with their queues then.</source>
-            <translation>S'està executant un pla. Planifiqueu el que queda, o premeu Neteja per no seguir-lo més; els robots continuen llavors les seves cues.</translation>
+            <source>A new plan, or one that the gateway drives, whoever submitted it</source>
+            <translation>Un pla nou, o un que executa la passarel·la, sigui qui sigui qui l'ha enviat</translation>
         </message>
         <message>
             <location filename="../../plugin/planning/plan_dock.py" />
@@ -5685,6 +5713,11 @@
         </message>
         <message>
             <location filename="../../plugin/planning/plan_dock.py" />
+            <source>Follow the plan no more, at no desk; robots go on with their queues</source>
+            <translation>Deixa de seguir el pla a totes les consoles; els robots continuen amb les seves cues</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/plan_dock.py" />
             <source>Give up what is being planned</source>
             <translation>Abandona el que s'està planificant</translation>
         </message>
@@ -5700,13 +5733,13 @@
         </message>
         <message>
             <location filename="../../plugin/planning/plan_dock.py" />
-            <source>Leave it at what was sent: robots that have their cones by now go on with them</source>
-            <translation>Ho deixa amb el que s'ha enviat: els robots que ja tenen els seus cons hi continuen</translation>
+            <source>Let them go on</source>
+            <translation>Que continuïn</translation>
         </message>
         <message>
             <location filename="../../plugin/planning/plan_dock.py" />
-            <source>Let them go on</source>
-            <translation>Que continuïn</translation>
+            <source>New plan</source>
+            <translation>Pla nou</translation>
         </message>
         <message>
             <location filename="../../plugin/planning/plan_dock.py" />
@@ -5720,11 +5753,6 @@
         </message>
         <message>
             <location filename="../../plugin/planning/plan_dock.py" />
-            <source>Not sent as a whole yet</source>
-            <translation>Encara no s'ha enviat sencer</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/plan_dock.py" />
             <source>Not sent yet: {summary}</source>
             <translation>Encara no enviat: {summary}</translation>
         </message>
@@ -5732,6 +5760,11 @@
             <location filename="../../plugin/planning/plan_dock.py" />
             <source>Override…</source>
             <translation>Imposa…</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/plan_dock.py" />
+            <source>Pause the plan</source>
+            <translation>Pausa el pla</translation>
         </message>
         <message>
             <location filename="../../plugin/planning/plan_dock.py" />
@@ -5775,18 +5808,18 @@
         </message>
         <message>
             <location filename="../../plugin/planning/plan_dock.py" />
-            <source>Send no more</source>
-            <translation>No enviïs més</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/plan_dock.py" />
             <source>Send the cone plan</source>
             <translation>Envia el pla de cons</translation>
         </message>
         <message>
             <location filename="../../plugin/planning/plan_dock.py" />
-            <source>Send the plan on in spite of what was found; asks why</source>
-            <translation>Continua enviant el pla malgrat el que s'ha trobat; demana per què</translation>
+            <source>Send the plan in spite of what was found; asks why</source>
+            <translation>Envia el pla malgrat el que s'ha trobat; en demana el motiu</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/plan_dock.py" />
+            <source>Send the plan's robots no further task; what they are doing they finish</source>
+            <translation>No s'envia cap més tasca als robots del pla; acaben el que estan fent</translation>
         </message>
         <message>
             <location filename="../../plugin/planning/plan_dock.py" />
@@ -5800,8 +5833,8 @@
         </message>
         <message>
             <location filename="../../plugin/planning/plan_dock.py" />
-            <source>The plan is sent on at once, and robots set off.</source>
-            <translation>El pla es continua enviant de seguida, i els robots es posen en marxa.</translation>
+            <source>The plan is sent at once, and robots set off.</source>
+            <translation>El pla s'envia de seguida, i els robots es posen en marxa.</translation>
         </message>
         <message numerus="yes">
             <location filename="../../plugin/planning/plan_dock.py" />
@@ -5813,8 +5846,21 @@
         </message>
         <message>
             <location filename="../../plugin/planning/plan_dock.py" />
+            <source>What is left is being planned …</source>
+            <translation>S'està planificant el que queda …</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/plan_dock.py" />
             <source>When a robot is lost or a cone fails, plan what is left and send it by itself</source>
             <translation>Quan es perd un robot o falla un con, planifica el que queda i ho envia sol</translation>
+        </message>
+        <message numerus="yes">
+            <location filename="../../plugin/planning/plan_dock.py" />
+            <source>robots come too near to one another at %n places</source>
+            <translation>
+                <numerusform>els robots s'acosten massa entre ells en %n lloc</numerusform>
+                <numerusform>els robots s'acosten massa entre ells en %n llocs</numerusform>
+            </translation>
         </message>
         <message>
             <location filename="../../plugin/planning/plan_dock.py" />
@@ -6039,6 +6085,11 @@
         </message>
         <message>
             <location filename="../../plugin/planning/plan_views.py" />
+            <source>{by}, {time}: {robots}</source>
+            <translation>{by}, {time}: {robots}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/plan_views.py" />
             <source>{cones}, {robots}, {metres:.0f} m, done after {span} ({method}, along {travel})</source>
             <translation>{cones}, {robots}, {metres:.0f} m, fet en {span} ({method}, per {travel})</translation>
         </message>
@@ -6072,18 +6123,13 @@
         </message>
         <message>
             <location filename="../../plugin/planning/progress.py" />
-            <source>Placed cones of the plan</source>
-            <translation>Cons col·locats del pla</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/progress.py" />
-            <source>The cone plan cannot go on as it is: {why}. Plan what is left.</source>
-            <translation>El pla de cons no pot seguir com és: {why}. Planifiqueu el que queda.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/progress.py" />
             <source>cone {cone} failed{why}</source>
             <translation>el con {cone} ha fallat{why}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/progress.py" />
+            <source>the way of {robot} to {stop} leads along a closed road{why}</source>
+            <translation>el camí de {robot} a {stop} passa per una via tancada{why}</translation>
         </message>
         <message>
             <location filename="../../plugin/planning/progress.py" />
@@ -6106,36 +6152,6 @@
             <location filename="../../plugin/planning/proposal.py" />
             <source>{robot} and {other} come within {metres:.1f} m at {x:.0f}, {y:.0f} m after {minutes}:{seconds:02d}</source>
             <translation>{robot} i {other} s'acosten a {metres:.1f} m a {x:.0f}, {y:.0f} m al cap de {minutes}:{seconds:02d}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/queue_steps.py" />
-            <source>holding {robot}</source>
-            <translation>retenir {robot}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/queue_steps.py" />
-            <source>letting {robot} go on</source>
-            <translation>deixar continuar {robot}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/queue_steps.py" />
-            <source>taking over from {lost}</source>
-            <translation>rellevar {lost}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/queue_steps.py" />
-            <source>the queue of {robot}</source>
-            <translation>la cua de {robot}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/queue_steps.py" />
-            <source>{why} Done before: {done}.</source>
-            <translation>{why} Fet abans: {done}.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/queue_steps.py" />
-            <source>{why} Not done therefore: {left}.</source>
-            <translation>{why} Per això no s'ha fet: {left}.</translation>
         </message>
         <message>
             <location filename="../../plugin/planning/travel.py" />

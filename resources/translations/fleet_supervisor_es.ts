@@ -1978,6 +1978,11 @@
             <translation>Lo que responde en {url} envió algo que no es el protocolo de la consola: {text} ({kind}: {error}). Compruebe que la URL lleva a una pasarela de Fleet Supervisor de esta versión.</translation>
         </message>
         <message>
+            <location filename="../../plugin/gateway_client/protocol.py" />
+            <source>the gateway takes no message as large as this one of {size} kB. Ask for less at once, or have largest_message_bytes raised in the site's settings.</source>
+            <translation>la pasarela no acepta ningún mensaje tan grande como este, de {size} kB. Pida menos de una vez, o haga subir largest_message_bytes en la configuración del recinto.</translation>
+        </message>
+        <message>
             <location filename="../../plugin/gateway_client/report_caches.py" />
             <source>Keepouts and obstacles are not watched: the gateway tells nothing of them. It may be older than this plugin.</source>
             <translation>Las zonas prohibidas y los obstáculos no se vigilan: la pasarela no dice nada de ellos. Puede que sea más antigua que este complemento.</translation>
@@ -5321,18 +5326,33 @@
         </message>
         <message>
             <location filename="../../plugin/planning/execution.py" />
-            <source>A new plan is sent by itself, as you switched on: {why}</source>
-            <translation>Se envía solo un plan nuevo, como activó: {why}</translation>
+            <source>A new plan was sent by itself, as was switched on: {why}</source>
+            <translation>Se ha enviado un plan nuevo por sí solo, como estaba activado: {why}</translation>
         </message>
         <message>
             <location filename="../../plugin/planning/execution.py" />
-            <source>An emergency stop is in force. It has to be cleared first.</source>
-            <translation>Hay una parada de emergencia en vigor. Antes hay que levantarla.</translation>
+            <source>A plan is being driven. Plan what is left, choose New plan to plan for other robots, or press Clear: nobody follows it then, and robots go on with their queues.</source>
+            <translation>Se está ejecutando un plan. Planifique lo que queda, elija Plan nuevo para planificar para otros robots, o pulse Limpiar: entonces nadie lo sigue y los robots continúan con sus colas.</translation>
         </message>
         <message>
             <location filename="../../plugin/planning/execution.py" />
-            <source>Given up since this plan was made: {cones}. Plan what is left again.</source>
-            <translation>Abandonados desde que se hizo este plan: {cones}. Vuelva a planificar lo que queda.</translation>
+            <source>Clearing the cone plan</source>
+            <translation>Borrado del plan de conos</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/execution.py" />
+            <source>Going on as before</source>
+            <translation>Continuación como antes</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/execution.py" />
+            <source>Going on with the cone plan</source>
+            <translation>Continuación del plan de conos</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/execution.py" />
+            <source>No new cone plan was sent by itself: {why}.</source>
+            <translation>No se ha enviado por sí solo ningún plan de conos nuevo: {why}.</translation>
         </message>
         <message>
             <location filename="../../plugin/planning/execution.py" />
@@ -5341,23 +5361,13 @@
         </message>
         <message>
             <location filename="../../plugin/planning/execution.py" />
-            <source>No queue of the plan is paused, or something is still being sent.</source>
-            <translation>Ninguna cola del plan está en pausa, o aún se está enviando algo.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/execution.py" />
-            <source>No robot is left to take over: connect one, and plan anew.</source>
-            <translation>No queda ningún robot que lo asuma: conecte uno y planifique de nuevo.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/execution.py" />
-            <source>Nothing of the plan waits to be overridden.</source>
-            <translation>Nada del plan espera ser impuesto.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/execution.py" />
             <source>Nothing was overridden: what was refused is no longer being sent. Look at the plan.</source>
             <translation>No se impuso nada: lo que se rechazó ya no se está enviando. Mire el plan.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/execution.py" />
+            <source>Pause of the cone plan</source>
+            <translation>Pausa del plan de conos</translation>
         </message>
         <message>
             <location filename="../../plugin/planning/execution.py" />
@@ -5371,18 +5381,38 @@
         </message>
         <message>
             <location filename="../../plugin/planning/execution.py" />
+            <source>Sending the cone plan</source>
+            <translation>Envío del plan de conos</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/execution.py" />
+            <source>The cone plan cannot go on as it is: {why}. Plan what is left.</source>
+            <translation>El plan de conos no puede seguir como está: {why}. Planifique lo que queda.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/execution.py" />
             <source>The cone plan is in the robots' queues.</source>
             <translation>El plan de conos está en las colas de los robots.</translation>
         </message>
         <message>
             <location filename="../../plugin/planning/execution.py" />
-            <source>The cone plan is not sent any further. {words}: {found} Override… in the panel Cone plan sends it all the same, where your role may.</source>
-            <translation>El plan de conos no se sigue enviando. {words}: {found} Imponer… en el panel Plan de conos lo envía de todos modos, donde su papel lo permita.</translation>
+            <source>The cone plan is paused: {why}.</source>
+            <translation>El plan de conos está en pausa: {why}.</translation>
         </message>
         <message>
             <location filename="../../plugin/planning/execution.py" />
-            <source>The cone plan was not sent as a whole. {why}</source>
-            <translation>El plan de conos no se envió entero. {why}</translation>
+            <source>The cone plan was not sent. {words}: {found} Override… in the panel Cone plan sends it all the same, where your role may.</source>
+            <translation>El plan de conos no se ha enviado. {words}: {found} Imponer… en el panel Plan de conos lo envía de todos modos, donde su papel lo permita.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/execution.py" />
+            <source>The gateway is older than this plugin and drives no cone plans: plans are made and looked at here, and nothing of them is sent. Update the gateway, or give robots their cones with Add to queue.</source>
+            <translation>La pasarela es más antigua que este complemento y no ejecuta planes de conos: aquí se hacen y se miran planes, y no se envía nada de ellos. Actualice la pasarela, o dé los conos a los robots con Añadir a la cola.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/execution.py" />
+            <source>The new cone plan</source>
+            <translation>El plan de conos nuevo</translation>
         </message>
         <message>
             <location filename="../../plugin/planning/execution.py" />
@@ -5401,18 +5431,8 @@
         </message>
         <message>
             <location filename="../../plugin/planning/execution.py" />
-            <source>its robot is lost</source>
-            <translation>su robot se ha perdido</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/execution.py" />
-            <source>plan of what is left</source>
-            <translation>plan de lo que queda</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/execution.py" />
-            <source>plan of what is left: {in_words}</source>
-            <translation>plan de lo que queda: {in_words}</translation>
+            <source>{by} cleared the cone plan: nobody follows it any more, and robots go on with their queues.</source>
+            <translation>{by} ha borrado el plan de conos: ya nadie lo sigue, y los robots continúan con sus colas.</translation>
         </message>
         <message>
             <location filename="../../plugin/planning/forms.py" />
@@ -5630,6 +5650,14 @@
                 <numerusform>{wrong} de %n conos no deberían estar ahí: {text} Todos están en la capa {layer}.</numerusform>
             </translation>
         </message>
+        <message numerus="yes">
+            <location filename="../../plugin/planning/plan_dock.py" />
+            <source>%n ways lead along closed roads</source>
+            <translation>
+                <numerusform>%n camino pasa por vías cerradas</numerusform>
+                <numerusform>%n caminos pasan por vías cerradas</numerusform>
+            </translation>
+        </message>
         <message>
             <location filename="../../plugin/planning/plan_dock.py" />
             <source>A good plan, within the time that is given</source>
@@ -5637,8 +5665,8 @@
         </message>
         <message>
             <location filename="../../plugin/planning/plan_dock.py" />
-            <source>A plan is being driven. Plan what is left, or press Clear to watch it no more; robots go on with their queues then.</source>
-            <translation>Se está ejecutando un plan. Planifique lo que queda, o pulse Limpiar para no seguirlo más; los robots continúan entonces sus colas.</translation>
+            <source>A new plan, or one that the gateway drives, whoever submitted it</source>
+            <translation>Un plan nuevo, o uno que ejecuta la pasarela, lo haya enviado quien sea</translation>
         </message>
         <message>
             <location filename="../../plugin/planning/plan_dock.py" />
@@ -5685,6 +5713,11 @@
         </message>
         <message>
             <location filename="../../plugin/planning/plan_dock.py" />
+            <source>Follow the plan no more, at no desk; robots go on with their queues</source>
+            <translation>Deja de seguir el plan en todas las consolas; los robots continúan con sus colas</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/plan_dock.py" />
             <source>Give up what is being planned</source>
             <translation>Abandonar lo que se está planificando</translation>
         </message>
@@ -5700,13 +5733,13 @@
         </message>
         <message>
             <location filename="../../plugin/planning/plan_dock.py" />
-            <source>Leave it at what was sent: robots that have their cones by now go on with them</source>
-            <translation>Dejarlo en lo enviado: los robots que ya tienen sus conos siguen con ellos</translation>
+            <source>Let them go on</source>
+            <translation>Que continúen</translation>
         </message>
         <message>
             <location filename="../../plugin/planning/plan_dock.py" />
-            <source>Let them go on</source>
-            <translation>Que continúen</translation>
+            <source>New plan</source>
+            <translation>Plan nuevo</translation>
         </message>
         <message>
             <location filename="../../plugin/planning/plan_dock.py" />
@@ -5720,11 +5753,6 @@
         </message>
         <message>
             <location filename="../../plugin/planning/plan_dock.py" />
-            <source>Not sent as a whole yet</source>
-            <translation>Aún no se ha enviado entero</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/plan_dock.py" />
             <source>Not sent yet: {summary}</source>
             <translation>Aún no enviado: {summary}</translation>
         </message>
@@ -5732,6 +5760,11 @@
             <location filename="../../plugin/planning/plan_dock.py" />
             <source>Override…</source>
             <translation>Imponer…</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/plan_dock.py" />
+            <source>Pause the plan</source>
+            <translation>Pausar el plan</translation>
         </message>
         <message>
             <location filename="../../plugin/planning/plan_dock.py" />
@@ -5775,18 +5808,18 @@
         </message>
         <message>
             <location filename="../../plugin/planning/plan_dock.py" />
-            <source>Send no more</source>
-            <translation>No enviar más</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/plan_dock.py" />
             <source>Send the cone plan</source>
             <translation>Enviar el plan de conos</translation>
         </message>
         <message>
             <location filename="../../plugin/planning/plan_dock.py" />
-            <source>Send the plan on in spite of what was found; asks why</source>
-            <translation>Seguir enviando el plan a pesar de lo hallado; pregunta por qué</translation>
+            <source>Send the plan in spite of what was found; asks why</source>
+            <translation>Envía el plan a pesar de lo encontrado; pregunta el motivo</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/plan_dock.py" />
+            <source>Send the plan's robots no further task; what they are doing they finish</source>
+            <translation>No se envía ninguna tarea más a los robots del plan; terminan lo que están haciendo</translation>
         </message>
         <message>
             <location filename="../../plugin/planning/plan_dock.py" />
@@ -5800,8 +5833,8 @@
         </message>
         <message>
             <location filename="../../plugin/planning/plan_dock.py" />
-            <source>The plan is sent on at once, and robots set off.</source>
-            <translation>El plan se sigue enviando enseguida y los robots se ponen en marcha.</translation>
+            <source>The plan is sent at once, and robots set off.</source>
+            <translation>El plan se envía enseguida, y los robots se ponen en marcha.</translation>
         </message>
         <message numerus="yes">
             <location filename="../../plugin/planning/plan_dock.py" />
@@ -5813,8 +5846,21 @@
         </message>
         <message>
             <location filename="../../plugin/planning/plan_dock.py" />
+            <source>What is left is being planned …</source>
+            <translation>Se está planificando lo que queda …</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/plan_dock.py" />
             <source>When a robot is lost or a cone fails, plan what is left and send it by itself</source>
             <translation>Cuando se pierde un robot o falla un cono, planifica lo que queda y lo envía solo</translation>
+        </message>
+        <message numerus="yes">
+            <location filename="../../plugin/planning/plan_dock.py" />
+            <source>robots come too near to one another at %n places</source>
+            <translation>
+                <numerusform>los robots se acercan demasiado entre sí en %n lugar</numerusform>
+                <numerusform>los robots se acercan demasiado entre sí en %n lugares</numerusform>
+            </translation>
         </message>
         <message>
             <location filename="../../plugin/planning/plan_dock.py" />
@@ -6039,6 +6085,11 @@
         </message>
         <message>
             <location filename="../../plugin/planning/plan_views.py" />
+            <source>{by}, {time}: {robots}</source>
+            <translation>{by}, {time}: {robots}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/plan_views.py" />
             <source>{cones}, {robots}, {metres:.0f} m, done after {span} ({method}, along {travel})</source>
             <translation>{cones}, {robots}, {metres:.0f} m, hecho en {span} ({method}, por {travel})</translation>
         </message>
@@ -6072,18 +6123,13 @@
         </message>
         <message>
             <location filename="../../plugin/planning/progress.py" />
-            <source>Placed cones of the plan</source>
-            <translation>Conos colocados del plan</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/progress.py" />
-            <source>The cone plan cannot go on as it is: {why}. Plan what is left.</source>
-            <translation>El plan de conos no puede seguir como está: {why}. Planifique lo que queda.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/progress.py" />
             <source>cone {cone} failed{why}</source>
             <translation>el cono {cone} falló{why}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/progress.py" />
+            <source>the way of {robot} to {stop} leads along a closed road{why}</source>
+            <translation>el camino de {robot} a {stop} pasa por una vía cerrada{why}</translation>
         </message>
         <message>
             <location filename="../../plugin/planning/progress.py" />
@@ -6106,36 +6152,6 @@
             <location filename="../../plugin/planning/proposal.py" />
             <source>{robot} and {other} come within {metres:.1f} m at {x:.0f}, {y:.0f} m after {minutes}:{seconds:02d}</source>
             <translation>{robot} y {other} se acercan a {metres:.1f} m en {x:.0f}, {y:.0f} m al cabo de {minutes}:{seconds:02d}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/queue_steps.py" />
-            <source>holding {robot}</source>
-            <translation>retener a {robot}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/queue_steps.py" />
-            <source>letting {robot} go on</source>
-            <translation>dejar continuar a {robot}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/queue_steps.py" />
-            <source>taking over from {lost}</source>
-            <translation>relevar a {lost}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/queue_steps.py" />
-            <source>the queue of {robot}</source>
-            <translation>la cola de {robot}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/queue_steps.py" />
-            <source>{why} Done before: {done}.</source>
-            <translation>{why} Hecho antes: {done}.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/queue_steps.py" />
-            <source>{why} Not done therefore: {left}.</source>
-            <translation>{why} Por eso no se hizo: {left}.</translation>
         </message>
         <message>
             <location filename="../../plugin/planning/travel.py" />

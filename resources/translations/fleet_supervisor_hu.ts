@@ -1970,6 +1970,11 @@
             <translation>Ami a(z) {url} címen válaszol, olyasmit küldött, ami nem a kezelőpult protokollja: {text} ({kind}: {error}). Ellenőrizze, hogy az URL ugyanilyen verziójú Fleet Supervisor-átjáróra mutat-e.</translation>
         </message>
         <message>
+            <location filename="../../plugin/gateway_client/protocol.py" />
+            <source>the gateway takes no message as large as this one of {size} kB. Ask for less at once, or have largest_message_bytes raised in the site's settings.</source>
+            <translation>az átjáró nem fogad ekkora, {size} kB-os üzenetet. Kérjen egyszerre kevesebbet, vagy emeltesse meg a largest_message_bytes értékét a telephely beállításaiban.</translation>
+        </message>
+        <message>
             <location filename="../../plugin/gateway_client/report_caches.py" />
             <source>Keepouts and obstacles are not watched: the gateway tells nothing of them. It may be older than this plugin.</source>
             <translation>A tiltott területeket és akadályokat senki nem figyeli: az átjáró semmit sem mond róluk. Lehet, hogy régebbi ennél a modulnál.</translation>
@@ -5290,18 +5295,33 @@
         </message>
         <message>
             <location filename="../../plugin/planning/execution.py" />
-            <source>A new plan is sent by itself, as you switched on: {why}</source>
-            <translation>Új terv megy ki magától, ahogy bekapcsolta: {why}</translation>
+            <source>A new plan was sent by itself, as was switched on: {why}</source>
+            <translation>Új terv ment ki magától, ahogy be volt kapcsolva: {why}</translation>
         </message>
         <message>
             <location filename="../../plugin/planning/execution.py" />
-            <source>An emergency stop is in force. It has to be cleared first.</source>
-            <translation>Vészleállítás van érvényben. Előbb fel kell oldani.</translation>
+            <source>A plan is being driven. Plan what is left, choose New plan to plan for other robots, or press Clear: nobody follows it then, and robots go on with their queues.</source>
+            <translation>Egy terv végrehajtás alatt van. Tervezze meg a maradékot, más robotoknak az Új terv választásával tervezzen, vagy nyomja meg a Törlést: akkor senki sem követi, és a robotok folytatják várólistáikat.</translation>
         </message>
         <message>
             <location filename="../../plugin/planning/execution.py" />
-            <source>Given up since this plan was made: {cones}. Plan what is left again.</source>
-            <translation>A terv elkészülte óta feladva: {cones}. Tervezze újra, ami hátravan.</translation>
+            <source>Clearing the cone plan</source>
+            <translation>A bójaterv törlése</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/execution.py" />
+            <source>Going on as before</source>
+            <translation>Folytatás a régi szerint</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/execution.py" />
+            <source>Going on with the cone plan</source>
+            <translation>A bójaterv folytatása</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/execution.py" />
+            <source>No new cone plan was sent by itself: {why}.</source>
+            <translation>Nem ment ki magától új bójaterv: {why}.</translation>
         </message>
         <message>
             <location filename="../../plugin/planning/execution.py" />
@@ -5310,23 +5330,13 @@
         </message>
         <message>
             <location filename="../../plugin/planning/execution.py" />
-            <source>No queue of the plan is paused, or something is still being sent.</source>
-            <translation>A terv egyik várólistája sem szünetel, vagy még küldés folyik.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/execution.py" />
-            <source>No robot is left to take over: connect one, and plan anew.</source>
-            <translation>Nem maradt robot, amely átvenné: kapcsoljon be egyet, és tervezzen újra.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/execution.py" />
-            <source>Nothing of the plan waits to be overridden.</source>
-            <translation>A tervből semmi sem vár felülbírálásra.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/execution.py" />
             <source>Nothing was overridden: what was refused is no longer being sent. Look at the plan.</source>
             <translation>Semmi sem lett felülbírálva: amit az átjáró visszautasított, azt már nem küldi senki. Nézze meg a tervet.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/execution.py" />
+            <source>Pause of the cone plan</source>
+            <translation>A bójaterv szüneteltetése</translation>
         </message>
         <message>
             <location filename="../../plugin/planning/execution.py" />
@@ -5340,18 +5350,38 @@
         </message>
         <message>
             <location filename="../../plugin/planning/execution.py" />
+            <source>Sending the cone plan</source>
+            <translation>A bójaterv elküldése</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/execution.py" />
+            <source>The cone plan cannot go on as it is: {why}. Plan what is left.</source>
+            <translation>A bójaterv így nem folytatható: {why}. Tervezze meg a maradékot.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/execution.py" />
             <source>The cone plan is in the robots' queues.</source>
             <translation>A bójaterv a robotok várólistáin van.</translation>
         </message>
         <message>
             <location filename="../../plugin/planning/execution.py" />
-            <source>The cone plan is not sent any further. {words}: {found} Override… in the panel Cone plan sends it all the same, where your role may.</source>
-            <translation>A bójaterv küldése megállt. {words}: {found} A Bójaterv panelen a Felülbírálás… mégis elküldi, ha a szerepe engedi.</translation>
+            <source>The cone plan is paused: {why}.</source>
+            <translation>A bójaterv szünetel: {why}.</translation>
         </message>
         <message>
             <location filename="../../plugin/planning/execution.py" />
-            <source>The cone plan was not sent as a whole. {why}</source>
-            <translation>A bójaterv nem ment el egészben. {why}</translation>
+            <source>The cone plan was not sent. {words}: {found} Override… in the panel Cone plan sends it all the same, where your role may.</source>
+            <translation>A bójaterv nem ment el. {words}: {found} A Bójaterv panelen a Felülbírálás… mégis elküldi, ha a szerepe engedi.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/execution.py" />
+            <source>The gateway is older than this plugin and drives no cone plans: plans are made and looked at here, and nothing of them is sent. Update the gateway, or give robots their cones with Add to queue.</source>
+            <translation>Az átjáró régebbi, mint ez a bővítmény, és nem hajt végre bójaterveket: terveket itt lehet készíteni és megnézni, de semmi sem megy ki belőlük. Frissítse az átjárót, vagy a Várólistára gombbal adjon bójákat a robotoknak.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/execution.py" />
+            <source>The new cone plan</source>
+            <translation>Az új bójaterv</translation>
         </message>
         <message>
             <location filename="../../plugin/planning/execution.py" />
@@ -5370,18 +5400,8 @@
         </message>
         <message>
             <location filename="../../plugin/planning/execution.py" />
-            <source>its robot is lost</source>
-            <translation>a robotja elveszett</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/execution.py" />
-            <source>plan of what is left</source>
-            <translation>a maradék terve</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/execution.py" />
-            <source>plan of what is left: {in_words}</source>
-            <translation>a maradék terve: {in_words}</translation>
+            <source>{by} cleared the cone plan: nobody follows it any more, and robots go on with their queues.</source>
+            <translation>{by} törölte a bójatervet: senki sem követi már, és a robotok folytatják várólistáikat.</translation>
         </message>
         <message>
             <location filename="../../plugin/planning/forms.py" />
@@ -5597,6 +5617,13 @@
                 <numerusform>%n bójából {wrong} nem állhat ott: {text} Mind a(z) {layer} rétegben van.</numerusform>
             </translation>
         </message>
+        <message numerus="yes">
+            <location filename="../../plugin/planning/plan_dock.py" />
+            <source>%n ways lead along closed roads</source>
+            <translation>
+                <numerusform>%n út vezet lezárt utakon</numerusform>
+            </translation>
+        </message>
         <message>
             <location filename="../../plugin/planning/plan_dock.py" />
             <source>A good plan, within the time that is given</source>
@@ -5604,8 +5631,8 @@
         </message>
         <message>
             <location filename="../../plugin/planning/plan_dock.py" />
-            <source>A plan is being driven. Plan what is left, or press Clear to watch it no more; robots go on with their queues then.</source>
-            <translation>Egy terv végrehajtás alatt van. Tervezze meg a maradékot, vagy a Törléssel ne figyelje tovább; a robotok akkor folytatják várólistáikat.</translation>
+            <source>A new plan, or one that the gateway drives, whoever submitted it</source>
+            <translation>Új terv, vagy egy, amelyet az átjáró hajt végre, bárki küldte is</translation>
         </message>
         <message>
             <location filename="../../plugin/planning/plan_dock.py" />
@@ -5651,6 +5678,11 @@
         </message>
         <message>
             <location filename="../../plugin/planning/plan_dock.py" />
+            <source>Follow the plan no more, at no desk; robots go on with their queues</source>
+            <translation>A tervet egyik kezelőpult sem követi tovább; a robotok folytatják várólistáikat</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/plan_dock.py" />
             <source>Give up what is being planned</source>
             <translation>A folyó tervezés feladása</translation>
         </message>
@@ -5666,13 +5698,13 @@
         </message>
         <message>
             <location filename="../../plugin/planning/plan_dock.py" />
-            <source>Leave it at what was sent: robots that have their cones by now go on with them</source>
-            <translation>Marad, ami elment: amelyik robot már megkapta a bójáit, az folytatja</translation>
+            <source>Let them go on</source>
+            <translation>Folytassák</translation>
         </message>
         <message>
             <location filename="../../plugin/planning/plan_dock.py" />
-            <source>Let them go on</source>
-            <translation>Folytassák</translation>
+            <source>New plan</source>
+            <translation>Új terv</translation>
         </message>
         <message>
             <location filename="../../plugin/planning/plan_dock.py" />
@@ -5686,11 +5718,6 @@
         </message>
         <message>
             <location filename="../../plugin/planning/plan_dock.py" />
-            <source>Not sent as a whole yet</source>
-            <translation>Még nem ment el egészben</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/plan_dock.py" />
             <source>Not sent yet: {summary}</source>
             <translation>Még nincs elküldve: {summary}</translation>
         </message>
@@ -5698,6 +5725,11 @@
             <location filename="../../plugin/planning/plan_dock.py" />
             <source>Override…</source>
             <translation>Felülbírálás…</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/plan_dock.py" />
+            <source>Pause the plan</source>
+            <translation>Terv szünete</translation>
         </message>
         <message>
             <location filename="../../plugin/planning/plan_dock.py" />
@@ -5741,18 +5773,18 @@
         </message>
         <message>
             <location filename="../../plugin/planning/plan_dock.py" />
-            <source>Send no more</source>
-            <translation>Nem küld többet</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/plan_dock.py" />
             <source>Send the cone plan</source>
             <translation>A bójaterv küldése</translation>
         </message>
         <message>
             <location filename="../../plugin/planning/plan_dock.py" />
-            <source>Send the plan on in spite of what was found; asks why</source>
-            <translation>A terv küldésének folytatása annak ellenére, amit az ellenőrzés talált; megkérdezi, miért</translation>
+            <source>Send the plan in spite of what was found; asks why</source>
+            <translation>A terv elküldése annak ellenére, amit az ellenőrzés talált; megkérdezi, miért</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/plan_dock.py" />
+            <source>Send the plan's robots no further task; what they are doing they finish</source>
+            <translation>A terv robotjai nem kapnak több feladatot; amit végeznek, azt befejezik</translation>
         </message>
         <message>
             <location filename="../../plugin/planning/plan_dock.py" />
@@ -5766,8 +5798,8 @@
         </message>
         <message>
             <location filename="../../plugin/planning/plan_dock.py" />
-            <source>The plan is sent on at once, and robots set off.</source>
-            <translation>A terv küldése azonnal folytatódik, és a robotok elindulnak.</translation>
+            <source>The plan is sent at once, and robots set off.</source>
+            <translation>A terv azonnal elmegy, és a robotok elindulnak.</translation>
         </message>
         <message numerus="yes">
             <location filename="../../plugin/planning/plan_dock.py" />
@@ -5778,8 +5810,20 @@
         </message>
         <message>
             <location filename="../../plugin/planning/plan_dock.py" />
+            <source>What is left is being planned …</source>
+            <translation>A maradék tervezése folyik …</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/plan_dock.py" />
             <source>When a robot is lost or a cone fails, plan what is left and send it by itself</source>
             <translation>Ha egy robot elveszik vagy egy bója nem sikerül, megtervezi a maradékot, és magától elküldi</translation>
+        </message>
+        <message numerus="yes">
+            <location filename="../../plugin/planning/plan_dock.py" />
+            <source>robots come too near to one another at %n places</source>
+            <translation>
+                <numerusform>a robotok %n helyen túl közel kerülnek egymáshoz</numerusform>
+            </translation>
         </message>
         <message>
             <location filename="../../plugin/planning/plan_dock.py" />
@@ -6002,6 +6046,11 @@
         </message>
         <message>
             <location filename="../../plugin/planning/plan_views.py" />
+            <source>{by}, {time}: {robots}</source>
+            <translation>{by}, {time}: {robots}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/plan_views.py" />
             <source>{cones}, {robots}, {metres:.0f} m, done after {span} ({method}, along {travel})</source>
             <translation>{cones}, {robots}, {metres:.0f} m, kész {span} után ({method}, {travel} mentén)</translation>
         </message>
@@ -6034,18 +6083,13 @@
         </message>
         <message>
             <location filename="../../plugin/planning/progress.py" />
-            <source>Placed cones of the plan</source>
-            <translation>A terv kihelyezett bójái</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/progress.py" />
-            <source>The cone plan cannot go on as it is: {why}. Plan what is left.</source>
-            <translation>A bójaterv így nem folytatható: {why}. Tervezze meg a maradékot.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/progress.py" />
             <source>cone {cone} failed{why}</source>
             <translation>{cone} bója sikertelen{why}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/progress.py" />
+            <source>the way of {robot} to {stop} leads along a closed road{why}</source>
+            <translation>{robot} útja ide: {stop}, lezárt úton vezet{why}</translation>
         </message>
         <message>
             <location filename="../../plugin/planning/progress.py" />
@@ -6068,36 +6112,6 @@
             <location filename="../../plugin/planning/proposal.py" />
             <source>{robot} and {other} come within {metres:.1f} m at {x:.0f}, {y:.0f} m after {minutes}:{seconds:02d}</source>
             <translation>{robot} és {other} {metres:.1f} m-re közelítik meg egymást itt: {x:.0f}, {y:.0f} m, {minutes}:{seconds:02d} után</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/queue_steps.py" />
-            <source>holding {robot}</source>
-            <translation>{robot} visszatartása</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/queue_steps.py" />
-            <source>letting {robot} go on</source>
-            <translation>{robot} továbbengedése</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/queue_steps.py" />
-            <source>taking over from {lost}</source>
-            <translation>átvétel ettől: {lost}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/queue_steps.py" />
-            <source>the queue of {robot}</source>
-            <translation>{robot} várólistája</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/queue_steps.py" />
-            <source>{why} Done before: {done}.</source>
-            <translation>{why} Előtte megtörtént: {done}.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/queue_steps.py" />
-            <source>{why} Not done therefore: {left}.</source>
-            <translation>{why} Ezért nem történt meg: {left}.</translation>
         </message>
         <message>
             <location filename="../../plugin/planning/travel.py" />

@@ -177,15 +177,6 @@ class PlanProgress:
         found = self._newest(target)
         return (found.reason or "") if found is not None and found.state in _GIVEN_UP else ""
 
-    def remark_on(self, target: str) -> str:
-        """Return what is said of a cone: why it failed, was given up, or is not begun yet."""
-        if target in self.done:
-            return ""
-        found = self._newest(target)
-        if found is None or found.state not in (*_GIVEN_UP, TaskState.WAITING):
-            return ""
-        return found.reason or ""
-
     def is_finished(self, plan: ConePlan) -> bool:
         """Tell whether every cone of ``plan`` is done or left out."""
         out = {one.target.id for one in plan.left_out}

@@ -215,7 +215,7 @@ class ClearPlan:
 @dataclass(frozen=True)
 class PlanStopReport:
     """A stop of a plan: who makes it as which task, and what became of that; ``id`` is the cone's, the
-    store's, or at ``home`` the robot's."""
+    store's, or at ``home`` the robot's. ``placement`` numbers the placed cone that is collected there."""
 
     task: str
     robot: str
@@ -225,6 +225,7 @@ class PlanStopReport:
     y: float
     state: TaskState
     reason: str | None = None
+    placement: int | None = None
 
 
 class PlanProblemKind(str, Enum):

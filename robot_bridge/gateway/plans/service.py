@@ -7,14 +7,13 @@ gateway that was killed goes on with every plan where it stopped.
 from __future__ import annotations
 
 import asyncio
-import json
 import logging
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import partial
 from typing import Any, Protocol
 
-from ...core.assignment.plan import ConePlan, check_plan, plan_from_json
+from ...core.assignment.plan import ConePlan, check_plan, plan_of_document
 from ...core.assignment.progress import (
     PlanProblem,
     PlanProgress,
@@ -186,10 +185,11 @@ class PlanService:
             if one is None:
                 raise _unknown(request.plan)
             return [one.report(documents=request.documents)]
-        found = [one.report(documents=request.documents) for one in self._plans.values()]
-        for plan in await self._context.database.read(newest_ended_plans, request.ended):
-            found.append((await self._recalled(plan)).report(documents=request.documents))
-        return found
+        newest = await self._context.database.read(newest_ended_plans, request.ended)
+        ended = [await self._recalled(plan) for plan in newest]
+        # What is driven is read last, so that no newer report of it can be on its way before this answer.
+        followed = [*self._plans.values(), *(one for one in ended if one.plan.name not in self._plans)]
+        return [one.report(documents=request.documents) for one in followed]
 
     async def pause(self, request: PausePlan, operator: str) -> PlanReport:
         """Send the robots of a plan nothing more; first that, then it is stored that the plan is paused."""
@@ -570,14 +570,15 @@ def _unknown(name: str) -> RefusedError:
 def _document(request: SubmitPlan) -> ConePlan:
     """Return the plan of a request; raises RefusedError for what is none, or cannot be driven."""
     try:
-        plan = plan_from_json(json.dumps(request.document))
+        plan = plan_of_document(request.document)
     except PlanFileError as error:
         raise RefusedError(f"submit_plan: {error}") from error
     if sum(1 for _ in plan.all_stops()) > MOST_CONES or len(plan.targets) > MOST_CONES:
         raise RefusedError(f"submit_plan: a plan holds {MOST_CONES} cones and as many stops at most")
     if plan.crs:
         raise RefusedError(f"submit_plan: the plan is in {plan.crs}; give it in metres of the site frame")
-    faults = check_plan(plan)
+    # A desk leads ways round cones and standing robots, and counts them without these few decimetres.
+    faults = check_plan(plan, led_round=True)
     if faults:
         more = f" and {len(faults) - 1} more" if len(faults) > 1 else ""
         raise RefusedError(f"submit_plan: the plan cannot be driven: {faults[0]}{more}")

@@ -12,11 +12,17 @@ from fleet_supervisor.plugin.gateway_client.command_cache import CommandCache, c
 from fleet_supervisor.plugin.gateway_client.connection import Backoff
 from fleet_supervisor.plugin.gateway_client.fleet_state import MOST_COMMANDS, UpdateBuffer
 from fleet_supervisor.plugin.gateway_client.protocol import GatewayProtocol, RequestOutbox
-from fleet_supervisor.plugin.gateway_client.report_caches import PlacedConeCache, QueueCache
+from fleet_supervisor.plugin.gateway_client.report_caches import (
+    PlacedConeCache,
+    PlanCache,
+    QueueCache,
+    plan_in,
+)
 from fleet_supervisor.plugin.gateway_client.requests import OperatorRequest
 from fleet_supervisor.plugin.gateway_client.robot_states import RobotStates
 from fleet_supervisor.plugin.gateway_client.robot_table import STATES, table_from_rows
 from fleet_supervisor.plugin.ui.errors import GatewayLinkError
+from fleet_supervisor.robot_bridge.core.assignment.plan import ConePlan, document_of
 from fleet_supervisor.robot_bridge.core.clock import ManualClock
 from fleet_supervisor.robot_bridge.core.messages import (
     CommandReport,
@@ -185,6 +191,7 @@ def test_after_the_greeting_the_desk_subscribes_and_asks_for_commands(site):
         ("get_commands", {"limit": 200}),
         ("get_closures", {}),
         ("get_queue", {"paths": False, "ended": 10}),
+        ("get_plans", {"documents": False, "ended": 10}),
     ]
     assert mailbox.collect().site == site
 
@@ -268,6 +275,76 @@ def test_queues_and_placed_cones_are_taken_from_news_answers_and_refusals(site):
     news = mailbox.collect()
     assert news.queues["r1"].revision == 9
     assert news.answers[-1].outdated and news.answers[-1].error == "look again"
+
+
+def plan(name="p1", revision=1, **more):
+    values = {"plan": name, "revision": revision, "state": "driven", "submitted_by": "anna", "done": 0}
+    return {**values, "submitted_at": 5.0, "by_itself": False, "cones": 0, "robots": ["r1"], **more}
+
+
+DOCUMENT = document_of(ConePlan((), (), (), "stay", "balanced", "preview", "straight"))
+
+
+def test_plans_are_taken_from_news_answers_and_refusals_and_none_that_was_overtaken(site):
+    protocol, mailbox, sent = greeted(site)
+    (every,) = [one["id"] for one in sent if one["method"] == "get_plans"]
+    told(protocol, id=every, result={"plans": [plan("p1"), plan("p2")]})
+    news, book = mailbox.collect(), PlanCache()
+    assert news.is_driving and book.merge(news.plans, news.is_driving) == ["p1", "p2"]
+    told(protocol, id=answer_to(protocol, "get_plans"), result={"plans": [plan("p1", document=DOCUMENT)]})
+    told(protocol, method="plan", params=plan("p1", done=1))
+    told(protocol, id=answer_to(protocol, "pause_plan"), result=plan("p2", 2, state="paused"))
+    told(
+        protocol, id=answer_to(protocol, "replan"), error={"code": -32006, "message": "", "data": plan("p3")}
+    )
+    news = mailbox.collect()
+    assert news.is_driving is None and book.merge(news.plans) == ["p1", "p2", "p3"]
+    one = book.get("p1")
+    assert one.is_whole and one.report.done == 1 and one.document is not None
+    told(protocol, method="plan", params=plan("p1", 2))
+    told(protocol, id=answer_to(protocol, "get_plans"), result={"plans": [plan("p1", 1, document=DOCUMENT)]})
+    assert book.merge(mailbox.collect().plans) == ["p1"]
+    one = book.get("p1")
+    assert one.report.revision == 2 and not one.is_whole and one.document is not None
+
+
+def test_what_a_gateway_says_when_a_link_begins_is_all_that_it_drives(site):
+    protocol, mailbox, sent = greeted(site)
+    book = PlanCache()
+    book.merge({"p1": plan_in(plan("p1", 9, document=DOCUMENT)), "p2": plan_in(plan("p2"))})
+    (every,) = [one["id"] for one in sent if one["method"] == "get_plans"]
+    # It is another one's backup that is served: a plan may be at an earlier revision.
+    told(protocol, id=every, result={"plans": [plan("p1", 3)]})
+    news = mailbox.collect()
+    assert sorted(book.merge(news.plans, news.is_driving)) == ["p1", "p2"]
+    assert book.get("p2") is None and book.get("p1").report.revision == 3 and not book.get("p1").is_whole
+    told(protocol, method="plan", params=plan("p1", 4))
+    assert book.merge(mailbox.collect().plans) == ["p1"]
+
+
+def test_a_gateway_that_knows_no_plans_says_so_and_the_link_goes_on(site):
+    protocol, mailbox, sent = greeted(site)
+    (every,) = [one["id"] for one in sent if one["method"] == "get_plans"]
+    told(protocol, id=every, error={"code": -32601, "message": "no such method"})
+    assert mailbox.collect().is_driving is False
+
+
+@pytest.mark.parametrize(
+    "wrong", [{"document": {"format": "?"}}, {"state": "gone"}, {"stops": [{}]}, {"stops": [{}] * 20_001}]
+)
+def test_a_plan_that_is_none_is_refused_in_words(site, wrong):
+    protocol, mailbox, _ = greeted(site)
+    with pytest.raises(GatewayLinkError, match="ws://here/desk"):
+        told(protocol, method="plan", params=plan(**wrong))
+    assert not mailbox.collect().plans
+
+
+def test_of_plans_that_ended_the_newest_are_kept():
+    book = PlanCache()
+    ended = [plan_in(plan(f"p{k}", state="finished", ended_at=float(k))) for k in range(30)]
+    book.merge({one.plan: one for one in (*ended, plan_in(plan("driven")))})
+    assert [one.plan for one in book] == [f"p{k}" for k in range(20, 30)] + ["driven"]
+    assert [one.plan for one in book.open()] == ["driven"]
 
 
 def test_a_robot_without_a_queue_has_revision_0_and_one_that_is_gone_is_forgotten():

@@ -3,10 +3,19 @@
 from __future__ import annotations
 
 import asyncio
+from dataclasses import replace
 
 import pytest
 
-from robot_bridge.core.assignment.job import STAY, AssignmentJob, ConeTarget, PlanRobot, StraightTravel
+from robot_bridge.core.assignment.job import (
+    COLLECT,
+    STAY,
+    AssignmentJob,
+    ConeTarget,
+    PlanRobot,
+    Store,
+    StraightTravel,
+)
 from robot_bridge.core.assignment.plan import document_of
 from robot_bridge.core.assignment.solver import Objective, assign
 from robot_bridge.core.errors import OutdatedError, RefusedError
@@ -304,6 +313,30 @@ async def test_planning_that_takes_too_long_leaves_the_robots_standing_and_says_
     await drive.planned()
     report = await drive.seen()
     assert report.state is PlanState.PAUSED and "could not be planned" in report.reason
+
+
+async def test_paths_that_are_led_round_what_stands_are_driven(drive):
+    plan = plan_of(["r1"])
+    (one,) = plan.robots
+    first, *others = one.stops
+    (x, y), end = first.path[0], first.path[-1]
+    bent = replace(first, path=((x, y), ((x + end[0]) / 2, y + 2.0), end))
+    trip = replace(one.trips[0], stops=(bent, *others))
+    await drive.submit(replace(plan, robots=(replace(one, trips=(trip,)),)))
+    assert (await drive.line.seen("r1", paths=True)).tasks[0].path[1][1] == y + 2.0
+
+
+async def test_a_stop_at_which_a_cone_is_collected_names_the_placed_cone(drive):
+    plan = plan_of(["r1"], ["c1"])
+    await drive.submit(plan)
+    await drive.go(robots=["r1"], times=2)
+    target = replace(plan.targets[0], kind=COLLECT)
+    store = Store("depot", 20.0, 40.0, 0.0)
+    job = AssignmentJob((target,), (PlanRobot("r1", 30.0, 40.0, 4),), (store,), STAY)
+    collecting = assign(job, StraightTravel(job), Objective(time_limit_s=0.2))
+    request = SubmitPlan("back", document_of(collecting), [PlanCone("c1", "c1", "row", 1, 0.0)], seconds=0.2)
+    report = await drive.plans.submit(request, "Ada")
+    assert {stop.id: stop.placement for stop in report.stops} == {"c1": 1, "depot": None}
 
 
 @pytest.fixture(params=["postgresql", "mariadb"])
