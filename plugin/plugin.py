@@ -71,9 +71,16 @@ class FleetPlugin:
             raise
 
     def unload(self):
+        """Remove every part, whatever one of them raises, and raise the first of that at the end."""
+        errors = []
         while self._parts:
-            self._parts.pop().remove()
+            try:
+                self._parts.pop().remove()
+            except Exception as error:
+                errors.append(error)
         self._window = self._surfaces = None
+        if errors:
+            raise errors[0]
 
     def _open_desk(self, iface: QgisInterface, project: QgsProject):
         # Only here, for qgis_process.

@@ -34,3 +34,20 @@ def test_what_was_there_before_it_failed_is_taken_out(iface, monkeypatch, part):
     assert plugin.window is not None
     plugin.unload()
     assert state_of(iface) == before
+
+
+def test_all_the_others_are_taken_out_where_one_part_fails_to_go(iface, monkeypatch):
+    go = RobotLocator.remove
+
+    def fail(self):
+        go(self)
+        raise RuntimeError("it will not go")
+
+    before = state_of(iface)
+    plugin = FleetPlugin(iface)
+    plugin.initGui()
+    monkeypatch.setattr(RobotLocator, "remove", fail)
+    with pytest.raises(RuntimeError, match="it will not go"):
+        plugin.unload()
+    assert plugin.window is None
+    assert state_of(iface) == before
