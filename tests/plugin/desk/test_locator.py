@@ -70,7 +70,7 @@ def test_enter_before_the_list_is_there_goes_by_what_is_typed(
     wait(lambda: QgsExpression("robot_state('r2') IS NOT NULL").evaluate())
     (result,) = found(iface, "rb r1", wait)
     gone_to = []
-    monkeypatch.setattr(result.filter, "_go", gone_to.append)
+    monkeypatch.setattr(result.filter._viewer, "go_to", gone_to.append)
     result.filter.triggerResult(result)
     assert gone_to == goes_to
 

@@ -190,7 +190,7 @@ def test_two_robots_are_one_alarm_whichever_of_them_is_told_first(at_alarms, gat
     # r1 has come to its end, and stands in the way of r2.
     told["conflicts"][0] |= {"robot": "r2", "other": "r1"}
     gateway.tell("conflicts", told)
-    roads = at_alarms.desk.roads
+    roads = at_alarms.desk.state
     wait(lambda: roads.conflicts.conflicts[0].robot == "r2", what="the news of it")
     watch = at_alarms.dock.findChild(QTableView, "fleet_alarms").parent()._watch
     watch.evaluate()

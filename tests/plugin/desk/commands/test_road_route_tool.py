@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 import pytest
 from fleet_supervisor.plugin.gateway_client.requests import RequestResult
 from pyproj import Transformer
@@ -21,8 +23,8 @@ class SlowRoads:
         self.hand, self.orders = hand, []
         self.preview = hand.window.desk.preview
         self.now = 100.0
-        monkeypatch.setattr(self.preview, "_submit", self.orders.append)
-        monkeypatch.setattr(self.preview, "_clock", lambda: self.now)
+        monkeypatch.setattr(self.preview, "_sender", SimpleNamespace(submit=self.orders.append))
+        monkeypatch.setattr(self.preview, "_clock", SimpleNamespace(steady=lambda: self.now))
 
     @property
     def draft(self):

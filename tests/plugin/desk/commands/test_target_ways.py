@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import pytest
 from fleet_supervisor.plugin.control.pending_command import CONE, ApproachKind, PendingCommand
@@ -228,7 +229,7 @@ def test_a_gateway_that_does_not_answer_keeps_the_target_here(roads, gateway, mo
     roads.hand.take("cone").click(GOAL)
     ways = roads.hand.window.desk.target_ways
     now = ways._clock
-    monkeypatch.setattr(ways, "_clock", lambda: now() + SLOW_AFTER + 1)
+    monkeypatch.setattr(ways, "_clock", SimpleNamespace(steady=lambda: now.steady() + SLOW_AFTER + 1))
     roads.settle()
     assert "The gateway does not answer which way leads there" in roads.hand.told
     assert roads.draft.fault is not None

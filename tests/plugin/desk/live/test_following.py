@@ -76,8 +76,8 @@ def test_all_of_the_places_that_are_gone_to_are_shown_and_little_else(canvas, ro
 def test_who_is_followed_comes_into_view_and_stays_there_on_a_rotated_map(canvas, site, rotation):
     places = np.array([(1000.0, 2000.0), (1090.0, 2000.0), (1000.0, 2090.0)])
     overlay = show(canvas, site, scene_of(), rotation=rotation)
-    assert keep_in_view(canvas, overlay.scene(), places)
-    assert not keep_in_view(canvas, overlay.scene(), places)
+    assert keep_in_view(canvas, overlay.screen(), places)
+    assert not keep_in_view(canvas, overlay.screen(), places)
     to_pixel = canvas.getCoordinateTransform()
     for place in places.tolist():
         at = to_pixel.transform(QgsPointXY(*place))

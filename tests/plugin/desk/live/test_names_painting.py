@@ -25,7 +25,7 @@ def test_the_names_of_a_crowd_do_not_cover_each_other_and_the_lost_are_named_fir
     scene = scene_of(*crowd, (51, 51, 0.0, RobotState.LOST), age=75.0)
     overlay = show(canvas, site, scene)
     names = NamesPainter(Labels())
-    screen = overlay.scene()
+    screen = overlay.screen()
     pixels = screen.pixels(overlay._placed.robots)
     chosen = names._chosen(overlay._placed, in_view(overlay._placed, screen), screen)
     assert chosen[0] == 200
@@ -50,7 +50,7 @@ def written_after(canvas, site, first, second):
     image = QImage(canvas.size(), QImage.Format.Format_ARGB32_Premultiplied)
     for scene in (first, second):
         overlay = show(canvas, site, scene)
-        screen = overlay.scene()
+        screen = overlay.screen()
         painter = QPainter(image)
         names.paint(painter, overlay._placed, in_view(overlay._placed, screen), screen)
         painter.end()

@@ -123,7 +123,7 @@ def test_a_drive_is_played_while_the_live_map_goes_on(driven, dock, operator):
     assert "not live" in dock.banner.text()
     # All that was driven is in view, by its pixels.
     placed = dock.map.overlay._placed
-    pixels = dock.map.overlay.scene().pixels(placed.robots)
+    pixels = dock.map.overlay.screen().pixels(placed.robots)
     assert (pixels > 0).all() and (pixels < [dock.map.width(), dock.map.height()]).all()
 
 

@@ -35,7 +35,7 @@ def show(form):
     desk = SimpleNamespace(picture=RobotStates(), clock=ManualClock(uptime=NOW))
 
     def shown(*robots):
-        desk.state.robots.merge(table_from_rows([to_json(robot) for robot in robots], NOW))
+        desk.picture.merge(table_from_rows([to_json(robot) for robot in robots], NOW))
         form.show_robots(desk, PlanSettings())
 
     return shown

@@ -143,7 +143,7 @@ def test_while_time_is_held_the_map_goes_on_until_it_is_whole_and_follows_its_vi
     assert not loaded.map.overlay.is_whole
     wait(lambda: loaded.map.overlay.is_whole, what="all ways")
     loaded.map.zoomByFactor(0.5)
-    wait(lambda: ways._shown.screen == loaded.map.overlay.scene(), what="the ways in the new view")
+    wait(lambda: ways._shown.screen == loaded.map.overlay.screen(), what="the ways in the new view")
     wait(lambda: loaded.map.overlay.is_whole, what="all ways in the new view")
 
 
