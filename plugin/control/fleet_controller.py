@@ -141,8 +141,8 @@ class FleetController(QObject):
         state.replanned.connect(self._replanned)
         state.answered.connect(self._answered)
         state.emergency_changed.connect(self._emergency_reported)
-        state.suspensions_changed.connect(lambda: self._suspensions.show(state.suspensions))
-        state.links_changed.connect(lambda: self._links.show(state.links))
+        state.suspensions_changed.connect(self._show_suspensions)
+        state.links_changed.connect(self._show_links)
         state.merged.connect(self._merged)
         state.updated.connect(self.beat.advance)
 
@@ -220,6 +220,12 @@ class FleetController(QObject):
     def _link_changed(self) -> None:
         if self.state.link.phase is not ConnectionPhase.CONNECTED:
             self.preview.forget()
+
+    def _show_suspensions(self) -> None:
+        self._suspensions.show(self.state.suspensions)
+
+    def _show_links(self) -> None:
+        self._links.show(self.state.links)
 
     def _merged(self) -> None:
         self.orders.watch()
