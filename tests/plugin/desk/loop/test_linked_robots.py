@@ -105,7 +105,7 @@ def clear_emergency(operator):
     asked = window.findChild(ClearDialog)
     asked.findChild(QLineEdit, "fleet_clear_reason").setText("it was a test")
     asked.findChild(QPushButton, "fleet_clear_confirm").click()
-    operator.wait("the end of it", lambda: not operator.desk.emergency.in_force, 20)
+    operator.wait("the end of it", lambda: not operator.desk.state.emergency.in_force, 20)
 
 
 def banner(operator):

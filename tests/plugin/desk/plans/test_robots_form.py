@@ -32,10 +32,10 @@ def form(qgis_app):
 @pytest.fixture
 def show(form):
     """Show these robots, heard of this moment."""
-    desk = SimpleNamespace(picture=RobotStates(), clock=ManualClock(uptime=NOW))
+    desk = SimpleNamespace(state=SimpleNamespace(robots=RobotStates()), clock=ManualClock(uptime=NOW))
 
     def shown(*robots):
-        desk.picture.merge(table_from_rows([to_json(robot) for robot in robots], NOW))
+        desk.state.robots.merge(table_from_rows([to_json(robot) for robot in robots], NOW))
         form.show_robots(desk, PlanSettings())
 
     return shown
