@@ -53,6 +53,7 @@ missing_servers() {
     has mariadbd || [ -x /usr/sbin/mariadbd ] || echo mariadb-server
     "$python" -c 'import MySQLdb' >/dev/null 2>&1 || echo python3-mysqldb
     ls /usr/share/postgresql/*/extension/postgis.control >/dev/null 2>&1 || echo postgresql-postgis
+    has qgis_mapserver || echo qgis-server
     has mosquitto || [ -x /usr/sbin/mosquitto ] || echo mosquitto
 }
 
