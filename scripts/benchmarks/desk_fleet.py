@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import json
 from typing import Any
 
+import msgspec
 import numpy as np
 
-from robot_bridge.core.messages import PositionColumns, to_json
+from robot_bridge.core.messages import PositionColumns
 from robot_bridge.core.position_frame import METHOD, packed_frame
 
 SPEED = 1.5
@@ -68,5 +68,5 @@ class DrivingFleet:
         }
         names = [f"robot-{number}" for number in range(count)]
         head = PositionColumns(0.0, names, [*columns, "device_time"], ["fresh", "websocket", "driving"])
-        text = json.dumps({"jsonrpc": "2.0", "method": METHOD, "params": to_json(head)})
-        return packed_frame(text.encode(), columns.values())
+        text = msgspec.json.encode({"jsonrpc": "2.0", "method": METHOD, "params": head})
+        return packed_frame(text, columns.values())
