@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any
 
 from qgis.core import QgsApplication, QgsProject
 
@@ -10,17 +10,11 @@ from .expressions.functions import ExpressionFunctions
 from .expressions.robot_snapshot import SnapshotHolder
 from .layers.road_surfaces import SurfaceStore
 from .processing.provider import FleetProvider
+from .ui.errors import Part, remove_all
 from .ui.language import Language
 
 if TYPE_CHECKING:  # qgis_process has no window, and needs nothing of what one is made of
     from qgis.gui import QgisInterface
-
-
-class Part(Protocol):
-    """What undoes its constructor."""
-
-    def remove(self) -> None:
-        """Take out of QGIS all that the constructor has put there."""
 
 
 class RegisteredProvider:
@@ -71,9 +65,8 @@ class FleetPlugin:
             raise
 
     def unload(self):
-        while self._parts:
-            self._parts.pop().remove()
         self._window = self._surfaces = None
+        remove_all(self._parts)
 
     def _open_desk(self, iface: QgisInterface, project: QgsProject):
         # Only here, for qgis_process.

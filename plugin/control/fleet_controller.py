@@ -9,19 +9,13 @@ from qgis.gui import QgsMapCanvas
 from qgis.PyQt.QtCore import QObject, pyqtSignal
 
 from ...robot_bridge.core.clock import Clock
-from ...robot_bridge.core.messages import (
-    CommandReport,
-    EmergencyReport,
-    PauseRobot,
-    ReplannedRobot,
-    SiteReport,
-)
+from ...robot_bridge.core.messages import CommandReport, PauseRobot, ReplannedRobot
 from ..gateway_client.connection import ConnectionThread
-from ..gateway_client.connection_status import ConnectionPhase, ConnectionStatus, OperatorCredentials
+from ..gateway_client.connection_status import ConnectionPhase, OperatorCredentials
 from ..gateway_client.fleet_state import FleetState
 from ..gateway_client.requests import RequestResult
 from ..gateway_client.robot_table import RemovedRobots
-from ..layers.site_transform import SiteToCanvas, SiteToMapTransform
+from ..layers.site_transform import SiteToCanvas
 from ..ui.errors import FleetError, NotSentError
 from ..ui.language import tr
 from ..ui.scheduling import UpdateScheduler
@@ -126,7 +120,6 @@ class FleetController(QObject):
         self._rules.changed.connect(self.sending.outgoing.begin_anew)
         self._follow_state()
         self._pass_on_words()
-        self._keep_names()
 
     def _follow_state(self) -> None:
         """Have the parts know what the gateway reports before those on screen do."""
@@ -141,35 +134,10 @@ class FleetController(QObject):
         state.replanned.connect(self._replanned)
         state.answered.connect(self._answered)
         state.emergency_changed.connect(self._emergency_reported)
-        state.suspensions_changed.connect(lambda: self._suspensions.show(state.suspensions))
-        state.links_changed.connect(lambda: self._links.show(state.links))
+        state.suspensions_changed.connect(self._show_suspensions)
+        state.links_changed.connect(self._show_links)
         state.merged.connect(self._merged)
         state.updated.connect(self.beat.advance)
-
-    def _keep_names(self) -> None:
-        """Give cone plans state and requests by the names that they know."""
-        state = self.state
-        self.picture, self.queues, self.placements = state.robots, state.queues, state.placed_cones
-        self.pulled, self.site_changed = state.updated, state.site_changed
-        self.link_changed, self.queues_changed = state.link_changed, state.queues_changed
-        self.placements_changed = state.placed_cones_changed
-        self.plans, self.plans_changed = state.plans, state.plans_changed
-        self.ask, self.answered = self.orders.ask, self.orders.answered
-
-    @property
-    def link(self) -> ConnectionStatus:
-        """How the link stands."""
-        return self.state.link
-
-    @property
-    def site(self) -> SiteReport | None:
-        """The site that is served, None before it is known."""
-        return self.state.site
-
-    @property
-    def emergency(self) -> EmergencyReport | None:
-        """How an emergency stop stands, None before the gateway has said so."""
-        return self.state.emergency
 
     def _pass_on_words(self) -> None:
         """Tell as the desk's own what its parts have to say to the operator."""
@@ -221,6 +189,12 @@ class FleetController(QObject):
     def _link_changed(self) -> None:
         if self.state.link.phase is not ConnectionPhase.CONNECTED:
             self.preview.forget()
+
+    def _show_suspensions(self) -> None:
+        self._suspensions.show(self.state.suspensions)
+
+    def _show_links(self) -> None:
+        self._links.show(self.state.links)
 
     def _merged(self) -> None:
         self.orders.watch()
@@ -279,13 +253,6 @@ class FleetController(QObject):
             self.checks.begin_anew()
         elif self.drafts.draft is not None:
             self._try(lambda: self.checks.again(lambda _: None))
-
-    def placement(self) -> SiteToMapTransform:
-        """Return the transform from the site frame to the canvas, for cone plans.
-
-        :raises MapTransformError: as :meth:`SiteToCanvas.transform`.
-        """
-        return self.site_to_canvas.transform()
 
     def put_draft(self, draft: PendingCommand) -> None:
         """Make a draft the one on the map, have it checked, and say what speaks against it.
@@ -366,7 +333,7 @@ class FleetController(QObject):
 
     def report_failure(self, text: str, *topics: Topic) -> None:
         """Say that something was not done, until one of ``topics`` is over."""
-        in_force = self.emergency is not None and self.emergency.in_force
-        if in_force and STOPPED_BY in text:
+        stop = self.state.emergency
+        if stop is not None and stop.in_force and STOPPED_BY in text:
             topics = (*topics, EMERGENCY)
         self.messages.post(text, Level.ERROR, *topics)

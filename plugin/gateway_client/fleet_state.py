@@ -249,9 +249,12 @@ class FleetState(QObject):
 
     def pull(self) -> None:
         """Collect now; ``updated`` follows in a piece of work of its own."""
-        self._collect()
-        self._is_collected = True
-        self._timer.start(0)
+        try:
+            self._collect()
+        finally:
+            # Whatever an update raises, the next one is collected.
+            self._is_collected = True
+            self._timer.start(0)
 
     def robot(self, name: str) -> RobotView | None:
         """Return robot ``name`` as it stands now, None if it is not known."""
@@ -266,14 +269,14 @@ class FleetState(QObject):
         if not self._is_collected:
             self.pull()
             return
-        if self.clock.steady() - self._collected_at > LATE_S:
-            # The window stood still meanwhile: what it shows first is what is so now.
-            self._collect()
         self._is_collected = False
+        now = self.clock.steady()
         if self._is_running:
-            now = self.clock.steady()
             self._due = max(now, self._due + PULL_EVERY_MS / 1000)
             self._timer.start(round((self._due - now) * 1000))
+        if now - self._collected_at > LATE_S:
+            # The window stood still meanwhile: what it shows first is what is so now.
+            self._collect()
         self.updated.emit()
 
     def _collect(self) -> None:
@@ -282,6 +285,16 @@ class FleetState(QObject):
 
     def merge(self, update: StateUpdate) -> None:
         """Take in an update, and emit the signal of each topic that it tells something new of."""
+        try:
+            self._merge_reports(update)
+        finally:
+            # Whatever a report raises: what became of a stop or an abort is known.
+            for answer in update.answers:
+                self.answered.emit(answer)
+            self._merge_notices(update)
+            self.merged.emit()
+
+    def _merge_reports(self, update: StateUpdate) -> None:
         self._merge_link(update.link)
         if update.site is not None:
             self.merge_site(update.site, update.greeting_of)
@@ -302,10 +315,6 @@ class FleetState(QObject):
             self.placed_cones_changed.emit(placed)
         if seen := self.observations.merge(update.observations):
             self.observations_changed.emit(seen)
-        for answer in update.answers:
-            self.answered.emit(answer)
-        self._merge_notices(update)
-        self.merged.emit()
 
     def _merge_link(self, link: ConnectionStatus) -> None:
         if link == self.link:

@@ -225,7 +225,7 @@ class LiveView(QObject):
         except MapTransformError as error:
             self._desk.complained.emit(str(error))
             return
-        keep_in_view(self._desk.canvas, self.overlay.scene(), places)
+        keep_in_view(self._desk.canvas, self.overlay.screen(), places)
 
     def _scene(self) -> SiteScene:
         desk, now = self._desk, self._desk.clock.steady()

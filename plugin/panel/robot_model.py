@@ -9,7 +9,7 @@ from typing import Any, Protocol
 
 import numpy as np
 import numpy.typing as npt
-from qgis.PyQt.QtCore import QAbstractTableModel, QModelIndex, Qt
+from qgis.PyQt.QtCore import QAbstractTableModel, QModelIndex, QObject, Qt
 
 from ...robot_bridge.core.messages import (
     CommandReport,
@@ -316,8 +316,15 @@ class PositionTexts(Protocol):
 class RobotModel(QAbstractTableModel):
     """One row for each robot that is listed. ``rows`` are looked at afresh by :meth:`show`."""
 
-    def __init__(self, robots: RobotStates, commands: CommandCache, queues: QueueCache, view: PositionTexts):
-        super().__init__(view)
+    def __init__(
+        self,
+        robots: RobotStates,
+        commands: CommandCache,
+        queues: QueueCache,
+        view: PositionTexts,
+        parent: QObject | None = None,
+    ):
+        super().__init__(parent)
         self.deviations = PathDeviations(commands)
         self._queues = queues
         self._view = view

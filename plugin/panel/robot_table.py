@@ -69,7 +69,7 @@ class RobotTableView(QTableView):
         self._is_fitting = self._is_fitted_by_hand = False
         self._fitted: tuple[int, int] = (0, 0)
         self.positions = PositionCrs(desk.project, self)
-        self._model = RobotModel(desk.state.robots, desk.state.commands, desk.state.queues, self)
+        self._model = RobotModel(desk.state.robots, desk.state.commands, desk.state.queues, self, self)
         self.setModel(self._model)
         self._model.modelReset.connect(self._reset)
         self._set_up()

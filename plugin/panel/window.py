@@ -25,7 +25,7 @@ from ..map.tools.route_tool import RouteTool
 from ..map.tools.select_tool import SelectTool
 from ..map.tools.target_tools import ConeTool, StartTool
 from ..ui.actions import Actions
-from ..ui.errors import FleetError
+from ..ui.errors import FleetError, Part, remove_all
 from ..ui.language import tr
 from .alarms.alarm_bar import AlarmBar
 from .alarms.alarm_panel import AlarmPanel
@@ -52,7 +52,7 @@ class FleetWindow(QObject):
         canvas = iface.mapCanvas()
         self.desk = FleetController(canvas, QgsProject.instance(), self)
         self.actions = Actions(self)
-        self._parts: list[Any] = []
+        self._parts: list[Part] = []
         """What :meth:`remove` takes out, the last one first."""
         self.notices = self._add(MessageBar(iface.messageBar(), self))
         self._key = self._add(EmergencyKey(self.actions.emergency, self))
@@ -91,8 +91,13 @@ class FleetWindow(QObject):
             self._put_away(tool)
             tool.deleteLater()
         self._tools.clear()
-        while self._parts:
-            self._parts.pop().remove()
+        try:
+            remove_all(self._parts)
+        finally:
+            self._leave()
+
+    def _leave(self) -> None:
+        """Take toolbar, panel and menu entries out of the window."""
         for action in self.menu_entries():
             self._iface.removePluginMenu(MENU, action)
         self._draft_menu.deleteLater()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -15,6 +16,7 @@ from ...robot_bridge.core.messages import (
     DiscardReplan,
     GetPlacements,
     GetPlans,
+    GetQueue,
     MessageError,
     PausePlan,
     PlanCone,
@@ -93,17 +95,19 @@ class PlanExecution(QObject):
         """Of which plan the documents were asked for on this link, and at which revision."""
         self._submitted_here: PlanProposal | None = None
         """What this desk submitted last: it is shown until the gateway has sent it back."""
+        self._went: tuple[str, Sequence[str]] | None = None
+        """What was asked after robots were let go on, by its key, and these robots."""
         self._told: dict[str, PlanReport] = {}
-        desk.plans_changed.connect(self._take_plans)
-        desk.queues_changed.connect(self._take_queues)
-        desk.answered.connect(self._answered)
-        desk.link_changed.connect(self._link_changed)
+        desk.state.plans_changed.connect(self._take_plans)
+        desk.state.queues_changed.connect(self._take_queues)
+        desk.orders.answered.connect(self._answered)
+        desk.state.link_changed.connect(self._link_changed)
         drafts.changed.connect(self._submitted_before)
 
     @property
     def known(self) -> KnownPlan | None:
         """The plan that is shown, as the gateway reported it last; None while the draft is shown."""
-        return self._desk.plans.get(self.shown)
+        return self._desk.state.plans.get(self.shown)
 
     @property
     def shown_plan(self) -> ConePlan | None:
@@ -121,7 +125,7 @@ class PlanExecution(QObject):
     @property
     def choice(self) -> list[KnownPlan]:
         """The plans that can be shown: those that are driven, newest first, and the one that is shown."""
-        found, known = self._desk.plans.open(), self.known
+        found, known = self._desk.state.plans.open(), self.known
         return found if known is None or known.is_open else [known, *found]
 
     @property
@@ -150,7 +154,7 @@ class PlanExecution(QObject):
         if known is None or known.report.state is not PlanState.DRIVEN:
             return []
         away = {one.robot for one in known.report.problems if one.kind is PlanProblemKind.AWAY}
-        queues = [self._desk.queues.get(robot) for robot in known.report.robots if robot not in away]
+        queues = [self._desk.state.queues.get(robot) for robot in known.report.robots if robot not in away]
         return [
             one.robot
             for one in queues
@@ -161,7 +165,7 @@ class PlanExecution(QObject):
     @property
     def is_without_plans(self) -> bool:
         """Whether the gateway is too old to drive plans."""
-        return self._desk.plans.is_driving is False
+        return self._desk.state.plans.is_driving is False
 
     def pauses_in_words(self) -> list[str]:
         """Return a text for each reason why robots of the plan stand still."""
@@ -172,7 +176,7 @@ class PlanExecution(QObject):
         if report.state is PlanState.PAUSED:
             robots[": ".join(text for text in (report.by, report.reason) if text)] = report.robots
         for robot in self.paused:
-            queue = self._desk.queues.get(robot)
+            queue = self._desk.state.queues.get(robot)
             robots.setdefault(queue.reason or queue.by or "", []).append(robot)
         return [
             tr("Paused: {robots} ({why})", robots=", ".join(first_of(names)), why=why)
@@ -286,7 +290,7 @@ class PlanExecution(QObject):
                     PlanCone(target, one.cone, one.layout, one.placement, one.theta)
                     for target, one in draft.facts.items()
                 ],
-                {robot: self._desk.queues.revision(robot) for robot in driving},
+                {robot: self._desk.state.queues.revision(robot) for robot in driving},
                 [(x, y) for x, y in draft.ways.cones.tolist()],
                 on_roads=ground.on_roads,
                 direct_m=ground.direct_m,
@@ -307,7 +311,7 @@ class PlanExecution(QObject):
     ) -> None:
         if self.asking and not isinstance(request, PausePlan):
             raise PlanningError(tr("No plan is being driven, or something is still being sent."))
-        key = self._desk.ask(request, words, PLAN_SENT)
+        key = self._desk.orders.ask(request, words, PLAN_SENT)
         # Only now: what could not be asked leaves what was refused to be overridden.
         self._desk.messages.end(PLAN_SENT)
         self._refusal = None
@@ -317,6 +321,7 @@ class PlanExecution(QObject):
     def _answered(self, answer: RequestResult) -> None:
         asked = self._asked.pop(answer.order.key, None)
         if asked is None:
+            self._tell_who_stays(answer.order.key)
             return
         if answer.error is None:
             asked.done(answer.result or {})
@@ -334,9 +339,18 @@ class PlanExecution(QObject):
         self.remarked.emit(tr("The cone plan is in the robots' queues."))
 
     def _went_on(self, result: dict[str, Any]) -> None:
-        known = self._desk.plans.get(result.get("plan"))
-        for text in () if known is None else after_sending(self._desk, known.report.robots):
-            self._fail(text)
+        """Ask how the queues are: what is told of them may come after the answer of what let them go on."""
+        known = self._desk.state.plans.get(result.get("plan"))
+        if known is None:
+            return
+        with suppress(NotSentError):
+            self._went = (self._desk.orders.inquire(GetQueue()), known.report.robots)
+
+    def _tell_who_stays(self, key: str) -> None:
+        if self._went is not None and key == self._went[0]:
+            robots, self._went = self._went[1], None
+            for text in after_sending(self._desk, robots):
+                self._fail(text)
 
     def _fail(self, text: str) -> None:
         self._desk.report_failure(text, PLAN_SENT)
@@ -344,7 +358,7 @@ class PlanExecution(QObject):
     # --- what the gateway reports ---
 
     def _link_changed(self) -> None:
-        if self._desk.link.phase is ConnectionPhase.CONNECTED:
+        if self._desk.state.link.phase is ConnectionPhase.CONNECTED:
             self._fetched = None
             self._fetch()
 
@@ -369,7 +383,7 @@ class PlanExecution(QObject):
     def _submitted_before(self) -> None:
         """Show in place of the draft what the gateway has of it, be it that its answer was lost."""
         draft = self._drafts.draft
-        if draft is not None and self._desk.plans.get(draft.name) is not None:
+        if draft is not None and self._desk.state.plans.get(draft.name) is not None:
             self.shown, self._wants_draft, self._refusal = draft.name, False, None
             self._submitted_here = draft
             self._fetch()
@@ -377,7 +391,7 @@ class PlanExecution(QObject):
 
     def _show_newest(self) -> None:
         self.shown = None
-        newest = next(iter(self._desk.plans.open()), None)
+        newest = next(iter(self._desk.state.plans.open()), None)
         if newest is not None and self._drafts.draft is None and not (self._drafts.busy or self._wants_draft):
             self.shown = newest.plan
 
@@ -408,7 +422,7 @@ class PlanExecution(QObject):
     # --- what is told of plans, whichever is shown ---
 
     def _notice(self, name: str) -> None:
-        known, before = self._desk.plans.get(name), self._told.pop(name, None)
+        known, before = self._desk.state.plans.get(name), self._told.pop(name, None)
         trouble, by_itself = plan_topic(name, "trouble"), plan_topic(name, "by itself")
         if known is None or not known.is_open:
             self._desk.messages.end(trouble, by_itself)

@@ -230,7 +230,7 @@ def after_sending(desk: FleetController, robots: Sequence[str]) -> list[str]:
     """Return which of a plan's robots do not set off, since somebody holds them."""
     texts = []
     for robot in robots:
-        report = desk.queues.get(robot)
+        report = desk.state.queues.get(robot)
         if report is not None and report.tasks and report.state is QueueState.PAUSED:
             texts.append(
                 tr(
@@ -247,13 +247,13 @@ def _cones(one: RobotPlan) -> str:
 
 
 def _doubts(desk: FleetController, robot: PlanRobot) -> list[str]:
-    queue = desk.queues.get(robot.id)
+    queue = desk.state.queues.get(robot.id)
     return [*_doubts_of_place(desk, robot), *(_doubts_of_queue(queue) if queue is not None else ())]
 
 
 def _doubts_of_place(desk: FleetController, robot: PlanRobot) -> Iterator[str]:
     """Yield whether the robot is elsewhere than where the plan begins, or away."""
-    view = desk.picture.view(robot.id, desk.clock.steady())
+    view = desk.state.robots.view(robot.id, desk.clock.steady())
     if view is None or not view.has_pose:
         yield tr("it is not known where {id} is", id=robot.id)
         return
@@ -512,12 +512,12 @@ class PlanLayers:
                 if row.state is not TaskState.DONE:
                     values = [robot, row.number, stop.id, round(stop.metres, 2), row.arrives, colour]
                     ways.append((stop.path, values))
-        self.ways.show(ways, self._desk.site)
-        self.stops.show(stops, self._desk.site)
+        self.ways.show(ways, self._desk.state.site)
+        self.stops.show(stops, self._desk.state.site)
 
     def show_placed(self, placements: list[PlacementReport]) -> None:
         """Show where cones were put down."""
-        site = self._desk.site
+        site = self._desk.state.site
         if site is not None:
             frame = frame_of(site)
             self.placed.show(_placed_rows(placements, frame), site)

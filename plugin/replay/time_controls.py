@@ -15,6 +15,7 @@ from qgis.PyQt.QtWidgets import QCheckBox, QComboBox, QDateTimeEdit, QGridLayout
 
 from ...robot_bridge.core.messages import CommandState
 from ..map.overlay.primitives import flat, lines
+from ..ui.glyphs import painting
 from ..ui.language import tr
 from ..ui.steady_widgets import SteadyPushButton
 from ..ui.times import date_and_time
@@ -290,7 +291,10 @@ class TimeLine(QWidget):
         return np.unique(np.rint(self.pixel(self.marks.of(state))))
 
     def paintEvent(self, event: QPaintEvent) -> None:
-        painter = QPainter(self)
+        with painting(self) as painter:
+            self._paint(painter)
+
+    def _paint(self, painter: QPainter) -> None:
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         middle = self.height() / 2
         painter.setPen(QPen(self.palette().mid().color(), 3.0))

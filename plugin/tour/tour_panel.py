@@ -28,6 +28,7 @@ from ..panel.window import FleetWindow
 from ..settings.connections import GatewayConnection
 from ..ui.dialogs import push_button
 from ..ui.errors import FleetError
+from ..ui.glyphs import painting
 from ..ui.language import tr
 from .practice_fleet import PracticeFleet
 
@@ -167,10 +168,10 @@ class Spotlight(QWidget):
 
     def paintEvent(self, event: QPaintEvent) -> None:
         if not self.framed.isNull():
-            painter = QPainter(self)
-            painter.setRenderHint(QPainter.RenderHint.Antialiasing)
-            painter.setPen(QPen(COLOUR, 3))
-            painter.drawRoundedRect(self.framed, 5, 5)
+            with painting(self) as painter:
+                painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+                painter.setPen(QPen(COLOUR, 3))
+                painter.drawRoundedRect(self.framed, 5, 5)
 
     def _forget(self) -> None:
         self._target = None

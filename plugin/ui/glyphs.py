@@ -2,8 +2,22 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
+
 from qgis.PyQt.QtCore import QPointF, QRectF, Qt
-from qgis.PyQt.QtGui import QBrush, QColor, QIcon, QPainter, QPainterPath, QPalette, QPen, QPixmap, QPolygonF
+from qgis.PyQt.QtGui import (
+    QBrush,
+    QColor,
+    QIcon,
+    QPaintDevice,
+    QPainter,
+    QPainterPath,
+    QPalette,
+    QPen,
+    QPixmap,
+    QPolygonF,
+)
 from qgis.PyQt.QtWidgets import QApplication
 
 from ...robot_bridge.core.messages import CommandState, RobotState
@@ -57,6 +71,19 @@ def for_letters(colour: QColor) -> QColor:
     return QColor(STALE_LETTERS) if colour == STATE_COLOURS[RobotState.STALE] else colour
 
 
+@contextmanager
+def painting(device: QPaintDevice) -> Iterator[QPainter]:
+    """Give a painter on ``device`` that is ended whatever is raised meanwhile.
+
+    Kept by a traceback, a painter that is not ended outlives its device, and Qt ends the program for that.
+    """
+    painter = QPainter(device)
+    try:
+        yield painter
+    finally:
+        painter.end()
+
+
 def pen(colour: QColor, width: float, strength: float = 1.0) -> QPen:
     """Return a pen with round ends, ``width`` pixels; ``strength`` 1 is the colour as it is, 0 nothing."""
     shade = QColor(colour)
@@ -74,13 +101,12 @@ def state_icon(state: RobotState) -> QIcon:
     """Return the drawing of a robot in ``state``, pointing up, for tables and legends."""
     pixmap = QPixmap(64, 64)
     pixmap.fill(QColor(0, 0, 0, 0))
-    painter = QPainter(pixmap)
-    painter.setRenderHint(QPainter.RenderHint.Antialiasing)
-    painter.translate(32, 32)
-    painter.scale(ICON_SCALE, ICON_SCALE)
-    painter.rotate(-90)
-    draw_robot(painter, state, True)
-    painter.end()
+    with painting(pixmap) as painter:
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        painter.translate(32, 32)
+        painter.scale(ICON_SCALE, ICON_SCALE)
+        painter.rotate(-90)
+        draw_robot(painter, state, True)
     return QIcon(pixmap)
 
 

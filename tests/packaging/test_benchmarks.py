@@ -3,24 +3,30 @@
 from __future__ import annotations
 
 import ast
+import importlib.util
 import re
 import subprocess
 from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+
 from benchmarks.clock import spread
 from benchmarks.endurance_findings import Run, Sample, Unloaded
 from benchmarks.endurance_page import report
 from benchmarks.page import Beginning, Part, goal, with_part
 
-SCRIPTS = Path(__file__).resolve().parents[2] / "scripts"
+ROOT = Path(__file__).resolve().parents[2]
 INSTANCE = "e_n51_k5.py"
 """Numbers of a public instance, which are not said but computed with."""
 MODULES = [
-    SCRIPTS / "mutation" / "report.py",
-    *(path for path in sorted((SCRIPTS / "benchmarks").glob("*.py")) if path.name != INSTANCE),
+    ROOT / "tools" / "mutation" / "report.py",
+    *(path for path in sorted((ROOT / "benchmarks").glob("*.py")) if path.name != INSTANCE),
 ]
+PRODUCT = {"plugin", "robot_bridge"}
+PROGRAMS = sorted(
+    path for part in ("benchmarks", "tests/support", "tools") for path in (ROOT / part).rglob("*.py")
+)
 PLACEHOLDER, CODE = re.compile(r"\{[^{}]*\}"), re.compile(r"`[^`]*`")
 NAMES = re.compile(r"E-n51-k5|\b1969\b|\bcodec \d|\bp\d\d\b|EPSG:\d+|10\*\*|ROS 2|VDA 5050|\bNav2\b")
 """What has a digit and is no figure: a public instance and its year, formats, percentiles, standards."""
@@ -30,6 +36,31 @@ WORD = r"(?:two|three|four|five|six|seven|eight|nine|ten|twenty|thirty|forty|fif
 IN_WORDS = re.compile(
     rf"\b{WORD} (?:milliseconds|seconds?|minutes?|hours?|MB|percent|times a second)\b", re.I
 )
+
+
+def test_what_programs_import_of_the_product_exists():
+    """A benchmark or a walk that nobody runs in the suite would break at a renaming without a word."""
+    missing = [
+        f"{path.relative_to(ROOT)}: from {module} import {name}"
+        for path in PROGRAMS
+        for module, name in imported_names(path)
+        if not hasattr(importlib.import_module(module), name) and not is_module(f"{module}.{name}")
+    ]
+    assert missing == [], "\n" + "\n".join(missing)
+
+
+def imported_names(path: Path) -> Iterator[tuple[str, str]]:
+    """Yield module and name of what a program imports from the product, wherever in it."""
+    for node in ast.walk(ast.parse(path.read_text("utf-8"))):
+        if isinstance(node, ast.ImportFrom) and (node.module or "").partition(".")[0] in PRODUCT:
+            yield from ((node.module, alias.name) for alias in node.names)
+
+
+def is_module(name: str) -> bool:
+    try:
+        return importlib.util.find_spec(name) is not None
+    except ModuleNotFoundError:
+        return False
 
 
 def test_no_template_has_a_figure_typed_into_it():
@@ -106,7 +137,7 @@ def test_a_part_says_what_it_ran_under(monkeypatch):
     table = "| " + " | ".join(["a long cell that no line may break"] * 5) + " |\n| --- |"
     part = Part("Maps", f"A paragraph.\n\n{table}", settings={"GDAL_CACHEMAX": "16"})
     page = with_part("", "maps", part, ["maps"], Beginning.now())
-    git = ["git", "-C", str(SCRIPTS), "rev-parse", "--short=8", "HEAD"]
+    git = ["git", "-C", str(ROOT), "rev-parse", "--short=8", "HEAD"]
     commit = subprocess.run(git, capture_output=True, text=True).stdout.strip()
     assert f"Made by `make bench PARTS=maps`{f' of commit {commit}' if commit else ''}" in page
     words = " ".join(page.split())

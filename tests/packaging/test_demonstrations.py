@@ -7,13 +7,13 @@ import signal
 import subprocess
 import sys
 import time
-from pathlib import Path
 
 import pytest
-from stage.fleet import STARTS
-from stage.patience import BUSY
 
 from robot_bridge.core.robotmap.binary import decode_text
+from tests.support.fleet import STARTS
+from tests.support.patience import BUSY
+from tests.support.processes import left_running
 
 
 @pytest.fixture
@@ -27,21 +27,10 @@ def environment(tmp_path) -> dict[str, str]:
     }
 
 
-def left_running(folder: Path) -> set[int]:
-    """Return the processes that inherited an environment that names ``folder``."""
-    found = set()
-    for file in Path("/proc").glob("[0-9]*/environ"):
-        try:
-            if str(folder).encode() in file.read_bytes():
-                found.add(int(file.parent.name))
-        except OSError:
-            continue
-    return found
-
-
 def test_the_demo_does_what_it_says(root, tmp_path, environment):
     done = subprocess.run(
-        [sys.executable, root / "scripts" / "demo.py"],
+        [sys.executable, "-m", "tools.demo"],
+        cwd=root,
         env=environment,
         capture_output=True,
         text=True,
@@ -62,9 +51,9 @@ def test_the_demo_does_what_it_says(root, tmp_path, environment):
 
 
 def test_the_demo_fails_when_a_program_is_missing_and_leaves_nothing_running(root, tmp_path, environment):
-    script = root / "scripts" / "demo.py"
     done = subprocess.run(
-        [sys.executable, script],
+        [sys.executable, "-m", "tools.demo"],
+        cwd=root,
         env={**environment, "PATH": str(tmp_path)},
         capture_output=True,
         text=True,
@@ -79,9 +68,13 @@ def test_the_demo_fails_when_a_program_is_missing_and_leaves_nothing_running(roo
 def test_the_desktop_opens_connected_and_takes_everything_with_it_when_it_is_ended(
     root, tmp_path, environment
 ):
-    script = root / "scripts" / "desktop.py"
     with subprocess.Popen(
-        [sys.executable, script], env=environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+        [sys.executable, "-m", "tools.desktop"],
+        cwd=root,
+        env=environment,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
     ) as desktop:
         try:
             told = [desktop.stdout.readline() for _ in range(3)]

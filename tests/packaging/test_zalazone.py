@@ -5,16 +5,16 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
-from pathlib import Path
 
 import numpy as np
 import pytest
-from stage.errors import StageError
-from stage.ros_peer import ros_python
-from zalazone.places import same_ground, spellings
-from zalazone.recording import Sample, compare
 
 from robot_bridge.core.sites.frame import SiteFrame
+from tests.support.errors import StageError
+from tests.support.processes import left_running
+from tests.support.robots.ros_peer import ros_python
+from tools.zalazone.places import same_ground, spellings
+from tools.zalazone.recording import Sample, compare
 
 RECORDED = {"1": np.array([(t / 10, 100.0 + t, 50.0) for t in range(60)])}
 
@@ -26,9 +26,10 @@ def demo(root, tmp_path):
     kept["FLEET_ZALAZONE_FOLDER"] = str(tmp_path / "zalazone")
 
     def run(*part: str, **environment: str) -> subprocess.CompletedProcess[str]:
-        command = [sys.executable, root / "scripts" / "demo.py", *part]
+        command = [sys.executable, "-m", "tools.demo", *part]
         return subprocess.run(
             command,
+            cwd=root,
             env=kept | environment,
             capture_output=True,
             text=True,
@@ -64,19 +65,6 @@ def test_the_whole_of_it_happens_on_the_real_proving_ground(demo, data, tmp_path
     assert (folder / "steps.txt").read_text(encoding="utf-8") in done.stdout
     assert (folder / "window.png").stat().st_size > 200_000, "an empty window is a small file"
     assert not left_running(folder)
-
-
-def left_running(folder: Path) -> set[int]:
-    """Return the processes that have ``folder`` in their environment or command."""
-    found = set()
-    for process in Path("/proc").glob("[0-9]*"):
-        try:
-            said = (process / "environ").read_bytes() + (process / "cmdline").read_bytes()
-        except OSError:
-            continue
-        if str(folder).encode() in said:
-            found.add(int(process.name))
-    return found
 
 
 def test_an_unknown_part_is_named(demo):

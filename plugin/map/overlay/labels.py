@@ -14,7 +14,7 @@ from ....robot_bridge.core.messages import RobotState
 from ...gateway_client.robot_states import RobotArrays
 from ...gateway_client.robot_table import STATES
 from ...gateway_client.state_texts import ROBOT_STATES
-from ...ui.glyphs import PAPER
+from ...ui.glyphs import PAPER, painting
 from ...ui.language import tr
 from .scene import InView, MapScene, Screen
 
@@ -83,17 +83,16 @@ def _drawn(text: str, ratio: float) -> QPixmap:
     pixmap = QPixmap(math.ceil(width * ratio), math.ceil(height * ratio))
     pixmap.setDevicePixelRatio(ratio)
     pixmap.fill(QColor(0, 0, 0, 0))
-    painter = QPainter(pixmap)
-    painter.setFont(font)
-    painter.setPen(PAPER)
-    written = QStaticText(text)
-    written.setTextFormat(Qt.TextFormat.PlainText)
-    # To stroke the letters' outlines would take six times as long as to write them eight times.
-    for beside in _AROUND:
-        painter.drawStaticText(beside, written)
-    painter.setPen(INK)
-    painter.drawStaticText(_AT, written)
-    painter.end()
+    with painting(pixmap) as painter:
+        painter.setFont(font)
+        painter.setPen(PAPER)
+        written = QStaticText(text)
+        written.setTextFormat(Qt.TextFormat.PlainText)
+        # To stroke the letters' outlines would take six times as long as to write them eight times.
+        for beside in _AROUND:
+            painter.drawStaticText(beside, written)
+        painter.setPen(INK)
+        painter.drawStaticText(_AT, written)
     return pixmap
 
 

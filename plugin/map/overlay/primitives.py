@@ -11,7 +11,7 @@ from qgis.PyQt.QtCore import QByteArray, QDataStream, QLineF, QPointF, Qt
 from qgis.PyQt.QtGui import QBrush, QColor, QImage, QPainter, QPainterPath, QPen, QPixmap, QPolygonF
 
 from ....robot_bridge.core.messages import RobotState
-from ...ui.glyphs import CASING, CELL, PAPER, SELECTED, draw_arrow, draw_cone, draw_robot, pen
+from ...ui.glyphs import CASING, CELL, PAPER, SELECTED, draw_arrow, draw_cone, draw_robot, painting, pen
 
 Points = npt.NDArray[np.float64]
 
@@ -133,13 +133,12 @@ def drawn(draw: Draw, side: int, scale: float, degrees: float = 0.0) -> Cells:
     """Return (side, side) pixels with the drawing around their middle, turned clockwise."""
     image = QImage(side, side, FORMAT)
     image.fill(0)
-    painter = QPainter(image)
-    painter.setRenderHint(QPainter.RenderHint.Antialiasing)
-    painter.translate(side / 2, side / 2)
-    painter.scale(scale, scale)
-    painter.rotate(degrees)
-    draw(painter)
-    painter.end()
+    with painting(image) as painter:
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        painter.translate(side / 2, side / 2)
+        painter.scale(scale, scale)
+        painter.rotate(degrees)
+        draw(painter)
     bits = image.constBits()
     bits.setsize(image.sizeInBytes())
     return np.frombuffer(bits, dtype=np.uint32).reshape(side, side).copy()

@@ -20,6 +20,7 @@ from ...control.pending_command import PendingCommand, Point
 from ...gateway_client.command_cache import ON_PATH_M, PathApproach
 from ...gateway_client.robot_states import RobotArrays
 from ...layers.site_transform import SiteToMapTransform
+from ...ui.glyphs import painting
 
 Points = npt.NDArray[np.float64]
 
@@ -103,9 +104,8 @@ def screen_image(screen: Screen, paint: Callable[[QPainter], None]) -> QImage:
     image = QImage(width, height, QImage.Format.Format_ARGB32_Premultiplied)
     image.setDevicePixelRatio(screen.ratio)
     image.fill(QColor(0, 0, 0, 0))
-    painter = QPainter(image)
-    paint(painter)
-    painter.end()
+    with painting(image) as painter:
+        paint(painter)
     return image
 
 

@@ -17,7 +17,7 @@ from qgis.PyQt.QtWidgets import QStyleOptionGraphicsItem, QWidget
 from ...control.fleet_controller import FleetController
 from ...control.pending_command import CONE, START, TARGETS, ApproachKind, PendingCommand
 from ...ui.errors import FleetError
-from ...ui.glyphs import CASING, PAPER, REFUSED, ROUTE, draw_cone
+from ...ui.glyphs import CASING, PAPER, REFUSED, ROUTE, draw_cone, painting
 from ...ui.glyphs import CONE as QUEUE_MARKS_CONE
 from ...ui.language import tr
 from .labels import Labels
@@ -104,18 +104,17 @@ class _PathsSheet:
         if self.is_full:
             return
         until = time.perf_counter() + FILL_SECONDS
-        painter = QPainter(self.image)
-        painter.setRenderHint(QPainter.RenderHint.Antialiasing, not self._is_thin)
-        painter.setPen(QPen(ROUTE, 0.0))
-        while self._left:
-            pixels = self.screen.pixels(self._left.pop())
-            if self._is_thin:
-                painter.drawPolyline(polygon(pixels))
-            else:
-                route(painter, pixels, ROUTE)
-            if time.perf_counter() > until:
-                break
-        painter.end()
+        with painting(self.image) as painter:
+            painter.setRenderHint(QPainter.RenderHint.Antialiasing, not self._is_thin)
+            painter.setPen(QPen(ROUTE, 0.0))
+            while self._left:
+                pixels = self.screen.pixels(self._left.pop())
+                if self._is_thin:
+                    painter.drawPolyline(polygon(pixels))
+                else:
+                    route(painter, pixels, ROUTE)
+                if time.perf_counter() > until:
+                    break
 
 
 class PathsPainter:

@@ -47,8 +47,9 @@ LENGTHS = (
 class Trails:
     """The last places of every robot in the site frame, with the time when each was seen.
 
-    One row a robot, as in :class:`~.desk.picture.RobotArrays`; a ring of samples for each. Samples taken at
-    the same time stand side by side, as robots that tell of themselves together are sampled together.
+    One row a robot, as in :class:`~.gateway_client.robot_states.RobotArrays`; a ring of samples for each.
+    Samples taken at the same time stand side by side, as robots that tell of themselves together are sampled
+    together.
     """
 
     def __init__(self) -> None:
