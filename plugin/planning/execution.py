@@ -423,7 +423,7 @@ class PlanExecution(QObject):
 
     def _notice(self, name: str) -> None:
         known, before = self._desk.state.plans.get(name), self._told.pop(name, None)
-        trouble, by_itself = plan_topic(name, "trouble"), plan_topic(name, "by itself")
+        trouble, by_itself = plan_topic(name, "trouble"), plan_topic(name, "unasked")
         if known is None or not known.is_open:
             self._desk.messages.end(trouble, by_itself)
             return
