@@ -53,7 +53,7 @@ from .plan_views import (
     plan_title,
     stop_rows,
 )
-from .progress import PlanProgress, problem_in_words
+from .progress import ReportedProgress, problem_in_words
 from .proposal import closed_in_words, meeting_in_words
 
 # --- What the operator does with a plan: send it, and agree to a new one for what is left ---
@@ -351,7 +351,7 @@ class PlanDock(ActionDock):
     def _refresh(self) -> None:
         driven = self.driven
         known, shown = driven.known, driven.shown_plan
-        progress = None if known is None else PlanProgress(known.report, self._desk.state.placed_cones)
+        progress = None if known is None else ReportedProgress(known.report, self._desk.state.placed_cones)
         rows = {} if shown is None else stop_rows(shown, progress)
         began_at = None if progress is None else progress.began_at
         self.tree.show_plan(shown, rows, began_at, editable=known is None and not driven.busy)

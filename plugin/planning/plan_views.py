@@ -46,7 +46,7 @@ from ..ui.language import first_of, tr, tr_count
 from ..ui.tables import fit_headers
 from ..ui.times import time_of_day
 from .as_placed import PLACED, utc_in_words
-from .progress import PlanProgress
+from .progress import ReportedProgress
 from .proposal import PlanProposal, closed_in_words, meeting_in_words
 
 # --- A plan in words and numbers: what table, map and message say of it ---
@@ -93,7 +93,7 @@ def colour_of(plan: ConePlan, robot: str) -> str:
     return COLOURS[names.index(robot) % len(COLOURS)]
 
 
-def stop_rows(plan: ConePlan, progress: PlanProgress | None) -> dict[str, list[PlanStopRow]]:
+def stop_rows(plan: ConePlan, progress: ReportedProgress | None) -> dict[str, list[PlanStopRow]]:
     """Return the stops of each robot, those behind it first."""
     began = None if progress is None else progress.began_at
     rows: dict[str, list[PlanStopRow]] = {}
@@ -184,7 +184,7 @@ def position_at_end(plan: ConePlan, target: str, robot: str) -> tuple[str, int, 
 
 
 def _row(
-    robot: str, number: int, trip: int, stop: PlanStop, began: float | None, progress: PlanProgress | None
+    robot: str, number: int, trip: int, stop: PlanStop, began: float | None, progress: ReportedProgress | None
 ) -> PlanStopRow:
     row = PlanStopRow(robot, number, trip, stop, time_text(stop.arrival_s, began))
     if progress is None or not stop.is_target:

@@ -44,7 +44,7 @@ def problem_in_words(problems: Sequence[PlanProblemReport]) -> str:
     return "; ".join(text for texts in (away, failed, closed) for text in first_of(texts))
 
 
-class PlanProgress:
+class ReportedProgress:
     """What became of each cone of a submitted plan, by its target's id."""
 
     def __init__(self, report: PlanReport, placements: Iterable[PlacementReport]):

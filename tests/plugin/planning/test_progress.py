@@ -239,7 +239,7 @@ def reported(plan, states, placements=()):
         if stop.id in states
     ]
     report = PlanReport("p", 1, PlanState.DRIVEN, "anna", BEGAN, False, 6, 0, ["r1", "r2"], stops)
-    return desk.PlanProgress(report, placements)
+    return desk.ReportedProgress(report, placements)
 
 
 def test_the_table_says_what_a_cone_waits_for_and_how_far_off_one_stands():
