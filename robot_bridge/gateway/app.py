@@ -282,6 +282,7 @@ async def run(settings: GatewaySettings, signals: Signals, started: Callable[[st
         check_reach(settings.host, tls=tls is not None, accounts=accounts)
         maps = SiteMaps(site)
         planner = await asyncio.to_thread(RoadPlanner, lambda: maps.site)
+        stack.callback(planner.close)
         fleet = Fleet(maps, database, planner=planner, stops=journal, note=gate.journal.note)
         await fleet.start()
         stack.push_async_callback(_save_last, fleet, gate)

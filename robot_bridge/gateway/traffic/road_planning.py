@@ -21,6 +21,7 @@ from ...core.sites.site import Site
 from ..model.planner import PlannedPath, Point
 from ..model.robots import Robots
 from .robot_paths import RobotPaths
+from .route_process import EngineReport, ProcessEngines
 from .site_roads import ClosedRoads, RoadStretch, SiteRoads
 
 # --- Paths along the roads of the published site ---
@@ -61,13 +62,23 @@ class RoadPlanner:
         self._building = threading.Lock()
         self._closures: dict[str, RoadStretch] = {}
         with refuse_road_errors():
-            self._roads = SiteRoads.of(site())
+            self._roads = SiteRoads.of(site(), ProcessEngines)
         self._closed = self._roads.closed_roads()
 
     @property
     def has_roads(self) -> bool:
         """Whether the site has any roads."""
         return self._roads.router is not None
+
+    @property
+    def engine_report(self) -> EngineReport | None:
+        """How ways are found now, None where the site has no roads."""
+        return self._roads.engine_report
+
+    def close(self) -> None:
+        """End the process that finds ways; ways go on being found, more slowly."""
+        with self._building:
+            self._roads.close()
 
     def path(self, start: Point, goal: Point) -> PlannedPath:
         """Return the path, a straight line with a note where the site has no roads near both places.
@@ -140,12 +151,7 @@ class RoadPlanner:
         What asks it for seconds keeps nobody else from the roads. Raises RefusedError.
         """
         with self._in_use() as roads:
-            if roads.router is None:
-                return None
-            network, closed = roads.router.network, roads.router.closed
-        router = Router(network)
-        router.close(np.flatnonzero(closed).tolist())
-        return router
+            return None if roads.router is None else roads.router.copy()
 
     def renew(self) -> dict[str, int]:
         """Take over the roads of a new publication; return how many edges each closure closes there."""
@@ -169,10 +175,11 @@ class RoadPlanner:
             site = self._site()
             if self._roads.site is not site:
                 with refuse_road_errors():
-                    roads = SiteRoads.of(site)
+                    roads = SiteRoads.of(site, ProcessEngines)
                 with self._using:
                     roads.set_closures(self._closures)
-                    self._roads, self._closed = roads, roads.closed_roads()
+                    before, self._roads, self._closed = self._roads, roads, roads.closed_roads()
+                before.close()
         finally:
             self._building.release()
 

@@ -13,6 +13,7 @@ import time
 import urllib.error
 import urllib.request
 from dataclasses import replace
+from pathlib import Path
 
 import pytest
 from bridge_programs import wait_until
@@ -86,6 +87,10 @@ def test_a_gateway_that_is_well_says_so(bridge):
     assert (status, found["status"], found["site"]) == (200, "ok", {"id": "sample", "version": 1})
     assert found["database"]["ok"] and found["database"]["latency_s"] < 2
     assert found["save"]["age_s"] < 10 and found["sql_link"]["age_s"] < 10
+    assert found["routes"] == {"engine": "SciPy", "ok": True, "starts": 0}
+    # It has made what finds ways: RoutingKit may end its process, and is loaded in another one.
+    assert "scipy" in (loaded := Path(f"/proc/{bridge.gateway.pid}/maps").read_text())
+    assert "routingkit" not in loaded
 
 
 def test_a_gateway_whose_database_is_locked_says_so_and_recovers(bridge):
