@@ -38,7 +38,7 @@ from ...layers.layer_source import point_rows
 from ...layers.site_transform import SiteGeoreference
 from ...ui.language import tr, tr_page
 from ..common.algorithm import FleetAlgorithm, ParameterError, Parameters, shown_by_processing
-from ..common.cone_layers import STYLES, ConeSetup, add_layers, ground_parameters, site_crs_parameter
+from ..common.cone_layers import STYLES, ConeSetup, add_layers, cone_crs_parameter, ground_parameters
 from ..common.parameters import point_in
 
 FILE, INPUT, ORIGIN, ROTATION, NAME = "FILE", "INPUT", "ORIGIN", "ROTATION", "LAYOUT_NAME"
@@ -110,7 +110,7 @@ class ImportConeLayout(FleetAlgorithm):
                 NAME, tr("Name (default: the layout's, else the file's)"), optional=True
             ),
             *ground_parameters(),
-            site_crs_parameter(),
+            cone_crs_parameter(),
         ):
             self.addParameter(parameter)
         add_layers(self)
