@@ -92,6 +92,14 @@ class Vehicle:
                 future.set_result(None)
 
 
+class RandomNames:
+    """Names of orders and actions, drawn from so many that none comes twice."""
+
+    def draw(self) -> str:
+        """Return the next one."""
+        return secrets.token_hex(6)
+
+
 class Vda5050Adapter(Adapter):
     """Leads the vehicles of one interface."""
 
@@ -112,9 +120,7 @@ class Vda5050Adapter(Adapter):
         self._repeated = RepeatedLines()
         self._faults = 0
         self._link: Link | None = None
-        self._broker = Broker(
-            broker_address(settings, own), self._topics.subscriptions(), self.receive, self._broker_changed
-        )
+        self._broker = Broker(broker_address(settings, own), self._topics.subscriptions(), self)
 
     # --- the gateway ----------------------------------------------------------------------------------
 
@@ -196,7 +202,7 @@ class Vda5050Adapter(Adapter):
         """The names of the vehicles that were heard."""
         return list(self._robots)
 
-    def receive(self, topic: str, payload: bytes, retained: bool = False) -> None:
+    def receive(self, topic: str, payload: bytes, *, retained: bool = False) -> None:
         """Deal with one message of the broker; what is wrong with it concerns its vehicle alone."""
         parsed = self._topics.parse(topic)
         if parsed is None:
@@ -245,9 +251,7 @@ class Vda5050Adapter(Adapter):
 
     def _controller(self, identity: VehicleId, now: float) -> VehicleController:
         def made(remembered: Remembered | None) -> VehicleController:
-            return VehicleController(
-                identity, self._led, self._maps, remembered, lambda: secrets.token_hex(6), now
-            )
+            return VehicleController(identity, self._led, self._maps, remembered, RandomNames(), now)
 
         try:
             return made(self._memory.recall(str(identity)))
@@ -255,7 +259,8 @@ class Vda5050Adapter(Adapter):
             log.error("vehicle %s begins without what was kept: %s", identity, error)
             return made(None)
 
-    def _broker_changed(self, reason: str | None) -> None:
+    def broker_changed(self, reason: str | None) -> None:
+        """Note that the broker is there (None), or why it is not."""
         if reason is not None:
             for vehicle in self._vehicles.values():
                 vehicle.controller.lose_broker()
