@@ -69,7 +69,13 @@ class RobotActions(Protocol[Network]):
     """Speaks to a robot. ``server`` is who has its tasks, None where nobody does."""
 
     server: bytes | None
-    feedback: str | None
+
+    @property
+    def feedback(self) -> str | None:
+        """How far its goal is yet; None where that is not known."""
+
+    def forget_feedback(self) -> None:
+        """Forget how far its goal was."""
 
     @property
     def abilities(self) -> Abilities:
@@ -255,7 +261,7 @@ class RosRobot(Generic[Network]):
         if anew:
             log.warning("robot %s: its action server has started anew", self.name)
             self._tasks.forget()
-            self._acting.feedback = None
+            self._acting.forget_feedback()
             if self._told is None:
                 self._is_anew = True
             elif not self._tasks.is_only_held:

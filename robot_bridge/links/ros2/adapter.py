@@ -232,6 +232,10 @@ class DdsActions:
             cone_service="place_cone" in self._services,
         )
 
+    def forget_feedback(self) -> None:
+        """Forget how far its goal was."""
+        self.feedback = None
+
     def hears(self, setting: str) -> bool:
         """Tell whether somebody listens to the topic of a setting."""
         return setting in self._wanted
@@ -305,7 +309,7 @@ class DdsActions:
             names = service_names(self._topic("get_map"), GET_MAP)
             self._map_server = ServiceServer(self._participant, names)
         # The map is the whole of the reply, so both are the same bytes.
-        self._map_server.reply = grid
+        self._map_server.set_reply(grid)
 
     def _topic(self, setting: str) -> str:
         return self._patterns[setting].topic_of(self._robot)

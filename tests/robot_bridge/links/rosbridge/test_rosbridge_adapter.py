@@ -47,7 +47,7 @@ async def test_a_command_without_the_server_is_refused_with_the_reason(adapter):
 def test_the_next_process_reads_which_goals_are_open(adapter, tmp_path):
     adapter._book("r1").add(RosAction.TO_POSE, goal_id(7), frozenset([bytes(16)])).real = bytes(range(16))
     adapter._book("r2").add(RosAction.TO_POSE, goal_id(8), frozenset()).is_over = True
-    adapter._note_goals()
+    adapter.note_goals()
     again = RosbridgeAdapter(RosbridgeSettings(), SERVER, tmp_path / "far.goals")
     assert again._book("r1").find(goal_id(7)).real == bytes(range(16))
     assert again._book("r2").entries == []
@@ -62,10 +62,10 @@ def test_a_file_of_goals_that_is_none_is_left_out(tmp_path, text, caplog):
 
 def test_a_file_of_goals_that_cannot_be_written_is_told_and_ends_nothing(tmp_path):
     adapter = RosbridgeAdapter(RosbridgeSettings(), SERVER, tmp_path / "nowhere" / "far.goals")
-    adapter._note_goals()
+    adapter.note_goals()
     assert "far.goals cannot be written" in adapter._notes.fault
     (tmp_path / "nowhere").mkdir()
-    adapter._note_goals()
+    adapter.note_goals()
     assert adapter._notes.fault is None
 
 
