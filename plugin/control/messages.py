@@ -259,7 +259,7 @@ class SuspensionNotices(ReportNotices):
 
 
 class LinkNotices(ReportNotices):
-    """Texts about links to robots of another kind that are down."""
+    """Texts about links to robots of another kind that are down, or whose robots are not in order."""
 
     def __init__(self, parent: QObject | None = None):
         super().__init__(parent)
@@ -268,7 +268,11 @@ class LinkNotices(ReportNotices):
     def show(self, links: Links) -> None:
         """Tell of the newest report."""
         self.reported = links
-        self.renew([_down(one) for one in links.links if not one.up])
+        self.renew([_not_in_order(one) for one in links.links if one.text or not one.up])
+
+
+def _not_in_order(link: LinkReport) -> str:
+    return tr("Link {link}: {reason}.", link=link.link, reason=link.text) if link.up else _down(link)
 
 
 def _down(link: LinkReport) -> str:

@@ -1233,6 +1233,11 @@
         </message>
         <message>
             <location filename="../../plugin/control/messages.py" />
+            <source>Link {link}: {reason}.</source>
+            <translation>Enllaç {link}: {reason}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/control/messages.py" />
             <source>The database account of robot {robot} is locked until {time}: its program kept all others waiting. Nothing but a stop reaches it: Abort unlocks the account. Have the program mended.</source>
             <translation>El compte de base de dades del robot {robot} està bloquejat fins a les {time}: el seu programa feia esperar tots els altres. Només hi arriba una parada: Avorta desbloqueja el compte. Feu arreglar el programa.</translation>
         </message>

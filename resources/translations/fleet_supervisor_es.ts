@@ -1233,6 +1233,11 @@
         </message>
         <message>
             <location filename="../../plugin/control/messages.py" />
+            <source>Link {link}: {reason}.</source>
+            <translation>Enlace {link}: {reason}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/control/messages.py" />
             <source>The database account of robot {robot} is locked until {time}: its program kept all others waiting. Nothing but a stop reaches it: Abort unlocks the account. Have the program mended.</source>
             <translation>La cuenta de base de datos del robot {robot} está bloqueada hasta las {time}: su programa hacía esperar a todos los demás. Solo le llega una parada: Abortar desbloquea la cuenta. Haga arreglar el programa.</translation>
         </message>

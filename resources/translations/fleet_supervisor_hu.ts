@@ -1227,6 +1227,11 @@
         </message>
         <message>
             <location filename="../../plugin/control/messages.py" />
+            <source>Link {link}: {reason}.</source>
+            <translation>{link} kapcsolat: {reason}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/control/messages.py" />
             <source>The database account of robot {robot} is locked until {time}: its program kept all others waiting. Nothing but a stop reaches it: Abort unlocks the account. Have the program mended.</source>
             <translation>A(z) {robot} robot adatbázisfiókja {time}-ig zárolva van: programja mindenki mást megvárakoztatott. A leállításon kívül semmi sem éri el: a megszakítás feloldja a fiókot. Javíttassa meg a programot.</translation>
         </message>

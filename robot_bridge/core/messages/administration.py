@@ -312,10 +312,10 @@ class Suspensions:
 
 @dataclass(frozen=True)
 class LinkReport:
-    """A link, which speaks for many robots; ``up``: it is connected, and its own side is in order.
+    """A link, which speaks for many robots; ``up``: it is connected, and its robots can be reached.
 
     Otherwise ``text`` says what is wrong, and ``robots`` are those that it spoke for: fifty names at most, of
-    ``count`` in all.
+    ``count`` in all. Where it is up ``text`` says what is the matter with some of its robots, if anything is.
     """
 
     link: str

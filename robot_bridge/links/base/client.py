@@ -195,9 +195,16 @@ class LinkClient:
         finally:
             del self._areas[answer]
 
-    def report(self, *, ok: bool, text: str | None = None, counts: dict[str, float] | None = None) -> None:
+    def report(
+        self,
+        *,
+        ok: bool,
+        text: str | None = None,
+        counts: dict[str, float] | None = None,
+        reached: bool = False,
+    ) -> None:
         """Tell how the link's own side is."""
-        status = LinkStatus(ok, text, counts or {})
+        status = LinkStatus(ok, text, counts or {}, None if ok else reached or None)
         if status != self._status:
             self._status = status
             if self._is_welcome:
@@ -418,7 +425,7 @@ class LinkClient:
         status, self._said_fault = self._status, self._memory.fault
         if self._said_fault is not None:
             text = f"{self._said_fault}; its robots take on nothing, and can be stopped"
-            status = LinkStatus(False, "; ".join(filter(None, (text, status.text))), status.counts)
+            status = LinkStatus(False, "; ".join(filter(None, (text, status.text))), status.counts, True)
         self._post(jsonrpc.call(LinkStatus.method, to_json(status) | {"counts": status.counts}))
 
     async def _watch_memory(self) -> None:

@@ -186,6 +186,11 @@ class VehicleController:
             self._next_alive = now + ALIVE_EVERY
             self._report(Alive())
 
+    def alarm(self, now: float) -> str | None:
+        """Return what operators are to be alarmed of, one line; None where nothing is."""
+        unstopped = None if self._stop is None else self._stop.complaint(now)
+        return "; ".join(filter(None, (unstopped, self._presence.alarm(now)))) or None
+
     def status(self, now: float) -> str | None:
         """Return what operators are to know of the vehicle, one line; None where all is well."""
         if self._stop is not None:

@@ -185,5 +185,6 @@ def test_what_the_permissions_do_not_allow_is_named_and_the_rest_is_used(network
     desk.wait_for_robots("r2", seconds=30)
     words = "r2: the permissions of this link do not let it write rt/r2/cmd_vel"
     desk.until(lambda: words in (reported(desk, "safe").get("text") or ""), 20)
+    assert reported(desk, "safe")["up"] and reported(desk, "safe").get("robots", []) == []
     desk.send("go-robot-2", "r2", "SetPosEnd", x=22.0, y=8.0)
     desk.wait_for_step("go-robot-2", "reached", 8)
