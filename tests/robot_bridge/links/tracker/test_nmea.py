@@ -11,7 +11,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from robot_bridge.core.messages import SetPosEnd
+from robot_bridge.links.base.adapter import Command
+from robot_bridge.links.base.errors import CommandRefusedError
 from robot_bridge.links.tracker import nmea
+from robot_bridge.links.tracker.adapter import TrackerAdapter, TrackerSettings
 from robot_bridge.links.tracker.nmea import NmeaSources, Receiver
 from robot_bridge.links.tracker.osmand import ReportError
 
@@ -135,3 +139,9 @@ async def test_a_serial_device_is_read_and_once_more_when_it_is_back(tmp_path, m
         watching.cancel()
         with contextlib.suppress(asyncio.CancelledError):
             await watching
+
+
+async def test_a_tracker_refuses_what_a_gateway_would_have_it_do():
+    adapter = TrackerAdapter(TrackerSettings(), "phones.toml: tracker")
+    with pytest.raises(CommandRefusedError, match="a tracker is seen and not commanded"):
+        await adapter.command(Command("anna", 7, SetPosEnd(1.0, 2.0), False))
