@@ -152,6 +152,24 @@ async def test_what_came_of_a_stop_is_told_before_all_else_that_waits(tmp_path):
     assert sent == ["the stop is done", "a position"]
 
 
+async def test_an_emergency_stop_is_told_as_one_and_what_is_only_seen_answers_by_itself(tmp_path):
+    calls = [jsonrpc.call("Abort", {"robot": "phone"}, "phone/3")]
+    calls.append(jsonrpc.call("Abort", {"robot": "r1", "emergency": True}, "r1/9"))
+    gateway = NewerGateway(calls)
+    async with serve(gateway.speak, "127.0.0.1", 0) as server:
+        port = server.sockets[0].getsockname()[1]
+        link = LinkOnTheLine(SimpleNamespace(address=f"ws://127.0.0.1:{port}"), tmp_path)
+        try:
+            for name, can in (("phone", ()), ("r1", ("targets",))):
+                await asyncio.to_thread(link.do, "add", name, can)
+            async with asyncio.timeout(20):
+                while {"phone/3", "r1/9"} - {reply["id"] for reply in gateway.replies if "result" in reply}:
+                    await asyncio.sleep(0.01)
+        finally:
+            await asyncio.to_thread(link.end)
+    assert set(link.adapter.stops) == {("r1", True)}
+
+
 class Desk:
     """Commands of one adapter, whose robots have ``answer_within`` seconds; ``said`` is what came of them."""
 
