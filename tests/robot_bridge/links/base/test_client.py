@@ -7,7 +7,6 @@ import json
 from types import SimpleNamespace
 
 import pytest
-from adapter_on_the_line import LinkOnTheLine, ObedientAdapter
 from websockets.asyncio.server import serve
 
 from robot_bridge.core.messages import SetPosEnd
@@ -17,6 +16,7 @@ from robot_bridge.links.base.errors import CommandRefusedError
 from robot_bridge.links.base.linked_robots import OVERTAKEN, Commanding
 from robot_bridge.links.base.memory import LinkMemory
 from robot_bridge.protocol import jsonrpc
+from tests.support.bridge.adapter_on_the_line import LinkOnTheLine, ObedientAdapter
 
 SITE = {
     "id": "s",

@@ -10,11 +10,12 @@ from pathlib import Path
 
 import pytest
 import tomllib
-from bridge_programs import wait_until
-from stage.errors import StageError
-from stage.patience import BUSY
-from stage.processes import Processes
-from stage.secure_dds import Keystore, secure_dds
+
+from tests.support.bridge.bridge_programs import wait_until
+from tests.support.errors import StageError
+from tests.support.patience import BUSY
+from tests.support.processes import Processes
+from tests.support.secure_dds import Keystore, secure_dds
 
 pytest.importorskip("rosbags", reason="rosbags is not installed; run make setup")
 

@@ -16,8 +16,7 @@ from robot_bridge.links.vda5050.messages import Action, InstantActions, Order
 from robot_bridge.links.vda5050.settings import Vda5050Settings
 from robot_bridge.links.vda5050.tasks import Remembered
 from robot_bridge.links.vda5050.vehicle import VehicleController
-
-from .bench import state
+from tests.robot_bridge.links.vda5050.bench import state
 
 
 @pytest.fixture
