@@ -6,11 +6,10 @@ import socket
 import ssl
 import subprocess
 import sys
-import time
 
 import pytest
+from bridge_programs import wait_until
 from bridge_wires import Desk
-from stage.patience import BUSY
 
 from robot_bridge.gateway.auth import certificates
 
@@ -119,15 +118,12 @@ def test_a_renewed_certificate_is_taken_while_everybody_stays_connected(bridge, 
     desk = bridge.desk(ssl=trusting(files))
     before = serial(bridge, files)
     certificates.renew(files.folder)
-    until = time.monotonic() + 10 * BUSY
-    while serial(bridge, files) == before:
-        assert time.monotonic() < until
-        time.sleep(0.2)
+    wait_until(lambda: serial(bridge, files) != before)
     assert desk.ask("get_positions")["robots"] is not None
     key = files.key.read_bytes()
     now = serial(bridge, files)
     files.key.write_text("spoilt")
-    time.sleep(4)
+    wait_until(lambda: "the certificate in use stays" in bridge.output(), 20)
     assert serial(bridge, files) == now
     files.key.write_bytes(key)
 
