@@ -9,7 +9,7 @@ from stage.processes import Processes
 from stage.qgis import Profile, virtual_screen
 from stage.session import follow, start_qgis
 
-TIMES = 6
+TIMES = 4
 
 
 @pytest.fixture(scope="module")
