@@ -11,7 +11,6 @@ import numpy as np
 import pyogrio
 import pytest
 import shapely
-from fleet_supervisor.robot_bridge.core.robotmap.binary import decode_text
 from fleet_supervisor.robot_bridge.core.robotmap.text_format import read_text
 
 CAMPUS_LAYERS = ("buildings", "walls", "furniture")
@@ -119,13 +118,13 @@ def heights_in(file):
 
 
 def test_binary_is_the_same_map_and_less_than_the_papers_three_bytes_per_square_metre(
-    export_campus, campus_text
+    export, campus, campus_text
 ):
-    done, file = export_campus(FORMAT="binary", output="campus.rmap")
-    assert done.status == 0, done.said
-    assert decode_text(file.read_bytes()) == campus_text[1]
-    assert done.result("BYTES") == file.stat().st_size
-    assert done.result("BYTES_PER_M2") < 3
+    layers = [f"{campus}|layername={name}" for name in CAMPUS_LAYERS]
+    made = export(*layers, CENTER="48,48", WIDTH=104, HEIGHT=104, FORMAT="binary")
+    assert made.text == campus_text[1]
+    assert made.results["BYTES"] == made.file.stat().st_size
+    assert made.results["BYTES_PER_M2"] < 3
 
 
 def test_binary_without_zstandard_says_what_to_install_and_writes_nothing(export_campus):
@@ -136,18 +135,19 @@ def test_binary_without_zstandard_says_what_to_install_and_writes_nothing(export
     assert not file.exists()
 
 
-def test_helsinki_counts_every_broken_feature_names_the_first_and_ends_well(export_helsinki, helsinki):
-    bounds = pyogrio.read_info(helsinki, "buildings")["total_bounds"]
-    done, _ = export_helsinki(bounds[0] - 5, bounds[1] - 5, bounds[2] + 5, bounds[3] + 5)
+def test_helsinki_counts_every_broken_feature_names_the_first_and_ends_well(export, helsinki):
+    x_min, y_min, x_max, y_max = pyogrio.read_info(helsinki, "buildings")["total_bounds"]
+    layers = [f"{helsinki}|layername={name}" for name in HELSINKI_LAYERS]
+    made = export(*layers, EXTENT=f"{x_min - 5},{x_max + 5},{y_min - 5},{y_max + 5}")
     broken = {f"buildings:{fid}" for fid, shape in features(helsinki, "buildings") if is_broken(shape)}
     assert len(broken) >= 18
     told = [
-        re.match(r"Layer buildings, features? ([\d, ]+)(?:and (\d+) more)?", one) for one in done.warnings
+        re.match(r"Layer buildings, features? ([\d, ]+)(?:and (\d+) more)?", one) for one in made.warnings
     ]
     named = {f"buildings:{fid}" for one in told if one for fid in re.findall(r"\d+", one[1])}
     assert 5 <= len(named) < len(broken) and named <= broken
     assert len(named) + sum(int(one[2] or 0) for one in told if one) == len(broken)
-    assert done.result("WARNING_COUNT") == len(done.warnings)
+    assert made.results["WARNING_COUNT"] == len(made.warnings)
 
 
 def test_no_helsinki_feature_in_the_window_is_lost_without_a_word(helsinki_window, helsinki):
@@ -238,10 +238,9 @@ def test_a_refused_export_says_why_and_has_another_exit_status(
         assert not file.exists()
 
 
-def test_a_layer_without_a_crs_is_in_the_site_frame_where_that_is_said(layer_without_crs, export_by_process):
-    done, file = export_by_process(layer_without_crs, CENTER="0,0", LOCAL="true")
-    assert done.status == 0, done.said
-    assert segments_of(read_text(file.read_text())).tolist() == [[[0, 5], [50, 5]]]
+def test_a_layer_without_a_crs_is_in_the_site_frame_where_that_is_said(layer_without_crs, export):
+    made = export(str(layer_without_crs), CENTER="0,0", LOCAL=True)
+    assert segments_of(made.map).tolist() == [[[0, 5], [50, 5]]]
 
 
 def features(file, layer):
