@@ -62,6 +62,8 @@ class Play:
         self.clock = ManualClock(wall=1000.0)
         self.robots = {}
         self.turns = 0
+        self.resumed = 0, 0
+        """transactions and turns until a queue was last told to go on."""
         self._journal = journal
         self._client = DatabaseClient(url)
         self.sql = self._client.sql
@@ -239,6 +241,7 @@ class Play:
             return await fleet.queues.resume(ResumeQueue(robot, seen.revision), "Ada")
 
         await self.ask_once(resume)
+        self.resumed = self.death.count, self.turns
 
     async def resume_all(self):
         """Let all queues go on; each was paused, unless nothing was left in it by then."""
