@@ -381,7 +381,7 @@ def test_positions_wait_while_the_database_is_away_and_are_stored_later(bridge):
     lock.execute("begin immediate")
     for n in range(12):
         robot.tell("SendPos", {"x": 1.0 + n, "y": 8.0, "theta": 0.0, "v": 1.0})
-        # Of positions that come closer after one another not each is stored.
+        # Of positions closer than min_interval_s (0.2 s) not each is stored.
         time.sleep(0.3)
     lock.execute("rollback")
     assert lock.execute("select count(*) from trajectories").fetchone() == (0,)
