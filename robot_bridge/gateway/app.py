@@ -25,10 +25,11 @@ from ..core.sites.site import Site, check_site, frame_mismatch, read_site
 from ..protocol.asyncapi import served
 from ..protocol.credentials import AccessError
 from .api.http_pages import HEALTH, METRICS, StatusPages
-from .api.operator_server import OperatorSession
+from .api.operator_server import OWN, OperatorSession
 from .api.robot_sql import SqlInterface
 from .api.robot_websockets import WebSocketInterface
 from .auth.accounts import TokenKind, check_link_name
+from .auth.administration import AccountAdministration
 from .auth.connection import ClientConnection
 from .auth.gate import PATHS, AuthGate
 from .auth.port import check_reach, host_fault, is_loopback, listen
@@ -37,6 +38,7 @@ from .fleet.emergency_persistence import StopJournal, journal_file
 from .fleet.link_supervision import LinkProcesses
 from .fleet.service import Fleet
 from .model.clocks import ClockWatch, check_clock_at_start
+from .model.request_handlers import RequestHandlers
 from .monitoring.metrics import Metrics
 from .monitoring.tasks import GarbageCollection, Work, every, keep_all_going
 from .retention import Retention
@@ -48,6 +50,7 @@ from .storage.repositories.metadata import newest_time
 from .storage.roles.choice import has_accounts
 from .storage.singleton_lock import SingletonLock
 from .traffic.road_planning import RoadPlanner
+from .trajectories.recording import TrajectoryPages
 
 # --- The end of a gateway in good order: every client is told, and none of them holds it up ---
 
@@ -132,9 +135,15 @@ class Gateway:
     """One site, one database, one port with ``/robot``, ``/desk`` and pages about the gateway itself."""
 
     def __init__(
-        self, fleet: Fleet, gate: AuthGate, links: LinkProcesses, tls: ServerTls | None = None
+        self,
+        fleet: Fleet,
+        gate: AuthGate,
+        links: LinkProcesses,
+        handlers: RequestHandlers,
+        tls: ServerTls | None = None,
     ) -> None:
         self._fleet = fleet
+        self._handlers = handlers
         self._links = links
         self._gate = gate
         self._tls = tls
@@ -242,11 +251,35 @@ class Gateway:
         assert visitor.identity is not None
         kind = visitor.identity.kind
         if kind is TokenKind.OPERATOR:
-            await OperatorSession(self._fleet, visitor, self._gate).run()
+            await OperatorSession(self._fleet, visitor, self._gate, self._handlers).run()
         elif kind is TokenKind.LINK:
             await self._robots.serve_link(visitor, self._gate)
         else:
             await self._robots.serve(visitor, visitor.identity.name)
+
+
+def request_handlers(fleet: Fleet, database: Database, sites: SiteWatch) -> RequestHandlers:
+    """Return who answers which request of operators; those that concern a connection alone, that does."""
+    handlers = RequestHandlers(
+        fleet.orders,
+        fleet.emergency,
+        fleet.queues,
+        fleet.pauses,
+        fleet.plans,
+        fleet.roads,
+        fleet.roads.closures,
+        fleet.roads.traffic,
+        fleet.snapshots,
+        fleet.observations,
+        fleet.maps,
+        fleet.removals,
+        fleet.links,
+        TrajectoryPages(database),
+        AccountAdministration(database),
+        sites,
+    )
+    handlers.check_complete(except_for=OWN)
+    return handlers
 
 
 async def run(settings: GatewaySettings, signals: Signals, started: Callable[[str], None]) -> None:
@@ -286,7 +319,8 @@ async def run(settings: GatewaySettings, signals: Signals, started: Callable[[st
         await fleet.start()
         stack.push_async_callback(_save_last, fleet, gate)
         links = LinkProcesses(site.settings.links, folder)
-        gateway = Gateway(fleet, gate, links, tls)
+        watch = SiteWatch(folder, stamp, maps, fleet, signals.reload)
+        gateway = Gateway(fleet, gate, links, request_handlers(fleet, database, watch), tls)
         if doubt is not None:
             log.warning("%s", doubt.text)
             if doubt.may_be_ahead:
@@ -296,7 +330,6 @@ async def run(settings: GatewaySettings, signals: Signals, started: Callable[[st
         stack.push_async_callback(notify_clients, server, fleet)
         address = _address(server, tls is not None)
         started(address)
-        watch = fleet.site_choice = SiteWatch(folder, stamp, maps, fleet, signals.reload)
         works = {**gateway.works(address), "site": watch.run, "sole gateway": sole.hold}
         await _until_stopped(keep_all_going(works, fleet.tally), signals.stop)
 

@@ -31,7 +31,7 @@ class Connection:
 
 async def test_news_that_cannot_be_told_keep_back_none_that_come_after_them(caplog):
     fleet, connection = SimpleNamespace(listeners=Listeners()), Connection()
-    session = OperatorSession(fleet, connection, gate=None)
+    session = OperatorSession(fleet, connection, gate=None, handlers=None)
     running = asyncio.create_task(session.run())
     await asyncio.sleep(0)
     fleet.listeners.announce("command", "one", {"what": object()})

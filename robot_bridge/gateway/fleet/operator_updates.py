@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import base64
 import dataclasses
 import hashlib
 import json
@@ -24,7 +25,9 @@ from ...core.logs import log_and_continue
 from ...core.messages import (
     POSITION_ALWAYS,
     POSITION_TEXTS,
+    GetImage,
     GetObservations,
+    GetPositions,
     MessageError,
     ObservationReport,
     ObservationState,
@@ -37,8 +40,11 @@ from ...core.messages import (
     SetObject,
     to_json,
 )
+from ...core.messages.positions import Positions
+from ...core.messages.records import Image, Observations
 from ...core.position_frame import METHOD, packed_frame
 from ...core.sites.settings import SiteSettings
+from ..model.request_handlers import Encoded, handles
 from ..model.robots import Robot, Robots
 from ..site.places import Ground, check_places
 from ..storage.database import Database
@@ -134,17 +140,24 @@ class ObservationService:
         """Raise RefusedError for an image of more bytes than the site takes."""
         check_size(size, self._site.settings.observations.largest_image_bytes)
 
-    async def newest(self, wanted: GetObservations) -> list[ObservationReport]:
+    @handles(GetObservations)
+    async def newest(self, wanted: GetObservations) -> Observations:
         """Return observations, newest first."""
-        return await self._database.run(records.newest_observations, wanted)
+        return Observations(await self._database.run(records.newest_observations, wanted))
 
-    async def image(self, id: int) -> tuple[bytes, str]:
-        """Return the image of observation ``id`` and its media type; raises RefusedError without one."""
-        found = await self._database.run(records.image, id)
+    @handles(GetImage)
+    async def image(self, request: GetImage) -> Encoded[Image]:
+        """Return the image of an observation and its media type; raises RefusedError without one."""
+        found = await self._database.run(records.image, request.observation)
         if found is None:
-            raise RefusedError(f"observation {id} has no image; get_observations lists those with media_type")
-        return found
+            raise RefusedError(
+                f"observation {request.observation} has no image; get_observations lists those with "
+                "media_type"
+            )
+        image, media_type = found
+        return Encoded({"media_type": media_type, "image": base64.b64encode(image).decode("ascii")})
 
+    @handles(ReviewObservation)
     async def review(self, review: ReviewObservation, operator: str) -> ObservationReport:
         """Accept or reject an observation; returns when that is stored. The same again changes nothing.
 
@@ -402,6 +415,11 @@ class Snapshots:
         if len(self._made) > MOST_RATES:
             del self._made[next(iter(self._made))]
         return made[form, revision]
+
+    @handles(GetPositions)
+    async def now(self) -> Encoded[Positions]:
+        """Return where every robot is now."""
+        return Encoded(positions(self._robots.rows(self._clock.time(), -1, ReportRow), everything=True))
 
     def _make(self, revision: int, form: PositionForm) -> Snapshot:
         return Snapshot(self._encoded(revision, form), self._robots.revision)

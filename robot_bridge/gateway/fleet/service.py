@@ -48,9 +48,8 @@ from ..plans.service import PlanService
 from ..queues.registry import QueueContext, QueueRegistry
 from ..queues.requests import PauseService, QueueEditor
 from ..queues.runner import QueueRunner
-from ..site.places import ServedSite, SiteChoice, keepout_refusals
+from ..site.places import ServedSite, keepout_refusals
 from ..storage.database import Database
-from ..storage.repositories import commands
 from ..storage.repositories import robots as stored_robots
 from ..traffic.road_planning import RoadPlanner
 from ..traffic.service import RoadTraffic
@@ -60,7 +59,7 @@ from .emergency_stop import EmergencyStops
 from .geofence import AuditNote, GeofenceWatch
 from .link_supervision import AccountSuspensions, LinkWatch
 from .nearness import NearnessWatch
-from .operator_updates import ObservationService, ReportRow, Snapshots
+from .operator_updates import ObservationService, Snapshots
 from .outbox import RequestOutcome, RobotOutboxes
 from .registration import Decommissioning, Registration
 from .robot_answers import MapSender, RobotAnswers
@@ -84,8 +83,6 @@ class Fleet:
         note: AuditNote | None = None,
     ) -> None:
         self.site = site
-        self.site_choice: SiteChoice | None = None
-        """the sites that supervisors may choose among, where there is a choice."""
         self._database = database
         self._clock = clock
         self.listeners = Listeners()
@@ -267,14 +264,6 @@ class Fleet:
     def reports(self, since: int = -1) -> list[RobotReport]:
         """Return the robots that changed after revision ``since`` of :attr:`robots`."""
         return self.robots.reports(self._clock.time(), since)
-
-    def rows(self, since: int = -1) -> list[Any]:
-        """Return them as they are encoded (see :mod:`.operator_updates`)."""
-        return self.robots.rows(self._clock.time(), since, ReportRow)
-
-    async def commands(self, robot: str | None, limit: int) -> list[CommandReport]:
-        """Return the newest commands first, of one robot or of all."""
-        return await self._database.run(commands.newest, robot, limit)
 
     def open_commands(self) -> Counter[CommandState]:
         """Return how many commands with a step to come are in each state."""

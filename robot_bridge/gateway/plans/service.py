@@ -44,8 +44,9 @@ from ...core.messages import (
     TaskState,
     to_json,
 )
-from ...core.messages.plans import MOST_CONES
+from ...core.messages.plans import MOST_CONES, Plans
 from ..model.listeners import Listeners
+from ..model.request_handlers import handles
 from ..model.robots import AWAY
 from ..model.task_queue import ENDS as TASK_ENDS
 from ..model.task_queue import Queue, queue_report, task_report
@@ -149,6 +150,7 @@ class PlanService:
                 if plan.state is PlanState.REPLANNING:
                     self._begin(one, try_again=False)
 
+    @handles(SubmitPlan)
     async def submit(self, request: SubmitPlan, operator: str) -> PlanReport:
         """Enter all tasks of a plan, and follow it; the same again changes nothing.
 
@@ -179,18 +181,20 @@ class PlanService:
             await self._follow(one)
             return self._announced(one)
 
-    async def read(self, request: GetPlans) -> list[PlanReport]:
+    @handles(GetPlans)
+    async def read(self, request: GetPlans) -> Plans:
         """Return plans as they are; raises RefusedError for one that is not known."""
         if request.plan is not None:
             one = self._plans.get(request.plan) or await self._ended(request.plan)
             if one is None:
                 raise _unknown(request.plan)
-            return [one.report(documents=request.documents)]
+            return Plans([one.report(documents=request.documents)])
         found = [one.report(documents=request.documents) for one in self._plans.values()]
         for plan in await self._context.database.read(newest_ended_plans, request.ended):
             found.append((await self._recalled(plan)).report(documents=request.documents))
-        return found
+        return Plans(found)
 
+    @handles(PausePlan)
     async def pause(self, request: PausePlan, operator: str) -> PlanReport:
         """Send the robots of a plan nothing more; first that, then it is stored that the plan is paused."""
         one = self._plan(request.plan)
@@ -203,6 +207,7 @@ class PlanService:
             one.cancel_planning()
             return await self._put(one, PlanState.PAUSED, operator, request.reason, proposal=None, held={})
 
+    @handles(ResumePlan)
     async def resume(self, request: ResumePlan, operator: str) -> PlanReport:
         """Let the robots go on that are paused."""
         async with self._lock:
@@ -219,6 +224,7 @@ class PlanService:
                 )
             return await self._let_go_on(one, robots, operator)
 
+    @handles(Replan)
     async def replan(self, request: Replan, operator: str) -> PlanReport:
         """Hold the robots and begin to plan what is left."""
         async with self._lock:
@@ -226,6 +232,7 @@ class PlanService:
             self._check_no_emergency()
             return await self._hold(one, operator, try_again=request.try_again)
 
+    @handles(ConfirmReplan)
     async def confirm(self, request: ConfirmReplan, operator: str) -> PlanReport:
         """Enter the tasks of the proposed plan in place of what is left."""
         async with self._lock:
@@ -234,6 +241,7 @@ class PlanService:
             await self._follow(one)
             return await self._confirm(one, operator, request.override)
 
+    @handles(DiscardReplan)
     async def discard(self, request: DiscardReplan, operator: str) -> PlanReport:
         """Give up the plan of what is left; robots held for it go on."""
         async with self._lock:
@@ -246,6 +254,7 @@ class PlanService:
             one.cancel_planning()
             return await self._let_go_on(one, self._still_held(one.plan), operator)
 
+    @handles(ClearPlan)
     async def clear(self, request: ClearPlan, operator: str) -> PlanReport:
         """Follow a plan no more; its tasks stay in the queues."""
         async with self._lock:

@@ -24,6 +24,7 @@ from ...core.messages import (
     Closures,
     Command,
     CommandReport,
+    GetClosures,
     MessageError,
     OpenRoad,
     QueueTask,
@@ -40,6 +41,7 @@ from ..commands.requests import CommandRequests
 from ..commands.service import CommandService
 from ..model.listeners import Listeners
 from ..model.planner import Point
+from ..model.request_handlers import handles
 from ..site.places import ServedSite
 from ..storage.database import Database
 from ..storage.repositories import closures, requests
@@ -267,10 +269,16 @@ class ClosureService:
                     log.warning("closure %s: the site, as it is published now, has no such road", id)
         self._announce()
 
+    @handles(GetClosures)
+    async def closed(self) -> Closures:
+        """Return the roads that are closed."""
+        return self.report()
+
     def report(self) -> Closures:
         """Return the roads that are closed."""
         return Closures([self._reported(row) for row in self._rows.values()])
 
+    @handles(CloseRoad)
     async def close(self, request: CloseRoad, operator: str) -> RoadClosed:
         """Close a road and send the robots that it concerns another way; the same again changes nothing.
 
@@ -304,6 +312,7 @@ class ClosureService:
         for row in list(self._rows.values()):
             await self._lead_round(row, only=placed)
 
+    @handles(OpenRoad)
     async def open(self, request: OpenRoad, operator: str) -> ClosureReport:
         """Open a road; the same again changes nothing.
 

@@ -17,6 +17,7 @@ from ...core.messages import GetTrajectory, SendPos, Trajectory, TrajectoryPlace
 from ...core.messages.records import mark_text
 from ...core.sites.settings_tables import TrajectorySettings
 from ..model.arrival import standing
+from ..model.request_handlers import handles
 from ..model.robots import RobotPose, Robots
 from ..storage.database import Database, to_its_end
 from ..storage.repositories import robots as stored_robots
@@ -330,14 +331,21 @@ def _write(
 # --- A page of where robots have been, as an operator asks for it ---
 
 
-async def get_trajectory(database: Database, request: GetTrajectory) -> Trajectory:
-    """Return the page of stored positions that ``request`` asks for; raises StoreError."""
-    wanted = TrajectoryQuery(tuple(request.robots), request.since, request.until, request.bounds)
-    mark = request.mark()
-    after = None if mark is None else PageMark(*mark)
-    places = await database.run(trajectories.read, wanted, request.limit, after)
-    more = len(places) == request.limit
-    return Trajectory(
-        places=[TrajectoryPlace(*place[1:]) for place in places],
-        next=mark_text(places[-1].received_at, places[-1].id) if more else None,
-    )
+class TrajectoryPages:
+    """The stored positions of robots, in pages."""
+
+    def __init__(self, database: Database) -> None:
+        self._database = database
+
+    @handles(GetTrajectory)
+    async def read(self, request: GetTrajectory) -> Trajectory:
+        """Return the page of stored positions that ``request`` asks for; raises StoreError."""
+        wanted = TrajectoryQuery(tuple(request.robots), request.since, request.until, request.bounds)
+        mark = request.mark()
+        after = None if mark is None else PageMark(*mark)
+        places = await self._database.run(trajectories.read, wanted, request.limit, after)
+        more = len(places) == request.limit
+        return Trajectory(
+            places=[TrajectoryPlace(*place[1:]) for place in places],
+            next=mark_text(places[-1].received_at, places[-1].id) if more else None,
+        )

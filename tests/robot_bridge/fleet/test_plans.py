@@ -66,7 +66,7 @@ class Drive:
         return report
 
     async def seen(self, name="plan-1", **how):
-        (report,) = await self.plans.read(GetPlans(name, **how))
+        (report,) = (await self.plans.read(GetPlans(name, **how))).plans
         return report
 
     async def go(self, *, robots=("r1", "r2"), times=1):
