@@ -41,6 +41,7 @@ from .model.clocks import ClockWatch, check_clock_at_start
 from .model.request_handlers import RequestHandlers
 from .monitoring.metrics import Metrics
 from .monitoring.tasks import GarbageCollection, Work, every, keep_all_going
+from .plans.service import PlanService
 from .retention import Retention
 from .site.site_maps import SiteMaps
 from .site_watch import SiteWatch, stamp_of
@@ -167,7 +168,6 @@ class Gateway:
             "sql link": SqlInterface(fleet, fleet.database).run,
             "liveness": lambda: every(AGE_INTERVAL, self._age, "liveness", tally),
             "queues": fleet.driving.run,
-            "plans": lambda: every(PLANS_INTERVAL, fleet.plans.watch, "plans", tally),
             "maps": fleet.maps.run,
             "save": lambda: every(SAVE_INTERVAL, fleet.save, "save", tally),
             "prune": lambda: every(PRUNE_INTERVAL, self.retention.prune, "prune", tally),
@@ -258,14 +258,16 @@ class Gateway:
             await self._robots.serve(visitor, visitor.identity.name)
 
 
-def request_handlers(fleet: Fleet, database: Database, sites: SiteWatch) -> RequestHandlers:
+def request_handlers(
+    fleet: Fleet, plans: PlanService, database: Database, sites: SiteWatch
+) -> RequestHandlers:
     """Return who answers which request of operators; those that concern a connection alone, that does."""
     handlers = RequestHandlers(
         fleet.orders,
         fleet.emergency,
         fleet.queues,
         fleet.pauses,
-        fleet.plans,
+        plans,
         fleet.roads,
         fleet.roads.closures,
         fleet.roads.traffic,
@@ -317,10 +319,14 @@ async def run(settings: GatewaySettings, signals: Signals, started: Callable[[st
         planner = await asyncio.to_thread(RoadPlanner, lambda: maps.site)
         fleet = Fleet(maps, database, planner=planner, stops=journal, note=gate.journal.note)
         await fleet.start()
-        stack.push_async_callback(_save_last, fleet, gate)
+        plans = PlanService(
+            fleet.queue_context, fleet.queues, fleet.roads.closures, fleet.emergency, fleet.listeners
+        )
+        await plans.restore()
+        stack.push_async_callback(_save_last, fleet, plans, gate)
         links = LinkProcesses(site.settings.links, folder)
         watch = SiteWatch(folder, stamp, maps, fleet, signals.reload)
-        gateway = Gateway(fleet, gate, links, request_handlers(fleet, database, watch), tls)
+        gateway = Gateway(fleet, gate, links, request_handlers(fleet, plans, database, watch), tls)
         if doubt is not None:
             log.warning("%s", doubt.text)
             if doubt.may_be_ahead:
@@ -330,7 +336,12 @@ async def run(settings: GatewaySettings, signals: Signals, started: Callable[[st
         stack.push_async_callback(notify_clients, server, fleet)
         address = _address(server, tls is not None)
         started(address)
-        works = {**gateway.works(address), "site": watch.run, "sole gateway": sole.hold}
+        works = {
+            **gateway.works(address),
+            "plans": lambda: every(PLANS_INTERVAL, plans.watch, "plans", fleet.tally),
+            "site": watch.run,
+            "sole gateway": sole.hold,
+        }
         await _until_stopped(keep_all_going(works, fleet.tally), signals.stop)
 
 
@@ -382,13 +393,13 @@ async def _until_stopped(watch: Coroutine[None, None, None], stop: asyncio.Event
     await asyncio.gather(watching, return_exceptions=True)
 
 
-async def _save_last(fleet: Fleet, gate: AuthGate) -> None:
+async def _save_last(fleet: Fleet, plans: PlanService, gate: AuthGate) -> None:
     """Store what waits; a database that does not answer must not keep the gateway from ending."""
     try:
         async with asyncio.timeout(SAVE_WITHIN):
             await fleet.finish_trajectories()
             await gate.close()
-            await fleet.plans.finish()
+            await plans.finish()
     except (StoreError, TimeoutError) as error:
         reason = str(error) or "the database does not answer"
         log.error("%s; the last positions are not stored", reason)

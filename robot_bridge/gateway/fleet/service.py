@@ -44,7 +44,6 @@ from ..model.position_checks import NO_FIX, GroundTracks, PlaceChecks
 from ..model.robots import Robot, RobotPose, Robots
 from ..monitoring.metrics import Counters
 from ..monitoring.tasks import Steps
-from ..plans.service import PlanService
 from ..queues.registry import QueueContext, QueueRegistry
 from ..queues.requests import PauseService, QueueEditor
 from ..queues.runner import QueueRunner
@@ -103,9 +102,11 @@ class Fleet:
         self.emergency = EmergencyStops(self._book, database, clock, self.robots, self.listeners, stops)
         self._queue_book = QueueRegistry(database, self.robots, self.listeners)
         planner = planner or StraightPlanner()
-        about_queues = QueueContext(site, self.robots, self._book, self._queue_book, database, clock, planner)
-        self.queues = QueueEditor(about_queues)
-        self.driving = QueueRunner(about_queues)
+        self.queue_context = QueueContext(
+            site, self.robots, self._book, self._queue_book, database, clock, planner
+        )
+        self.queues = QueueEditor(self.queue_context)
+        self.driving = QueueRunner(self.queue_context)
         self.roads = RoadTraffic(
             site,
             self.robots,
@@ -117,15 +118,12 @@ class Fleet:
             planner if isinstance(planner, RoadPlanner) else None,
             self.listeners,
         )
-        self.pauses = PauseService(about_queues, self.roads.waiting.row_of)
+        self.pauses = PauseService(self.queue_context, self.roads.waiting.row_of)
         self.geofence = GeofenceWatch(
             site, self.robots, self.orders, self.pauses, self.emergency, clock, self.listeners, note
         )
         self.nearness = NearnessWatch(
             self.robots, self.links, self.roads.traffic, site, clock, self.listeners
-        )
-        self.plans = PlanService(
-            about_queues, self.queues, self.roads.closures, self.emergency, self.listeners
         )
         self.recorder = TrajectoryRecorder(lambda: self.site.settings.trajectories)
         self._saving = TrajectoryWriter(database, self.robots, self.recorder, clock)
@@ -178,7 +176,6 @@ class Fleet:
         await self.emergency.restore()
         await self.roads.restore()
         await self._queue_book.restore()
-        await self.plans.restore()
         await self.observations.restore()
         await self.suspensions.restore()
         start = self.reception.greeting()
