@@ -7,7 +7,7 @@ import json
 from types import SimpleNamespace
 
 from robot_bridge.gateway.api.operator_server import OperatorSession
-from robot_bridge.gateway.model.listeners import Listeners
+from robot_bridge.gateway.model.events import Listeners
 
 
 class Connection:

@@ -148,13 +148,17 @@ class FastPath:
 
     The parsing, the queue and the tasks that this saves take several times as long as a position does. Only
     what nothing is on the long way before goes here: messages are dealt with in the order they were sent.
-    ``handler`` deals with a message, or returns false and has done nothing.
+    The handler deals with a message, or returns false and has done nothing.
     """
 
     def __init__(self) -> None:
-        self.handler: Callable[[bytes], bool] | None = None
+        self._handler: Callable[[bytes], bool] | None = None
         self.on_the_long_way = 0
         self._edges: FrameParser | None = None
+
+    def set_handler(self, handler: Callable[[bytes], bool]) -> None:
+        """Give messages to ``handler`` from now on."""
+        self._handler = handler
 
     def begin(self, request: bytes) -> None:
         """Follow the frames from the end of the request on, whose last bytes these are."""
@@ -168,11 +172,11 @@ class FastPath:
         Return where that begins which has to go the long way; :meth:`pass_over` is to be called with it.
         """
         start, edges = 0, self._edges
-        if self.handler is None or edges is None or not edges.between or self.on_the_long_way:
+        if self._handler is None or edges is None or not edges.between or self.on_the_long_way:
             return 0
         while (found := short_text(data, start)) is not None and messages.consume():
             message, end = found
-            if not self.handler(message):
+            if not self._handler(message):
                 messages.give_back()
                 break
             start = end
@@ -276,6 +280,10 @@ class ClientConnection(ServerConnection):
         with contextlib.suppress(OSError):
             own.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, limits.send_buffer_bytes)
         self._silence = self.loop.call_later(limits.first_message_s, self._check_silence)
+
+    def handle_at_once(self, handler: Callable[[bytes], bool]) -> None:
+        """Give messages to ``handler`` as their bytes come in; one of which it returns false is queued."""
+        self.short_cut.set_handler(handler)
 
     async def expel(self, code: int, reason: str) -> None:
         """End the connection, whether the client agrees or not; what still comes in is passed over."""

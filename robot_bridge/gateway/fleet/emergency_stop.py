@@ -27,7 +27,7 @@ from ...core.messages import (
 from ...core.messages.validation import LONGEST_OPERATOR, one_line
 from ..commands.active_command import CommandOrder
 from ..commands.service import CommandService
-from ..model.listeners import Listeners
+from ..model.events import Listeners
 from ..model.request_handlers import handles
 from ..model.robots import Robots
 from ..storage.database import Database

@@ -30,7 +30,7 @@ from ...core.messages.administration import (
 )
 from ...core.messages.links import LinkStatus
 from ...core.sites.settings_tables import LinkOptions
-from ..model.listeners import Listeners
+from ..model.events import Listeners
 from ..model.request_handlers import handles
 from ..model.robots import Robots
 from ..storage.database import Database

@@ -10,7 +10,7 @@ import json
 import logging
 import math
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from operator import attrgetter
 from typing import Any, NamedTuple, Protocol
 
@@ -21,7 +21,6 @@ import numpy.typing as npt
 from ...core.clock import Clock
 from ...core.errors import RefusedError, UncertainError
 from ...core.images import check_size, media_type_of
-from ...core.logs import log_and_continue
 from ...core.messages import (
     POSITION_ALWAYS,
     POSITION_TEXTS,
@@ -44,6 +43,7 @@ from ...core.messages.positions import Positions
 from ...core.messages.records import Image, Observations
 from ...core.position_frame import METHOD, packed_frame
 from ...core.sites.settings import SiteSettings
+from ..model.events import EventBus, ObservationChanged
 from ..model.request_handlers import Encoded, handles
 from ..model.robots import Robot, Robots
 from ..site.places import Ground, check_places
@@ -70,29 +70,26 @@ class ObservedSite(Ground, Protocol):
 
 
 class ObservationService:
-    """Every observation of the robots of one site.
-
-    ``changed`` is called with each new and each reviewed one, after it was stored.
-    """
+    """Every observation of the robots of one site; ObservationChanged is published after one was stored."""
 
     def __init__(
         self,
         site: ObservedSite,
         database: Database,
         clock: Clock,
-        changed: Callable[[ObservationReport], None],
+        events: EventBus,
     ) -> None:
         self._site = site
         self._database = database
         self._clock = clock
-        self._changed = changed
+        self._events = events
         self._lock = asyncio.Lock()
         self._undrawn = False
         """whether something may have been accepted, or rejected, that the maps do not show yet."""
         self._unsure: set[tuple[str, str]] = set()
-        """robots and sources of what may have been stored, and ``changed`` was not called."""
+        """robots and sources of what may have been stored, and nobody was told."""
         self._untold: set[int] = set()
-        """what may have been reviewed, and ``changed`` was not called."""
+        """what may have been reviewed, and nobody was told."""
 
     async def restore(self) -> None:
         """Draw on the maps what operators accepted before."""
@@ -186,8 +183,7 @@ class ObservationService:
 
     def _tell(self, report: ObservationReport | None) -> None:
         if report is not None:
-            with log_and_continue(log, f"telling of observation {report.observation}"):
-                self._changed(report)
+            self._events.publish(ObservationChanged(report))
 
 
 def _new(robot: str, told: Observed, occasion: str, now: float) -> NewObservation:

@@ -45,7 +45,7 @@ from ...core.messages import (
     to_json,
 )
 from ...core.messages.plans import MOST_CONES, Plans
-from ..model.listeners import Listeners
+from ..model.events import Listeners
 from ..model.request_handlers import handles
 from ..model.robots import AWAY
 from ..model.task_queue import ENDS as TASK_ENDS

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import uuid
-from collections.abc import AsyncIterator, Callable, Collection, Mapping, Sequence
+from collections.abc import AsyncIterator, Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
 
@@ -43,7 +43,6 @@ from ..model.request_handlers import handles
 from ..model.task_queue import Queue, QueuedTask, queue_report
 from ..site.places import check_keepouts, check_places, tasks_in_site_frame
 from ..storage.repositories import queues, records
-from ..storage.repositories.closures import HoldRow
 from . import task_life
 from .registry import QueueContext
 from .task_life import commands_of_task, pause_with_task, task_of_command, task_of_rest
@@ -58,15 +57,15 @@ _TRIES = 3
 
 
 class PauseService:
-    """Pauses robots. ``waiting`` tells how a robot waits for another, and what it is to drive afterwards."""
+    """Pauses robots."""
 
-    def __init__(self, context: QueueContext, waiting: Callable[[str], HoldRow | None]) -> None:
+    def __init__(self, context: QueueContext) -> None:
         self._site = context.site
         self._robots = context.robots
         self._commands = context.commands
         self._book = context.book
         self._clock = context.clock
-        self._waiting = waiting
+        self._waiting = context.waiting
 
     @handles(PauseRobot)
     async def pause(self, request: PauseRobot, operator: str) -> QueueReport:
@@ -109,7 +108,7 @@ class PauseService:
 
     def _kept(self, robot: str, doing: ActiveCommand | None) -> list[QueuedTask]:
         """Return as tasks what the robot does beside its queue, and is to do after another has passed."""
-        kept, known, row = [], self._robots.get(robot), self._waiting(robot)
+        kept, known, row = [], self._robots.get(robot), self._waiting.get(robot)
         if doing is not None:
             here = (known.pose.x, known.pose.y) if known.located and known.pose is not None else None
             kept.append(task_of_command(doing, self._site.settings.cones.offset, here))

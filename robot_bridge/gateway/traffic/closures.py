@@ -39,7 +39,7 @@ from ..commands.active_command import NOTHING, CommandOrder, because
 from ..commands.persistence import Also, AlsoOf
 from ..commands.requests import CommandRequests
 from ..commands.service import CommandService
-from ..model.listeners import Listeners
+from ..model.events import Listeners
 from ..model.planner import Point
 from ..model.request_handlers import handles
 from ..site.places import ServedSite
@@ -56,12 +56,7 @@ log = logging.getLogger(__name__)
 
 
 class DetourQueues(Protocol):
-    """The robots' queues, as far as another way concerns them.
-
-    ``waits_for`` is asked whom a robot is to let pass before it is sent a task of its queue.
-    """
-
-    waits_for: Callable[[str, str], str | None]
+    """The robots' queues, as far as another way concerns them."""
 
     async def redirect(self, robot: str, path: SetPath, operator: str, reason: str) -> CommandReport | None:
         """Send a task of a queue by another path; None where the robot's task is none of a queue."""

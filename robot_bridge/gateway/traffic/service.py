@@ -30,7 +30,8 @@ from ...core.messages import (
 from ...core.sites.site import Site
 from ..commands.requests import CommandRequests
 from ..commands.service import CommandService
-from ..model.listeners import Listeners
+from ..commands.validation import WaitingRobots
+from ..model.events import Listeners
 from ..model.planner import Point
 from ..model.request_handlers import handles
 from ..model.robots import Robots
@@ -310,6 +311,7 @@ class RoadTraffic:
         commands: CommandService,
         orders: CommandRequests,
         queues: DetourQueues,
+        waiting: WaitingRobots,
         database: Database,
         clock: Clock,
         planner: RoadPlanner | None,
@@ -322,7 +324,7 @@ class RoadTraffic:
         self.ways = RobotPaths(robots, commands)
         detours = Detours(self.ways, planner, orders, queues, commands, site)
         self.closures = ClosureService(database, clock, planner, detours, listeners)
-        self.waiting = YieldManager(database, commands, detours)
+        self.waiting = YieldManager(database, commands, detours, waiting)
         self.traffic = TrafficControl(
             clock,
             robots,

@@ -32,7 +32,7 @@ def taken():
 @pytest.fixture
 def short_cut(taken):
     way = FastPath()
-    way.handler = taken
+    way.set_handler(taken)
     way.begin(REQUEST)
     return way
 
@@ -68,7 +68,7 @@ def test_nothing_is_taken_out_of_the_middle_of_a_frame(short_cut, taken, plenty)
 
 def test_frames_behind_the_request_leave_no_short_cut(taken, plenty):
     way = FastPath()
-    way.handler = taken
+    way.set_handler(taken)
     way.begin(REQUEST + text("a message whose edges nobody followed")[:9])
     assert way.handle_messages(text("p1"), plenty) == 0
 

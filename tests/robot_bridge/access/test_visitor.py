@@ -38,7 +38,7 @@ class Host:
         visitor.let_in(Identity(TokenKind.ROBOT, "r", None, "s"), 10_000)
 
     async def serve(self, visitor):
-        visitor.short_cut.handler = self._at_once
+        visitor.handle_at_once(self._at_once)
         async for message in visitor:
             if message == "wait":
                 await asyncio.wait_for(self.goes_on.wait(), 5)

@@ -23,6 +23,7 @@ from robot_bridge.gateway.api import robot_sql
 from robot_bridge.gateway.commands import service as book_module
 from robot_bridge.gateway.commands.persistence import write_late
 from robot_bridge.gateway.fleet import emergency_stop
+from robot_bridge.gateway.model.events import CommandChanged
 from robot_bridge.gateway.storage.repositories import emergency_stops, requests
 from robot_bridge.gateway.storage.repositories import requests as answers
 from robot_bridge.gateway.storage.repositories import robots as stored_robots
@@ -637,12 +638,12 @@ async def test_a_robot_whose_removal_fails_keeps_no_other_in_the_fleet(driven, m
 
 
 @ON_ONE
-async def test_a_command_that_cannot_be_told_of_keeps_no_other_from_being_followed(driven, monkeypatch):
-    def fail_for_one(report):
-        if report.robot == "r1":
+async def test_a_command_that_cannot_be_told_of_keeps_no_other_from_being_followed(driven):
+    def fail_for_one(event):
+        if event.report.robot == "r1":
             raise ZeroDivisionError("unforeseen")
 
-    monkeypatch.setattr(driven.fleet._book, "_changed", fail_for_one)
+    driven.fleet.events._subscribers[CommandChanged].insert(0, fail_for_one)
     await stop(driven)
     assert all(driven.fleet._book.awaits_stop(robot) for robot in ("r1", "r2", "r3"))
 
