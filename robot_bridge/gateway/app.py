@@ -150,11 +150,11 @@ class Gateway:
         self._tls = tls
         self._robots = WebSocketInterface(fleet)
         metrics = Metrics(fleet.tally)
-        fleet.database.observe = metrics.database.observe
+        fleet.database.add_observer(metrics.database.observe)
         self._status = StatusPages(fleet, metrics)
         self._clock_watch = ClockWatch()
         self._leavings = GarbageCollection()
-        self.retention = Retention(fleet.database, lambda: fleet.site.settings)
+        self.retention = Retention(fleet.database, fleet.site)
 
     async def serve(self, host: str, port: int) -> Server:
         """Listen for robots and operators; raises BridgeError when that cannot be done there."""
@@ -316,7 +316,7 @@ async def run(settings: GatewaySettings, signals: Signals, started: Callable[[st
         accounts = gate.book.has_operator(time.time())
         check_reach(settings.host, tls=tls is not None, accounts=accounts)
         maps = SiteMaps(site)
-        planner = await asyncio.to_thread(RoadPlanner, lambda: maps.site)
+        planner = await asyncio.to_thread(RoadPlanner, maps)
         fleet = Fleet(maps, database, planner=planner, stops=journal, note=gate.journal.note)
         await fleet.start()
         plans = PlanService(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import random
 from dataclasses import asdict, replace
+from types import SimpleNamespace
 from typing import ClassVar
 
 from robot_bridge.core.errors import BridgeError
@@ -30,7 +31,8 @@ class Side:
 
     def __init__(self, names, *, batches):
         events = EventBus()
-        self.robots, self.checks, self.batches = Robots(events=events), PlaceChecks(lambda: SITE), batches
+        self.robots, self.batches = Robots(events=events), batches
+        self.checks = PlaceChecks(SimpleNamespace(settings=SITE))
         self.followed = 0
         self.back, self.unseen = [], []
         events.subscribe(RobotReturned, lambda one: self.back.append((one.robot, round(one.away_s, 3))))

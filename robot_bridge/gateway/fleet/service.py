@@ -128,7 +128,7 @@ class Fleet:
         self.nearness = NearnessWatch(
             self.robots, self.links, self.roads.traffic, site, clock, self.listeners
         )
-        self.recorder = TrajectoryRecorder(lambda: self.site.settings.trajectories)
+        self.recorder = TrajectoryRecorder(site)
         self._saving = TrajectoryWriter(database, self.robots, self.recorder, clock)
         self.mailboxes = RobotOutboxes(database, self.robots, self._book, self.emergency, self._saving)
         self.maps = MapSender(site, self.robots, self.mailboxes, database)
@@ -155,7 +155,7 @@ class Fleet:
         self.observations = ObservationService(site, database, clock, self.events)
         self._answering = RobotAnswers(site, database, self.robots, self._book, planner, self.roads.ways)
         self._tracks = GroundTracks()
-        self._places = PlaceChecks(lambda: site.settings)
+        self._places = PlaceChecks(site)
         self._steps = Steps("save")
         self.suspensions = AccountSuspensions(database, self._book, self.listeners, clock)
         self.tally = Counters()

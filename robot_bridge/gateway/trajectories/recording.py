@@ -15,6 +15,7 @@ from ...core.clock import Clock
 from ...core.errors import DataRefusedError
 from ...core.messages import GetTrajectory, SendPos, Trajectory, TrajectoryPlace
 from ...core.messages.records import mark_text
+from ...core.sites.settings import SettingsSource
 from ...core.sites.settings_tables import TrajectorySettings
 from ..model.arrival import standing
 from ..model.request_handlers import handles
@@ -85,14 +86,14 @@ LOOK_INTERVAL = 1.0
 
 
 class TrajectoryRecorder:
-    """Collects positions and hands them out in batches; ``settings`` is asked each time, so it may change.
+    """Collects positions and hands them out in batches; the ``site`` is asked for its settings each time.
 
     Where more than ``largest_backlog`` of them wait, the database is away or takes them more slowly than they
     come: the oldest are given up, which is logged once and counted.
     """
 
-    def __init__(self, settings: Callable[[], TrajectorySettings]) -> None:
-        self._settings = settings
+    def __init__(self, site: SettingsSource) -> None:
+        self._site = site
         self._thinning = PositionThinning()
         self._waiting: deque[PackedFix] = deque()
         self._told = False
@@ -106,7 +107,7 @@ class TrajectoryRecorder:
 
     def observe(self, fixes: Sequence[Fix]) -> None:
         """Take in where robots are."""
-        settings = self._settings()
+        settings = self._site.settings.trajectories
         kept = [pack(fix) for fix in fixes if self._thinning.keeps(fix, settings)]
         if kept:
             self._waiting.extend(kept)
@@ -118,8 +119,8 @@ class TrajectoryRecorder:
         # Not each time: it looks at every robot, and this is called for every few requests.
         if not 0 <= now - self._looked_at < LOOK_INTERVAL:
             self._looked_at = now
-            self._wait(self._thinning.silent(now - self._settings().max_interval_s))
-        self._told = self._told and len(self._waiting) > self._settings().largest_backlog / 2
+            self._wait(self._thinning.silent(now - self._site.settings.trajectories.max_interval_s))
+        self._told = self._told and len(self._waiting) > self._site.settings.trajectories.largest_backlog / 2
         return [self._waiting.popleft() for _ in range(min(BATCH, len(self._waiting)))]
 
     def finish(self) -> None:
@@ -136,7 +137,7 @@ class TrajectoryRecorder:
         self._give_up_the_oldest()
 
     def _give_up_the_oldest(self) -> None:
-        too_many = len(self._waiting) - self._settings().largest_backlog
+        too_many = len(self._waiting) - self._site.settings.trajectories.largest_backlog
         if too_many <= 0:
             return
         for _ in range(too_many):

@@ -91,7 +91,7 @@ class Play:
             self.database = MortalDatabase(self.url, self.death)
             try:
                 await self.database.open()
-                planner = RoadPlanner(lambda: self.site.site) if self.roads else None
+                planner = RoadPlanner(self.site) if self.roads else None
                 journal = StopJournal(self._journal)
                 self.fleet = Fleet(self.site, self.database, self.clock, planner, journal)
                 self.fleet.emergency.reach(self._stop_all)
