@@ -24,13 +24,13 @@ from ..core.messages import MessageError, Stopping, check_robot_name, to_json
 from ..core.sites.site import Site, check_site, frame_mismatch, read_site
 from ..protocol.asyncapi import served
 from ..protocol.credentials import AccessError
-from .api.http_pages import HEALTH, METRICS, StatusPages
 from .api.operator_server import OWN, OperatorSession
 from .api.robot_sql import SqlInterface
 from .api.robot_websockets import WebSocketInterface
+from .api.status_pages import HEALTH, METRICS, StatusPages
 from .auth.accounts import TokenKind, check_link_name
 from .auth.administration import AccountAdministration
-from .auth.connection import ClientConnection
+from .auth.client_connection import ClientConnection
 from .auth.gate import PATHS, AuthGate
 from .auth.port import check_reach, host_fault, is_loopback, listen
 from .auth.tls import ServerFiles, ServerTls
@@ -40,7 +40,7 @@ from .fleet.service import Fleet
 from .model.clocks import ClockWatch, check_clock_at_start
 from .model.request_handlers import RequestHandlers
 from .monitoring.metrics import Metrics
-from .monitoring.tasks import GarbageCollection, Work, every, keep_all_going
+from .monitoring.periodic_tasks import GarbageCollection, Work, every, keep_all_going
 from .plans.service import PlanService
 from .retention import Retention
 from .site.site_maps import SiteMaps

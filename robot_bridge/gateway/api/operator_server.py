@@ -26,7 +26,7 @@ from ...core.messages import (
 )
 from ...protocol import jsonrpc
 from ...protocol.codec import decode_desk_request, error_code
-from ..auth.connection import ClientConnection
+from ..auth.client_connection import ClientConnection
 from ..auth.gate import AuthGate
 from ..auth.permissions import check_permission
 from ..fleet.operator_updates import EVERYTHING, Tick

@@ -29,7 +29,7 @@ from ...protocol.codec import (
     decode_request,
     error_code,
 )
-from ..auth.connection import ClientConnection
+from ..auth.client_connection import ClientConnection
 from ..fleet.outbox import RequestOutcome
 from ..fleet.registration import ConnectionClaims
 from ..fleet.service import Fleet

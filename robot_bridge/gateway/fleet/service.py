@@ -47,7 +47,7 @@ from ..model.planner import Planner, StraightPlanner
 from ..model.position_checks import NO_FIX, GroundTracks, PlaceChecks
 from ..model.robots import Robot, RobotPose, Robots
 from ..monitoring.metrics import Counters
-from ..monitoring.tasks import Steps
+from ..monitoring.periodic_tasks import Steps
 from ..queues.registry import QueueContext, QueueRegistry
 from ..queues.requests import PauseService, QueueEditor
 from ..queues.runner import QueueRunner

@@ -12,7 +12,7 @@ from websockets.exceptions import ConnectionClosed
 
 from robot_bridge.core.sites.settings_tables import LimitSettings
 from robot_bridge.gateway.auth.accounts import TokenKind
-from robot_bridge.gateway.auth.connection import ClientConnection, Identity
+from robot_bridge.gateway.auth.client_connection import ClientConnection, Identity
 
 
 class OpenDoor:
