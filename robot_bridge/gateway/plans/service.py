@@ -12,7 +12,7 @@ import logging
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import partial
-from typing import Any, Protocol
+from typing import Any, NamedTuple, Protocol
 
 from ...core.assignment.plan import ConePlan, check_plan, plan_from_json
 from ...core.assignment.progress import (
@@ -116,6 +116,14 @@ class _Followed:
             closed=self.closed if proposed else None,
             documents=documents,
         )
+
+
+class _Proposal(NamedTuple):
+    """A plan of what is left, where its robots come too near to one another, and its ways on closed roads."""
+
+    document: ConePlan
+    meetings: int
+    closed: int
 
 
 class PlanService:
@@ -394,12 +402,12 @@ class PlanService:
 
     async def _make(self, one: _Followed, making: Replanning, ground: ReplanGround) -> None:
         try:
-            proposal = await asyncio.to_thread(making.run)
-            meetings = await asyncio.to_thread(count_meetings, proposal, ground)
+            document = await asyncio.to_thread(making.run)
+            meetings = await asyncio.to_thread(count_meetings, document, ground)
             closed = 0
             if self._planner is not None:
                 ways = await asyncio.to_thread(
-                    ways_along_closed_roads, proposal, self._planner.closed, self._closed_now()
+                    ways_along_closed_roads, document, self._planner.closed, self._closed_now()
                 )
                 closed = len(ways)
         except (AssignmentError, RoadsError, RefusedError) as error:
@@ -409,11 +417,10 @@ class PlanService:
             log_unforeseen(log, f"plan of what is left of {one.plan.name}")
             await self._made(one, making, None, "it could not be planned; see the gateway's log")
         else:
-            one.meetings, one.closed = meetings, closed
-            await self._made(one, making, proposal, None)
+            await self._made(one, making, _Proposal(document, meetings, closed), None)
 
     async def _made(
-        self, one: _Followed, making: Replanning, proposal: ConePlan | None, why: str | None
+        self, one: _Followed, making: Replanning, proposal: _Proposal | None, why: str | None
     ) -> None:
         try:
             async with self._lock:
@@ -424,7 +431,8 @@ class PlanService:
                     reason = f"what is left could not be planned: {why}"
                     await self._put(one, PlanState.PAUSED, GATEWAY, reason, held={})
                     return
-                await self._put(one, PlanState.PROPOSED, GATEWAY, one.plan.reason, proposal=proposal)
+                one.meetings, one.closed = proposal.meetings, proposal.closed
+                await self._put(one, PlanState.PROPOSED, GATEWAY, one.plan.reason, proposal=proposal.document)
                 if one.plan.by_itself and not one.meetings and not one.closed and not self._stops.in_force:
                     await self._follow(one)
                     try:

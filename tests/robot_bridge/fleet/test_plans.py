@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import threading
 
 import pytest
 
@@ -241,6 +242,31 @@ async def test_after_a_restart_robots_have_time_to_come_back_before_it_is_planne
     assert (await drive.seen()).state is PlanState.REPLANNING
     await drive.planned()
     assert (await drive.seen()).robots == ["r1"]
+
+
+async def test_planning_that_counts_no_more_says_nothing_of_what_is_planned_instead(drive, monkeypatch):
+    begun, may_end = asyncio.Event(), threading.Event()
+    loop, counts = asyncio.get_running_loop(), [99, 0]
+
+    def count(_proposal, _ground):
+        meetings = counts.pop(0)
+        if meetings:
+            loop.call_soon_threadsafe(begun.set)
+            may_end.wait(60)
+        return meetings
+
+    monkeypatch.setattr("robot_bridge.gateway.plans.service.count_meetings", count)
+    await drive.submit()
+    await drive.plans.replan(Replan("plan-1", 1), "Ada")
+    await begun.wait()
+    (first,) = drive.plans._tasks
+    discarded = await drive.plans.discard(DiscardReplan("plan-1", (await drive.seen()).revision), "Ada")
+    await drive.plans.replan(Replan("plan-1", discarded.revision), "Ada")
+    await asyncio.gather(*(drive.plans._tasks - {first}))
+    may_end.set()
+    await first
+    report = await drive.seen()
+    assert (report.state, report.meetings) == (PlanState.PROPOSED, 0)
 
 
 async def test_planning_that_the_gateways_end_cut_short_begins_anew(drive):
