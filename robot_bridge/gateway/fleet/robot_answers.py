@@ -31,7 +31,7 @@ from ...core.robotmap.model import Border, EncodedMap
 from ...protocol.codec import decode_answer
 from ..commands.service import CommandService
 from ..model.command_states import is_open
-from ..model.planner import Planner, remaining_path
+from ..model.remaining_way import Planner, remaining_path
 from ..model.request_handlers import handles
 from ..model.robots import Robots
 from ..site.places import ServedSite

@@ -43,8 +43,8 @@ from ..model.events import (
     QueueChanged,
     RobotReturned,
 )
-from ..model.planner import Planner, StraightPlanner
 from ..model.position_checks import NO_FIX, GroundTracks, PlaceChecks
+from ..model.remaining_way import Planner, StraightPlanner
 from ..model.robots import Robot, RobotPose, Robots
 from ..monitoring.metrics import Counters
 from ..monitoring.periodic_tasks import Steps

@@ -40,7 +40,7 @@ from ..commands.persistence import Also, AlsoOf
 from ..commands.requests import CommandRequests
 from ..commands.service import CommandService
 from ..model.events import Listeners
-from ..model.planner import Point
+from ..model.remaining_way import Point
 from ..model.request_handlers import handles
 from ..site.places import ServedSite
 from ..storage.database import Database

@@ -32,7 +32,7 @@ from ..commands.requests import CommandRequests
 from ..commands.service import CommandService
 from ..commands.validation import WaitingRobots
 from ..model.events import Listeners
-from ..model.planner import Point
+from ..model.remaining_way import Point
 from ..model.request_handlers import handles
 from ..model.robots import Robots
 from ..monitoring.periodic_tasks import Steps
