@@ -10,8 +10,9 @@ from itertools import pairwise
 from ..errors import PlanEditError, counted
 from .job import AssignmentJob, ConeTarget, PlanRobot, Travel
 from .plan import ConePlan, LeftOut, PlanSituation, PlanStop, RobotPlan
+from .pyvrp_search import Progress
 from .schedules import Schedule, ScheduleEvaluator, plan_of
-from .solver import Objective, Progress, assign
+from .solver import Objective, assign
 
 # --- Plans changed by hand: every change gives another plan with its loads, times and paths made anew ---
 
