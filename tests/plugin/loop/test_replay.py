@@ -129,7 +129,7 @@ def test_a_drive_is_played_while_the_live_map_goes_on(driven, dock, operator):
     assert dock.map.overlay._placed.scene.plans == []
     # The live robot is where it is, and is heard of.
     assert operator.report("r1").x == pytest.approx(40, abs=0.5)
-    assert operator.desk.link.phase.value == "connected"
+    assert operator.desk.state.link.phase.value == "connected"
     assert "not live" in dock.banner.text()
     # All that was driven is in view, by its pixels.
     placed = dock.map.overlay._placed

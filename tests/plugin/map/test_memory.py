@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+from types import SimpleNamespace
 
 import pytest
 from fleet_supervisor.plugin.gateway_client.robot_table import STATES
@@ -87,9 +88,9 @@ def test_an_hour_of_updates_takes_no_more_memory(canvas, site):
     now = [1000.0]
     canvas.setDestinationCrs(QgsCoordinateReferenceSystem("EPSG:32633"))
     canvas.setExtent(QgsRectangle(*site.origin, site.origin[0] + 120, site.origin[1] + 100))
-    desk = FleetController(canvas, QgsProject.instance(), clock=lambda: now[0])
+    desk = FleetController(canvas, QgsProject.instance(), clock=SimpleNamespace(steady=lambda: now[0]))
     view = LiveView(desk)
-    desk._take_site(site, "")
+    desk.state.merge_site(site, "")
     used = []
     for step in range(600):
         now[0] += 6.0
@@ -107,11 +108,11 @@ def test_an_hour_of_updates_takes_no_more_memory(canvas, site):
             }
             for k in range(100)
         ]
-        desk.picture.merge(table_from_rows(told, now[0]))
+        desk.state.robots.merge(table_from_rows(told, now[0]))
         view.show_now()
         canvas.viewport().repaint()
         view.layer.begin(100)
-        view.layer.go_on(desk.picture, now[0])
+        view.layer.go_on(desk.state.robots, now[0])
         if step % 50 == 49:
             QApplication.processEvents()
             used.append(int(Path("/proc/self/statm").read_text().split()[1]) * 4096 / 1e6)
