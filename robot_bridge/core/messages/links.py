@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Any, ClassVar
 
-from .operator_requests import SiteReport
+from .administration import SiteReport
 from .validation import LONGEST_STATUS, MessageError, check_finite, one_line
 
 LINK_PROTOCOL = 1

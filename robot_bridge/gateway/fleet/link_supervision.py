@@ -30,7 +30,8 @@ from ...core.messages.administration import (
 )
 from ...core.messages.links import LinkStatus
 from ...core.sites.settings_tables import LinkOptions
-from ..model.listeners import Listeners
+from ..model.events import Listeners
+from ..model.request_handlers import handles
 from ..model.robots import Robots
 from ..storage.database import Database
 from ..storage.roles import blocking_sessions
@@ -120,6 +121,7 @@ class LinkWatch:
         if known is not None and known.ask == ask:
             known.ask = None
 
+    @handles(SetPlayback)
     async def set_playback(self, request: SetPlayback) -> PlaybackReport:
         """Have a link play its recording otherwise, and return how it does now; raises RefusedError."""
         known = self._known.get(request.link)

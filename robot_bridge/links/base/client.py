@@ -18,7 +18,7 @@ import msgspec
 from websockets.asyncio.client import ClientConnection, connect
 from websockets.exceptions import ConnectionClosed, InvalidHandshake, InvalidStatus, InvalidURI
 
-from ...core.logs import log_and_continue, notify
+from ...core.logs import log_and_continue
 from ...core.messages import (
     Ability,
     Abort,
@@ -39,6 +39,7 @@ from ...core.messages.administration import Playback
 from ...core.messages.json_values import site_report
 from ...core.messages.links import LINK_PROTOCOL, GetAreas, LinkHello, LinkStatus, Released, SiteAreas
 from ...core.sites.frame import SiteFrame
+from ...core.systemd import notify
 from ...protocol import jsonrpc
 from ...protocol.codec import decode_answer, params_of
 from ...protocol.credentials import ClientCredentials
