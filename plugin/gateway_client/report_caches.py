@@ -1,9 +1,11 @@
-"""Queues, placed cones, observations, geofence and nearness as last reported."""
+"""Queues, placed cones, observations, geofence and nearness: decoded, and as last reported."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
+from typing import Any
 
+from ...robot_bridge.core.clock import Clock
 from ...robot_bridge.core.messages import (
     FenceAlarm,
     Geofence,
@@ -13,11 +15,11 @@ from ...robot_bridge.core.messages import (
     ObservationState,
     PlacementReport,
     QueueReport,
+    observation_report,
+    placement_report,
+    queue_report,
 )
 from ..ui.language import tr
-from .buffers import ObservationUpdates, PlacedConeUpdates, QueueUpdates
-
-# --- The queues of the robots, as the gateway told them last ---
 
 
 class QueueCache:
@@ -32,13 +34,16 @@ class QueueCache:
     def __len__(self) -> int:
         return len(self.queues)
 
-    def merge(self, news: QueueUpdates) -> list[str]:
-        """Take in news and return the robots of whose queues they tell something new."""
-        gone = self.queues.keys() - news.queues.keys() if news.every else set()
+    def merge(self, reports: Mapping[str, QueueReport], *, are_all: bool = False) -> list[str]:
+        """Take in reports by their robots and return the robots of whose queues they tell something new.
+
+        Queues that are not among them are forgotten where they ``are_all``.
+        """
+        gone = self.queues.keys() - reports.keys() if are_all else set()
         for robot in gone:
             del self.queues[robot]
-        new = [robot for robot, report in news.queues.items() if self.queues.get(robot) != report]
-        self.queues.update(news.queues)
+        new = [robot for robot, report in reports.items() if self.queues.get(robot) != report]
+        self.queues.update(reports)
         return [*gone, *new]
 
     def forget(self, robots: Iterable[str]) -> None:
@@ -60,7 +65,15 @@ class QueueCache:
         self.queues.clear()
 
 
-# --- The cones that robots put down, as the gateway told them last ---
+def queues_in(values: dict[str, Any]) -> list[QueueReport]:
+    """Return the queues in an answer, or in what comes with a refusal.
+
+    :raises KeyError: for what names itself a queue and is none; ValueError and TypeError likewise.
+    """
+    if {"robot", "revision", "tasks", "robot_state"} <= values.keys():
+        return [queue_report(values)]
+    return [queue_report(queue) for queue in values.get("queues") or ()]
+
 
 MOST_PLACEMENTS = 20_000
 MOST_ASKED = 5000
@@ -79,10 +92,10 @@ class PlacedConeCache:
     def __len__(self) -> int:
         return len(self._reports)
 
-    def merge(self, news: PlacedConeUpdates) -> list[int]:
-        """Take in news and return the numbers of the cones of which they tell something new."""
-        new = [number for number, one in news.placements.items() if self._reports.get(number) != one]
-        self._reports.update(news.placements)
+    def merge(self, reports: Mapping[int, PlacementReport]) -> list[int]:
+        """Take in reports and return the numbers of the cones of which they tell something new."""
+        new = [number for number, one in reports.items() if self._reports.get(number) != one]
+        self._reports.update(reports)
         for number in sorted(self._reports)[: max(0, len(self._reports) - MOST_PLACEMENTS)]:
             del self._reports[number]
         return new
@@ -92,7 +105,10 @@ class PlacedConeCache:
         self._reports.clear()
 
 
-# --- The observations that the desk knows of, as the gateway told them last ---
+def placements_in(values: dict[str, Any]) -> list[PlacementReport]:
+    """Return the placed cones in an answer; raises KeyError or TypeError for what names itself one."""
+    return [placement_report(placement) for placement in values.get("placements") or ()]
+
 
 MOST_REVIEWED = 1000
 """Reviewed ones that are kept; those that wait for their review are all kept."""
@@ -115,10 +131,10 @@ class ObservationCache:
         """How many wait for their review."""
         return sum(is_pending(report) for report in self._reports.values())
 
-    def merge(self, news: ObservationUpdates) -> list[int]:
-        """Take in news and return the numbers of those of which they tell something new."""
-        new = [number for number, one in news.observations.items() if self._reports.get(number) != one]
-        self._reports.update(news.observations)
+    def merge(self, reports: Mapping[int, ObservationReport]) -> list[int]:
+        """Take in reports and return the numbers of those of which they tell something new."""
+        new = [number for number, one in reports.items() if self._reports.get(number) != one]
+        self._reports.update(reports)
         if new:
             reviewed = sorted(n for n, one in self._reports.items() if not is_pending(one))
             for number in reviewed[: max(0, len(reviewed) - MOST_REVIEWED)]:
@@ -143,7 +159,15 @@ def is_pending(report: ObservationReport) -> bool:
     return report.state is ObservationState.PENDING
 
 
-# --- What the gateway told last of robots in keepouts and at obstacles, and what it does not watch ---
+def observations_in(values: dict[str, Any]) -> list[ObservationReport]:
+    """Return the observations in an answer.
+
+    :raises KeyError: for what names itself one and is none; ValueError and TypeError likewise.
+    """
+    if {"observation", "op", "object", "state"} <= values.keys():
+        return [observation_report(values)]
+    return [observation_report(one) for one in values.get("observations") or ()]
+
 
 GEOFENCE_SILENT_AFTER = 10.0
 """Seconds without a word after which nothing is known: a gateway tells of them every few seconds."""
@@ -151,29 +175,29 @@ NAMED = 3
 
 
 class GeofenceState:
-    """Keeps the newest report; ``clock`` returns seconds that only ever go on."""
+    """Keeps the newest report, for as long as it counts by ``clock``."""
 
-    def __init__(self, clock: Callable[[], float]):
+    def __init__(self, clock: Clock):
         self._clock = clock
         self._report: Geofence | None = None
-        self._since = clock()
+        self._since = clock.steady()
 
     def update(self, report: Geofence) -> None:
         """Take in what the gateway told."""
-        self._report, self._since = report, self._clock()
+        self._report, self._since = report, self._clock.steady()
 
     def begin_link(self) -> None:
         """Wait for the first word on a new link; what was told on the one before holds until then."""
-        self._since = self._clock()
+        self._since = self._clock.steady()
 
     def clear(self) -> None:
         """Forget everything, and wait for the first word of another gateway."""
-        self._report, self._since = None, self._clock()
+        self._report, self._since = None, self._clock.steady()
 
     @property
     def is_silent(self) -> bool:
         """Whether the gateway has not told of them for so long that nothing is known."""
-        return self._clock() - self._since > GEOFENCE_SILENT_AFTER
+        return self._clock.steady() - self._since > GEOFENCE_SILENT_AFTER
 
     @property
     def alarms(self) -> list[FenceAlarm]:
@@ -221,23 +245,21 @@ def _more(report: Geofence) -> str:
     return tr("{more} more are in keepouts or at obstacles and not listed.", more=report.more)
 
 
-# --- What the gateway told last of people and vehicles near robots ---
-
 NEARNESS_SILENT_AFTER = 5.0
 """Seconds without a word after which nobody is near: as long as somebody is, it is told every second."""
 
 
 class NearnessState:
-    """Keeps the newest report; ``clock`` returns seconds that only ever go on."""
+    """Keeps the newest report, for as long as it counts by ``clock``."""
 
-    def __init__(self, clock: Callable[[], float]):
+    def __init__(self, clock: Clock):
         self._clock = clock
         self._report: Nearness | None = None
-        self._since = clock()
+        self._since = clock.steady()
 
     def update(self, report: Nearness) -> None:
         """Take in what the gateway told."""
-        self._report, self._since = report, self._clock()
+        self._report, self._since = report, self._clock.steady()
 
     def clear(self) -> None:
         """Forget everything."""
@@ -257,4 +279,4 @@ class NearnessState:
         return tr("People near robots are not watched: {why}.", why=report.fault.rstrip("."))
 
     def _current(self) -> Nearness | None:
-        return None if self._clock() - self._since > NEARNESS_SILENT_AFTER else self._report
+        return None if self._clock.steady() - self._since > NEARNESS_SILENT_AFTER else self._report

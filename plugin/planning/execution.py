@@ -100,12 +100,12 @@ class PlanExecution(QObject):
         return {
             robot: moment
             for robot, moment in paused_at(self._desk, ours).items()
-            if self._desk.queues.get(robot).tasks and not has_failed(self._desk, robot)
+            if self._desk.state.queues.get(robot).tasks and not has_failed(self._desk, robot)
         }
 
     def pauses_in_words(self) -> list[str]:
         """Return a text for each reason why robots are :attr:`paused`."""
-        reports = [self._desk.queues.get(robot) for robot in self.paused]
+        reports = [self._desk.state.queues.get(robot) for robot in self.paused]
         robots: dict[str, list[str]] = {}
         for one in reports:
             robots.setdefault(one.reason or one.by or "", []).append(one.robot)
@@ -240,7 +240,7 @@ class PlanExecution(QObject):
 
     def _plan_rest(self, trouble: PlanProblem, try_again: bool) -> None:
         driven, progress = self.driven, self.progress
-        robots = self._desk.picture.arrays(self._desk.clock())
+        robots = self._desk.state.robots.arrays(self._desk.clock.steady())
         places = {
             robots.names[row]: tuple(robots.xy[row].tolist()) for row in np.flatnonzero(have_position(robots))
         }
@@ -303,7 +303,7 @@ class PlanExecution(QObject):
     # --- how it is sent ---
 
     def _check_no_emergency(self) -> None:
-        stop = self._desk.emergency
+        stop = self._desk.state.emergency
         if stop is not None and stop.in_force:
             raise PlanningError(tr("An emergency stop is in force. It has to be cleared first."))
 

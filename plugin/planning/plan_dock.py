@@ -222,7 +222,7 @@ class PlanDock(ActionDock):
         self.progress = QProgressBar()
         self._turn = desk.beat.turn()
         self.question: QMessageBox | None = None
-        self._generation = desk.picture.generation
+        self._generation = desk.state.robots.generation
         self._lay_out()
         self._wire()
         self._refresh()
@@ -305,7 +305,7 @@ class PlanDock(ActionDock):
         self.progress.setEnabled(self.drafts.busy)
 
     def _placements_changed(self) -> None:
-        if self._desk.placements and self.isVisible():
+        if self._desk.state.placed_cones and self.isVisible():
             self.placed.show_placed()
 
     def _show_placed_layer(self) -> None:
@@ -342,8 +342,8 @@ class PlanDock(ActionDock):
 
     def _site_changed(self) -> None:
         """Drop what belongs to other robots; a site that was published anew keeps its plan."""
-        if self._generation != self._desk.picture.generation:
-            self._generation = self._desk.picture.generation
+        if self._generation != self._desk.state.robots.generation:
+            self._generation = self._desk.state.robots.generation
             self._clear()
 
     def _clear(self) -> None:
@@ -352,10 +352,10 @@ class PlanDock(ActionDock):
         self.drafts.set_proposal(None)
 
     def _ask_for_placements(self) -> None:
-        self._try(lambda: self._desk.ask(GetPlacements(limit=MOST_ASKED), tr("Placed cones")))
+        self._try(lambda: self._desk.orders.ask(GetPlacements(limit=MOST_ASKED), tr("Placed cones")))
 
     def _go_to(self, x: float, y: float) -> None:
-        ((east, north),) = self._desk.placement().to_map([(x, y)]).tolist()
+        ((east, north),) = self._desk.site_to_canvas.transform().to_map([(x, y)]).tolist()
         self._desk.canvas.setCenter(QgsPointXY(east, north))
         self._desk.canvas.refresh()
 
@@ -430,10 +430,10 @@ class PlanDock(ActionDock):
         self.placed.collect_wanted.connect(self.collect)
         self.placed.shown.connect(self._show_placed_layer)
         self.placed.layer_wanted.connect(self.layers.placed.finish)
-        desk.placements_changed.connect(self._placements_changed)
-        desk.pulled.connect(self._pulled)
+        desk.state.placed_cones_changed.connect(self._placements_changed)
+        desk.state.updated.connect(self._pulled)
         self.visibilityChanged.connect(self._shown)
-        desk.site_changed.connect(self._site_changed)
+        desk.state.site_changed.connect(self._site_changed)
         desk.project.readProject.connect(self._read_settings)
 
 

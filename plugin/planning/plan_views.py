@@ -214,7 +214,7 @@ def after_sending(desk: FleetController, plan: ConePlan) -> list[str]:
     """Return which robots do not set off, since somebody holds them."""
     texts = []
     for one in plan.robots:
-        report = desk.queues.get(one.robot.id)
+        report = desk.state.queues.get(one.robot.id)
         if one.stops and not one.lost and report is not None and report.state is QueueState.PAUSED:
             texts.append(
                 tr(
@@ -231,13 +231,13 @@ def _cones(one: RobotPlan) -> str:
 
 
 def _doubts(desk: FleetController, robot: PlanRobot) -> list[str]:
-    queue = desk.queues.get(robot.id)
+    queue = desk.state.queues.get(robot.id)
     return [*_doubts_of_place(desk, robot), *(_doubts_of_queue(queue) if queue is not None else ())]
 
 
 def _doubts_of_place(desk: FleetController, robot: PlanRobot) -> Iterator[str]:
     """Yield whether the robot is elsewhere than where the plan begins, or away."""
-    view = desk.picture.view(robot.id, desk.clock())
+    view = desk.state.robots.view(robot.id, desk.clock.steady())
     if view is None or not view.has_pose:
         yield tr("it is not known where {id} is", id=robot.id)
         return
@@ -494,12 +494,12 @@ class PlanLayers:
                 if row.state is not TaskState.DONE:
                     values = [robot, row.number, stop.id, round(stop.metres, 2), row.arrives, colour]
                     ways.append((stop.path, values))
-        self.ways.show(ways, self._desk.site)
-        self.stops.show(stops, self._desk.site)
+        self.ways.show(ways, self._desk.state.site)
+        self.stops.show(stops, self._desk.state.site)
 
     def show_placed(self, placements: list[PlacementReport]) -> None:
         """Show where cones were put down."""
-        site = self._desk.site
+        site = self._desk.state.site
         if site is not None:
             frame = frame_of(site)
             self.placed.show(_placed_rows(placements, frame), site)

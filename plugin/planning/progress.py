@@ -22,7 +22,7 @@ from ...robot_bridge.core.messages import (
 )
 from ..control.fleet_controller import FleetController
 from ..control.messages import PLAN_TROUBLE
-from ..gateway_client.link import ConnectionPhase
+from ..gateway_client.connection_status import ConnectionPhase
 from ..gateway_client.report_caches import MOST_ASKED
 from ..ui.language import first_of, tr
 from .proposal import ClosureCheck, PlanProposal, closed_in_words
@@ -64,9 +64,9 @@ class PlanMonitor(QObject):
         """The trouble that a new plan was made for, or was tried to be."""
         self._look = ClosureCheck(self)
         desk.roads.closures_changed.connect(self.look_at_closures)
-        desk.queues_changed.connect(self._take_queues)
-        desk.placements_changed.connect(self._take_placements)
-        desk.link_changed.connect(self._ask_for_placements)
+        desk.state.queues_changed.connect(self._take_queues)
+        desk.state.placed_cones_changed.connect(self._take_placements)
+        desk.state.link_changed.connect(self._ask_for_placements)
 
     def begin(self, draft: PlanProposal, tasks: Tasks) -> None:
         """Follow a plan from its beginning, of which ``tasks`` are sent."""
@@ -107,7 +107,7 @@ class PlanMonitor(QObject):
 
     def look_at_queues(self) -> None:
         """Take in all queues as they are known now."""
-        self._take_queues([one.robot for one in self._desk.queues])
+        self._take_queues([one.robot for one in self._desk.state.queues])
 
     def look_at_closures(self) -> None:
         """Find out anew which ways lead along closed roads."""
@@ -126,7 +126,7 @@ class PlanMonitor(QObject):
         if self.progress is None:
             return
         for robot in robots:
-            report = self._desk.queues.get(robot)
+            report = self._desk.state.queues.get(robot)
             if report is not None:
                 self.progress.take_queue(report)
         self._judge()
@@ -135,21 +135,21 @@ class PlanMonitor(QObject):
         if self.progress is None:
             return
         new = set(numbers)
-        for report in self._desk.placements:
+        for report in self._desk.state.placed_cones:
             if report.placement in new:
                 self.progress.take_placement(report)
         self._judge()
 
     def _ask_for_placements(self) -> None:
         """Ask for what was put down while this desk was not connected."""
-        if self.progress is None or self._desk.link.phase is not ConnectionPhase.CONNECTED:
+        if self.progress is None or self._desk.state.link.phase is not ConnectionPhase.CONNECTED:
             return
         request = GetPlacements(plan=self.progress.name, limit=MOST_ASKED)
-        self._desk.ask(request, tr("Placed cones of the plan"))
+        self._desk.orders.ask(request, tr("Placed cones of the plan"))
 
     def _judge(self) -> None:
         """Find out what is wrong, and tell of what was not wrong before."""
-        plan, queues = self.draft.plan, {one.robot: one for one in self._desk.queues}
+        plan, queues = self.draft.plan, {one.robot: one for one in self._desk.state.queues}
         made = {id(stop) for stop in committed_stops(self.progress)}
         closed = tuple(one for one in self.draft.closed if id(one.at) not in made)
         before, self.trouble = self.trouble, problem_of(plan, self.progress, queues, closed)

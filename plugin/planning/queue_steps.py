@@ -22,7 +22,7 @@ from ...robot_bridge.core.messages import (
 )
 from ..control.fleet_controller import FleetController
 from ..control.messages import PLAN_SENT
-from ..gateway_client.buffers import RequestResult
+from ..gateway_client.requests import RequestResult
 from ..ui.errors import NotSentError
 from ..ui.language import first_of, tr
 
@@ -70,7 +70,7 @@ class QueueRequests(QObject):
         self.refusal: RefusedStep | None = None
         self.done: list[str] = []
         """What was done, in words."""
-        desk.answered.connect(self._answered)
+        desk.orders.answered.connect(self._answered)
 
     def start(self) -> None:
         """Ask for the first step."""
@@ -78,7 +78,7 @@ class QueueRequests(QObject):
 
     def give_up(self) -> None:
         """Ask for nothing more, and tell nothing of what was asked for."""
-        self._desk.answered.disconnect(self._answered)
+        self._desk.orders.answered.disconnect(self._answered)
 
     def override(self, why: str) -> None:
         """Ask again for what was refused, with ``why`` it is right all the same, and then for the rest."""
@@ -105,7 +105,7 @@ class QueueRequests(QObject):
             return False
         self._sent = request if override is None else replace(request, override=override)
         try:
-            self._key = self._desk.ask(self._sent, self._now.words, PLAN_SENT)
+            self._key = self._desk.orders.ask(self._sent, self._now.words, PLAN_SENT)
         except NotSentError as error:
             self._end(False, str(error))
         return True
@@ -131,14 +131,14 @@ class QueueRequests(QObject):
         """Tell whether what was refused was done before: its answer was lost with the link."""
         if not isinstance(self._sent, SetQueue) or not self._sent.tasks:
             return False
-        report = self._desk.queues.get(self._sent.robot)
+        report = self._desk.state.queues.get(self._sent.robot)
         if report is None:
             return False
         there = {task.task for task in (*report.tasks, *report.ended)}
         return all(task.task in there for task in self._sent.tasks)
 
     def _end(self, done: bool, why: str) -> None:
-        self._desk.answered.disconnect(self._answered)
+        self._desk.orders.answered.disconnect(self._answered)
         self._key = None
         left = [step.words for step in self._steps]
         if not done and left:
@@ -153,13 +153,13 @@ def paused_at(desk: FleetController, robots: Iterable[str]) -> dict[str, float |
 
     A pause of another time is another's: whoever lets a robot go on says which pause was seen.
     """
-    reports = (desk.queues.get(robot) for robot in robots)
+    reports = (desk.state.queues.get(robot) for robot in robots)
     return {one.robot: one.at for one in reports if one is not None and one.state is QueueState.PAUSED}
 
 
 def has_failed(desk: FleetController, robot: str) -> bool:
     """Tell whether a robot's queue stands still because of a task that failed."""
-    report = desk.queues.get(robot)
+    report = desk.state.queues.get(robot)
     return report is not None and any(task.state is TaskState.FAILED for task in report.tasks)
 
 
@@ -205,13 +205,13 @@ def later_steps(
 def _filling(desk: FleetController, robot: str, tasks: Sequence[QueueTask]) -> QueueStep:
     return QueueStep(
         tr("the queue of {robot}", robot=robot),
-        lambda: SetQueue(robot, desk.queues.revision(robot), list(tasks)),
+        lambda: SetQueue(robot, desk.state.queues.revision(robot), list(tasks)),
     )
 
 
 def _resuming(desk: FleetController, robot: str, seen: Mapping[str, float | None]) -> QueueStep:
     def request() -> ResumeQueue | None:
-        report = desk.queues.get(robot)
+        report = desk.state.queues.get(robot)
         if report is None or report.state is not QueueState.PAUSED:
             return None
         if robot not in seen or seen[robot] != report.at:
@@ -224,12 +224,12 @@ def _resuming(desk: FleetController, robot: str, seen: Mapping[str, float | None
 
 def _taking(desk: FleetController, lost: str, taker: str, reason: str) -> QueueStep:
     def request() -> TakeOver | None:
-        report = desk.queues.get(lost)
+        report = desk.state.queues.get(lost)
         if report is None or not report.tasks:
             return None
-        own = _waiting(desk.queues.get(taker))
+        own = _waiting(desk.state.queues.get(taker))
         tasks = [SharedTask(task) for task in (*own, *(task.task for task in report.tasks))]
-        share = Share(taker, desk.queues.revision(taker), tasks)
+        share = Share(taker, desk.state.queues.revision(taker), tasks)
         return TakeOver(lost, report.revision, [share], reason)
 
     return QueueStep(tr("taking over from {lost}", lost=lost), request)

@@ -1108,16 +1108,6 @@
         </message>
         <message>
             <location filename="../../plugin/control/fleet_controller.py" />
-            <source>Another site is served now: {site}, no longer {before}. Open its project.</source>
-            <translation>Ara se serveix un altre recinte: {site}, ja no {before}. Obriu-ne el projecte.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/fleet_controller.py" />
-            <source>EMERGENCY STOP is NOT sent yet: the link is down. It is sent as soon as that is back; use the robots' own emergency stops now.</source>
-            <translation>La PARADA D'EMERGÈNCIA encara NO s'ha enviat: l'enllaç està tallat. S'envia quan torni; feu servir ara les parades d'emergència dels mateixos robots.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/fleet_controller.py" />
             <source>No robot is selected, so none was aborted. Select it in the table or on the map.</source>
             <translation>No hi ha cap robot seleccionat, així que no se n'ha avortat cap. Seleccioneu-lo a la taula o al mapa.</translation>
         </message>
@@ -1128,23 +1118,8 @@
         </message>
         <message>
             <location filename="../../plugin/control/fleet_controller.py" />
-            <source>The gateway has another database than before: its robots and commands are others, and those of before are not shown any more.</source>
-            <translation>La passarel·la té una altra base de dades que abans: els seus robots i ordres són uns altres, i els d'abans ja no es mostren.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/fleet_controller.py" />
             <source>The operator's name is empty. Write who you are: it stands in every log.</source>
             <translation>El nom de l'operador és buit. Escriviu qui sou: és a tots els registres.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/fleet_controller.py" />
-            <source>The site is not known yet. Connect to a gateway first.</source>
-            <translation>El recinte encara no es coneix. Connecteu abans a una passarel·la.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/fleet_controller.py" />
-            <source>the desk is not connected to a gateway. Connect first; to stop a robot now use the robot's own emergency stop.</source>
-            <translation>la consola no està connectada a cap passarel·la. Connecteu abans; per aturar ara un robot feu servir la seva parada d'emergència.</translation>
         </message>
         <message>
             <location filename="../../plugin/control/fleet_controller.py" />
@@ -1230,6 +1205,11 @@
             <location filename="../../plugin/control/messages.py" />
             <source>Link {link} is down: {reason}. Nothing reaches {robots}.</source>
             <translation>L'enllaç {link} està caigut: {reason}. Res no arriba a {robots}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/control/messages.py" />
+            <source>Link {link}: {reason}.</source>
+            <translation>Enllaç {link}: {reason}.</translation>
         </message>
         <message>
             <location filename="../../plugin/control/messages.py" />
@@ -1348,6 +1328,16 @@
             <location filename="../../plugin/control/request_tracker.py" />
             <source>EMERGENCY STOP</source>
             <translation>PARADA D'EMERGÈNCIA</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/control/request_tracker.py" />
+            <source>EMERGENCY STOP is NOT sent yet: the link is down. It is sent as soon as that is back; use the robots' own emergency stops now.</source>
+            <translation>La PARADA D'EMERGÈNCIA encara NO s'ha enviat: l'enllaç està tallat. S'envia quan torni; feu servir ara les parades d'emergència dels mateixos robots.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/control/request_tracker.py" />
+            <source>the desk is not connected to a gateway. Connect first; to stop a robot now use the robot's own emergency stop.</source>
+            <translation>la consola no està connectada a cap passarel·la. Connecteu abans; per aturar ara un robot feu servir la seva parada d'emergència.</translation>
         </message>
         <message>
             <location filename="../../plugin/control/request_tracker.py" />
@@ -1753,194 +1743,204 @@
             <translation>El que respon a {url} obre un WebSocket però no ha contestat la salutació de la consola en {answer_within:g} s. Comproveu que l'URL porta a una passarel·la de Fleet Supervisor.</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>No secure link to {place}: {reason}. If the gateway has no TLS, write ws:// instead of wss://.</source>
             <translation>No hi ha enllaç segur amb {place}: {reason}. Si la passarel·la no té TLS, escriviu ws:// en lloc de wss://.</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>Nothing listens at {place}. Start the gateway (robot-bridge serve --site ...) or correct the URL.</source>
             <translation>No escolta res a {place}. Arrenqueu la passarel·la (robot-bridge serve --site ...) o corregiu l'URL.</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>Over {url} everybody on the way could read the token. Write wss:// instead of ws://; a gateway that other computers can reach has TLS.</source>
             <translation>Per {url} tothom pel camí podria llegir el testimoni. Escriviu wss:// en lloc de ws://; una passarel·la accessible des d'altres ordinadors té TLS.</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>The CA file {file} cannot be used: {reason}. Choose the ca.pem that whoever runs the site gave you.</source>
             <translation>El fitxer de CA {file} no es pot fer servir: {reason}. Trieu el ca.pem que us va donar qui porta el recinte.</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>The certificate of {place} cannot be trusted: {reason}.</source>
             <translation>No es pot confiar en el certificat de {place}: {reason}.</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>The certificate of {place} has expired. Whoever runs the site renews it with 'robot-bridge tls renew'; if it was renewed, check this computer's clock.</source>
             <translation>El certificat de {place} ha caducat. Qui porta el recinte el renova amb 'robot-bridge tls renew'; si ja s'ha renovat, comproveu el rellotge d'aquest ordinador.</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>The certificate of {place} holds only later: check this computer's clock.</source>
             <translation>El certificat de {place} només val més tard: comproveu el rellotge d'aquest ordinador.</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>The certificate of {place} is for another name: {reason} Use the name that the gateway's certificate was made for, or have one made for this name.</source>
             <translation>El certificat de {place} és per a un altre nom: {reason} Feu servir el nom per al qual es va fer el certificat de la passarel·la, o feu-ne fer un per a aquest nom.</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>The certificate of {place} is from an authority that this desk does not trust. Choose the site's ca.pem as CA file under Access; whoever runs the site has it.</source>
             <translation>El certificat de {place} és d'una autoritat en què aquesta consola no confia. Trieu el ca.pem del recinte com a fitxer de CA a Accés; el té qui porta el recinte.</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>The gateway at {place} closed the link (code {code}{why}). It is tried again by itself.</source>
             <translation>La passarel·la a {place} ha tancat l'enllaç (codi {code}{why}). Es torna a provar sol.</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>The gateway at {place} ended the link{why}. Ask whoever runs the site for a new token and enter it under Access.</source>
             <translation>La passarel·la a {place} ha acabat l'enllaç{why}. Demaneu un testimoni nou a qui porta el recinte i introduïu-lo a Accés.</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>The gateway at {place} ended your session{why}. Connect brings it back.</source>
             <translation>La passarel·la a {place} ha acabat la vostra sessió{why}. Connecta la recupera.</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>The gateway's URL is empty. {example}</source>
             <translation>L'URL de la passarel·la és buida. {example}</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>The gateway's URL {url} begins with {scheme}; a gateway is reached over ws:// (or wss:// with TLS). {example}</source>
             <translation>L'URL de la passarel·la {url} comença per {scheme}; s'hi arriba per ws:// (o wss:// amb TLS). {example}</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>The gateway's URL {url} cannot be read: {error}. {example}</source>
             <translation>L'URL de la passarel·la {url} no es pot llegir: {error}. {example}</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>The gateway's URL {url} cannot be used. Write it like {default_url}.</source>
             <translation>L'URL de la passarel·la {url} no es pot fer servir. Escriviu-la com {default_url}.</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>The gateway's URL {url} has port 0, where nothing can listen. {example}</source>
             <translation>L'URL de la passarel·la {url} té el port 0, on res pot escoltar. {example}</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>The gateway's URL {url} names no host. {example}</source>
             <translation>L'URL de la passarel·la {url} no anomena cap servidor. {example}</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>The host of {place} is not known to this network. Correct the URL.</source>
             <translation>Aquesta xarxa no coneix el servidor de {place}. Corregiu l'URL.</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>The link to the gateway at {place} broke off. It is tried again by itself; if it does not come back, check the gateway and the network.</source>
             <translation>L'enllaç amb la passarel·la a {place} s'ha trencat. Es torna a provar sol; si no torna, comproveu la passarel·la i la xarxa.</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>The token cannot be right: it is one word. Paste it again, whole and alone.</source>
             <translation>El testimoni no pot ser correcte: és una sola paraula. Enganxeu-lo una altra vegada, sencer i sol.</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>There is no desk at {url} (HTTP 404). A gateway's desk has the path /desk, as in {default_url}; or another program answers there.</source>
             <translation>No hi ha cap consola a {url} (HTTP 404). La d'una passarel·la té el camí /desk, com a {default_url}; o hi respon un altre programa.</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>What answers at {place} does not speak WebSocket. Check host and port, and ws:// or wss://: a gateway prints its URL when it starts.</source>
             <translation>El que respon a {place} no parla WebSocket. Comproveu servidor i port, i ws:// o wss://: una passarel·la escriu la seva URL quan arrenca.</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>Write it like {default_url}.</source>
             <translation>Escriviu-la com {default_url}.</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>it wants a token.</source>
             <translation>vol un testimoni.</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>no reason given.</source>
             <translation>sense dir per què.</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>no scheme</source>
             <translation>cap esquema</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>operator</source>
             <translation>operador</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>supervisor</source>
             <translation>supervisor</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>viewer</source>
             <translation>observador</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>{place} broke off while the secure link was made. If the gateway has no TLS, write ws:// instead of wss://.</source>
             <translation>{place} ha tallat mentre es feia l'enllaç segur. Si la passarel·la no té TLS, escriviu ws:// en lloc de wss://.</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>{place} cannot be reached: {reason}. Check network and URL.</source>
             <translation>No s'arriba a {place}: {reason}. Comproveu la xarxa i l'URL.</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>{place} did not answer in time. Check that the gateway runs, and the network and firewall.</source>
             <translation>{place} no ha respost a temps. Comproveu que la passarel·la funciona, la xarxa i el tallafoc.</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>{url} answered HTTP {status} instead of opening a WebSocket. Check that a gateway runs there and what its log says.</source>
             <translation>{url} ha respost HTTP {status} en lloc d'obrir un WebSocket. Comproveu que hi funciona una passarel·la i què diu el seu registre.</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>{url} is where robots connect; operators connect to {desk}. Write that instead.</source>
             <translation>{url} és on es connecten els robots; els operadors es connecten a {desk}. Escriviu això.</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>{url} refuses this desk: {said}</source>
             <translation>{url} rebutja aquesta consola: {said}</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>{url} refuses this desk: {said} Enter the operator's token under Access.</source>
             <translation>{url} rebutja aquesta consola: {said} Introduïu el testimoni de l'operador a Accés.</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>{url} takes no desk now: {said} It is tried again by itself.</source>
             <translation>{url} ara no admet cap consola: {said} Es torna a provar sol.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/gateway_client/fleet_state.py" />
+            <source>Another site is served now: {site}, no longer {before}. Open its project.</source>
+            <translation>Ara se serveix un altre recinte: {site}, ja no {before}. Obriu-ne el projecte.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/gateway_client/fleet_state.py" />
+            <source>The gateway has another database than before: its robots and commands are others, and those of before are not shown any more.</source>
+            <translation>La passarel·la té una altra base de dades que abans: els seus robots i ordres són uns altres, i els d'abans ja no es mostren.</translation>
         </message>
         <message>
             <location filename="../../plugin/gateway_client/protocol.py" />
@@ -3064,6 +3064,11 @@
         </message>
         <message>
             <location filename="../../plugin/layers/site_transform.py" />
+            <source>The site is not known yet. Connect to a gateway first.</source>
+            <translation>El recinte encara no es coneix. Connecteu abans a una passarel·la.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/site_transform.py" />
             <source>The site {name} is in the CRS {crs}, which this QGIS does not know: its robots cannot be placed on the map. Correct crs in the site's site.toml, or update QGIS.</source>
             <translation>El recinte {name} és en el SRC {crs}, que aquest QGIS no coneix: els seus robots no es poden situar al mapa. Corregiu crs al site.toml del recinte, o actualitzeu QGIS.</translation>
         </message>
@@ -3098,86 +3103,6 @@
             <translation>{state}, últim missatge fa {age:.0f} s</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/layers.py" />
-            <source>Accuracy (m)</source>
-            <translation>Exactitud (m)</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/layers.py" />
-            <source>Age (s)</source>
-            <translation>Antiguitat (s)</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/layers.py" />
-            <source>Battery (0 to 1)</source>
-            <translation>Bateria (0 a 1)</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/layers.py" />
-            <source>Closed roads</source>
-            <translation>Vies tancades</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/layers.py" />
-            <source>Command</source>
-            <translation>Ordre</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/layers.py" />
-            <source>Cones put down</source>
-            <translation>Cons posats</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/layers.py" />
-            <source>Conflicts</source>
-            <translation>Conflictes</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/layers.py" />
-            <source>Heading (°)</source>
-            <translation>Rumb (°)</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/layers.py" />
-            <source>Link</source>
-            <translation>Enllaç</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/layers.py" />
-            <source>Robot</source>
-            <translation>Robot</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/layers.py" />
-            <source>Robots (live)</source>
-            <translation>Robots (en directe)</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/layers.py" />
-            <source>Speed (m/s)</source>
-            <translation>Velocitat (m/s)</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/layers.py" />
-            <source>Status</source>
-            <translation>Situació</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/layers.py" />
-            <source>Theta (rad)</source>
-            <translation>Theta (rad)</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/layers.py" />
-            <source>closed</source>
-            <translation>tancada</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/layers.py" />
-            <source>until</source>
-            <translation>fins a</translation>
-        </message>
-        <message>
             <location filename="../../plugin/map/live_view.py" />
             <source>No robot is selected to be followed. Select one in the table or on the map.</source>
             <translation>No hi ha cap robot seleccionat per seguir. Seleccioneu-ne un a la taula o al mapa.</translation>
@@ -3188,67 +3113,67 @@
             <translation>{robot} encara no ha dit on és; el mapa no hi pot anar.</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/overlay/hover_card.py" />
+            <location filename="../../plugin/map/overlay/fleet_overlay.py" />
             <source>, {remaining:.1f} m to go</source>
             <translation>, falten {remaining:.1f} m</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/overlay/hover_card.py" />
+            <location filename="../../plugin/map/overlay/fleet_overlay.py" />
             <source>accuracy</source>
             <translation>precisió</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/overlay/hover_card.py" />
+            <location filename="../../plugin/map/overlay/fleet_overlay.py" />
             <source>battery</source>
             <translation>bateria</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/overlay/hover_card.py" />
+            <location filename="../../plugin/map/overlay/fleet_overlay.py" />
             <source>heading</source>
             <translation>rumb</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/overlay/hover_card.py" />
+            <location filename="../../plugin/map/overlay/fleet_overlay.py" />
             <source>it says</source>
             <translation>diu</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/overlay/hover_card.py" />
+            <location filename="../../plugin/map/overlay/fleet_overlay.py" />
             <source>last message</source>
             <translation>últim missatge</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/overlay/hover_card.py" />
+            <location filename="../../plugin/map/overlay/fleet_overlay.py" />
             <source>place</source>
             <translation>lloc</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/overlay/hover_card.py" />
+            <location filename="../../plugin/map/overlay/fleet_overlay.py" />
             <source>speed</source>
             <translation>velocitat</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/overlay/hover_card.py" />
+            <location filename="../../plugin/map/overlay/fleet_overlay.py" />
             <source>task</source>
             <translation>tasca</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/overlay/hover_card.py" />
+            <location filename="../../plugin/map/overlay/fleet_overlay.py" />
             <source>{age_in_words} ago, {escape}</source>
             <translation>fa {age_in_words}, {escape}</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/overlay/hover_card.py" />
+            <location filename="../../plugin/map/overlay/fleet_overlay.py" />
             <source>{v:.2f} m/s</source>
             <translation>{v:.2f} m/s</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/overlay/hover_card.py" />
+            <location filename="../../plugin/map/overlay/fleet_overlay.py" />
             <source>{x:.2f}, {y:.2f} m in the site</source>
             <translation>{x:.2f}, {y:.2f} m al recinte</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/overlay/hover_card.py" />
+            <location filename="../../plugin/map/overlay/fleet_overlay.py" />
             <source>± {accuracy:.2f} m</source>
             <translation>± {accuracy:.2f} m</translation>
         </message>
@@ -3278,14 +3203,94 @@
             <translation>· fora de línia</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/overlay/paths_painter.py" />
+            <location filename="../../plugin/map/overlay/task_painter.py" />
             <source>{km:.0f} km</source>
             <translation>{km:.0f} km</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/overlay/paths_painter.py" />
+            <location filename="../../plugin/map/overlay/task_painter.py" />
             <source>{metres:.0f} m</source>
             <translation>{metres:.0f} m</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/reported_layers.py" />
+            <source>Accuracy (m)</source>
+            <translation>Exactitud (m)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/reported_layers.py" />
+            <source>Age (s)</source>
+            <translation>Antiguitat (s)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/reported_layers.py" />
+            <source>Battery (0 to 1)</source>
+            <translation>Bateria (0 a 1)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/reported_layers.py" />
+            <source>Closed roads</source>
+            <translation>Vies tancades</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/reported_layers.py" />
+            <source>Command</source>
+            <translation>Ordre</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/reported_layers.py" />
+            <source>Cones put down</source>
+            <translation>Cons posats</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/reported_layers.py" />
+            <source>Conflicts</source>
+            <translation>Conflictes</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/reported_layers.py" />
+            <source>Heading (°)</source>
+            <translation>Rumb (°)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/reported_layers.py" />
+            <source>Link</source>
+            <translation>Enllaç</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/reported_layers.py" />
+            <source>Robot</source>
+            <translation>Robot</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/reported_layers.py" />
+            <source>Robots (live)</source>
+            <translation>Robots (en directe)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/reported_layers.py" />
+            <source>Speed (m/s)</source>
+            <translation>Velocitat (m/s)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/reported_layers.py" />
+            <source>Status</source>
+            <translation>Situació</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/reported_layers.py" />
+            <source>Theta (rad)</source>
+            <translation>Theta (rad)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/reported_layers.py" />
+            <source>closed</source>
+            <translation>tancada</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/reported_layers.py" />
+            <source>until</source>
+            <translation>fins a</translation>
         </message>
         <message>
             <location filename="../../plugin/map/site_project.py" />

@@ -1108,16 +1108,6 @@
         </message>
         <message>
             <location filename="../../plugin/control/fleet_controller.py" />
-            <source>Another site is served now: {site}, no longer {before}. Open its project.</source>
-            <translation>Ahora se sirve otro recinto: {site}, ya no {before}. Abra su proyecto.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/fleet_controller.py" />
-            <source>EMERGENCY STOP is NOT sent yet: the link is down. It is sent as soon as that is back; use the robots' own emergency stops now.</source>
-            <translation>La PARADA DE EMERGENCIA aún NO se ha enviado: el enlace está caído. Se envía en cuanto vuelva; use ahora las paradas de emergencia de los propios robots.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/fleet_controller.py" />
             <source>No robot is selected, so none was aborted. Select it in the table or on the map.</source>
             <translation>No hay ningún robot seleccionado, así que no se abortó ninguno. Selecciónelo en la tabla o en el mapa.</translation>
         </message>
@@ -1128,23 +1118,8 @@
         </message>
         <message>
             <location filename="../../plugin/control/fleet_controller.py" />
-            <source>The gateway has another database than before: its robots and commands are others, and those of before are not shown any more.</source>
-            <translation>La pasarela tiene otra base de datos que antes: sus robots y órdenes son otros, y los de antes ya no se muestran.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/fleet_controller.py" />
             <source>The operator's name is empty. Write who you are: it stands in every log.</source>
             <translation>El nombre del operador está vacío. Escriba quién es: está en todos los registros.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/fleet_controller.py" />
-            <source>The site is not known yet. Connect to a gateway first.</source>
-            <translation>El recinto aún no se conoce. Conéctese antes a una pasarela.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/fleet_controller.py" />
-            <source>the desk is not connected to a gateway. Connect first; to stop a robot now use the robot's own emergency stop.</source>
-            <translation>la consola no está conectada a ninguna pasarela. Conéctese antes; para detener ahora un robot use su propia parada de emergencia.</translation>
         </message>
         <message>
             <location filename="../../plugin/control/fleet_controller.py" />
@@ -1230,6 +1205,11 @@
             <location filename="../../plugin/control/messages.py" />
             <source>Link {link} is down: {reason}. Nothing reaches {robots}.</source>
             <translation>El enlace {link} está caído: {reason}. Nada llega a {robots}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/control/messages.py" />
+            <source>Link {link}: {reason}.</source>
+            <translation>Enlace {link}: {reason}.</translation>
         </message>
         <message>
             <location filename="../../plugin/control/messages.py" />
@@ -1348,6 +1328,16 @@
             <location filename="../../plugin/control/request_tracker.py" />
             <source>EMERGENCY STOP</source>
             <translation>PARADA DE EMERGENCIA</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/control/request_tracker.py" />
+            <source>EMERGENCY STOP is NOT sent yet: the link is down. It is sent as soon as that is back; use the robots' own emergency stops now.</source>
+            <translation>La PARADA DE EMERGENCIA aún NO se ha enviado: el enlace está caído. Se envía en cuanto vuelva; use ahora las paradas de emergencia de los propios robots.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/control/request_tracker.py" />
+            <source>the desk is not connected to a gateway. Connect first; to stop a robot now use the robot's own emergency stop.</source>
+            <translation>la consola no está conectada a ninguna pasarela. Conéctese antes; para detener ahora un robot use su propia parada de emergencia.</translation>
         </message>
         <message>
             <location filename="../../plugin/control/request_tracker.py" />
@@ -1753,194 +1743,204 @@
             <translation>Lo que responde en {url} abre un WebSocket pero no contestó al saludo de la consola en {answer_within:g} s. Compruebe que la URL lleva a una pasarela de Fleet Supervisor.</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>No secure link to {place}: {reason}. If the gateway has no TLS, write ws:// instead of wss://.</source>
             <translation>No hay enlace seguro con {place}: {reason}. Si la pasarela no tiene TLS, escriba ws:// en lugar de wss://.</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>Nothing listens at {place}. Start the gateway (robot-bridge serve --site ...) or correct the URL.</source>
             <translation>Nada escucha en {place}. Arranque la pasarela (robot-bridge serve --site ...) o corrija la URL.</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>Over {url} everybody on the way could read the token. Write wss:// instead of ws://; a gateway that other computers can reach has TLS.</source>
             <translation>Por {url} cualquiera en el camino podría leer el testigo. Escriba wss:// en lugar de ws://; una pasarela accesible desde otros ordenadores tiene TLS.</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>The CA file {file} cannot be used: {reason}. Choose the ca.pem that whoever runs the site gave you.</source>
             <translation>El archivo de CA {file} no se puede usar: {reason}. Elija el ca.pem que le dio quien lleva el recinto.</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>The certificate of {place} cannot be trusted: {reason}.</source>
             <translation>No se puede confiar en el certificado de {place}: {reason}.</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>The certificate of {place} has expired. Whoever runs the site renews it with 'robot-bridge tls renew'; if it was renewed, check this computer's clock.</source>
             <translation>El certificado de {place} ha caducado. Quien lleva el recinto lo renueva con 'robot-bridge tls renew'; si ya se renovó, compruebe el reloj de este ordenador.</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>The certificate of {place} holds only later: check this computer's clock.</source>
             <translation>El certificado de {place} solo vale más tarde: compruebe el reloj de este ordenador.</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>The certificate of {place} is for another name: {reason} Use the name that the gateway's certificate was made for, or have one made for this name.</source>
             <translation>El certificado de {place} es para otro nombre: {reason} Use el nombre para el que se hizo el certificado de la pasarela, o haga hacer uno para este nombre.</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>The certificate of {place} is from an authority that this desk does not trust. Choose the site's ca.pem as CA file under Access; whoever runs the site has it.</source>
             <translation>El certificado de {place} es de una autoridad en la que esta consola no confía. Elija el ca.pem del recinto como archivo de CA en Acceso; lo tiene quien lleva el recinto.</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>The gateway at {place} closed the link (code {code}{why}). It is tried again by itself.</source>
             <translation>La pasarela en {place} cerró el enlace (código {code}{why}). Se vuelve a intentar solo.</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>The gateway at {place} ended the link{why}. Ask whoever runs the site for a new token and enter it under Access.</source>
             <translation>La pasarela en {place} terminó el enlace{why}. Pida un testigo nuevo a quien lleva el recinto e introdúzcalo en Acceso.</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>The gateway at {place} ended your session{why}. Connect brings it back.</source>
             <translation>La pasarela en {place} terminó su sesión{why}. Conectar la recupera.</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>The gateway's URL is empty. {example}</source>
             <translation>La URL de la pasarela está vacía. {example}</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>The gateway's URL {url} begins with {scheme}; a gateway is reached over ws:// (or wss:// with TLS). {example}</source>
             <translation>La URL de la pasarela {url} empieza por {scheme}; se llega a ella por ws:// (o wss:// con TLS). {example}</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>The gateway's URL {url} cannot be read: {error}. {example}</source>
             <translation>La URL de la pasarela {url} no se puede leer: {error}. {example}</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>The gateway's URL {url} cannot be used. Write it like {default_url}.</source>
             <translation>La URL de la pasarela {url} no se puede usar. Escríbala como {default_url}.</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>The gateway's URL {url} has port 0, where nothing can listen. {example}</source>
             <translation>La URL de la pasarela {url} tiene el puerto 0, donde nada puede escuchar. {example}</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>The gateway's URL {url} names no host. {example}</source>
             <translation>La URL de la pasarela {url} no nombra ningún servidor. {example}</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>The host of {place} is not known to this network. Correct the URL.</source>
             <translation>Esta red no conoce el servidor de {place}. Corrija la URL.</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>The link to the gateway at {place} broke off. It is tried again by itself; if it does not come back, check the gateway and the network.</source>
             <translation>El enlace con la pasarela en {place} se rompió. Se vuelve a intentar solo; si no vuelve, compruebe la pasarela y la red.</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>The token cannot be right: it is one word. Paste it again, whole and alone.</source>
             <translation>El testigo no puede ser correcto: es una sola palabra. Péguelo otra vez, entero y solo.</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>There is no desk at {url} (HTTP 404). A gateway's desk has the path /desk, as in {default_url}; or another program answers there.</source>
             <translation>No hay ninguna consola en {url} (HTTP 404). La de una pasarela tiene la ruta /desk, como en {default_url}; o allí responde otro programa.</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>What answers at {place} does not speak WebSocket. Check host and port, and ws:// or wss://: a gateway prints its URL when it starts.</source>
             <translation>Lo que responde en {place} no habla WebSocket. Compruebe servidor y puerto, y ws:// o wss://: una pasarela escribe su URL al arrancar.</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>Write it like {default_url}.</source>
             <translation>Escríbala como {default_url}.</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>it wants a token.</source>
             <translation>quiere un testigo.</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>no reason given.</source>
             <translation>sin dar motivo.</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>no scheme</source>
             <translation>ningún esquema</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>operator</source>
             <translation>operador</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>supervisor</source>
             <translation>supervisor</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>viewer</source>
             <translation>observador</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>{place} broke off while the secure link was made. If the gateway has no TLS, write ws:// instead of wss://.</source>
             <translation>{place} cortó mientras se hacía el enlace seguro. Si la pasarela no tiene TLS, escriba ws:// en lugar de wss://.</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>{place} cannot be reached: {reason}. Check network and URL.</source>
             <translation>No se llega a {place}: {reason}. Compruebe la red y la URL.</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>{place} did not answer in time. Check that the gateway runs, and the network and firewall.</source>
             <translation>{place} no respondió a tiempo. Compruebe que la pasarela funciona, la red y el cortafuegos.</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>{url} answered HTTP {status} instead of opening a WebSocket. Check that a gateway runs there and what its log says.</source>
             <translation>{url} respondió HTTP {status} en lugar de abrir un WebSocket. Compruebe que allí funciona una pasarela y qué dice su registro.</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>{url} is where robots connect; operators connect to {desk}. Write that instead.</source>
             <translation>{url} es donde se conectan los robots; los operadores se conectan a {desk}. Escriba eso.</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>{url} refuses this desk: {said}</source>
             <translation>{url} rechaza esta consola: {said}</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>{url} refuses this desk: {said} Enter the operator's token under Access.</source>
             <translation>{url} rechaza esta consola: {said} Introduzca el testigo del operador en Acceso.</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>{url} takes no desk now: {said} It is tried again by itself.</source>
             <translation>{url} no admite ahora ninguna consola: {said} Se vuelve a intentar solo.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/gateway_client/fleet_state.py" />
+            <source>Another site is served now: {site}, no longer {before}. Open its project.</source>
+            <translation>Ahora se sirve otro recinto: {site}, ya no {before}. Abra su proyecto.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/gateway_client/fleet_state.py" />
+            <source>The gateway has another database than before: its robots and commands are others, and those of before are not shown any more.</source>
+            <translation>La pasarela tiene otra base de datos que antes: sus robots y órdenes son otros, y los de antes ya no se muestran.</translation>
         </message>
         <message>
             <location filename="../../plugin/gateway_client/protocol.py" />
@@ -3064,6 +3064,11 @@
         </message>
         <message>
             <location filename="../../plugin/layers/site_transform.py" />
+            <source>The site is not known yet. Connect to a gateway first.</source>
+            <translation>El recinto aún no se conoce. Conéctese antes a una pasarela.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/site_transform.py" />
             <source>The site {name} is in the CRS {crs}, which this QGIS does not know: its robots cannot be placed on the map. Correct crs in the site's site.toml, or update QGIS.</source>
             <translation>El recinto {name} está en el SRC {crs}, que este QGIS no conoce: sus robots no se pueden situar en el mapa. Corrija crs en el site.toml del recinto, o actualice QGIS.</translation>
         </message>
@@ -3098,86 +3103,6 @@
             <translation>{state}, último mensaje hace {age:.0f} s</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/layers.py" />
-            <source>Accuracy (m)</source>
-            <translation>Exactitud (m)</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/layers.py" />
-            <source>Age (s)</source>
-            <translation>Antigüedad (s)</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/layers.py" />
-            <source>Battery (0 to 1)</source>
-            <translation>Batería (0 a 1)</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/layers.py" />
-            <source>Closed roads</source>
-            <translation>Vías cerradas</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/layers.py" />
-            <source>Command</source>
-            <translation>Orden</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/layers.py" />
-            <source>Cones put down</source>
-            <translation>Conos puestos</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/layers.py" />
-            <source>Conflicts</source>
-            <translation>Conflictos</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/layers.py" />
-            <source>Heading (°)</source>
-            <translation>Rumbo (°)</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/layers.py" />
-            <source>Link</source>
-            <translation>Enlace</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/layers.py" />
-            <source>Robot</source>
-            <translation>Robot</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/layers.py" />
-            <source>Robots (live)</source>
-            <translation>Robots (en vivo)</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/layers.py" />
-            <source>Speed (m/s)</source>
-            <translation>Velocidad (m/s)</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/layers.py" />
-            <source>Status</source>
-            <translation>Situación</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/layers.py" />
-            <source>Theta (rad)</source>
-            <translation>Theta (rad)</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/layers.py" />
-            <source>closed</source>
-            <translation>cerrada</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/layers.py" />
-            <source>until</source>
-            <translation>hasta</translation>
-        </message>
-        <message>
             <location filename="../../plugin/map/live_view.py" />
             <source>No robot is selected to be followed. Select one in the table or on the map.</source>
             <translation>No hay ningún robot seleccionado para seguir. Seleccione uno en la tabla o en el mapa.</translation>
@@ -3188,67 +3113,67 @@
             <translation>{robot} aún no ha dicho dónde está; el mapa no puede ir allí.</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/overlay/hover_card.py" />
+            <location filename="../../plugin/map/overlay/fleet_overlay.py" />
             <source>, {remaining:.1f} m to go</source>
             <translation>, faltan {remaining:.1f} m</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/overlay/hover_card.py" />
+            <location filename="../../plugin/map/overlay/fleet_overlay.py" />
             <source>accuracy</source>
             <translation>precisión</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/overlay/hover_card.py" />
+            <location filename="../../plugin/map/overlay/fleet_overlay.py" />
             <source>battery</source>
             <translation>batería</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/overlay/hover_card.py" />
+            <location filename="../../plugin/map/overlay/fleet_overlay.py" />
             <source>heading</source>
             <translation>rumbo</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/overlay/hover_card.py" />
+            <location filename="../../plugin/map/overlay/fleet_overlay.py" />
             <source>it says</source>
             <translation>dice</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/overlay/hover_card.py" />
+            <location filename="../../plugin/map/overlay/fleet_overlay.py" />
             <source>last message</source>
             <translation>último mensaje</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/overlay/hover_card.py" />
+            <location filename="../../plugin/map/overlay/fleet_overlay.py" />
             <source>place</source>
             <translation>lugar</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/overlay/hover_card.py" />
+            <location filename="../../plugin/map/overlay/fleet_overlay.py" />
             <source>speed</source>
             <translation>velocidad</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/overlay/hover_card.py" />
+            <location filename="../../plugin/map/overlay/fleet_overlay.py" />
             <source>task</source>
             <translation>tarea</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/overlay/hover_card.py" />
+            <location filename="../../plugin/map/overlay/fleet_overlay.py" />
             <source>{age_in_words} ago, {escape}</source>
             <translation>hace {age_in_words}, {escape}</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/overlay/hover_card.py" />
+            <location filename="../../plugin/map/overlay/fleet_overlay.py" />
             <source>{v:.2f} m/s</source>
             <translation>{v:.2f} m/s</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/overlay/hover_card.py" />
+            <location filename="../../plugin/map/overlay/fleet_overlay.py" />
             <source>{x:.2f}, {y:.2f} m in the site</source>
             <translation>{x:.2f}, {y:.2f} m en el recinto</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/overlay/hover_card.py" />
+            <location filename="../../plugin/map/overlay/fleet_overlay.py" />
             <source>± {accuracy:.2f} m</source>
             <translation>± {accuracy:.2f} m</translation>
         </message>
@@ -3278,14 +3203,94 @@
             <translation>· sin conexión</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/overlay/paths_painter.py" />
+            <location filename="../../plugin/map/overlay/task_painter.py" />
             <source>{km:.0f} km</source>
             <translation>{km:.0f} km</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/overlay/paths_painter.py" />
+            <location filename="../../plugin/map/overlay/task_painter.py" />
             <source>{metres:.0f} m</source>
             <translation>{metres:.0f} m</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/reported_layers.py" />
+            <source>Accuracy (m)</source>
+            <translation>Exactitud (m)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/reported_layers.py" />
+            <source>Age (s)</source>
+            <translation>Antigüedad (s)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/reported_layers.py" />
+            <source>Battery (0 to 1)</source>
+            <translation>Batería (0 a 1)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/reported_layers.py" />
+            <source>Closed roads</source>
+            <translation>Vías cerradas</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/reported_layers.py" />
+            <source>Command</source>
+            <translation>Orden</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/reported_layers.py" />
+            <source>Cones put down</source>
+            <translation>Conos puestos</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/reported_layers.py" />
+            <source>Conflicts</source>
+            <translation>Conflictos</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/reported_layers.py" />
+            <source>Heading (°)</source>
+            <translation>Rumbo (°)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/reported_layers.py" />
+            <source>Link</source>
+            <translation>Enlace</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/reported_layers.py" />
+            <source>Robot</source>
+            <translation>Robot</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/reported_layers.py" />
+            <source>Robots (live)</source>
+            <translation>Robots (en vivo)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/reported_layers.py" />
+            <source>Speed (m/s)</source>
+            <translation>Velocidad (m/s)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/reported_layers.py" />
+            <source>Status</source>
+            <translation>Situación</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/reported_layers.py" />
+            <source>Theta (rad)</source>
+            <translation>Theta (rad)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/reported_layers.py" />
+            <source>closed</source>
+            <translation>cerrada</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/reported_layers.py" />
+            <source>until</source>
+            <translation>hasta</translation>
         </message>
         <message>
             <location filename="../../plugin/map/site_project.py" />

@@ -7,14 +7,15 @@ import shutil
 import tempfile
 import warnings
 from collections.abc import Iterable, Iterator, Mapping
-from contextlib import contextmanager, nullcontext, suppress
+from contextlib import AbstractContextManager, ExitStack, contextmanager, nullcontext, suppress
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+T = TypeVar("T")
 STAGE = ".writing-"
 """What the name of a folder begins with in which files are made; a program that was killed leaves it."""
 
@@ -68,6 +69,7 @@ class StagedFiles:
     def __init__(self, target: Path, prefix: str = STAGE) -> None:
         self.target, self._prefix = target, prefix
         self._stage: Path | None = None
+        self._open = ExitStack()
         self._made: list[Path] = []
         self._changed: list[str] = []
 
@@ -98,6 +100,10 @@ class StagedFiles:
             raise
         return self
 
+    def enter(self, writer: AbstractContextManager[T]) -> T:
+        """Enter ``writer``, which keeps something in :attr:`folder`; it is left before that is removed."""
+        return self._open.enter_context(writer)
+
     def publish(self, names: Iterable[str] | None = None, removed: Iterable[str] = ()) -> None:
         """Take the files ``removed`` away, then put ``names`` into their place, in this order.
 
@@ -127,9 +133,14 @@ class StagedFiles:
         self._changed.append(name)
 
     def __exit__(self, kind: type[BaseException] | None, *_: object) -> None:
-        if kind is not None:
-            self._take_back()
-        self._clear()
+        failed = True
+        try:
+            self._open.close()
+            failed = kind is not None
+        finally:
+            if failed:
+                self._take_back()
+            self._clear()
 
     def _take_back(self) -> None:
         for name in self._changed:

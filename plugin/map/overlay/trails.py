@@ -13,9 +13,7 @@ from qgis.PyQt.QtCore import QPointF
 from qgis.PyQt.QtGui import QColor, QImage, QPainter
 
 from ...ui.glyphs import CASING, TRAIL
-from .screen import Screen
-
-# --- Where each robot came from: samples of its way, all robots in one table ---
+from .scene import Screen
 
 Points = npt.NDArray[np.float64]
 
@@ -49,8 +47,9 @@ LENGTHS = (
 class Trails:
     """The last places of every robot in the site frame, with the time when each was seen.
 
-    One row a robot, as in :class:`~.desk.picture.RobotArrays`; a ring of samples for each. Samples taken at
-    the same time stand side by side, as robots that tell of themselves together are sampled together.
+    One row a robot, as in :class:`~.gateway_client.robot_states.RobotArrays`; a ring of samples for each.
+    Samples taken at the same time stand side by side, as robots that tell of themselves together are sampled
+    together.
     """
 
     def __init__(self) -> None:
@@ -149,8 +148,6 @@ class Trails:
             self._ring[(self._taken - 1 - back) % length.samples, rows] = sample
         self.generation += 1
 
-
-# --- Trails on one screen, in an image that stays: each pixel knows when a robot was there last ---
 
 Numbers = npt.NDArray[np.float64]
 Pixels = npt.NDArray[np.intp]
@@ -367,9 +364,6 @@ def _shades(colour: QColor, strength: float) -> npt.NDArray[np.uint32]:
     alpha = np.linspace(colour.alphaF() * strength, 0.0, SHADES)
     red, green, blue = (np.round(part * alpha).astype(np.uint32) for part in colour.getRgb()[:3])
     return np.round(alpha * 255).astype(np.uint32) << 24 | red << 16 | green << 8 | blue
-
-
-# --- The trails on the canvas, whichever way the view moves ---
 
 
 class TrailImage:

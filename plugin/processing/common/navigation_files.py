@@ -22,7 +22,7 @@ from qgis.core import (
     QgsWkbTypes,
 )
 from qgis.PyQt.QtCore import QBuffer, QByteArray, QIODevice, Qt
-from qgis.PyQt.QtGui import QImage, QPainter
+from qgis.PyQt.QtGui import QImage
 from qgis.PyQt.QtSvg import QSvgRenderer
 
 from ....robot_bridge.core.robotmap.exporters.geometries import MapShape, obstacle_shapes, segment_shapes
@@ -50,6 +50,7 @@ from ...layers.layer_expressions import FeatureFilter
 from ...layers.layer_source import FeatureReader
 from ...layers.site_transform import LayerToSiteTransform, SiteGeoreference
 from ...ui.errors import FleetError
+from ...ui.glyphs import painting
 from ...ui.language import tr
 from .algorithm import ParameterError
 from .map_files import PlacedMap
@@ -149,9 +150,8 @@ def png_of(svg: bytes) -> bytes:
             tr("Qt cannot draw the picture of this map: choose svg and open that in a browser.")
         )
     image.fill(Qt.GlobalColor.white)
-    painter = QPainter(image)
-    renderer.render(painter)
-    painter.end()
+    with painting(image) as painter:
+        renderer.render(painter)
     buffer = QBuffer()
     buffer.open(QIODevice.OpenModeFlag.WriteOnly)
     image.save(buffer, "PNG")

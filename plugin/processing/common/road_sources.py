@@ -286,6 +286,9 @@ class RoadSource:
                     roads=self._parameters.get(ROADS),
                 )
             )
+        if source.featureCount() == 0:
+            # Said before the CRS is asked for: an empty layer often has none.
+            raise ParameterError(_no_roads(source.sourceName(), 0, []))
         given = self._algorithm, self._parameters, self._context
         crs = chosen_crs(*given, [source.sourceCrs()], layer_first=True)
         site = SiteGeoreference.in_crs(crs, self._context.transformContext())

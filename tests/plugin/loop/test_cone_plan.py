@@ -62,7 +62,7 @@ class Planner:
 
     def add_points(self, name, fields, rows):
         """Add a layer of points: rows are x and y in the site frame, and the values of ``fields``."""
-        e, n = self.operator.desk.site.origin
+        e, n = self.operator.desk.state.site.origin
         layer = QgsVectorLayer(f"Point?crs=EPSG:32633{fields}", name, "memory")
         features = []
         for x, y, *values in rows:
@@ -108,7 +108,7 @@ class Planner:
         which.setCurrentIndex(which.findText(text))
 
     def tasks_of(self, robot):
-        queue = self.operator.desk.queues.get(robot)
+        queue = self.operator.desk.state.queues.get(robot)
         return [] if queue is None else queue.tasks
 
     @property
@@ -181,7 +181,7 @@ def test_three_robots_place_a_lane_change_and_two_go_on_when_one_is_killed(
     plan = planner.solve(2.0)
     assert {stop.id for _, stop in plan.all_stops()} == cones
     assert not planner.dock.drafts.draft.meetings, planner.dock.bar.trouble.text()
-    assert not len(operator.desk.queues), "nothing is sent before the operator says so"
+    assert not len(operator.desk.state.queues), "nothing is sent before the operator says so"
     planner.send()
     operator.wait("cones being placed", lambda: len(planner.done) >= 4, 120)
     of_r1 = {stop.id for stop in plan.robot("r1").stops}
@@ -196,7 +196,7 @@ def test_three_robots_place_a_lane_change_and_two_go_on_when_one_is_killed(
     taken = {stop.id for _, stop in offer.plan.all_stops()}
     assert left <= taken and offer.plan.robot("r1").lost
     assert not offer.meetings, planner.dock.bar.trouble.text()
-    assert operator.desk.queues.get("r1").tasks, "nothing is taken over before the operator confirms"
+    assert operator.desk.state.queues.get("r1").tasks, "nothing is taken over before the operator confirms"
     planner.press("fleet_plan_confirm")
     operator.wait("every cone being placed", lambda: planner.done == cones, 240)
     operator.wait("quiet", lambda: not planner.dock.driven.busy, 10)
@@ -244,7 +244,7 @@ def test_a_lost_robots_cones_are_taken_over_without_a_question_when_that_is_swit
     operator.wait("every cone being placed", lambda: planner.done == cones, 240)
     operator.wait("quiet", lambda: not planner.dock.driven.busy, 10)
     assert planner.dock.driven.driven.plan.robot("r1").lost
-    assert {one.robot for one in operator.desk.placements} <= {"r1", "r2"}
+    assert {one.robot for one in operator.desk.state.placed_cones} <= {"r1", "r2"}
 
     planner.press("fleet_plan_clear")
     planner.dock.tabs.setCurrentWidget(planner.dock.placed)
@@ -261,7 +261,7 @@ def test_a_lost_robots_cones_are_taken_over_without_a_question_when_that_is_swit
     operator.wait("all of it being collected", lambda: len(planner.done) == len(cones), 240)
     # That a cone was collected is told after that the command was done.
     collected = "every cone noted as collected"
-    operator.wait(collected, lambda: all(one.collected_at for one in operator.desk.placements), 10)
+    operator.wait(collected, lambda: all(one.collected_at for one in operator.desk.state.placed_cones), 10)
 
 
 def test_a_plan_into_a_keepout_is_sent_with_an_override_that_the_audit_log_keeps(

@@ -59,7 +59,7 @@ def under_way(panel, gateway, wait):
     wait(lambda: len(gateway.asked("set_queue")) == 2 and not panel.driven.busy, 10)
     for robot in ("r1", "r2"):
         gateway.tell("queue", queue(panel, robot, ["current", "waiting", "waiting"]))
-    wait(lambda: len(panel._desk.queues) == 2, 5)
+    wait(lambda: len(panel._desk.state.queues) == 2, 5)
     return panel
 
 

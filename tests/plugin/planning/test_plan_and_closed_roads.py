@@ -36,7 +36,7 @@ def test_a_plan_is_made_round_the_roads_that_are_closed_at_the_gateway(far_cones
     assert max(y for _, y in round_it) > 85
     assert far_cones.bar.trouble.text() == ""
     gateway.tell("closures", closing())
-    wait(lambda: not far_cones._desk.roads.closures, 5)
+    wait(lambda: not far_cones._desk.state.closures, 5)
     assert max(y for _, y in way_to(planned(far_cones, wait), "far-1")) < 50
 
 
@@ -121,13 +121,13 @@ def held(far_cones, monkeypatch):
 
 def close_road(dock, gateway, wait):
     gateway.tell("closures", closing(SHORT))
-    wait(lambda: dock._desk.roads.closures, 5)
+    wait(lambda: dock._desk.state.closures, 5)
 
 
 def test_the_window_goes_on_while_a_plan_is_held_against_closed_roads(far_cones, held, gateway, wait):
     plan = planned(far_cones, wait)
     close_road(far_cones, gateway, wait)
-    assert len(list(closed_ways(plan, far_cones._desk.roads.closures))) == 1 + len(list(plan.all_stops()))
+    assert len(list(closed_ways(plan, far_cones._desk.state.closures))) == 1 + len(list(plan.all_stops()))
     assert held.under_way
     assert far_cones.drafts.draft.closed == () and far_cones.bar.trouble.text() == ""
     held.let_go()

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from fleet_supervisor.plugin.gateway_client.buffers import OperatorRequest, RequestResult
+from fleet_supervisor.plugin.gateway_client.requests import OperatorRequest, RequestResult
 from qgis.PyQt.QtTest import QTest
 from qgis.PyQt.QtWidgets import QCheckBox
 
@@ -41,8 +41,8 @@ def test_nobody_is_sent_by_itself_to_a_cone_at_which_a_lost_robot_stands(
 ):
     cone = under_way.driven.driven.plan.robot("r1").stops[1]
     gateway.show(make_robot("r1", cone.x, cone.y))
-    picture = under_way._desk.picture
-    wait(lambda: picture.view("r1", under_way._desk.clock()).report.x == pytest.approx(cone.x), 5)
+    picture = under_way._desk.state.robots
+    wait(lambda: picture.view("r1", under_way._desk.clock.steady()).report.x == pytest.approx(cone.x), 5)
     under_way.bar.by_itself.click()
     lose_r1(under_way, gateway, wait)
     wait(lambda: under_way.driven.offer is not None and not under_way.driven.busy, 15, "a new plan")
@@ -96,7 +96,7 @@ def test_going_on_as_before_lets_go_what_was_held_and_sends_nothing_else(under_w
     press(under_way, "fleet_plan_rest")
     wait(lambda: gateway.asked("pause_queue"), 5)
     gateway.tell("queue", queue(under_way, "r2", ["current", "waiting", "waiting"], **ours))
-    wait(lambda: under_way._desk.queues.get("r2").at == 88.0, 5)
+    wait(lambda: under_way._desk.state.queues.get("r2").at == 88.0, 5)
     under_way.driven.sending._answered(
         RequestResult(OperatorRequest(under_way.driven.sending._key, "pause_queue"), {})
     )
@@ -111,7 +111,7 @@ def test_a_new_plan_is_not_sent_when_a_cone_was_given_up_meanwhile(under_way, ga
     lose_r1(under_way, gateway, wait)
     offered(under_way, wait)
     gateway.tell("queue", queue(under_way, "r2", ["waiting"] * 3, state="paused", at=99.0))
-    wait(lambda: under_way._desk.queues.get("r2").at == 99.0, 5)
+    wait(lambda: under_way._desk.state.queues.get("r2").at == 99.0, 5)
     press(under_way, "fleet_plan_confirm")
     wait(lambda: any("Given up since this plan was made: " in text for text in iface.texts()), 5)
     assert gateway.asked("take_over") == [] and under_way.driven.offer is not None
@@ -122,12 +122,12 @@ def test_what_is_switched_on_is_done_once_it_can_be_and_not_said_again_and_again
 ):
     under_way.bar.by_itself.click()
     gateway.stand(in_force=True, stop="stop-1", at=1.0, by="bert")
-    wait(lambda: under_way._desk.emergency is not None and under_way._desk.emergency.in_force, 5)
+    wait(lambda: under_way._desk.state.emergency is not None and under_way._desk.state.emergency.in_force, 5)
     lose_r1(under_way, gateway, wait)
     for revision in (4, 5):
         states = ["current", "waiting", "waiting"]
         gateway.tell("queue", queue(under_way, "r2", states, revision=revision))
-        wait(lambda revision=revision: under_way._desk.queues.revision("r2") == revision, 5)
+        wait(lambda revision=revision: under_way._desk.state.queues.revision("r2") == revision, 5)
     assert sum("An emergency stop is in force" in text for text in iface.texts()) == 1
     assert gateway.asked("pause_queue") == [] and gateway.asked("take_over") == []
 
@@ -162,7 +162,7 @@ def test_a_plan_that_somebody_paused_says_so_and_goes_on_by_one_button(under_way
 
 def test_no_robot_goes_on_while_an_emergency_stop_is_in_force(under_way, gateway, wait, iface):
     gateway.stand(in_force=True, stop="stop-1", at=1.0, by="bert")
-    wait(lambda: under_way._desk.emergency is not None and under_way._desk.emergency.in_force, 5)
+    wait(lambda: under_way._desk.state.emergency is not None and under_way._desk.state.emergency.in_force, 5)
     pause(under_way, gateway, wait)
     press(under_way, "fleet_plan_resume")
     wait(lambda: any("An emergency stop is in force" in text for text in iface.texts()), 5)

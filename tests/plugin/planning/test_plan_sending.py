@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 import pytest
-from fleet_supervisor.plugin.gateway_client.buffers import OperatorRequest, RequestResult
+from fleet_supervisor.plugin.gateway_client.requests import OperatorRequest, RequestResult
 from fleet_supervisor.plugin.planning import plan_views
 from fleet_supervisor.robot_bridge.core.messages import TaskState, to_json
 from qgis.PyQt.QtCore import Qt
@@ -150,7 +150,7 @@ def test_what_was_not_sent_is_told_until_a_plan_is_sent_or_watched_no_more(fence
 def test_a_plan_that_waits_for_the_end_of_a_stop_says_so_until_that_is_cleared(panel, gateway, wait, iface):
     planned(panel, wait)
     gateway.stand(in_force=True, stop="s1", at=1.0, by="bob")
-    wait(lambda: panel._desk.emergency.in_force, what="the stop")
+    wait(lambda: panel._desk.state.emergency.in_force, what="the stop")
     answer(question(panel), send=True)
     wait(lambda: hung(iface, "An emergency stop is in force"), what="the refusal")
     gateway.stand(in_force=False)
@@ -172,7 +172,7 @@ def test_an_override_that_the_role_does_not_reach_is_refused_as_that_of_a_draft_
 def test_nothing_is_overridden_while_an_emergency_stop_is_in_force(fenced, gateway, wait, iface):
     confirm = override(fenced)
     gateway.stand(in_force=True, stop="stop-1", at=1.0, by="bert")
-    wait(lambda: fenced._desk.emergency is not None and fenced._desk.emergency.in_force, 5)
+    wait(lambda: fenced._desk.state.emergency is not None and fenced._desk.state.emergency.in_force, 5)
     QTest.mouseClick(confirm, Qt.MouseButton.LeftButton)
     wait(lambda: hung(iface, "An emergency stop is in force"), 5)
     assert len(sent_to(gateway, "r2")) == 1 and fenced.driven.refusal is not None
@@ -192,7 +192,7 @@ def test_the_question_names_robots_that_moved_and_would_meet(panel, gateway, wai
     panel.form.apart.setValue(50.0)
     planned(panel, wait)
     gateway.show(make_robot("r1", 50, 48))
-    wait(lambda: panel._desk.picture.view("r1", panel._desk.clock()).report.y == 48, 5)
+    wait(lambda: panel._desk.state.robots.view("r1", panel._desk.clock.steady()).report.y == 48, 5)
     text = question(panel).text()
     assert "r1 is 8.0 m from where the plan begins" in text
     assert "r1 and r2 come within" in text
@@ -213,7 +213,7 @@ def test_a_plan_that_is_driven_is_not_thrown_away_by_another_preview(panel, gate
 def test_nothing_is_sent_while_an_emergency_stop_is_in_force(panel, gateway, wait, iface):
     planned(panel, wait)
     gateway.stand(in_force=True, stop="stop-1", at=1.0, by="bert")
-    wait(lambda: panel._desk.emergency is not None and panel._desk.emergency.in_force, 5)
+    wait(lambda: panel._desk.state.emergency is not None and panel._desk.state.emergency.in_force, 5)
     answer(question(panel), send=True)
     wait(lambda: any("An emergency stop is in force" in text for text in iface.texts()), 5)
     assert gateway.asked("set_queue") == [] and panel.driven.driven is None
@@ -224,10 +224,10 @@ def test_a_site_that_is_published_anew_or_chosen_keeps_the_plan_and_another_does
 ):
     driven = under_way.driven.driven
     gateway.tell("site", to_json(replace(site, version="2")))
-    wait(lambda: under_way._desk.site.version == "2", 5)
+    wait(lambda: under_way._desk.state.site.version == "2", 5)
     assert under_way.driven.driven is driven
     gateway.tell("site", to_json(replace(site, id="chosen")))
-    wait(lambda: under_way._desk.site.id == "chosen", 5)
+    wait(lambda: under_way._desk.state.site.id == "chosen", 5)
     assert under_way.driven.driven is driven
     gateway.tell("site", to_json(replace(site, origin=(1.0, 2.0))))
     wait(lambda: under_way.driven.driven is None, 5)
@@ -259,6 +259,6 @@ def test_a_plan_that_is_cleared_while_it_is_sent_is_sent_no_further(panel, gatew
     first = OperatorRequest(panel.driven.sending._key, "set_queue")
     panel.driven.clear()
     assert not panel.driven.busy and panel.driven.driven is None
-    panel._desk.answered.emit(RequestResult(first, {}))
+    panel._desk.orders.answered.emit(RequestResult(first, {}))
     QTest.qWait(200)
     assert len(gateway.asked("set_queue")) == 1 and panel.driven.sending is None

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from fleet_supervisor.plugin.map.overlay.screen import Screen
+from fleet_supervisor.plugin.map.overlay.scene import Screen
 from fleet_supervisor.plugin.map.overlay.trails import LENGTHS, SHORTEST_WAIT, TrailImage, Trails
 from qgis.PyQt.QtGui import QImage, QPainter
 

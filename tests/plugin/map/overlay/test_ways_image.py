@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
+from fleet_supervisor.plugin import plugin as installed
 from fleet_supervisor.plugin.gateway_client.robot_states import RobotStates
-from fleet_supervisor.plugin.map.overlay import paths_painter
-from fleet_supervisor.plugin.map.overlay.paths_painter import MANY, PathsImage
-from fleet_supervisor.plugin.map.overlay.scene import MapScene, SiteScene, TaskPath
-from fleet_supervisor.plugin.map.overlay.screen import Screen
+from fleet_supervisor.plugin.map.overlay import task_painter
+from fleet_supervisor.plugin.map.overlay.primitives import drawn
+from fleet_supervisor.plugin.map.overlay.scene import MapScene, Screen, SiteScene, TaskPath, screen_image
+from fleet_supervisor.plugin.map.overlay.task_painter import MANY, PathsImage
 from qgis.PyQt.QtGui import QImage, QPainter
 
 WIDTH, HEIGHT = 200, 100
@@ -45,12 +48,12 @@ def rows(image, scene, screen=SCREEN, column=100):
 @pytest.fixture
 def slow(qgis_app, monkeypatch):
     """A frame in which there is time for one way only."""
-    monkeypatch.setattr(paths_painter, "FILL_SECONDS", 0.0)
+    monkeypatch.setattr(task_painter, "FILL_SECONDS", 0.0)
 
 
 def test_few_ways_are_there_at_once(qgis_app, monkeypatch):
     # As on an idle machine, where painting two ways takes a fraction of it.
-    monkeypatch.setattr(paths_painter, "FILL_SECONDS", 60.0)
+    monkeypatch.setattr(task_painter, "FILL_SECONDS", 60.0)
     image = PathsImage()
     assert {20, 60} <= set(rows(image, placed(20, 60)))
     assert image.is_whole
@@ -107,3 +110,31 @@ def test_without_ways_nothing_is_kept(qgis_app):
     rows(image, scene)
     assert rows(image, placed()) == []
     assert image._shown.image is None
+
+
+def fill(draw):
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(task_painter, "route", lambda painter, *_: draw(painter))
+        PathsImage().prepare(placed(20), SCREEN)
+
+
+@pytest.mark.parametrize(
+    "paint", [fill, lambda draw: screen_image(SCREEN, draw), lambda draw: drawn(draw, 32, 1.0)]
+)
+def test_a_painter_is_ended_where_painting_fails(qgis_app, paint):
+    """Kept by the traceback it would outlive its image, for which Qt ends the program."""
+    painters = []
+
+    def fail(painter):
+        painters.append(painter)
+        raise ValueError("no such colour")
+
+    with pytest.raises(ValueError, match="no such colour"):
+        paint(fail)
+    assert [painter.isActive() for painter in painters] == [False]
+
+
+def test_every_painter_is_one_that_is_ended():
+    folder = Path(installed.__file__).parent
+    made = [path.name for path in folder.rglob("*.py") if "QPainter(" in path.read_text("utf-8")]
+    assert made == ["glyphs.py"]
