@@ -264,11 +264,15 @@ class SuspensionNotices(ReportNotices):
 
 
 class LinkNotices(ReportNotices):
-    """Texts about links to robots of another kind that are down."""
+    """Texts about links to robots of another kind that are down, or whose robots are not in order."""
 
     def show(self, links: Links) -> None:
         """Tell of the newest report."""
-        self.renew([_down(one) for one in links.links if not one.up])
+        self.renew([_not_in_order(one) for one in links.links if one.text or not one.up])
+
+
+def _not_in_order(link: LinkReport) -> str:
+    return tr("Link {link}: {reason}.", link=link.link, reason=link.text) if link.up else _down(link)
 
 
 def _down(link: LinkReport) -> str:

@@ -1208,6 +1208,11 @@
         </message>
         <message>
             <location filename="../../plugin/control/messages.py" />
+            <source>Link {link}: {reason}.</source>
+            <translation>Enllaç {link}: {reason}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/control/messages.py" />
             <source>The database account of robot {robot} is locked until {time}: its program kept all others waiting. Nothing but a stop reaches it: Abort unlocks the account. Have the program mended.</source>
             <translation>El compte de base de dades del robot {robot} està bloquejat fins a les {time}: el seu programa feia esperar tots els altres. Només hi arriba una parada: Avorta desbloqueja el compte. Feu arreglar el programa.</translation>
         </message>
@@ -2260,41 +2265,6 @@
             <translation>{named}: la unitat és {unit}, i els robots parlen en metres. Trieu un SRC en metres com la zona UTM local{suggestion}.</translation>
         </message>
         <message>
-            <location filename="../../plugin/layers/errors.py" />
-            <source>Layer {layer}, feature {id}: {note}</source>
-            <translation>Capa {layer}, entitat {id}: {note}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/layers/errors.py" />
-            <source>Layer {layer}, {features}: {note}</source>
-            <translation>Capa {layer}, {features}: {note}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/layers/errors.py" />
-            <source>Layer {layer}, {features}; of the first: {note}</source>
-            <translation>Capa {layer}, {features}; de la primera: {note}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/layers/errors.py" />
-            <source>Layer {layer}: warnings of more kinds about {features}</source>
-            <translation>Capa {layer}: avisos de més tipus sobre {features}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/layers/errors.py" />
-            <source>feature {shown}</source>
-            <translation>entitat {shown}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/layers/errors.py" />
-            <source>features {shown}</source>
-            <translation>entitats {shown}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/layers/errors.py" />
-            <source>features {shown} and {more} more</source>
-            <translation>entitats {shown} i {more} més</translation>
-        </message>
-        <message>
             <location filename="../../plugin/layers/geometry.py" />
             <source> at ({x:.2f} {y:.2f})</source>
             <translation> a ({x:.2f} {y:.2f})</translation>
@@ -2429,6 +2399,26 @@
         </message>
         <message>
             <location filename="../../plugin/layers/layer_source.py" />
+            <source>Layer {layer}, feature {id}: {note}</source>
+            <translation>Capa {layer}, entitat {id}: {note}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/layer_source.py" />
+            <source>Layer {layer}, {features}: {note}</source>
+            <translation>Capa {layer}, {features}: {note}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/layer_source.py" />
+            <source>Layer {layer}, {features}; of the first: {note}</source>
+            <translation>Capa {layer}, {features}; de la primera: {note}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/layer_source.py" />
+            <source>Layer {layer}: warnings of more kinds about {features}</source>
+            <translation>Capa {layer}: avisos de més tipus sobre {features}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/layer_source.py" />
             <source>The layer {name} cannot be opened ({source}): repair its data source or leave it out.</source>
             <translation>La capa {name} no es pot obrir ({source}): repareu-ne l'origen de dades o ometeu-la.</translation>
         </message>
@@ -2436,6 +2426,21 @@
             <location filename="../../plugin/layers/layer_source.py" />
             <source>The layer {name} holds {held}, and only lines and polygons are obstacles: leave it out, give it an extent first (for example with Buffer), or the role furniture.</source>
             <translation>La capa {name} conté {held}, i només les línies i els polígons són obstacles: ometeu-la, doneu-li abans extensió (per exemple amb Buffer), o el paper mobiliari.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/layer_source.py" />
+            <source>feature {shown}</source>
+            <translation>entitat {shown}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/layer_source.py" />
+            <source>features {shown}</source>
+            <translation>entitats {shown}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/layer_source.py" />
+            <source>features {shown} and {more} more</source>
+            <translation>entitats {shown} i {more} més</translation>
         </message>
         <message>
             <location filename="../../plugin/layers/layer_source.py" />
@@ -7004,18 +7009,8 @@
         </message>
         <message>
             <location filename="../../plugin/processing/algorithms/export_road_network.py" />
-            <source>Origin of the site frame (default: as the project has it, else 0,0)</source>
-            <translation>Origen del marc del recinte (per defecte: el del projecte, si no 0,0)</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/export_road_network.py" />
             <source>Robots' name for the site frame</source>
             <translation>Nom del marc del recinte per als robots</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/export_road_network.py" />
-            <source>Rotation of the site frame, counter-clockwise from the CRS's x axis [degrees]</source>
-            <translation>Rotació del marc del recinte, en sentit antihorari des de l'eix x del SRC [graus]</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/algorithms/export_road_network.py" />
@@ -7081,11 +7076,6 @@
             <location filename="../../plugin/processing/algorithms/export_robot_map.py" />
             <source>Label of each feature (default: the layer's name)</source>
             <translation>Etiqueta de cada entitat (per defecte: el nom de la capa)</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/export_robot_map.py" />
-            <source>Obstacle layers (default: those of the project with such a role)</source>
-            <translation>Capes d'obstacles (per defecte: les del projecte amb aquest paper)</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/algorithms/export_robot_map.py" />
@@ -8041,6 +8031,11 @@
         </message>
         <message>
             <location filename="../../plugin/processing/common/export_parameters.py" />
+            <source>Obstacle layers (default: those of the project with such a role)</source>
+            <translation>Capes d'obstacles (per defecte: les del projecte amb aquest paper)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/export_parameters.py" />
             <source>ROUTE holds no line: choose a layer with the route to export along.</source>
             <translation>ROUTE no té cap línia: trieu una capa amb la ruta al llarg de la qual exportar.</translation>
         </message>
@@ -8418,6 +8413,16 @@
             <location filename="../../plugin/processing/common/parameters.py" />
             <source>Map profile: what the layers are, by their names (default: as each layer keeps it)</source>
             <translation>Perfil de mapa: què són les capes, pel seu nom (per defecte: com ho guarda cada capa)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/parameters.py" />
+            <source>Origin of the site frame (default: as the project has it, else 0,0)</source>
+            <translation>Origen del marc del recinte (per defecte: el del projecte, si no 0,0)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/parameters.py" />
+            <source>Rotation of the site frame, counter-clockwise from the CRS's x axis [degrees]</source>
+            <translation>Rotació del marc del recinte, en sentit antihorari des de l'eix x del SRC [graus]</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/common/parameters.py" />

@@ -1208,6 +1208,11 @@
         </message>
         <message>
             <location filename="../../plugin/control/messages.py" />
+            <source>Link {link}: {reason}.</source>
+            <translation>Enlace {link}: {reason}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/control/messages.py" />
             <source>The database account of robot {robot} is locked until {time}: its program kept all others waiting. Nothing but a stop reaches it: Abort unlocks the account. Have the program mended.</source>
             <translation>La cuenta de base de datos del robot {robot} está bloqueada hasta las {time}: su programa hacía esperar a todos los demás. Solo le llega una parada: Abortar desbloquea la cuenta. Haga arreglar el programa.</translation>
         </message>
@@ -2260,41 +2265,6 @@
             <translation>{named}: su unidad es {unit}, y los robots hablan en metros. Elija un SRC en metros como la zona UTM local{suggestion}.</translation>
         </message>
         <message>
-            <location filename="../../plugin/layers/errors.py" />
-            <source>Layer {layer}, feature {id}: {note}</source>
-            <translation>Capa {layer}, objeto espacial {id}: {note}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/layers/errors.py" />
-            <source>Layer {layer}, {features}: {note}</source>
-            <translation>Capa {layer}, {features}: {note}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/layers/errors.py" />
-            <source>Layer {layer}, {features}; of the first: {note}</source>
-            <translation>Capa {layer}, {features}; del primero: {note}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/layers/errors.py" />
-            <source>Layer {layer}: warnings of more kinds about {features}</source>
-            <translation>Capa {layer}: avisos de más tipos sobre {features}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/layers/errors.py" />
-            <source>feature {shown}</source>
-            <translation>objeto espacial {shown}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/layers/errors.py" />
-            <source>features {shown}</source>
-            <translation>objetos espaciales {shown}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/layers/errors.py" />
-            <source>features {shown} and {more} more</source>
-            <translation>objetos espaciales {shown} y {more} más</translation>
-        </message>
-        <message>
             <location filename="../../plugin/layers/geometry.py" />
             <source> at ({x:.2f} {y:.2f})</source>
             <translation> en ({x:.2f} {y:.2f})</translation>
@@ -2429,6 +2399,26 @@
         </message>
         <message>
             <location filename="../../plugin/layers/layer_source.py" />
+            <source>Layer {layer}, feature {id}: {note}</source>
+            <translation>Capa {layer}, objeto espacial {id}: {note}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/layer_source.py" />
+            <source>Layer {layer}, {features}: {note}</source>
+            <translation>Capa {layer}, {features}: {note}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/layer_source.py" />
+            <source>Layer {layer}, {features}; of the first: {note}</source>
+            <translation>Capa {layer}, {features}; del primero: {note}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/layer_source.py" />
+            <source>Layer {layer}: warnings of more kinds about {features}</source>
+            <translation>Capa {layer}: avisos de más tipos sobre {features}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/layer_source.py" />
             <source>The layer {name} cannot be opened ({source}): repair its data source or leave it out.</source>
             <translation>La capa {name} no se puede abrir ({source}): repare su origen de datos u omítala.</translation>
         </message>
@@ -2436,6 +2426,21 @@
             <location filename="../../plugin/layers/layer_source.py" />
             <source>The layer {name} holds {held}, and only lines and polygons are obstacles: leave it out, give it an extent first (for example with Buffer), or the role furniture.</source>
             <translation>La capa {name} contiene {held}, y solo las líneas y los polígonos son obstáculos: omítala, déle antes extensión (por ejemplo con Buffer), o el papel mobiliario.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/layer_source.py" />
+            <source>feature {shown}</source>
+            <translation>objeto espacial {shown}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/layer_source.py" />
+            <source>features {shown}</source>
+            <translation>objetos espaciales {shown}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/layer_source.py" />
+            <source>features {shown} and {more} more</source>
+            <translation>objetos espaciales {shown} y {more} más</translation>
         </message>
         <message>
             <location filename="../../plugin/layers/layer_source.py" />
@@ -7004,18 +7009,8 @@
         </message>
         <message>
             <location filename="../../plugin/processing/algorithms/export_road_network.py" />
-            <source>Origin of the site frame (default: as the project has it, else 0,0)</source>
-            <translation>Origen del marco del recinto (por defecto: el del proyecto, si no 0,0)</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/export_road_network.py" />
             <source>Robots' name for the site frame</source>
             <translation>Nombre del marco del recinto para los robots</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/export_road_network.py" />
-            <source>Rotation of the site frame, counter-clockwise from the CRS's x axis [degrees]</source>
-            <translation>Rotación del marco del recinto, en sentido antihorario desde el eje x del SRC [grados]</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/algorithms/export_road_network.py" />
@@ -7081,11 +7076,6 @@
             <location filename="../../plugin/processing/algorithms/export_robot_map.py" />
             <source>Label of each feature (default: the layer's name)</source>
             <translation>Etiqueta de cada objeto (por defecto: el nombre de la capa)</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/export_robot_map.py" />
-            <source>Obstacle layers (default: those of the project with such a role)</source>
-            <translation>Capas de obstáculos (por defecto: las del proyecto con ese papel)</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/algorithms/export_robot_map.py" />
@@ -8041,6 +8031,11 @@
         </message>
         <message>
             <location filename="../../plugin/processing/common/export_parameters.py" />
+            <source>Obstacle layers (default: those of the project with such a role)</source>
+            <translation>Capas de obstáculos (por defecto: las del proyecto con ese papel)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/export_parameters.py" />
             <source>ROUTE holds no line: choose a layer with the route to export along.</source>
             <translation>ROUTE no tiene ninguna línea: elija una capa con la ruta a lo largo de la cual exportar.</translation>
         </message>
@@ -8418,6 +8413,16 @@
             <location filename="../../plugin/processing/common/parameters.py" />
             <source>Map profile: what the layers are, by their names (default: as each layer keeps it)</source>
             <translation>Perfil de mapa: qué son las capas, por su nombre (por defecto: como lo guarda cada capa)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/parameters.py" />
+            <source>Origin of the site frame (default: as the project has it, else 0,0)</source>
+            <translation>Origen del marco del recinto (por defecto: el del proyecto, si no 0,0)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/parameters.py" />
+            <source>Rotation of the site frame, counter-clockwise from the CRS's x axis [degrees]</source>
+            <translation>Rotación del marco del recinto, en sentido antihorario desde el eje x del SRC [grados]</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/common/parameters.py" />

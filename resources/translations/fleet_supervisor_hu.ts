@@ -1202,6 +1202,11 @@
         </message>
         <message>
             <location filename="../../plugin/control/messages.py" />
+            <source>Link {link}: {reason}.</source>
+            <translation>{link} kapcsolat: {reason}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/control/messages.py" />
             <source>The database account of robot {robot} is locked until {time}: its program kept all others waiting. Nothing but a stop reaches it: Abort unlocks the account. Have the program mended.</source>
             <translation>A(z) {robot} robot adatbázisfiókja {time}-ig zárolva van: programja mindenki mást megvárakoztatott. A leállításon kívül semmi sem éri el: a megszakítás feloldja a fiókot. Javíttassa meg a programot.</translation>
         </message>
@@ -2251,41 +2256,6 @@
             <translation>{named}: egysége {unit}, és a robotok métert használnak. Válasszon méteres vetületet, például a helyi UTM-zónát{suggestion}.</translation>
         </message>
         <message>
-            <location filename="../../plugin/layers/errors.py" />
-            <source>Layer {layer}, feature {id}: {note}</source>
-            <translation>{layer} réteg, {id}. elem: {note}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/layers/errors.py" />
-            <source>Layer {layer}, {features}: {note}</source>
-            <translation>{layer} réteg, {features}: {note}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/layers/errors.py" />
-            <source>Layer {layer}, {features}; of the first: {note}</source>
-            <translation>{layer} réteg, {features}; az elsőé: {note}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/layers/errors.py" />
-            <source>Layer {layer}: warnings of more kinds about {features}</source>
-            <translation>{layer} réteg: további fajta figyelmeztetések: {features}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/layers/errors.py" />
-            <source>feature {shown}</source>
-            <translation>{shown}. elem</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/layers/errors.py" />
-            <source>features {shown}</source>
-            <translation>{shown}. elem</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/layers/errors.py" />
-            <source>features {shown} and {more} more</source>
-            <translation>{shown}. elem és még {more}</translation>
-        </message>
-        <message>
             <location filename="../../plugin/layers/geometry.py" />
             <source> at ({x:.2f} {y:.2f})</source>
             <translation> itt: ({x:.2f} {y:.2f})</translation>
@@ -2419,6 +2389,26 @@
         </message>
         <message>
             <location filename="../../plugin/layers/layer_source.py" />
+            <source>Layer {layer}, feature {id}: {note}</source>
+            <translation>{layer} réteg, {id}. elem: {note}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/layer_source.py" />
+            <source>Layer {layer}, {features}: {note}</source>
+            <translation>{layer} réteg, {features}: {note}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/layer_source.py" />
+            <source>Layer {layer}, {features}; of the first: {note}</source>
+            <translation>{layer} réteg, {features}; az elsőé: {note}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/layer_source.py" />
+            <source>Layer {layer}: warnings of more kinds about {features}</source>
+            <translation>{layer} réteg: további fajta figyelmeztetések: {features}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/layer_source.py" />
             <source>The layer {name} cannot be opened ({source}): repair its data source or leave it out.</source>
             <translation>A(z) {name} réteg nem nyitható meg ({source}): javítsa ki az adatforrását, vagy hagyja ki.</translation>
         </message>
@@ -2426,6 +2416,21 @@
             <location filename="../../plugin/layers/layer_source.py" />
             <source>The layer {name} holds {held}, and only lines and polygons are obstacles: leave it out, give it an extent first (for example with Buffer), or the role furniture.</source>
             <translation>A(z) {name} réteg tartalma: {held}, és csak vonalak és poligonok akadályok: hagyja ki, adjon neki előbb kiterjedést (például Övezettel), vagy a berendezés szerepet.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/layer_source.py" />
+            <source>feature {shown}</source>
+            <translation>{shown}. elem</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/layer_source.py" />
+            <source>features {shown}</source>
+            <translation>{shown}. elem</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/layer_source.py" />
+            <source>features {shown} and {more} more</source>
+            <translation>{shown}. elem és még {more}</translation>
         </message>
         <message>
             <location filename="../../plugin/layers/layer_source.py" />
@@ -6956,18 +6961,8 @@
         </message>
         <message>
             <location filename="../../plugin/processing/algorithms/export_road_network.py" />
-            <source>Origin of the site frame (default: as the project has it, else 0,0)</source>
-            <translation>A telephelyi keret kezdőpontja (alapértelmezés: a projekté, különben 0,0)</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/export_road_network.py" />
             <source>Robots' name for the site frame</source>
             <translation>A telephelyi keret neve a robotoknál</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/export_road_network.py" />
-            <source>Rotation of the site frame, counter-clockwise from the CRS's x axis [degrees]</source>
-            <translation>A telephelyi keret elforgatása, a vetület x tengelyétől pozitív irányban [fok]</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/algorithms/export_road_network.py" />
@@ -7033,11 +7028,6 @@
             <location filename="../../plugin/processing/algorithms/export_robot_map.py" />
             <source>Label of each feature (default: the layer's name)</source>
             <translation>Az egyes elemek címkéje (alapértelmezés: a réteg neve)</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/export_robot_map.py" />
-            <source>Obstacle layers (default: those of the project with such a role)</source>
-            <translation>Akadályrétegek (alapértelmezés: a projekt ilyen szerepű rétegei)</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/algorithms/export_robot_map.py" />
@@ -7984,6 +7974,11 @@
         </message>
         <message>
             <location filename="../../plugin/processing/common/export_parameters.py" />
+            <source>Obstacle layers (default: those of the project with such a role)</source>
+            <translation>Akadályrétegek (alapértelmezés: a projekt ilyen szerepű rétegei)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/export_parameters.py" />
             <source>ROUTE holds no line: choose a layer with the route to export along.</source>
             <translation>A ROUTE-ban nincs vonal: válasszon réteget azzal az útvonallal, amely mentén exportálni kell.</translation>
         </message>
@@ -8361,6 +8356,16 @@
             <location filename="../../plugin/processing/common/parameters.py" />
             <source>Map profile: what the layers are, by their names (default: as each layer keeps it)</source>
             <translation>Térképprofil: mik a rétegek a nevük szerint (alapértelmezés: ahogy az egyes rétegek tárolják)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/parameters.py" />
+            <source>Origin of the site frame (default: as the project has it, else 0,0)</source>
+            <translation>A telephelyi keret kezdőpontja (alapértelmezés: a projekté, különben 0,0)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/parameters.py" />
+            <source>Rotation of the site frame, counter-clockwise from the CRS's x axis [degrees]</source>
+            <translation>A telephelyi keret elforgatása, a vetület x tengelyétől pozitív irányban [fok]</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/common/parameters.py" />

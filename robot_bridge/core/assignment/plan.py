@@ -5,8 +5,8 @@ from __future__ import annotations
 import json
 import math
 from collections import Counter
-from collections.abc import Iterator
-from dataclasses import dataclass, fields
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field, fields
 from itertools import pairwise
 from typing import Any, TypeVar
 
@@ -150,6 +150,23 @@ class ConePlan:
         for one in self.robots:
             for stop in one.stops:
                 yield one, stop
+
+
+@dataclass(frozen=True)
+class PlanSituation:
+    """How things are ``now_s`` seconds after the plan's begin.
+
+    ``done`` are the ids of the cones that are placed or collected, ``lost`` the robots that are no more,
+    ``failed`` why cones are given up, by their ids; a cone that is to be tried again is in neither.
+    ``robots`` holds where robots are, what they carry and what battery they have, by their ids; of others it
+    is what the plan says.
+    """
+
+    now_s: float
+    done: frozenset[str] = frozenset()
+    lost: frozenset[str] = frozenset()
+    failed: Mapping[str, str] = field(default_factory=dict)
+    robots: Mapping[str, PlanRobot] = field(default_factory=dict)
 
 
 # --- Plans as JSON: one document with everything that a desk needs to show, change and send a plan ---

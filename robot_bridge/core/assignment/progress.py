@@ -8,8 +8,7 @@ from dataclasses import dataclass, field, replace
 
 from ..messages import PlacementReport, QueueReport, QueueTask, RobotState, TaskKind, TaskReport, TaskState
 from .job import COLLECT, PLACE, PlanRobot
-from .plan import HOME, STORE, ConePlan, PlanStop, RobotPlan
-from .plan_changes import PlanSituation
+from .plan import HOME, STORE, ConePlan, PlanSituation, PlanStop, RobotPlan
 
 # --- A plan as tasks for the robots' queues ---
 

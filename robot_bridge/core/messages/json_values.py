@@ -14,16 +14,18 @@ from .administration import (
     NewToken,
     OperatorReport,
     Operators,
-    Role,
     SessionReport,
     SiteOffer,
+    SiteReport,
     Sites,
     Suspension,
     Suspensions,
     TokenState,
 )
-from .operator_requests import CommandReport, CommandState, CommandStep, RobotReport, SiteReport
+from .commands import CommandReport, CommandState, CommandStep
+from .operator_requests import Role
 from .plans import PlanProblemKind, PlanProblemReport, PlanReport, PlanState, PlanStopReport
+from .positions import RobotReport
 from .queues import QueueReport, QueueState, TaskKind, TaskReport, TaskState
 from .records import ObservationReport, ObservationState, PlacementReport
 from .roads import (

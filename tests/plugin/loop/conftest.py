@@ -24,7 +24,8 @@ class Loop:
     def __init__(self, processes, site, folder):
         self._processes = processes
         self._site = site
-        self._database = f"sqlite:///{folder / 'fleet.db'}"
+        self.file = folder / "fleet.db"
+        self._database = f"sqlite:///{self.file}"
         self.address = ""
         self._runs = 0
 

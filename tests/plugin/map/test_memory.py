@@ -92,13 +92,13 @@ def test_an_hour_of_updates_takes_no_more_memory(canvas, site):
     view = LiveView(desk)
     desk.state.merge_site(site, "")
     used = []
-    for step in range(1200):
-        now[0] += 3.0
+    for step in range(600):
+        now[0] += 6.0
         told = [
             {
                 "robot": f"r{k}",
                 "state": "fresh",
-                "age": 0.1 if k % 9 else 3.0 * step,
+                "age": 0.1 if k % 9 else 6.0 * step,
                 "link": "sql",
                 "x": (k * 7 + step) % 120,
                 "y": k % 100,
@@ -113,9 +113,10 @@ def test_an_hour_of_updates_takes_no_more_memory(canvas, site):
         canvas.viewport().repaint()
         view.layer.begin(100)
         view.layer.go_on(desk.state.robots, now[0])
-        if step % 100 == 99:
+        if step % 50 == 49:
             QApplication.processEvents()
             used.append(int(Path("/proc/self/statm").read_text().split()[1]) * 4096 / 1e6)
     view.remove()
     desk.shut_down()
-    assert used[-1] - used[3] < 6.0
+    # Half of the updates may take half of what an update each three seconds would.
+    assert used[-1] - used[3] < 3.0

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import threading
 from dataclasses import replace
 
 import pytest
@@ -35,6 +36,7 @@ from robot_bridge.core.messages import (
     SubmitPlan,
     TaskState,
 )
+from robot_bridge.gateway.plans.service import PlanService
 
 CONES = {"c1": (30.0, 40.0), "c2": (40.0, 40.0), "c3": (50.0, 40.0), "c4": (60.0, 40.0)}
 LOST = 20.0
@@ -53,18 +55,23 @@ class Drive:
 
     def __init__(self, line):
         self.line, self.yard, self.pushed = line, line.yard, []
-        self.listen()
+        self.begin()
 
-    def listen(self):
-        self.yard.fleet.listeners.add(self)
+    def begin(self):
+        fleet = self.yard.fleet
+        fleet.listeners.add(self)
+        self.plans = PlanService(
+            fleet.queue_context, fleet.queues, fleet.roads.closures, fleet.emergency, fleet.listeners
+        )
+
+    async def restart(self):
+        await self.yard.restart()
+        self.begin()
+        await self.plans.restore()
 
     def notify(self, method, key, params):
         if method == "plan":
             self.pushed.append(params)
-
-    @property
-    def plans(self):
-        return self.yard.fleet.plans
 
     async def submit(self, plan=None, name="plan-1", **more):
         plan = plan or plan_of()
@@ -75,7 +82,7 @@ class Drive:
         return report
 
     async def seen(self, name="plan-1", **how):
-        (report,) = await self.plans.read(GetPlans(name, **how))
+        (report,) = (await self.plans.read(GetPlans(name, **how))).plans
         return report
 
     async def go(self, *, robots=("r1", "r2"), times=1):
@@ -212,8 +219,7 @@ async def test_a_gateway_that_is_started_again_goes_on_with_it(drive, state):
     tasks = [stop.task for stop in (await drive.seen()).stops]
     poses = {robot: drive.yard.fleet.robots.get(robot).pose for robot in ("r1", "r2")}
     places = {robot: (pose.x, pose.y) for robot, pose in poses.items()}
-    await drive.yard.restart()
-    drive.listen()
+    await drive.restart()
     report = await drive.seen()
     assert (report.state.value, report.done) == (state, len(before))
     assert [stop.task for stop in report.stops] == tasks
@@ -232,7 +238,7 @@ async def test_after_a_restart_robots_have_time_to_come_back_before_it_is_planne
     await drive.go(robots=["r1"])
     pose = drive.yard.fleet.robots.get("r1").pose
     drive.yard.now += 60.0
-    await drive.yard.restart()
+    await drive.restart()
     drive.yard.fleet.age()
     await drive.plans.watch()
     report = await drive.seen()
@@ -247,11 +253,36 @@ async def test_after_a_restart_robots_have_time_to_come_back_before_it_is_planne
     assert (await drive.seen()).robots == ["r1"]
 
 
+async def test_planning_that_counts_no_more_says_nothing_of_what_is_planned_instead(drive, monkeypatch):
+    begun, may_end = asyncio.Event(), threading.Event()
+    loop, counts = asyncio.get_running_loop(), [99, 0]
+
+    def count(_proposal, _ground):
+        meetings = counts.pop(0)
+        if meetings:
+            loop.call_soon_threadsafe(begun.set)
+            may_end.wait(60)
+        return meetings
+
+    monkeypatch.setattr("robot_bridge.gateway.plans.service.count_meetings", count)
+    await drive.submit()
+    await drive.plans.replan(Replan("plan-1", 1), "Ada")
+    await begun.wait()
+    (first,) = drive.plans._tasks
+    discarded = await drive.plans.discard(DiscardReplan("plan-1", (await drive.seen()).revision), "Ada")
+    await drive.plans.replan(Replan("plan-1", discarded.revision), "Ada")
+    await asyncio.gather(*(drive.plans._tasks - {first}))
+    may_end.set()
+    await first
+    report = await drive.seen()
+    assert (report.state, report.meetings) == (PlanState.PROPOSED, 0)
+
+
 async def test_planning_that_the_gateways_end_cut_short_begins_anew(drive):
     await drive.submit()
     await drive.plans.replan(Replan("plan-1", 1), "Ada")
     await drive.plans.finish()
-    await drive.yard.restart()
+    await drive.restart()
     assert (await drive.seen()).state is PlanState.REPLANNING
     await drive.planned()
     assert (await drive.seen()).state is PlanState.PROPOSED
