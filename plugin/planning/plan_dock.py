@@ -408,16 +408,16 @@ class PlanDock(ActionDock):
 
     def _keep(self, settings: PlanSettings) -> None:
         if settings != self.drafts.settings:
-            self.drafts.settings = settings
+            self.drafts.plan_with(settings)
             keep_settings(self._desk.project, settings)
 
     def _read_settings(self, *_: object) -> None:
-        self.drafts.settings = read_settings(self._desk.project)
+        self.drafts.plan_with(read_settings(self._desk.project))
         self.form.show_settings(self.drafts.settings)
         self.bar.refresh()
 
     def _set_by_itself(self, on: bool) -> None:
-        self.drafts.settings = replace(self.drafts.settings, by_itself=on)
+        self.drafts.plan_with(replace(self.drafts.settings, by_itself=on))
 
     def _site_changed(self) -> None:
         """Drop what belongs to other robots; a site that was published anew keeps its plan."""

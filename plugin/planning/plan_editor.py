@@ -58,6 +58,10 @@ class PlanEditor(QObject):
         self._look, self._look_at_made = ClosureCheck(self), ClosureCheck(self)
         desk.roads.closures_changed.connect(self.look_at_closures)
 
+    def plan_with(self, settings: PlanSettings) -> None:
+        """Make plans by ``settings`` from now on."""
+        self.settings = settings
+
     @property
     def busy(self) -> bool:
         """Whether a plan is being made."""

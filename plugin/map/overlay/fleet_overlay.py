@@ -61,7 +61,7 @@ class ScenePainter:
             self._trails.forget()
             self._viewed = None
             return
-        self._trails.extend(placed.robots, screen, placed.to_map, placed.scene.now)
+        self._trails.extend(placed.robots, screen, placed.placement, placed.scene.now)
         view = self._view(placed, screen)
         self._circles = circles(placed, view)
         self.robots.prepare(placed, view, screen)

@@ -315,7 +315,7 @@ class MapScene:
     """The same in the map's CRS: (n, 2) coordinates for each part; ``metre`` is the way to 1 m before each
     robot, or along the site's x of one whose heading is not known.
 
-    Robots without a place have NaN. ``to_map`` places more.
+    Robots without a place have NaN. ``placement`` places more.
     """
 
     scene: SiteScene
@@ -324,7 +324,7 @@ class MapScene:
     plans: list[Points]
     draft: Points
     cursor: Points
-    to_map: Callable[[Points], Points]
+    placement: SiteToMapTransform
 
 
 class SceneTransformer:
@@ -376,7 +376,7 @@ class SceneTransformer:
             self._ways,
             self._draft,
             cursor,
-            placement.to_map,
+            placement,
         )
 
 

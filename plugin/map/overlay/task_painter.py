@@ -57,7 +57,7 @@ class PathsImage:
 
     def prepare(self, placed: MapScene, screen: Screen) -> None:
         """Paint some more of the ways into what is shown of them on ``screen``."""
-        if self._next is not None and self._next.to_map != placed.to_map:
+        if self._next is not None and self._next.placement is not placed.placement:
             self.forget()
         if self._next is None or (self._next.is_full and not self._next.is_of(placed, screen)):
             self._next = _PathsSheet(placed, screen)
@@ -82,7 +82,7 @@ class _PathsSheet:
 
     def __init__(self, placed: MapScene, screen: Screen) -> None:
         self.screen = screen
-        self.to_map = placed.to_map
+        self.placement = placed.placement
         self._plans = placed.plans
         pairs = zip(placed.scene.plans, placed.plans, strict=True)
         self._left = [points for plan, points in pairs if plan.is_way]

@@ -43,7 +43,7 @@ def endless(monkeypatch):
 
     def stage(days, targets, start, aim, effort):
         for step in itertools.count(1):
-            effort.progress(min(step / 1000, 1.0))
+            effort.progress.report(min(step / 1000, 1.0))
             time.sleep(0.01)
 
     return lambda: monkeypatch.setattr(solver, "solved_stage", stage)

@@ -22,16 +22,22 @@ ASIDE = Screen((90.0, -50.0), (100.0, 50.0), (1.0, 0.0), (0.0, -1.0), WIDTH, HEI
 NOWHERE = np.empty((0, 2))
 
 
-def same(xy):
-    return xy
+class Same:
+    """A site frame that is the map's CRS."""
+
+    def to_map(self, xy):
+        return xy
 
 
-def placed(*heights, to_map=same):
+SAME = Same()
+
+
+def placed(*heights, placement=SAME):
     """A scene with a way from left to right at each of these pixels from the top."""
     ways = [np.array([(0.0, -y), (WIDTH, -y)]) for y in heights]
     plans = [TaskPath(f"c{k}", f"r{k}", way, False) for k, way in enumerate(ways)]
     scene = SiteScene(RobotStates().arrays(0.0), plans=plans)
-    return MapScene(scene, NOWHERE, NOWHERE, ways, NOWHERE, NOWHERE, to_map)
+    return MapScene(scene, NOWHERE, NOWHERE, ways, NOWHERE, NOWHERE, placement)
 
 
 def rows(image, scene, screen=SCREEN, column=100):
@@ -101,7 +107,7 @@ def test_a_sheet_that_the_view_has_moved_on_from_is_not_the_last(slow):
 def test_ways_of_another_map_are_not_shown_on_this_one(slow):
     image = PathsImage()
     rows(image, placed(20))
-    shown = rows(image, placed(40, 60, to_map=lambda xy: xy))
+    shown = rows(image, placed(40, 60, placement=Same()))
     assert 20 not in shown and len(shown) > 0
 
 
