@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import Enum
+from types import GenericAlias
 from typing import Any, ClassVar, Generic, TypeVar, get_args
 
 
@@ -57,6 +58,13 @@ class DeskRequest(Generic[Result]):
     stops: ClassVar[bool] = False
     """Parameters that are not known are passed over: what stops or holds robots is never refused for them."""
     result: ClassVar[type]
+
+    def __class_getitem__(cls, result: Any) -> GenericAlias:
+        """Return what a subclass names as its base.
+
+        Not of typing, which keeps what was made: after a reload of the plugin no older class may live.
+        """
+        return GenericAlias(cls, result)
 
     def __init_subclass__(cls) -> None:
         """Check what the class declares, and make it known under its method."""
