@@ -72,6 +72,7 @@ class DeskRequest(Generic[Result]):
         for name in ("method", "least_role"):
             if not hasattr(cls, name):
                 raise TypeError(f"{cls.__name__} does not say its {name}")
+        # Python keeps the base as the class names it, DeskRequest[Result]; mypy does not know that.
         (cls.result,) = get_args(cls.__orig_bases__[0])  # type: ignore[attr-defined]
         if DESK_REQUESTS.setdefault(cls.method, cls) is not cls:
             taken = DESK_REQUESTS[cls.method].__name__
