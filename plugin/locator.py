@@ -13,8 +13,8 @@ from qgis.PyQt.QtWidgets import QLineEdit
 
 from ..robot_bridge.core.messages import RobotState
 from .expressions.robot_snapshot import RobotSnapshot, SnapshotHolder
+from .gateway_client.robot_states import ROBOT_STATES
 from .gateway_client.robot_table import STATES
-from .gateway_client.state_texts import ROBOT_STATES
 from .ui.glyphs import state_icon
 from .ui.language import tr
 

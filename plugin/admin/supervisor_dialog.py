@@ -24,7 +24,7 @@ from ...robot_bridge.core.messages import Role
 from ..control.fleet_controller import FleetController
 from ..control.request_tracker import RequestTracker
 from ..gateway_client.connection_status import ConnectionPhase, ConnectionStatus, role_in_words
-from ..gateway_client.requests import RequestResult
+from ..gateway_client.fleet_state import RequestResult
 from ..help import HelpTopic, show_help
 from ..panel.connection_panel import ConnectionMenu
 from ..ui.actions import ICONS

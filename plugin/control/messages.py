@@ -24,8 +24,7 @@ from ...robot_bridge.core.messages import (
 )
 from ..gateway_client.fleet_state import FleetState
 from ..gateway_client.report_caches import is_pending
-from ..ui.language import tr
-from ..ui.times import time_of_day
+from ..ui.language import time_of_day, tr
 from .pending_command import PendingCommandModel
 
 # A message is posted with topics. When the condition that a topic names has ended, all messages with it are

@@ -17,8 +17,7 @@ from ...robot_bridge.core.messages import (
     route_report,
     to_json,
 )
-from ..gateway_client.fleet_state import FleetState
-from ..gateway_client.requests import OperatorRequest, RequestResult
+from ..gateway_client.fleet_state import FleetState, OperatorRequest, RequestResult
 from ..ui.errors import FleetError, NotSentError
 from ..ui.language import tr
 from .pending_command import CONE, ROUTE, Approach, ApproachKind, PendingCommand, PendingCommandModel, Point

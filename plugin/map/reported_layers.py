@@ -41,9 +41,8 @@ from ...robot_bridge.core.messages import (
 from ...robot_bridge.core.sites.frame import SiteFrame
 from ..gateway_client.command_cache import DRIVE_OPERATIONS, place_of
 from ..gateway_client.fleet_state import FleetState
-from ..gateway_client.robot_states import RobotStates
+from ..gateway_client.robot_states import ROBOT_STATES, RobotStates
 from ..gateway_client.robot_table import STATES
-from ..gateway_client.state_texts import ROBOT_STATES
 from ..layers.live_layers import (
     Row,
     RowLayer,
@@ -56,8 +55,7 @@ from ..layers.live_layers import (
 )
 from ..layers.site_transform import frame_of
 from ..ui.glyphs import STATE_COLOURS
-from ..ui.language import tr
-from ..ui.times import date_and_time, time_of_day
+from ..ui.language import date_and_time, time_of_day, tr
 
 NAME = tr("Robots (live)")
 FIELDS = (

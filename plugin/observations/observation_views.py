@@ -32,13 +32,12 @@ from ...robot_bridge.core.messages import (
 )
 from ..control.fleet_controller import FleetController
 from ..gateway_client.connection_status import ConnectionPhase
+from ..gateway_client.fleet_state import RequestResult
 from ..gateway_client.report_caches import ObservationCache
-from ..gateway_client.requests import RequestResult
 from ..layers.live_layers import RowLayer
 from ..panel.robot_details import DecodeTask
 from ..ui.errors import FleetError
-from ..ui.language import tr
-from ..ui.times import date_and_time, time_of_day
+from ..ui.language import date_and_time, time_of_day, tr
 
 SIDE = 256
 """Pixels of the longer side of a picture."""

@@ -22,9 +22,8 @@ from ..control.messages import file_topic
 from ..control.request_tracker import SLOW_AFTER
 from ..gateway_client import command_cache
 from ..gateway_client.command_cache import asked_at, command_in_words, place_of
-from ..gateway_client.requests import RequestResult
-from ..gateway_client.robot_states import name_order
-from ..gateway_client.state_texts import COMMAND_STATES, longest_word
+from ..gateway_client.fleet_state import RequestResult
+from ..gateway_client.robot_states import COMMAND_STATES, longest_word, name_order
 from ..settings.preferences import export_path
 from ..ui.dialogs import file_to_write
 from ..ui.errors import FleetError

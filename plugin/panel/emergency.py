@@ -10,9 +10,8 @@ from ...robot_bridge.core.messages import EmergencyReport
 from ..control.fleet_controller import FleetController
 from ..gateway_client.connection_status import ConnectionPhase
 from ..ui.dialogs import QuestionDialog
-from ..ui.language import first_of, tr, tr_count
+from ..ui.language import first_of, time_of_day, tr, tr_count
 from ..ui.steady_widgets import ScrollingText
-from ..ui.times import time_of_day
 
 
 class EmergencyKey(QObject):

@@ -16,9 +16,8 @@ from qgis.PyQt.QtWidgets import QCheckBox, QComboBox, QDateTimeEdit, QGridLayout
 from ...robot_bridge.core.messages import CommandState
 from ..map.overlay.primitives import flat, lines
 from ..ui.glyphs import painting
-from ..ui.language import tr
+from ..ui.language import date_and_time, tr
 from ..ui.steady_widgets import SteadyPushButton
-from ..ui.times import date_and_time
 from .history import NO_MARKS, TimelineMark, TimelineMarks
 
 FRAMES_A_SECOND = 5.0

@@ -17,8 +17,7 @@ from ...control.fleet_controller import FleetController
 from ...control.pending_command import Point
 from ...ui.dialogs import QuestionDialog, confirm
 from ...ui.errors import FleetError
-from ...ui.language import tr
-from ...ui.times import time_of_day
+from ...ui.language import time_of_day, tr
 
 TIMES = (
     (tr("until it is opened"), None),

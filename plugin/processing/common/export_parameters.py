@@ -29,12 +29,12 @@ from ....robot_bridge.core.robotmap.builder import build_map
 from ....robot_bridge.core.robotmap.model import Border, Window
 from ....robot_bridge.core.robotmap.outlines import Outlines
 from ....robot_bridge.core.robotmap.shaping import Shaping, shaped
-from ...layers.errors import LayerTypeError
 from ...layers.geometry import shapes_of
 from ...layers.layer_source import FeatureReader, ObstacleSource, obstacle_sources
 from ...layers.obstacle_layers import ObstacleReading, check_sources, read_outlines
 from ...layers.roles import OBSTACLE_ROLES, LayerExpressions
 from ...layers.site_transform import SiteGeoreference
+from ...ui.errors import LayerTypeError
 from ...ui.language import tr
 from .algorithm import ParameterError, Parameters
 from .map_files import obstacles_in_words

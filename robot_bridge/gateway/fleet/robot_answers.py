@@ -30,8 +30,8 @@ from ...core.roads.centrelines import Surface
 from ...core.robotmap.model import Border, EncodedMap
 from ...protocol.codec import decode_answer
 from ..commands.service import CommandService
+from ..model.arrival import Planner, remaining_path
 from ..model.command_states import is_open
-from ..model.remaining_way import Planner, remaining_path
 from ..model.request_handlers import handles
 from ..model.robots import Robots
 from ..site.places import ServedSite

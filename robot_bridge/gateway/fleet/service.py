@@ -34,6 +34,7 @@ from ...core.messages.validation import LONGEST_REFUSAL, one_line
 from ..commands.requests import CommandRequests
 from ..commands.service import CommandService
 from ..commands.validation import CommandRules, WaitingRobots
+from ..model.arrival import Planner, StraightPlanner
 from ..model.events import (
     CommandChanged,
     EventBus,
@@ -44,7 +45,6 @@ from ..model.events import (
     RobotReturned,
 )
 from ..model.position_checks import NO_FIX, GroundTracks, PlaceChecks
-from ..model.remaining_way import Planner, StraightPlanner
 from ..model.robots import Robot, RobotPose, Robots
 from ..monitoring.metrics import Counters
 from ..monitoring.periodic_tasks import Steps
