@@ -20,7 +20,7 @@ from .ui.language import tr
 
 NAME = "fleet_robots"
 MOST = 50
-"""Results: nobody reads more, and the list is made anew with each letter."""
+"""Results: nobody reads more, and the list is made again with each letter."""
 
 
 @dataclass

@@ -394,7 +394,7 @@ class MessageLabel(QLabel):
         self._fit(max(200, bar.width() - BESIDE_TEXT))
 
     def show_text(self, text: str) -> None:
-        """Show ``text`` in place of the other one; laying out QGIS's bar anew takes time."""
+        """Show ``text`` in place of the other one; laying out QGIS's bar again takes time."""
         if self.text() == f"{TITLE}: {text}":
             return
         self.setText(f"{TITLE}: {text}")

@@ -167,7 +167,7 @@ class OtherTarget(NamedTuple):
 
 
 class TargetCheck:
-    """Knows the targets of all robots, now and in their queues; reads anew only those of robots with news."""
+    """Knows the targets of all robots, now and in their queues; reads only those with news again."""
 
     def __init__(self, book: CommandCache, queues: QueueCache):
         self._book = book

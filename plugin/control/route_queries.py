@@ -298,7 +298,7 @@ class TargetRoutes(QObject):
             # What was looked at is what is sent.
             return
         if draft.kind == ROUTE and self._checks.is_under_way:
-            # Begun anew for each half metre, a long check would never end.
+            # Begun again for each half metre, a long check would never end.
             return
         if draft.way.kind is ApproachKind.SOUGHT:
             self._seek(draft)

@@ -238,7 +238,7 @@ def _quoted(column: str) -> str:
     return '"' + column.replace('"', '""') + '"'
 
 
-# --- Tells when what was read of layers has to be read anew ---
+# --- Tells when what was read of layers has to be read again ---
 
 _CHANGES = (
     "afterCommitChanges",

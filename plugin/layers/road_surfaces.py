@@ -148,7 +148,7 @@ class SurfaceStore(QObject):
     """
 
     forgotten = pyqtSignal()
-    """Something was thrown away: read it anew before it is told."""
+    """Something was thrown away: read it again before it is told."""
 
     def __init__(self, project: QgsProject, parent: QObject | None = None):
         super().__init__(parent)

@@ -339,7 +339,7 @@ class RobotLayer(QObject):
         self.is_new = True
 
     def _show_written(self) -> None:
-        # A canvas that is still drawing would begin anew and, on a slow map, never come to its end.
+        # A canvas that is still drawing would begin again and, on a slow map, never come to its end.
         self._layer.triggerRepaint(self._canvas.isDrawing())
         # An attribute table learns of writes in no other way; to look whether one is open takes 40 ms.
         self._layer.dataChanged.emit()
@@ -365,7 +365,7 @@ class RobotLayer(QObject):
 
 
 def _is_only_age(feature: RobotFeature, changed: Iterable[int]) -> bool:
-    """Tell whether it is only the age of a robot that talks: not worth writing all of them anew."""
+    """Tell whether it is only the age of a robot that talks: not worth writing all of them again."""
     return feature.values[STATE_AT] == RobotState.FRESH.value and set(changed) == {AGE_AT}
 
 

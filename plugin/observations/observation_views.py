@@ -179,7 +179,7 @@ class ObservationFeed(QObject):
         try:
             self._pages.add(self._desk.orders.inquire(request))
         except FleetError:
-            # The link is down again: all is asked anew when it is back.
+            # The link is down again: all is asked again when it is back.
             self._pages.clear()
 
     def _answered(self, answer: RequestResult) -> None:
@@ -361,7 +361,7 @@ ICON = QSize(56, 42)
 
 
 class ObservationModel(QAbstractListModel):
-    """The observations in the order that they are to be looked at; ``reports`` are its rows."""
+    """The observations in the order that they have to be reviewed; ``reports`` are its rows."""
 
     def __init__(self, thumbnails: Thumbnails, parent: QObject | None = None):
         super().__init__(parent)

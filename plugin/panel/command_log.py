@@ -159,7 +159,7 @@ COMMAND_CHOICES = {
 }
 FILE = file_topic("command_log")
 MERGED = 500
-"""New commands that are sorted in one by one; of more of them all are listed anew."""
+"""New commands that are sorted in one by one; of more of them all are listed again."""
 
 
 class CommandLog(QWidget):
@@ -206,7 +206,7 @@ class CommandLog(QWidget):
         self._show_what_is_open()
 
     def refresh(self, *_what: object) -> None:
-        """List anew what the filters keep."""
+        """List again what the filters keep."""
         self._model.show_all(self._desk.state.commands, self.filter())
         self._opened = None
         self._open(self._model.index(0, 0))

@@ -154,7 +154,7 @@ class LogModel(QAbstractItemModel):
         self._told = 0
         """How many of those a view is told of."""
         self._rows: dict[str, int] | None = {}
-        """The row of each command; None where it has to be counted anew."""
+        """The row of each command; None where it has to be counted again."""
         self._next_number = count(1)
         self._numbers: dict[str, int] = {}
         self._by_number: dict[int, str] = {}

@@ -175,7 +175,7 @@ class ConflictPanel(QWidget):
 
     def hideEvent(self, event: QHideEvent) -> None:
         super().hideEvent(event)
-        # Nobody looks: the gateway need not reckon it.
+        # Nobody looks: the gateway need not compute it.
         self._ways.watch(None)
 
     def _button(self, pressed: Callable[[], None]) -> ElidedButton:

@@ -92,7 +92,7 @@ class EmergencyBanner(QFrame):
 
 
 def in_words(report: EmergencyReport | None, asked: bool, connected: bool) -> str:
-    """Return what is to be known of a stop: asked for and not confirmed, or in force, and by whom."""
+    """Return the state of a stop: asked for and not confirmed, or in force, and by whom."""
     lines = []
     if asked:
         lines.append(

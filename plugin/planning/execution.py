@@ -111,7 +111,7 @@ class PlanExecution(QObject):
 
     @property
     def shown_plan(self) -> ConePlan | None:
-        """What is to be looked at: a new plan of what is left, the plan that is driven, or the draft."""
+        """The plan to show: a new plan of what is left, the plan that is driven, or the draft."""
         known = self.known
         if known is None:
             return None if self._drafts.draft is None else self._drafts.draft.plan

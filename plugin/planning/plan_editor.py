@@ -146,7 +146,7 @@ class PlanEditor(QObject):
             task.left.wait(10.0)
 
     def look_at_closures(self) -> None:
-        """Find out anew what of the plan leads along closed roads."""
+        """Find out again what of the plan leads along closed roads."""
         draft = self.draft
         if draft is None:
             return
@@ -283,7 +283,7 @@ class CollectionPlanner(QObject):
         desk.orders.answered.connect(self._answered)
 
     def ask(self, request: CollectLayout) -> None:
-        """Ask what is to be collected; raises NotSentError when that cannot be asked."""
+        """Ask which cones to collect; raises NotSentError when that cannot be asked."""
         self._key = self._desk.orders.ask(request, tr("What is to be collected"))
 
     def _answered(self, answer: RequestResult) -> None:

@@ -86,7 +86,7 @@ class ReplayClock(QObject):
             self.controller.setCurrentFrameNumber(min(max(0, frame), last))
 
     def play(self, on: bool) -> None:
-        """Let time go on, or hold it; at its end begin anew."""
+        """Let time go on, or hold it; at its end begin again."""
         if not on:
             self.controller.pause()
         elif self.is_set:

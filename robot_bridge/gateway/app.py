@@ -112,7 +112,7 @@ class GatewaySettings:
     """What a gateway is started with; port 0 takes any free one.
 
     ``state`` is the folder for what it notes on this computer, None for the one that the site's lies in.
-    A site that a supervisor chose goes before ``site``, unless it is to be served ``site_as_given``.
+    A site that a supervisor chose goes before ``site``, unless it has to be served ``site_as_given``.
     """
 
     site: Path
@@ -126,7 +126,7 @@ class GatewaySettings:
 
 @dataclass
 class Signals:
-    """What a gateway is told from outside while it runs: to end, and to read its settings anew."""
+    """What a gateway is told from outside while it runs: to end, and to read its settings again."""
 
     stop: asyncio.Event = field(default_factory=asyncio.Event)
     reload: asyncio.Event = field(default_factory=asyncio.Event)

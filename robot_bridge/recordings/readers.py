@@ -271,7 +271,7 @@ def _finite(value: Any, column: str, bounds: tuple[float, float]) -> float:
 
 @dataclass(frozen=True)
 class ReadingOptions:
-    """How a file is to be read; ``table`` concerns CSV, ``topics`` bags."""
+    """How a file is read; ``table`` concerns CSV, ``topics`` bags."""
 
     table: TableForm = field(default_factory=lambda: TableForm({}))
     topics: Sequence[str] = ()

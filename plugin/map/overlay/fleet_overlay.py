@@ -81,7 +81,7 @@ class ScenePainter:
         self._borders.paint(painter, placed, screen)
 
     def _view(self, placed: MapScene, screen: Screen) -> InView:
-        """Return what of the robots is on ``screen``, reckoned once for each scene and screen."""
+        """Return what of the robots is on ``screen``, computed once for each scene and screen."""
         if self._viewed is None or self._viewed[0] is not placed or self._viewed[1] != screen:
             self._viewed = placed, screen, in_view(placed, screen)
         return self._viewed[2]

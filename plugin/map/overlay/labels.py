@@ -34,7 +34,7 @@ HEIGHT = 18
 
 
 class Labels:
-    """Makes each picture once; painting text anew for each robot and frame would cost more than all else."""
+    """Makes each picture once; painting text again for each robot and frame would cost more than all else."""
 
     def __init__(self) -> None:
         self._pictures: dict[tuple[str, float], QPixmap] = {}

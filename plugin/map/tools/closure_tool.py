@@ -147,7 +147,7 @@ class ClosureTool(QgsMapTool):
 
 
 class ClosureDialog(QuestionDialog):
-    """Asks why a road is to be closed and for how long.
+    """Asks why a road is closed and for how long.
 
     ``confirmed`` carries the reason and the seconds, None for no end.
     """

@@ -392,7 +392,7 @@ class PublishSite(FleetAlgorithm):
     ):
         plan = self._plan
         with shown_by_processing(feedback), exclusive_publication(plan.folder):
-            # Anew: another publication may have ended since the plan was made.
+            # Again: another publication may have ended since the plan was made.
             settings = next_version(plan.settings, plan.folder, replace_other=plan.replace_other)
             content = _content(plan)
             with new_publication(plan.folder) as publication:

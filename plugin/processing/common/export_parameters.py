@@ -390,7 +390,7 @@ FOLDER, INDEX, SKIP_EMPTY = "OUTPUT", "INDEX", "SKIP_EMPTY"
 class TileParameters(ObstacleParameters):
     """Everything that is needed of the parameters and layers to export tiles.
 
-    ``index`` is the file that the index is to be, None where it is none; ``warnings`` are about the route.
+    ``index`` is the file of the index, None where it is none; ``warnings`` are about the route.
     """
 
     tiles: list[Tile]
@@ -441,7 +441,7 @@ def read_tile_parameters(
 
 
 def _index_file(parameters: Parameters) -> Path | None:
-    """Return the file that the index is to be, None where it is none."""
+    """Return the file of the index, None where it is none."""
     value = parameters.get(INDEX)
     if isinstance(value, QgsProcessingOutputLayerDefinition):
         value = value.sink.staticValue()

@@ -148,8 +148,6 @@ class NearOrByRoad:
 
 # --- Where robots come too near to one another if all goes by the plan ---
 
-Floats = npt.NDArray[np.float64]
-
 STEP_S = 0.5
 _RUN = 64
 """Points of a way that are in one box."""

@@ -70,7 +70,7 @@ from .robot_answers import MapSender, RobotAnswers
 log = logging.getLogger(__name__)
 
 Rest = tuple[str, Coroutine[Any, Any, None] | Exception]
-"""A robot, and what is to be stored since it said where it is, or what is wrong with that."""
+"""A robot, and what has to be stored since it said where it is, or what is wrong with that."""
 
 
 class Fleet:
