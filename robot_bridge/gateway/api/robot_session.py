@@ -103,11 +103,6 @@ class RobotSession:
         """Whether the robot has connected again elsewhere: what still comes in is passed over."""
         return self._closing is not None
 
-    @property
-    def is_admitted(self) -> bool:
-        """Whether the robot has said Ready on this channel, and was let in."""
-        return self._admitted
-
     def replace(self) -> None:
         """Carry nothing more, because the robot has connected again."""
         self._delivery.end()
