@@ -138,6 +138,7 @@ def test_the_audit_log_tells_what_was_done_and_what_was_refused(bridge, desks):
     for role, method, asked in (
         (VIEWER, "abort_all", {"command": "told-in-audit"}),
         (VIEWER, "get_audit", {}),
+        (VIEWER, "send", {"command": "told-in-audit-2", "robot": "r1", "op": "Abort"}),
         (OPERATOR, "clear_emergency_stop", {}),
     ):
         with pytest.raises(RefusedError):
