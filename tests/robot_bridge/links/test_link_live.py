@@ -106,8 +106,15 @@ def test_an_abort_overtakes_a_command_that_its_robot_is_being_told(bridge, link,
 
 def test_an_emergency_stop_is_one_frame_for_all_and_each_robot_answers(bridge, link, desk, names):
     place(link, desk, names)
+    # A link that is connected and speaks for nobody yet is told, too: by the one frame and by nothing else.
+    other, heard = Wire(f"{bridge.address}/link"), []
+    other._hear = heard.append
+    other.ask("hello", {"protocol": 1, "kind": "test"})
     desk.ask("emergency_stop", {"command": f"stop-of-{names[0]}"})
     try:
+        other.until(lambda: any(frame["method"] == "Abort" for frame in heard))
+        assert "robot" not in heard[-1]["params"] and heard[-1]["params"]["emergency"]
+        other.connection.close()
         wait_until(lambda: {robot for robot, emergency in link.adapter.stops if emergency} >= set(names))
         desk.until(lambda: desk.emergency["in_force"] and not set(names) & set(desk.emergency["waiting"]))
         with pytest.raises(RefusedError, match="emergency stop is in force"):
