@@ -18,6 +18,7 @@ from benchmarks.swarm import cpu_seconds
 from benchmarks.trial import size
 from tests.support.errors import StageError
 from tests.support.processes import Processes, dying_with_this, free_port
+from tests.support.robots.ros_nodes import own_domain
 from tests.support.robots.ros_peer import DISTRIBUTION, ros_python
 from tests.support.robots.rosbridge_peer import rosbridge_command
 
@@ -26,7 +27,7 @@ SECONDS = size(30.0, 3.0)
 """of a window."""
 ALL_HEARD = 0.95
 """of what is to be published that rclpy's subscriber must have heard, for the figures to say anything."""
-DOMAIN = 1 + os.getpid() % 50
+DOMAIN = own_domain()
 OVER_DDS = f"""
 [ros2]
 domain = {DOMAIN}

@@ -17,21 +17,28 @@ mount -t cgroup2 cgroup2 "$root/sys/fs/cgroup"
 ip link set lo up
 
 make -s -C "$repository" install-service DESTDIR="$root" PREFIX=/opt/robot-bridge PROGRAM=no
-mkdir -p "$root/opt/robot-bridge/bin" "$root/opt/robot-bridge/packages" "$root/var/lib/robot-bridge" "$root/etc/systemd/system/robot-bridge.service.d"
+mkdir -p "$root/opt/robot-bridge/bin" "$root/opt/robot-bridge/packages" "$root/var/lib/robot-bridge"
 # The service sees no /tmp of others, where the repository may lie.
 cp -r "$repository/robot_bridge" "$root/opt/robot-bridge/"
 mount --bind "$packages" "$root/opt/robot-bridge/packages"
 printf '#!/bin/sh\nexport PYTHONPATH=/opt/robot-bridge:/opt/robot-bridge/packages\nexec %s "$@"\n' "$python" > "$root/opt/robot-bridge/bin/python"
 chmod 755 "$root/opt/robot-bridge/bin/python"
 # Nothing else of this system is to start; the log goes where a test can read it.
-cat > "$root/etc/systemd/system/robot-bridge.service.d/alone.conf" <<'END'
+for unit in robot-bridge robot-bridge-link@; do
+    mkdir -p "$root/etc/systemd/system/$unit.service.d"
+    cat > "$root/etc/systemd/system/$unit.service.d/alone.conf" <<'END'
 [Unit]
 DefaultDependencies=no
 [Service]
 StandardOutput=append:/var/log/robot-bridge.log
 StandardError=append:/var/log/robot-bridge.log
 END
+done
+mkdir -p "$root/etc/robot-bridge/links"
+printf 'kind = "tracker"\n[tracker]\nhttp = "127.0.0.1:5055"\n' > "$root/etc/robot-bridge/links/phones.toml"
 chroot "$root" systemd-sysusers /usr/lib/sysusers.d/robot-bridge.conf
+# As the installation does where there is no DESTDIR.
+chroot "$root" chgrp -R robot-bridge /etc/robot-bridge
 cp -r "$repository/resources/sample_site" "$root/var/lib/robot-bridge/site"
 chroot "$root" chown -R robot-bridge: /var/lib/robot-bridge
 

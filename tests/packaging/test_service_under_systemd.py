@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import shutil
 import subprocess
@@ -37,9 +38,14 @@ class World:
         inside = ["nsenter", *spaces, "chroot", str(self._root), *words]
         return subprocess.run(inside, capture_output=True, text=True, check=False, timeout=240).stdout
 
-    def fact(self, name: str) -> str:
-        """Return a property of the service."""
-        return self.do("systemctl", "show", "robot-bridge", "--value", "-p", name).strip()
+    def fact(self, name: str, unit: str = "robot-bridge") -> str:
+        """Return a property of a service."""
+        return self.do("systemctl", "show", unit, "--value", "-p", name).strip()
+
+    def health(self) -> str:
+        """Return what the gateway says of itself and its links."""
+        code = "import urllib.request as u; print(u.urlopen('http://127.0.0.1:8765/healthz').read().decode())"
+        return self.do("/opt/robot-bridge/bin/python", "-c", code)
 
     def until(self, condition, seconds: float = 60.0):
         until = time.monotonic() + seconds
@@ -71,6 +77,9 @@ def world(tmp_path, root):
         process.wait(10)
 
 
+LINK = "robot-bridge-link@phones"
+
+
 def test_the_service_starts_comes_back_when_killed_and_ends_in_good_order(world):
     assert world.fact("StatusText").startswith("listening on ws://127.0.0.1:8765")
     first = world.fact("MainPID")
@@ -82,6 +91,15 @@ def test_the_service_starts_comes_back_when_killed_and_ends_in_good_order(world)
     assert world.fact("NRestarts") == "1"
     world.do("systemctl", "reload", "robot-bridge")
     assert world.fact("ActiveState") == "active"
+    world.do("systemctl", "start", LINK)
+    world.until(lambda: '"phones"' in world.health())
+    link = world.fact("MainPID", LINK)
+    assert world.do("ps", "-o", "user=", "-p", link).strip().startswith("robot-b")
+    world.do("kill", "-KILL", link)
+    world.until(lambda: world.fact("MainPID", LINK) not in ("0", link))
+    world.until(lambda: json.loads(world.health())["links"]["phones"]["ok"])
+    world.do("systemctl", "stop", LINK)
+    assert (world.fact("ActiveState", LINK), world.fact("Result", LINK)) == ("inactive", "success")
     world.do("systemctl", "stop", "robot-bridge")
     assert (world.fact("ActiveState"), world.fact("Result")) == ("inactive", "success")
     assert "Traceback" not in world.log()

@@ -56,7 +56,10 @@ def test_the_whole_of_it_happens_on_the_real_proving_ground(demo, data, tmp_path
         "(WGS 84, EPSG:4326) for carrier_1: reached",
         "(UTM 33N, EPSG:32633) for carrier_1: reached",
         "(EOV, EPSG:23700) for carrier_1: reached",
-        "the three cones stand on one point",
+        "clicked on a map in WGS 84 (EPSG:4326) for carrier_1: reached",
+        "clicked on a map in UTM 33N (EPSG:32633) for carrier_1: reached",
+        "clicked on a map in EOV (EPSG:23700) for carrier_1: reached",
+        "the 6 cones stand on one point",
         "says: Fleet Supervisor: Asphalt (drawn)",
         "carrier_2 drove the route by Nav2's FollowPath",
     ):

@@ -12,6 +12,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable
+from dataclasses import asdict
 from pathlib import Path
 
 import numpy as np
@@ -48,6 +49,8 @@ CARS = {str(number): f"car-{number}" for number in range(1, 7)}
 FIRST, SECOND = "carrier_1", "carrier_2"
 SPEEDS = {FIRST: 6.0, SECOND: 7.0}
 """m/s."""
+CONES = 6
+"""Typed in three reference systems, and clicked on maps in the same three."""
 WATCHED_S = 6.0
 LOOKS = 5
 """On a machine that is busy otherwise an operator is told less at times."""
@@ -201,7 +204,7 @@ class ZalaZone:
             "first": FIRST,
             "second": SECOND,
             "robots": [FIRST, SECOND, *(f"replay-{name}" for name in CARS.values())],
-            "cones": [{"crs": s.crs, "called": s.called, "text": s.text} for s in self._spelled],
+            "cones": [asdict(spelling) for spelling in self._spelled],
             "surface_at": place(CONE),
             "away": place(AWAY),
             "goal": place(GOAL),
@@ -214,15 +217,15 @@ class ZalaZone:
         cones = [c for c in commands["commands"] if c["robot"] == FIRST and c["params"].get("cone")]
         cones = [c for c in cones if math.dist(_end_of(c), CONE) < 1.0]
         states = [c["state"] for c in cones]
-        if states != ["reached"] * 3:
-            raise StageError(f"three cones were sent to one place; the gateway says {states or 'of none'}")
+        if states != ["reached"] * CONES:
+            raise StageError(f"{CONES} cones were sent to one place; the gateway says {states or 'of none'}")
         sent = [_end_of(c) for c in cones]
         placed = [(cone["x"], cone["y"]) for cone in self._links.said(FIRST, "cone")]
         placed = [place for place in placed if math.dist(place, CONE) < 1.0]
-        apart, stood, off = same_ground(sent, placed, CONE)
+        apart, stood, off = same_ground(sent, placed, CONE, CONES)
         self._happened(
-            f"the three cones stand on one point: targets {apart * 1000:.0f} mm apart, placed by the robot's "
-            f"own word {stood * 1000:.0f} mm apart and {off * 1000:.0f} mm from the point at most"
+            f"the {CONES} cones stand on one point: targets {apart * 1000:.0f} mm apart, placed by the "
+            f"robot's own word {stood * 1000:.0f} mm apart and {off * 1000:.0f} mm from the point at most"
         )
 
     def _route(self) -> None:

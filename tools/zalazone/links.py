@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
 import sys
 from pathlib import Path
 
@@ -11,6 +10,7 @@ from robot_bridge.core.sites.settings import SiteSettings
 from tests.support.errors import StageError
 from tests.support.patience import START
 from tests.support.processes import Processes
+from tests.support.robots.ros_nodes import own_domain
 from tests.support.robots.ros_peer import DISTRIBUTION, ros_python
 from tools.plugin_files import ROOT
 from tools.zalazone.places import Place
@@ -61,8 +61,7 @@ class Links:
         self._folder = folder
         self._address = address
         self._site = site
-        # Not those of the tests, which take 1 to 50; ROS allows up to 101.
-        self._domain = 51 + os.getpid() % 50
+        self._domain = own_domain()
         folder.mkdir(parents=True, exist_ok=True)
 
     def start_replay(self, recording: Path, cars: dict[str, str]) -> None:

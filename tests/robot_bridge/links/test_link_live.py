@@ -106,8 +106,15 @@ def test_an_abort_overtakes_a_command_that_its_robot_is_being_told(bridge, link,
 
 def test_an_emergency_stop_is_one_frame_for_all_and_each_robot_answers(bridge, link, desk, names):
     place(link, desk, names)
+    # A link that is connected and speaks for nobody yet is told, too: by the one frame and by nothing else.
+    other, heard = Wire(f"{bridge.address}/link"), []
+    other._hear = heard.append
+    other.ask("hello", {"protocol": 1, "kind": "test"})
     desk.ask("emergency_stop", {"command": f"stop-of-{names[0]}"})
     try:
+        other.until(lambda: any(frame["method"] == "Abort" for frame in heard))
+        assert "robot" not in heard[-1]["params"] and heard[-1]["params"]["emergency"]
+        other.connection.close()
         wait_until(lambda: {robot for robot, emergency in link.adapter.stops if emergency} >= set(names))
         desk.until(lambda: desk.emergency["in_force"] and not set(names) & set(desk.emergency["waiting"]))
         with pytest.raises(RefusedError, match="emergency stop is in force"):
@@ -271,13 +278,43 @@ def test_a_frame_of_positions_that_is_none_is_refused(bridge, frame):
     wire.connection.close()
 
 
+FIRST = [
+    '{"jsonrpc": "2.0", "id": null, "method": "Ready", "params": {"robot": "r", "magic": 1}}',
+    '{"jsonrpc": "2.0", "id": null, "method": "status", "params": {"ok": true}}',
+    '{"jsonrpc": "2.0", "method": "positions", "params": {"positions": [{"robot": "r", "x": 1.0}]}}',
+    frame_of([("r", SendPos(20.0, 8.0, 0.0, 0.0))]),
+]
+THEN = [
+    (jsonrpc.result("ghost/7", {"ok": True}), "ghost/7", "no robot of this link was asked"),
+    (jsonrpc.result("7", {"ok": True}), "7", "no robot of this link was asked"),
+    (jsonrpc.call("status", {"ok": False, "text": "x" * 70_000}), None, "status has 70067 bytes"),
+]
+
+
+def test_who_has_not_said_hello_and_what_nobody_asked_for_is_refused(bridge):
+    """A link that a stranger wrote, and does the second thing first."""
+    wire = Wire(f"{bridge.address}/link")
+    wire._hear = lambda _frame: None
+    for frame in FIRST:
+        wire.connection.send(frame)
+        with pytest.raises(RefusedError, match="has not said hello"):
+            wire.answer(None)
+    wire.ask("hello", {"protocol": 1, "kind": "test"})
+    for frame, id, words in THEN:
+        wire.connection.send(frame)
+        with pytest.raises(RefusedError, match=words):
+            wire.answer(id)
+    assert wire.ask("hello", {"protocol": 1, "kind": "test"})["link"] == "link"
+    wire.connection.close()
+
+
 def acknowledge(wire, id):
     wire.connection.send(jsonrpc.result(id, {"ok": True}))
 
 
 @pytest.mark.parametrize("flooded", ["positions", "replies"])
 def test_a_robot_that_says_too_much_still_acknowledges_what_it_is_told(start_bridge, limited_site, flooded):
-    bridge = start_bridge(limited_site("[limits]\nrobot_messages_per_s = 1\nrobot_burst = 20\n"))
+    bridge = start_bridge(limited_site("[limits]\nrobots = 1\nrobot_messages_per_s = 1\nrobot_burst = 20\n"))
     desk = bridge.desk()
     desk.ask("subscribe", {"rate": 50})
     wire, told = Wire(f"{bridge.address}/link"), []
@@ -291,9 +328,19 @@ def test_a_robot_that_says_too_much_still_acknowledges_what_it_is_told(start_bri
     asked = wire.until(lambda: [call["id"] for call in told if call.get("method") == "SetPosEnd"])[0]
     if flooded == "positions":
         wire.tell("positions", {"positions": [here] * 100})
+        wire.until(lambda: "robot 'agv' says too much" in str(told))
+        wire.tell("nonsense", {"robot": "nobody"})
+        wire.until(lambda: "'nobody' has not said Ready" in str(told))
+        before = str(told).count("says too much")
+        for _ in range(20):
+            wire.connection.send(frame_of([("agv", SendPos(21.0, 8.0, 0.0, 0.0))]))
+        wire.until(lambda: str(told).count("says too much") > before)
     else:
         for _ in range(100):
             acknowledge(wire, "agv/7000000")
+        wire.until(lambda: "robot 'agv' answers too much" in str(told))
+    with pytest.raises(RefusedError, match="speaks for 1 robots; there is room for no more"):
+        wire.ask("Ready", {"robot": "another", "magic": 1})
     acknowledge(wire, asked)
     if flooded == "replies":
         again = wire.until(lambda: [call["id"] for call in told if call.get("method") == "SetPosEnd"][1:])

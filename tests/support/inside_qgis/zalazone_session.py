@@ -11,6 +11,7 @@ from qgis.core import (
     QgsPalLayerSettings,
     QgsProject,
     QgsRectangle,
+    QgsSettings,
     QgsSingleSymbolRenderer,
     QgsTextBufferSettings,
     QgsTextFormat,
@@ -28,6 +29,8 @@ from tests.support.inside_qgis.session import Session, end, start
 STEP = 60
 DRIVE = 180
 """Seconds, many times what an idle machine takes."""
+NEAR_M, NEAR_DEG = 2.0, 2e-5
+"""Of the map around a cone that is clicked, on each side: a pixel is 5 mm, so a click can say where."""
 LEFT_WIDTH = 400
 """Pixels of the panels on the left, the second map among them."""
 
@@ -47,6 +50,9 @@ def work(session: Session) -> None:
         if number:
             drive_away(session)
         place_cone(session, cone)
+    for cone in plan["cones"]:
+        drive_away(session)
+        click_cone(session, cone)
     drive_route(session)
     end()
 
@@ -121,7 +127,7 @@ def ask_surface(session: Session) -> None:
     session.happened("surface", f"a click with the surface tool says: {told}")
 
 
-def place_cone(session: Session, cone: dict[str, str]) -> None:
+def place_cone(session: Session, cone: dict) -> None:
     """Type a cone's coordinates, send it, and wait until it is reached."""
     operator, robot = session.operator, session.plan["first"]
     operator.select(robot)
@@ -136,7 +142,30 @@ def place_cone(session: Session, cone: dict[str, str]) -> None:
     )
 
 
-def type_coordinates(session: Session, cone: dict[str, str]) -> str:
+def click_cone(session: Session, cone: dict) -> None:
+    """Click the cone's place on a map in its reference system, send it, and wait until it is reached."""
+    operator, plan, robot = session.operator, session.plan, session.plan["first"]
+    x, y = cone["x"], cone["y"]
+    crs = QgsCoordinateReferenceSystem(cone["crs"])
+    near = NEAR_DEG if crs.isGeographic() else NEAR_M
+    # Of several operations between two CRSs the first, as the dialog of coordinates has it: nobody is asked.
+    QgsSettings().setValue("/projections/promptWhenMultipleTransformsExist", False, QgsSettings.Section.App)
+    QgsProject.instance().setCrs(crs)
+    operator.show_map((x - near, y - near, x + near, y + near), cone["crs"])
+    operator.select(robot)
+    operator.choose("fleet_cone_target")
+    operator.click_map(x, y, cone["crs"])
+    send(session, robot)
+    seconds = reached(session, robot)
+    session.happened(
+        f"click in {cone['called']}",
+        f"cone clicked on a map in {cone['called']} ({cone['crs']}) for {robot}: reached in {seconds:.1f} s",
+    )
+    QgsProject.instance().setCrs(QgsCoordinateReferenceSystem(plan["crs"]))
+    operator.show_map(plan["track"], plan["crs"])
+
+
+def type_coordinates(session: Session, cone: dict) -> str:
     """Set the draft by the dialog of coordinates; return by which operation they came to the site's CRS."""
     session.window().findChild(QAction, "fleet_coordinates").trigger()
     dialog = session.window().findChild(QDialog, "fleet_coordinates_dialog")

@@ -1,17 +1,50 @@
-"""Real ROS 2 robots as processes, on loopback, in a DDS domain of the process that starts them."""
+"""Real ROS 2 robots as processes, on loopback, in DDS domains that are of nobody else on this computer."""
 
 from __future__ import annotations
 
 import json
 import os
+import socket
 from collections.abc import Sequence
+from functools import cached_property
 from pathlib import Path
 
+from tests.support.errors import StageError
 from tests.support.patience import START
 from tests.support.processes import Processes
 from tests.support.robots.ros_peer import DISTRIBUTION
 
 ROBOT = Path(__file__).parent / "ros_robot.py"
+DOMAINS = range(1, 102)
+"""Those whose ports lie below the ephemeral ones."""
+FIRST_PORT, PORTS = 7410, 250
+"""Port of who came first into domain 0, by multicast or without, and the ports of one domain."""
+
+_claims: list[socket.socket] = []
+
+
+def own_domain() -> int:
+    """Return a DDS domain in which nobody is on this computer; it is this process's until that ends.
+
+    Chosen by the process id alone two that run at the same time may meet, and drive each other's robots.
+
+    :raises StageError: when there is none.
+    """
+    first = os.getpid()
+    for number in range(len(DOMAINS)):
+        domain = DOMAINS[(first + number) % len(DOMAINS)]
+        claim = socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM)
+        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
+            try:
+                # A name without a file: it is gone with this process, however that ends.
+                claim.bind(f"\0fleet-supervisor-dds-{domain}")
+                probe.bind(("", FIRST_PORT + PORTS * domain))
+            except OSError:
+                claim.close()
+                continue
+        _claims.append(claim)
+        return domain
+    raise StageError(f"somebody is in each DDS domain from {DOMAINS[0]} to {DOMAINS[-1]} on this computer")
 
 
 class Nodes:
@@ -21,9 +54,13 @@ class Nodes:
         self._processes = processes
         self._python = python
         self._started: dict[str, int] = {}
-        # The domain of no other test process on this computer; ROS allows 0 to 101 beside ephemeral ports.
-        self.domain = 1 + os.getpid() % 50
+        self.domain = own_domain()
         self.distribution = DISTRIBUTION
+
+    @cached_property
+    def other_domain(self) -> int:
+        """A second domain, in which no robot is but those that are started there."""
+        return own_domain()
 
     def start(
         self,

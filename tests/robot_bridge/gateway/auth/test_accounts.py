@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import gc
 
 import pytest
 
@@ -267,6 +268,18 @@ async def test_an_ended_session_is_found_beside_one_that_is_only_taken_for_open(
     # The gateway does not hold bb22 open any more, whose end could not be written.
     assert await database.run(session_rows.ended_sessions, ["aa11"]) == {"aa11": "why"}
     assert await database.run(session_rows.ended_sessions, []) == {}
+
+
+async def test_asking_for_ended_sessions_leaves_nothing_for_the_search_for_garbage(database):
+    await database.run(session_rows.ended_sessions, ["aa11"])
+    gc.collect()
+    gc.disable()
+    try:
+        for _ in range(50):
+            await database.run(session_rows.ended_sessions, ["aa11"])
+        assert gc.collect() < 50
+    finally:
+        gc.enable()
 
 
 async def test_a_session_can_be_ended_by_how_its_id_begins(database):

@@ -290,8 +290,12 @@ def test_a_stop_service_has_to_confirm(tasks):
     ended = [one for one in tasks.step(able, 5.0) if isinstance(one, StopEnded)]
     assert "it said 'brake stuck'" in ended[0].refusal
     tasks.abort(able, 6.0)
+    # Who has started anew may drive on all the same: only the service's word ends the stop.
+    tasks.forget()
+    assert tasks.is_busy
+    assert CallStop() in tasks.step(able, 6.6)
     tasks.stop_answered(True, "")
-    assert tasks.step(able, 6.1) == [StopEnded()]
+    assert tasks.step(able, 6.7) == [StopEnded()]
 
 
 def test_a_robot_on_topics_has_stopped_when_it_is_seen_to_stand(tasks):

@@ -289,14 +289,14 @@ def test_two_nodes_of_one_name_are_named_and_both_are_stopped(desk, robot, nodes
 
 
 def test_actions_of_another_distribution_are_named_and_the_rest_is_used(bridge, nodes, desk, tmp_path):
-    text = SETTINGS.format(address=bridge.address, domain=nodes.domain + 50, distribution="lyrical")
+    text = SETTINGS.format(address=bridge.address, domain=nodes.other_domain, distribution="lyrical")
     file = tmp_path / "other.toml"
     file.write_text(text, encoding="utf-8")
     name = f"robot{next(NUMBERS)}"
     with Processes(tmp_path / "logs") as processes:
         other = AdapterProcess(processes, file)
         other.start()
-        nodes.start(name, *FAST, domain=nodes.domain + 50)
+        nodes.start(name, *FAST, domain=nodes.other_domain)
         wait_until(lambda: f"/{name}/follow_path has the FollowPath of jazzy or kilted" in other.output(), 30)
         desk.until(lambda: "targets" in (desk.robots.get(name, {}).get("abilities") or ""), 20)
         assert "paths" not in desk.robots[name]["abilities"]
@@ -354,7 +354,7 @@ def test_a_gateway_that_is_killed_loses_no_command_and_repeats_none(bridge, desk
 @pytest.mark.skipif(not CutNetwork.is_possible(), reason="a network of its own takes root")
 def test_a_network_that_was_cut_loses_nothing_and_does_nothing_twice(bridge, nodes, desk, tmp_path):
     driving, stopped, ordered = (f"robot{next(NUMBERS)}" for _ in range(3))
-    network, domain = CutNetwork(), nodes.domain + 49
+    network, domain = CutNetwork(), nodes.other_domain
     file = tmp_path / "cut.toml"
     more = f'interfaces = ["{network.interface}"]'
     file.write_text(
@@ -378,13 +378,13 @@ def test_a_network_that_was_cut_loses_nothing_and_does_nothing_twice(bridge, nod
 
 def test_the_shortest_settings_of_the_guide_show_a_robot_and_send_it(bridge, nodes, desk, tmp_path, guide):
     # What differs from one network to the next is said besides: the gateway's port, and the domain.
-    text = guide("shortest").replace("domain = 0 ", f'range = "localhost"\ndomain = {nodes.domain + 50}')
+    text = guide("shortest").replace("domain = 0 ", f'range = "localhost"\ndomain = {nodes.other_domain}')
     file = tmp_path / "shortest.toml"
     file.write_text(f'[gateway]\nurl = "{bridge.address}/link"\n{text}', encoding="utf-8")
     name = f"robot{next(NUMBERS)}"
     with Processes(tmp_path / "logs") as processes:
         AdapterProcess(processes, file).start()
-        nodes.start(name, *FAST, domain=nodes.domain + 50)
+        nodes.start(name, *FAST, domain=nodes.other_domain)
         desk.wait_for_robots(name)
         desk.send(f"go-{name}", name, "SetPosEnd", x=25.0, y=8.0)
         desk.wait_for_step(f"go-{name}", "reached", 10)

@@ -15,6 +15,7 @@ from tests.support.bridge.bridge_programs import wait_until
 from tests.support.errors import StageError
 from tests.support.patience import BUSY
 from tests.support.processes import Processes
+from tests.support.robots.ros_nodes import own_domain
 from tests.support.secure_dds import Keystore, secure_dds
 
 pytest.importorskip("rosbags", reason="rosbags is not installed; run make setup")
@@ -26,7 +27,7 @@ from robot_bridge.links.ros2.dds import DdsSettings, Participant
 from robot_bridge.links.ros2.security import SecuritySettings
 
 ROBOT = Path(__file__).resolve().parents[4] / "tests" / "support" / "secure_robot.py"
-DOMAIN = 101
+DOMAIN = own_domain()
 ENCLAVE = {
     "identity_ca": "identity_ca.cert.pem",
     "certificate": "cert.pem",

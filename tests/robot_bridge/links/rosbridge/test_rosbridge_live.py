@@ -316,7 +316,7 @@ def test_a_gateway_that_is_killed_loses_no_command_and_repeats_none(bridge, desk
 def test_a_network_that_was_cut_loses_nothing_and_does_nothing_twice(
     desk, nodes, start_server, settings, tmp_path, reset
 ):
-    domain = nodes.domain + 51
+    domain = nodes.other_domain
     names = [f"distant{next(NUMBERS)}" for _ in range(3)]
     line = CutLine(start_server(domain).port)
     file = tmp_path / "cut.toml"
