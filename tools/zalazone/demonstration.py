@@ -17,14 +17,14 @@ from pathlib import Path
 import numpy as np
 
 from robot_bridge.core.sites.site import read_site
-from tests.support.desk_wire import ask, watch
 from tests.support.errors import StageError
 from tests.support.fleet import start_gateway
+from tests.support.operators import ask, open_desk
 from tests.support.patience import BUSY
 from tests.support.picture import reduce_colours
 from tests.support.processes import Processes
-from tests.support.qgis import Profile, virtual_screen
-from tests.support.session import follow, start_qgis
+from tests.support.session import play
+from tests.support.wire import RefusedError
 from tools.plugin_files import ROOT
 from tools.zalazone.links import Links, peer
 from tools.zalazone.places import AWAY, CONE, GOAL, GRASS, ROAD_CLASS, START, same_ground, spellings
@@ -51,7 +51,7 @@ SPEEDS = {FIRST: 6.0, SECOND: 7.0}
 WATCHED_S = 6.0
 LOOKS = 5
 """On a machine that is busy otherwise an operator is told less at times."""
-RECORDED_HZ = 10.0
+RECORDED_HZ, WATCH_HZ = 10.0, 20.0
 LEAST_RATE = 9.0
 LARGEST_ERROR_M = 0.05
 QGIS_TIMEOUT = 600.0
@@ -173,11 +173,9 @@ class ZalaZone:
         )
 
     def _desk(self) -> None:
-        display = virtual_screen(self._processes, *WINDOW)
         plan = self._plan()
-        profile = Profile(FOLDER / "profile", link=False)
-        qgis = start_qgis(self._processes, profile, "zalazone_session.py", plan, display)
-        for entry in follow(self._processes, qgis, Path(str(plan["journal"])), QGIS_TIMEOUT):
+        session = "zalazone_session.py"
+        for entry in play(self._processes, FOLDER, session, plan, QGIS_TIMEOUT, screen=WINDOW):
             self._happened(entry["text"])
         reduce_colours(Path(str(plan["picture"])))
 
@@ -191,7 +189,6 @@ class ZalaZone:
             return frame.to_crs(np.array([point]))[0].tolist()
 
         return {
-            "journal": str(FOLDER / "journal.jsonl"),
             "project": str(FOLDER / "site" / "proving_ground.qgz"),
             "gateway": self._address,
             "window": WINDOW,
@@ -239,13 +236,13 @@ class ZalaZone:
         )
 
     def _refusal(self, robot: str) -> str:
-        command = {"command": "demo-refused-0001", "robot": robot, "op": "SetPosEnd"}
         x, y = CONE
         try:
-            ask(self._address, ("send", {**command, "params": {"x": x, "y": y}}))
-        except StageError as error:
+            with open_desk(self._address) as desk:
+                desk.send("demo-refused-0001", robot, "SetPosEnd", x=x, y=y)
+        except RefusedError as error:
             if "only seen" in str(error):
-                return str(error).partition("send: ")[2]
+                return str(error)
             raise
         raise StageError(f"{robot} is a recording, and the gateway took a command for it")
 
@@ -258,7 +255,10 @@ class ZalaZone:
         """Return each robot's places, those that are told twice once."""
         east, north = self._site.settings.origin
         seen: dict[str, list[Sample]] = {}
-        for snapshot in watch(self._address, seconds):
+        with open_desk(self._address) as desk:
+            desk.ask("subscribe", {"rate": WATCH_HZ})
+            desk.listen(seconds)
+        for snapshot in desk.snapshots:
             for robot in snapshot["robots"]:
                 if robot.get("x") is None:
                     continue

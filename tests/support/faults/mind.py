@@ -10,16 +10,14 @@ import hashlib
 import random
 import time
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
 from typing import Any
 
 from tests.support.faults.journal import Journal
+from tests.support.robots.robot_lives import Said
 
 FIRST_X, STEP_X = 10.0, 0.01
 """metres: the x of command 0, and what each further one adds."""
 POSE_EVERY, OBJECT_EVERY = 0.25, 2.0
-AGAIN_AFTER = 1.0
-"""seconds after which a refused observation is told again, under the same source."""
 LONGEST_DRIVE = 0.4
 JPEG = bytes.fromhex("ffd8ffe000104a464946")
 
@@ -28,16 +26,6 @@ def number_of(params: Mapping[str, Any]) -> int:
     """Return the number of the command whose parameters these are."""
     x = params["points"][0][0] if "points" in params else params["x"]
     return round((x - FIRST_X) / STEP_X)
-
-
-@dataclass
-class Observation:
-    """What a robot saw and tells until it is told that it was taken."""
-
-    op: str
-    params: dict[str, Any]
-    image: bytes | None
-    tell_at: float = 0.0
 
 
 class Mind:
@@ -58,7 +46,7 @@ class Mind:
         self._pose_at = 0.0
         self._object_at = time.time() + self._random.uniform(0, OBJECT_EVERY)
         self._sources = 0
-        self._telling: Observation | None = None
+        self._telling: Said | None = None
         for entry in past:
             self._remember(entry)
         if not self.magic:
@@ -101,15 +89,15 @@ class Mind:
         speed = 0.0 if self._place == self._goal else 0.5
         return {"x": self._place[0], "y": self._place[1], "theta": 0.0, "v": speed, "t": now}
 
-    def observation(self, now: float) -> Observation | None:
-        """Return what is to be told now; it is told again until :meth:`taken`, or after :meth:`untold`."""
+    def request(self, now: float) -> Said | None:
+        """Return the object or the image that is told now."""
         if self._telling is None and now >= self._object_at:
             self._object_at = now + OBJECT_EVERY
             self._telling = self._saw()
         told = self._telling
-        if told is None or now < told.tell_at:
+        if told is None or now < told.say_at:
             return None
-        told.tell_at = float("inf")
+        told.say_at = float("inf")
         return told
 
     def taken(self) -> None:
@@ -123,9 +111,9 @@ class Mind:
     def untold(self, after: float = 0.0) -> None:
         """Tell the last observation again: it is not known whether it was taken."""
         if self._telling is not None:
-            self._telling.tell_at = time.time() + after
+            self._telling.say_at = time.time() + after
 
-    def _saw(self) -> Observation:
+    def _saw(self) -> Said:
         self._sources += 1
         params = {
             "x": round(self._random.uniform(5, 195), 3),
@@ -135,8 +123,8 @@ class Mind:
         }
         self.note("telling", source=params["source"])
         if self._random.random() < 0.3:
-            return Observation("SendImage", params, JPEG + self._random.randbytes(5000))
-        return Observation("SetObject", params, None)
+            return Said("SendImage", params, JPEG + self._random.randbytes(5000))
+        return Said("SetObject", params)
 
     def _drive(self, goal: tuple[float, float]) -> None:
         self._goal = goal
