@@ -75,9 +75,9 @@ class ZalaZone:
         self._publish()
         self._address = start_gateway(self._processes, FOLDER / "fleet.db", FOLDER / "site")
         self._happened(f"the gateway serves it at {self._address}")
-        self._links = Links(self._processes, FOLDER / "links", self._address, self._site.settings)
+        self._links = Links(self._processes, python, FOLDER / "links", self._address, self._site.settings)
         self._replay()
-        self._robots(python)
+        self._robots()
         self._questions()
         self._desk()
         self._cones()
@@ -125,9 +125,9 @@ class ZalaZone:
         )
         self._happened(f"they are marked as replay and cannot be commanded: {self._refusal(names[0])!r}")
 
-    def _robots(self, python: Path) -> None:
-        self._links.start_robot(python, FIRST, AWAY, SPEEDS[FIRST])
-        self._links.start_robot(python, SECOND, START, SPEEDS[SECOND])
+    def _robots(self) -> None:
+        self._links.start_robot(FIRST, AWAY, SPEEDS[FIRST])
+        self._links.start_robot(SECOND, START, SPEEDS[SECOND])
         self._links.start_ros()
         self._wait("the two ROS 2 robots", lambda: self._fresh([FIRST, SECOND]))
         self._happened(

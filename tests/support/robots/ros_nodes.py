@@ -17,12 +17,12 @@ ROBOT = Path(__file__).parent / "ros_robot.py"
 class Nodes:
     """Starts and ends robots; ``events(name)`` is what a robot has said of itself."""
 
-    def __init__(self, processes: Processes, python: Path) -> None:
+    def __init__(self, processes: Processes, python: Path, first_domain: int = 1) -> None:
         self._processes = processes
         self._python = python
         self._started: dict[str, int] = {}
         # The domain of no other test process on this computer; ROS allows 0 to 101 beside ephemeral ports.
-        self.domain = 1 + os.getpid() % 50
+        self.domain = first_domain + os.getpid() % 50
         self.distribution = DISTRIBUTION
 
     def start(
