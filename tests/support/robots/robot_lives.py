@@ -1,7 +1,8 @@
 """A robot's life on either wire, in a thread or turn by turn: it comes back for ever.
 
 What it says is never lost, whatever dies: it says again what may not have been heard, does once what it hears
-twice, and leaves what is not for this life. What it does and remembers is its mind's.
+twice, and leaves what is not for this life. What it does and remembers is its mind's, which has what
+:class:`tests.support.faults.mind.Mind` has.
 """
 
 from __future__ import annotations
@@ -12,7 +13,7 @@ import threading
 import time
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
-from typing import Any, Protocol
+from typing import Any
 
 from websockets.exceptions import WebSocketException
 
@@ -36,38 +37,10 @@ class Said:
     say_at: float = 0.0
 
 
-class RobotMind(Protocol):
-    """What a robot does and remembers."""
-
-    name: str
-    magic: int
-
-    def note(self, what: str, **details: Any) -> None:
-        """Write down what happened."""
-
-    def hear(self, id: int, op: str, params: dict[str, Any]) -> None:
-        """Do what message ``id`` says, unless it has come before."""
-
-    def belongs_to(self, database: str | None) -> None:
-        """Take note of the database's id, if it was named."""
-
-    def pose(self, now: float) -> dict[str, Any] | None:
-        """Return where the robot is, if it is time to say so."""
-
-    def request(self, now: float) -> Said | None:
-        """Return what is said now: again until :meth:`taken`, or after :meth:`untold`."""
-
-    def taken(self) -> None:
-        """Note that the gateway acknowledged the request."""
-
-    def untold(self, after: float = 0.0) -> None:
-        """Say the last request again: it is not known whether it was taken."""
-
-
 class MindOverWebSocket:
     """Speaks JSON-RPC; connects again for ever."""
 
-    def __init__(self, mind: RobotMind, url: str) -> None:
+    def __init__(self, mind: Any, url: str) -> None:
         self._mind = mind
         self._url = f"{url}/robot?robot={mind.name}"
         self._ready = False
@@ -136,7 +109,7 @@ class MindOverSql:
     ``clock`` tells the time that the mind goes by.
     """
 
-    def __init__(self, mind: RobotMind, url: str, clock: Callable[[], float] = time.time) -> None:
+    def __init__(self, mind: Any, url: str, clock: Callable[[], float] = time.time) -> None:
         self._mind, self._clock = mind, clock
         self._robot = SqlRobot(url, mind.name)
         self._unsaid: list[int] = []

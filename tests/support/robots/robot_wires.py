@@ -16,7 +16,8 @@ from tests.support.databases.database_client import DatabaseClient
 from tests.support.patience import BUSY
 from tests.support.wire import RefusedError, Wire
 
-PAYLOAD = {"SendImage": "image", "SetMap": "map"}
+PAYLOAD = {"SendImage": "image"}
+"""The parameter that is the payload on SQL."""
 READ = "select id, op, params, payload from sa where robot = ? order by urgent desc, id"
 DELETE = "delete from sa where robot = ? and id = ?"
 INSERT = "insert into rr (robot, op, params, payload) values (?, ?, ?, ?)"
@@ -28,6 +29,25 @@ class RobotWire(Wire):
     def __init__(self, url: str, **options: Any):
         super().__init__(url, **options)
         self.calls: list[dict[str, Any]] = []
+
+    def ask(self, method: str, params: Any = None, payload: bytes | None = None, **how: Any) -> Any:
+        """Call ``method``, with a payload where it has one, and return its result; raises RefusedError."""
+        if payload is not None:
+            params = {**params, PAYLOAD[method]: base64.b64encode(payload).decode()}
+        result = super().ask(method, params, **how)
+        if result.get("ok") is False:
+            raise RefusedError({"message": result["reason"], "code": None})
+        return result
+
+    def hear(self, op: str) -> Any:
+        """Return the parameters of the next ``op``, or its payload, and acknowledge it."""
+        call = self.wait_for(op)
+        self.say(call["id"])
+        return map_bytes(call) if op == "SetMap" else call.get("params", {})
+
+    def close(self) -> None:
+        """Close the connection."""
+        self.connection.close()
 
     def wait_for(self, method: str, seconds: float = 10.0) -> dict[str, Any]:
         """Return the next call of ``method``, and take it off the list."""
@@ -110,6 +130,25 @@ class SqlRobot(DatabaseClient):
         ((id,),) = self.sql(f"{INSERT} returning id", self.name, op, json.dumps(params), payload)
         return int(id)
 
+    def ask(self, op: str, params: dict[str, Any], payload: bytes | None = None) -> dict[str, Any]:
+        """Say ``op`` and return its OpAck; raises RefusedError."""
+        asked = self.say(op, payload, **params)
+        while (ack := self.read("OpAck")[1])["id"] != asked:
+            continue
+        if not ack["ok"]:
+            raise RefusedError({"message": ack["reason"], "code": None})
+        return ack
+
+    def tell(self, op: str, params: dict[str, Any]) -> None:
+        """Say what is not acknowledged."""
+        self.say(op, **params)
+
+    def hear(self, op: str) -> Any:
+        """Return the parameters of the next ``op``, or its payload, and acknowledge it."""
+        id, params, payload = self.read(op)
+        self.say("OpAck", id=id)
+        return params if payload is None else payload
+
     def read(self, op: str, seconds: float = 10.0) -> tuple[int, dict[str, Any], bytes | None]:
         """Wait for an answer, delete it, and return its id, parameters and payload.
 
@@ -124,60 +163,8 @@ class SqlRobot(DatabaseClient):
         return id, json.loads(params or "{}"), payload
 
 
-class OverSql:
-    """A robot's view of tables rr and sa: ask, be acknowledged or refused, hear."""
-
-    def __init__(self, bridge: Any, name: str):
-        self._robot = SqlRobot(bridge.database, name)
-
-    def ask(self, op: str, params: dict[str, Any], payload: bytes | None = None) -> dict[str, Any]:
-        """Say ``op`` and return its OpAck; raises RefusedError."""
-        asked = self._robot.say(op, payload, **params)
-        while (ack := self._robot.read("OpAck")[1])["id"] != asked:
-            continue
-        if not ack["ok"]:
-            raise RefusedError({"message": ack["reason"], "code": None})
-        return ack
-
-    def tell(self, op: str, params: dict[str, Any]) -> None:
-        """Say what is not acknowledged."""
-        self._robot.say(op, **params)
-
-    def hear(self, op: str) -> Any:
-        """Return the parameters of the next ``op``, or its payload, and acknowledge it."""
-        id, params, payload = self._robot.read(op)
-        self._robot.say("OpAck", id=id)
-        return params if payload is None else payload
-
-    def close(self) -> None:
-        self._robot.close()
-
-
-class OverWebSocket:
-    """A robot's view of /robot, as that of :class:`OverSql`."""
-
-    def __init__(self, bridge: Any, name: str):
-        self._wire = bridge.robot(name)
-
-    def ask(self, op: str, params: dict[str, Any], payload: bytes | None = None) -> dict[str, Any]:
-        if payload is not None:
-            params = {**params, PAYLOAD[op]: base64.b64encode(payload).decode()}
-        ack: dict[str, Any] = self._wire.ask(op, params)
-        if not ack["ok"]:
-            raise RefusedError({"message": ack["reason"], "code": None})
-        return ack
-
-    def tell(self, op: str, params: dict[str, Any]) -> None:
-        self._wire.tell(op, params)
-
-    def hear(self, op: str) -> Any:
-        call = self._wire.wait_for(op)
-        self._wire.say(call["id"])
-        params = call.get("params", {})
-        return base64.b64decode(params[PAYLOAD[op]]) if op in PAYLOAD else params
-
-    def close(self) -> None:
-        self._wire.connection.close()
-
-
-WIRES = {"sql": OverSql, "websocket": OverWebSocket}
+WIRES = {
+    "sql": lambda bridge, name: SqlRobot(bridge.database, name),
+    "websocket": lambda bridge, name: bridge.robot(name),
+}
+"""Robots of one gateway by their wire. Each is asked, tells and hears in the same words."""
