@@ -295,6 +295,10 @@ class SqlRobot(Robot):
             self._unsaid.append(Said("Stopped", {}))
         if not self._unsaid or now < self._unsaid[0].say_at:
             return None
+        if self._unsaid[0].op == "Stopped" and self.task is not None:
+            # It drives again: that it has stopped is not said once more.
+            del self._unsaid[0]
+            return None
         self._unsaid[0].say_at = math.inf
         return self._unsaid[0]
 
