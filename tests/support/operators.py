@@ -55,7 +55,7 @@ class Desk(Wire):
         return json.dumps({"robots": self.robots, "commands": self.commands, "queues": self.queues}, indent=1)
 
     def _hear(self, frame: dict[str, Any]) -> None:
-        method, params = frame["method"], frame["params"]
+        method, params = frame["method"], frame.get("params")
         if method == "positions":
             self.snapshots.append(params)
             self.robots.update({robot["robot"]: robot for robot in params["robots"]})

@@ -12,8 +12,7 @@ import threading
 from dataclasses import dataclass
 from pathlib import Path
 
-from tests.support.faults.journal import Journal, entries
-from tests.support.faults.mind import Mind
+from tests.support.faults.mind import Journal, Mind, entries
 from tests.support.robots.robot_lives import MindOverSql, MindOverWebSocket
 
 

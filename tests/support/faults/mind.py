@@ -7,12 +7,14 @@ number in their x: ``FIRST_X + number * STEP_X``.
 from __future__ import annotations
 
 import hashlib
+import json
+import os
 import random
 import time
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
+from pathlib import Path
 from typing import Any
 
-from tests.support.faults.journal import Journal
 from tests.support.robots.robot_lives import Said
 
 FIRST_X, STEP_X = 10.0, 0.01
@@ -26,6 +28,29 @@ def number_of(params: Mapping[str, Any]) -> int:
     """Return the number of the command whose parameters these are."""
     x = params["points"][0][0] if "points" in params else params["x"]
     return round((x - FIRST_X) / STEP_X)
+
+
+class Journal:
+    """What robots write down before they do it: a file of JSON lines that only grows.
+
+    Each is one write: a killed process leaves whole lines.
+    """
+
+    def __init__(self, file: Path, **always: Any) -> None:
+        self._always = always
+        self._file = os.open(file, os.O_WRONLY | os.O_CREAT | os.O_APPEND, 0o600)
+
+    def note(self, robot: str, what: str, **details: Any) -> None:
+        """Write one line."""
+        line = {"at": time.time(), "robot": robot, "what": what, **self._always, **details}
+        os.write(self._file, json.dumps(line).encode() + b"\n")
+
+
+def entries(file: Path) -> Iterator[dict[str, Any]]:
+    """Yield what was written so far, oldest first."""
+    if file.is_file():
+        for line in file.read_bytes().splitlines():
+            yield json.loads(line)
 
 
 class Mind:

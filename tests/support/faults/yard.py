@@ -23,7 +23,7 @@ from tests.support.databases.database_server import DatabaseServer, add_accounts
 from tests.support.errors import StageError
 from tests.support.faults.crew import Plan
 from tests.support.faults.desk import Ledger, SendingDesk
-from tests.support.faults.journal import entries
+from tests.support.faults.mind import entries
 from tests.support.faults.proxy import Proxy
 from tests.support.fleet import SITE, serve
 from tests.support.operators import ask
