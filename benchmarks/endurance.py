@@ -21,6 +21,7 @@ from robot_bridge.core.sites.site import read_site
 from tests.support.faults.proxy import Proxy
 from tests.support.fleet import PROJECT, new_database, serve
 from tests.support.processes import Processes
+from tests.support.qgis import virtual_screen
 from tests.support.session import play
 from tools.plugin_files import ROOT
 
@@ -68,8 +69,9 @@ def endure(
     """
     with _stage(folder, robots) as (processes, proxy):
         told = plan(proxy.port, seconds, reloads, robots)
+        display = virtual_screen(processes, *WINDOW)
         settings, longest = {"GDAL_CACHEMAX": str(RASTER_CACHE)}, seconds + ENOUGH
-        entries = play(processes, folder, SESSION, told, longest, screen=WINDOW, settings=settings)
+        entries = play(processes, folder, SESSION, told, longest, display=display, settings=settings)
         with BadNetwork(proxy, pauses) as network:
             samples, unloaded, end = _watched(entries, network)
         complaints = complaints_in(processes.log("qgis"))

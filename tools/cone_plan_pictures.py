@@ -21,6 +21,7 @@ from tests.support.fleet import PROJECT, SITE, Start, new_database, start_gatewa
 from tests.support.picture import reduce_colours
 from tests.support.processes import Processes
 from tests.support.program import ended
+from tests.support.qgis import virtual_screen
 from tests.support.session import play
 from tools.plugin_files import ROOT
 
@@ -43,10 +44,11 @@ def run(pictures: Path) -> None:
     """
     database = new_database(FOLDER)
     with Processes(FOLDER / "logs") as processes:
+        display = virtual_screen(processes, *WINDOW)
         address = start_gateway(processes, database)
         robots = start_robots(processes, address, database, SPEED, STARTS)
         session, told = "cone_plan_session.py", plan(address, pictures)
-        for entry in play(processes, FOLDER, session, told, TIMEOUT, screen=WINDOW, killed=["r1"]):
+        for entry in play(processes, FOLDER, session, told, TIMEOUT, display=display, killed=["r1"]):
             print(entry["text"], flush=True)
             if entry["step"] == "kill r1":
                 robots["r1"].kill()

@@ -27,7 +27,7 @@ from tests.support.map_export import export
 from tests.support.operators import ask
 from tests.support.processes import Processes
 from tests.support.program import ended
-from tests.support.qgis import Profile
+from tests.support.qgis import Profile, virtual_screen
 from tests.support.report import PAPER_BYTES_PER_M2, Report
 from tests.support.session import play
 from tests.support.verdict import Errand, Outcome, judge
@@ -82,8 +82,8 @@ class Demonstration:
 
     def _drive(self, address: str) -> None:
         plan = desk_plan(self._site, address)
-        session = "demo_session.py"
-        for entry in play(self._processes, FOLDER, session, plan, DESK_TIMEOUT, screen=SCREEN):
+        display, session = virtual_screen(self._processes, *SCREEN), "demo_session.py"
+        for entry in play(self._processes, FOLDER, session, plan, DESK_TIMEOUT, display=display):
             self._happened(entry["text"])
 
     def _judge(self, address: str) -> None:

@@ -20,7 +20,7 @@ from tests.support.fleet import PROJECT, SITE, STARTS, new_database, start_gatew
 from tests.support.picture import reduce_colours
 from tests.support.processes import Processes
 from tests.support.program import ended
-from tests.support.qgis import has_screen
+from tests.support.qgis import has_screen, virtual_screen
 from tests.support.session import play
 from tools.plugin_files import ROOT
 
@@ -60,6 +60,17 @@ def plan(address: str, picture: Path | None) -> dict[str, object]:
     return told
 
 
+def display_for(processes: Processes, picture: Path | None) -> str | None:
+    """Return the virtual screen to use, None for the user's own."""
+    if picture is None and has_screen():
+        return None
+    display = virtual_screen(processes, *WINDOW)
+    if picture is None:
+        print(f"There is no display here: QGIS opens on the virtual screen {display}. Ctrl-C ends it.")
+        print("To see how it looks: make screenshots", flush=True)
+    return display
+
+
 def run(picture: Path | None) -> None:
     """Open the window; return when it was closed, or when the picture was taken.
 
@@ -67,15 +78,12 @@ def run(picture: Path | None) -> None:
     """
     database = new_database(FOLDER)
     with Processes(FOLDER / "logs") as processes:
-        screen = None if picture is None and has_screen() else WINDOW
-        if picture is None and screen is not None:
-            print("There is no display here: QGIS opens on a virtual screen. Ctrl-C ends it.")
-            print("To see how it looks: make screenshots", flush=True)
+        display = display_for(processes, picture)
         address = start_gateway(processes, database)
         start_robots(processes, address, database)
         patience = PICTURE_TIMEOUT if picture else float("inf")
         told = plan(address, picture)
-        for entry in play(processes, FOLDER, "desktop_session.py", told, patience, screen=screen):
+        for entry in play(processes, FOLDER, "desktop_session.py", told, patience, display=display):
             print(f"{entry['text']}", flush=True)
     if picture is not None:
         reduce_colours(picture)

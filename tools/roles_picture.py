@@ -13,6 +13,7 @@ from tests.support.fleet import PROJECT
 from tests.support.picture import reduce_colours
 from tests.support.processes import Processes
 from tests.support.program import ended
+from tests.support.qgis import virtual_screen
 from tests.support.session import play
 from tools.plugin_files import ROOT
 
@@ -29,7 +30,8 @@ def run(picture: Path) -> None:
     FOLDER.mkdir(parents=True, exist_ok=True)
     with Processes(FOLDER / "logs") as processes:
         plan = {"project": str(PROJECT), "picture": str(picture), "window": SCREEN}
-        for entry in play(processes, FOLDER, "roles_session.py", plan, TIMEOUT, screen=SCREEN):
+        display = virtual_screen(processes, *SCREEN)
+        for entry in play(processes, FOLDER, "roles_session.py", plan, TIMEOUT, display=display):
             print(entry["text"], flush=True)
     reduce_colours(picture)
 

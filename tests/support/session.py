@@ -12,7 +12,7 @@ from typing import Any
 
 from tests.support.errors import StageError
 from tests.support.processes import Processes
-from tests.support.qgis import Profile, program, virtual_screen
+from tests.support.qgis import Profile, program
 from tools.plugin_files import ROOT
 
 SESSIONS = ROOT / "tests" / "support" / "inside_qgis"
@@ -55,16 +55,15 @@ def play(
     plan: Mapping[str, object],
     seconds: float,
     *,
-    screen: tuple[int, int] | None,
+    display: str | None,
     killed: Collection[str] = (),
     settings: Mapping[str, str] | None = None,
 ) -> Iterator[dict[str, Any]]:
     """Let ``session`` work by ``plan`` in a QGIS with a profile in ``folder``, and :func:`follow` it.
 
-    :param screen: width and height of a virtual screen, pixels; None for the user's own.
+    :param display: the screen that it opens on; None for the user's own.
     """
     journal = folder / "journal.jsonl"
-    display = None if screen is None else virtual_screen(processes, *screen)
     told = {"journal": str(journal), **plan}
     profile = Profile(folder / "profile", link=False)
     qgis = start_qgis(processes, profile, session, told, display, settings=settings)

@@ -23,6 +23,7 @@ from tests.support.operators import ask, open_desk
 from tests.support.patience import BUSY
 from tests.support.picture import reduce_colours
 from tests.support.processes import Processes
+from tests.support.qgis import virtual_screen
 from tests.support.session import play
 from tests.support.wire import RefusedError
 from tools.plugin_files import ROOT
@@ -174,8 +175,8 @@ class ZalaZone:
 
     def _desk(self) -> None:
         plan = self._plan()
-        session = "zalazone_session.py"
-        for entry in play(self._processes, FOLDER, session, plan, QGIS_TIMEOUT, screen=WINDOW):
+        display, session = virtual_screen(self._processes, *WINDOW), "zalazone_session.py"
+        for entry in play(self._processes, FOLDER, session, plan, QGIS_TIMEOUT, display=display):
             self._happened(entry["text"])
         reduce_colours(Path(str(plan["picture"])))
 
