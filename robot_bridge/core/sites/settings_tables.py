@@ -266,6 +266,20 @@ class NearnessSettings:
 
 
 @dataclass(frozen=True)
+class FieldPageOptions:
+    """The field page for phones, at ``/field``, unless it is not ``served``.
+
+    ``tiles`` is the address of its background map in Web Mercator, with {z}, {x} and {y}, such as that of a
+    WMTS; none is drawn where it is empty. ``attribution`` names whose map that is.
+    """
+
+    served: bool = True
+    tiles: str = ""
+    attribution: str = ""
+    largest_zoom: int = _number(22, most=30)
+
+
+@dataclass(frozen=True)
 class GatewayOptions:
     """What ``robot-bridge serve`` takes where its command line does not say it; None for its own default.
 
