@@ -14,8 +14,10 @@ from pathlib import Path
 from typing import Any
 
 from benchmarks.page import Part, goal
+from benchmarks.swarm import megabytes_of
 from tests.support.databases.mariadb import MariaDb
 from tests.support.databases.postgresql import PostgreSql
+from tests.support.fleet import serve
 from tests.support.hostile.fuzzing import handshakes, knock, try_cases
 from tests.support.hostile.hostile_values import DEPTHS
 from tests.support.hostile.siege import GENEROUS, WORST_ROWS, Siege, cases, unread_rows
@@ -170,9 +172,8 @@ def _site(folder: Path) -> Path:
 
 def _memory(pid: int) -> int:
     """Return the resident memory of a process in MB, 0 where it has ended."""
-    with contextlib.suppress(FileNotFoundError, StopIteration):
-        status = Path(f"/proc/{pid}/status").read_text(encoding="ascii")
-        return int(next(line.split()[1] for line in status.splitlines() if line.startswith("VmRSS"))) // 1024
+    with contextlib.suppress(FileNotFoundError):
+        return int(megabytes_of(pid))
     return 0
 
 
@@ -181,21 +182,19 @@ def _knocks() -> Tally:
     tally = Tally()
     with tempfile.TemporaryDirectory() as name, Processes(Path(name) / "logs") as processes:
         folder = Path(name)
-        database = ["--database", f"sqlite:///{folder}/fleet.db"]
+        url = f"sqlite:///{folder}/fleet.db"
         for words in (["operators", "add", "Ada", "--role", "supervisor"], ["robots", "token", "r1"]):
-            command = [sys.executable, "-m", "robot_bridge", *words, *database]
+            command = [sys.executable, "-m", "robot_bridge", *words, "--database", url]
             subprocess.run(command, capture_output=True, check=True)
-        serve = ["serve", "--site", str(_site(folder)), "--port", "0", *database]
-        gateway = processes.start("gateway", [sys.executable, "-m", "robot_bridge", *serve])
-        found = processes.wait_for_line("gateway", r"listening on ws://127\.0\.0\.1:(\d+)", 20)
+        gateway = serve(processes, _site(folder), url)
         time.sleep(1.5)  # accounts hold within a second
 
         def attempt(request: bytes) -> None:
-            answer = knock("127.0.0.1", int(found.group(1)), request)
+            answer = knock("127.0.0.1", gateway.port, request)
             assert not answer.startswith((b"HTTP/1.1 101", b"HTTP/1.1 500")), answer[:200]
 
         try_cases(HANDSHAKES, handshakes, tally.of(attempt))
         log = processes.log("gateway").read_text(encoding="utf-8", errors="replace")
-        if gateway.poll() is not None or "Traceback" in log:
+        if gateway.process.poll() is not None or "Traceback" in log:
             tally.wrong += 1
     return tally

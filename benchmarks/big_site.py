@@ -5,7 +5,6 @@ from __future__ import annotations
 import asyncio
 import base64
 import json
-import resource
 import sys
 import tempfile
 import time
@@ -19,7 +18,9 @@ from websockets.asyncio.client import ClientConnection, connect
 
 from benchmarks.clock import Spread, each, once, spread, table
 from benchmarks.growth import PITCH, city
+from benchmarks.load import MALLOC
 from benchmarks.page import Part, goal
+from benchmarks.swarm import cpu_seconds, megabytes_of
 from benchmarks.trial import size
 from robot_bridge.core.robotmap.binary import decode
 from robot_bridge.core.robotmap.model import PART_OF
@@ -27,6 +28,7 @@ from robot_bridge.core.sites.settings import SiteBounds, SiteSettings
 from robot_bridge.core.sites.site import cache_writer, read_site, write_site, write_site_cache
 from robot_bridge.core.sites.site_cache import CACHE_FILE
 from robot_bridge.gateway.site.site_maps import STORED_AT_ONCE, SiteMaps
+from tests.support.fleet import serve
 from tests.support.processes import Processes
 
 SITES = size((150_000, 1_098_871), (2_000, 20_000))
@@ -35,8 +37,6 @@ QUESTIONS = size(300, 10)
 SIDE = 100.0
 PING_EVERY = 0.1
 ACK_MS, PING_MS, CPU_S, RSS_MB, MAP_MS = 100.0, 50.0, 5.0, 600.0, 3.0
-MALLOC = {"MALLOC_MMAP_THRESHOLD_": "4194304", "MALLOC_TRIM_THRESHOLD_": "67108864"}
-"""As the systemd unit sets it."""
 
 TEXT = """\
 Cities that are made up, turned square buildings {pitch:g} m apart, published by the bridge's own writer. The
@@ -148,9 +148,9 @@ def _measured(count: int) -> Measured:
         written = _publish(folder, count)
         made, follows = _made(folder)
         with _gateway(folder, Path(name)) as (pid, port):
-            cpu, started = _used(pid)
+            cpu, started = cpu_seconds(pid), megabytes_of(pid)
             told = asyncio.run(_asked(port, PITCH * count**0.5, follows=follows))
-            _, rss = _used(pid)
+            rss = megabytes_of(pid)
         sizes = tuple((folder / file).stat().st_size / 1e6 for file in ("site.gpkg", CACHE_FILE))
         measured = Measured(count, (sizes[0], sizes[1]), written, cpu, started, rss, *told, made)
         print(measured._replace(pings=[], acks=[], maps=[]), file=sys.stderr, flush=True)
@@ -189,22 +189,11 @@ def _places(side: float) -> list[tuple[float, float]]:
 
 @contextmanager
 def _gateway(site: Path, folder: Path) -> Iterator[tuple[int, int]]:
-    options = ["--site", site, "--database", f"sqlite:///{folder}/fleet.db", "--port", "0"]
     with Processes(folder / "logs") as processes:
-        command = [sys.executable, "-m", "robot_bridge", "serve", *options]
-        process = processes.start("gateway", command, env=MALLOC)
-        port = processes.wait_for_line("gateway", r"listening on ws://\S+:(\d+)", 600).group(1)
+        served = serve(processes, site, f"sqlite:///{folder}/fleet.db", env=MALLOC, seconds=600)
         # The whole map and what is fenced are prepared behind that.
         time.sleep(1.0)
-        yield process.pid, int(port)
-
-
-def _used(pid: int) -> tuple[float, float]:
-    """Return the processor time in s, and the memory in MB, of a process."""
-    values = Path(f"/proc/{pid}/stat").read_text(encoding="ascii").rpartition(")")[2].split()
-    ticks = int(values[11]) + int(values[12])
-    pages = int(Path(f"/proc/{pid}/statm").read_text(encoding="ascii").split()[1])
-    return ticks / 100, pages * resource.getpagesize() / 1e6
+        yield served.process.pid, served.port
 
 
 # --- robots -----------------------------------------------------------------------------------------------

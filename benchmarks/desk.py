@@ -81,8 +81,8 @@ queue and logs, alarms watched, the layer of robots written.
 PLUGIN_CONSTANTS = """
 import json
 import pyogrio
-from benchmarks.desk_canvas import register
-register()
+from tools.plugin_files import register_plugin
+register_plugin()
 from fleet_supervisor.plugin.gateway_client.connection import ConnectionThread
 from fleet_supervisor.plugin.ui.scheduling import PULL_EVERY_MS
 from fleet_supervisor.plugin.map.reported_layers import AT_ONCE

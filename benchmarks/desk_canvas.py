@@ -6,7 +6,7 @@ Each is called by :mod:`.desk` in a process of its own.
 from __future__ import annotations
 
 import dataclasses
-import importlib.util
+import importlib
 import json
 import os
 import subprocess
@@ -36,8 +36,8 @@ from benchmarks.clock import Spread, megabytes, spread
 from benchmarks.desk_fleet import DrivingFleet
 from benchmarks.trial import size
 from tests.support.processes import dying_with_this
+from tools.plugin_files import ROOT, register_plugin
 
-ROOT = Path(__file__).parents[1]
 WINDOW = (1280, 800)
 CRS = "EPSG:32633"
 SECONDS = size(3.0, 1.0)
@@ -255,7 +255,7 @@ def hour(data: str, number: int) -> None:
 
 def open_desk(stage: Stage, clock: Any = None) -> tuple[Any, Any, Any]:
     """Return a desk that knows its site, its live view, and the site."""
-    register()
+    register_plugin()
     from fleet_supervisor.plugin.control.fleet_controller import FleetController
     from fleet_supervisor.plugin.map.live_view import LiveView
 
@@ -276,14 +276,3 @@ def site_of(stage: Stage) -> Any:
     x, y, width, height = stage.area
     bounds = (x, y, x + width, y + height)
     return SiteReport("track", "Track", 1, CRS, stage.origin, 0.0, bounds, 0.2, 3.0, 10.0)
-
-
-def register() -> None:
-    """Make the repository's root importable under the name that QGIS gives it."""
-    name = "fleet_supervisor"
-    spec = importlib.util.spec_from_file_location(
-        name, ROOT / "__init__.py", submodule_search_locations=[str(ROOT)]
-    )
-    module = importlib.util.module_from_spec(spec)
-    sys.modules[name] = module
-    spec.loader.exec_module(module)

@@ -9,7 +9,8 @@ from qgis.core import QgsProject
 from qgis.gui import QgsMapCanvas, QgsMessageBar
 from qgis.PyQt.QtWidgets import QAction, QMainWindow, QToolBar, QWidget
 
-from benchmarks.desk_canvas import WINDOW, Stage, register, site_of, watch_live
+from benchmarks.desk_canvas import WINDOW, Stage, site_of, watch_live
+from tools.plugin_files import register_plugin
 
 PANEL = 440
 """Pixels beside the map for the Fleet panel."""
@@ -54,7 +55,7 @@ def live(data: str, number: int, rate: float) -> None:
 
 def open_window(stage: Stage) -> tuple[Any, Any, Any]:
     """Return the desk of a whole window that knows its site, its live view, and the site."""
-    register()
+    register_plugin()
     plugin = "fleet_supervisor.plugin"
     bare = BareWindow(stage.canvas)
     window = importlib.import_module(f"{plugin}.panel.window").FleetWindow(bare)

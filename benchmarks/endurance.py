@@ -19,10 +19,10 @@ from benchmarks.load import MALLOC, SITE, site_with_room
 from benchmarks.page import Part
 from robot_bridge.core.sites.site import read_site
 from tests.support.faults.proxy import Proxy
-from tests.support.fleet import PROJECT
+from tests.support.fleet import PROJECT, new_database, serve
 from tests.support.processes import Processes
-from tests.support.qgis import Profile, virtual_screen
-from tests.support.session import follow, start_qgis
+from tests.support.qgis import virtual_screen
+from tests.support.session import play
 from tools.plugin_files import ROOT
 
 SESSION = "endurance/session.py"
@@ -68,12 +68,11 @@ def endure(
     :raises StageError: when something does not come up, or QGIS does not come to its end.
     """
     with _stage(folder, robots) as (processes, proxy):
-        told = plan(folder, proxy.port, seconds, reloads, robots)
+        told = plan(proxy.port, seconds, reloads, robots)
         display = virtual_screen(processes, *WINDOW)
-        profile, settings = Profile(folder / "profile", link=False), {"GDAL_CACHEMAX": str(RASTER_CACHE)}
-        qgis = start_qgis(processes, profile, SESSION, told, display, settings=settings)
+        settings, longest = {"GDAL_CACHEMAX": str(RASTER_CACHE)}, seconds + ENOUGH
+        entries = play(processes, folder, SESSION, told, longest, display=display, settings=settings)
         with BadNetwork(proxy, pauses) as network:
-            entries = follow(processes, qgis, Path(str(told["journal"])), seconds + ENOUGH)
             samples, unloaded, end = _watched(entries, network)
         complaints = complaints_in(processes.log("qgis"))
     return Run(samples, unloaded, end, network.drops, complaints)
@@ -81,26 +80,20 @@ def endure(
 
 @contextmanager
 def _stage(folder: Path, robots: int) -> Iterator[tuple[Processes, Proxy]]:
-    folder.mkdir(parents=True, exist_ok=True)
-    for file in folder.glob("fleet.db*"):
-        file.unlink()
+    database = f"sqlite:///{new_database(folder)}"
     with Processes(folder / "logs") as processes:
-        options = ["--database", f"sqlite:///{folder}/fleet.db", "--port", "0"]
-        command = [sys.executable, "-m", "robot_bridge", "serve", "--site", site_with_room(folder), *options]
-        processes.start("gateway", command, env=MALLOC)
-        port = processes.wait_for_line("gateway", r"listening on ws://\S+:(\d+)", 60).group(1)
-        crowd = [sys.executable, "-m", "benchmarks.endurance_robots", "127.0.0.1", port, str(robots)]
+        port = serve(processes, site_with_room(folder), database, env=MALLOC).port
+        crowd = [sys.executable, "-m", "benchmarks.endurance_robots", "127.0.0.1", str(port), str(robots)]
         processes.start("robots", crowd, env={"PYTHONPATH": str(ROOT)})
         processes.wait_for_line("robots", "ready", 60)
-        with Proxy(int(port)) as proxy:
+        with Proxy(port) as proxy:
             yield processes, proxy
 
 
-def plan(folder: Path, port: int, seconds: float, reloads: int, robots: int) -> dict[str, object]:
+def plan(port: int, seconds: float, reloads: int, robots: int) -> dict[str, object]:
     """Return what the session inside QGIS is told."""
     frame = read_site(SITE).frame
     return {
-        "journal": str(folder / "journal.jsonl"),
         "project": str(PROJECT),
         "gateway": f"ws://127.0.0.1:{port}/desk",
         "operator": "endurance",

@@ -16,7 +16,7 @@ import time
 from collections.abc import Sequence
 from typing import Any
 
-from benchmarks.raw_websocket import PING, TEXT, Inbox, call, connect, frame, pong
+from benchmarks.raw_websocket import TEXT, Peer, call, result
 
 AREA = (8.0, 8.0, 192.0, 152.0)
 """x_min, y_min, x_max, y_max of the sample site, metres, in which they circle."""
@@ -84,29 +84,27 @@ class Body:
                 self.v, self._stays_until = 0.0, now + STAYS
 
 
-class Robot:
+class Robot(Peer):
     """One robot and its wire, which it opens anew when the gateway has closed it."""
 
     def __init__(self, host: str, port: int, number: int, home: Place) -> None:
         self.every = 1.0 / (1 + number % 10)
-        self._host, self._port, self._number = host, port, number
+        self._number = number
         self._body = Body(home, number * 2.4)
-        self.connect()
+        super().__init__(host, port, f"/robot?robot=robot-{number:04d}")
 
     @property
     def is_away(self) -> bool:
         """Whether its wire is closed."""
         return self.sock.fileno() < 0
 
-    def connect(self) -> None:
+    def open(self) -> None:
         """Open the wire and say that it is ready.
 
         :raises ConnectionError: when the gateway does not take it.
         """
-        self.sock = connect(self._host, self._port, f"/robot?robot=robot-{self._number:04d}")
-        self._inbox = Inbox()
-        self._left = b""
-        self._send(call("Ready", {"magic": self._number + 1}, 1))
+        super().open()
+        self.send(call("Ready", {"magic": self._number + 1}, 1))
 
     def tell(self, now: float) -> None:
         """Say where it is, unless it is a silent one."""
@@ -116,20 +114,16 @@ class Robot:
             return
         pose = {"x": round(body.x, 3), "y": round(body.y, 3), "theta": round(body.theta, 4), "v": body.v}
         told = {"battery": round(0.9 - self._number % 60 / 100, 2), "accuracy": 0.05, "t": time.time()}
-        self._send(call("SendPos", {**pose, **told}))
+        self.send(call("SendPos", {**pose, **told}))
 
     def hear(self) -> bool:
         """Take in what came, and do it; false when the gateway has closed the wire."""
         try:
-            data = self.sock.recv(1 << 16)
+            frames = self.received()
         except ConnectionError:
-            data = b""
-        if not data:
             return False
-        for opcode, payload in self._inbox.take(data):
-            if opcode == PING:
-                self._send(pong(payload))
-            elif opcode == TEXT:
+        for opcode, payload in frames:
+            if opcode == TEXT:
                 self._obey(json.loads(payload))
         return True
 
@@ -143,16 +137,7 @@ class Robot:
             case "Abort":
                 self._body.give_up()
         if "method" in message and message.get("id") is not None:
-            self._send(frame(json.dumps({"jsonrpc": "2.0", "id": message["id"], "result": {}})))
-
-    def _send(self, message: bytes) -> None:
-        """Send a frame; what the socket does not take now goes first the next time."""
-        self._left += message
-        try:
-            self._left = self._left[self.sock.send(self._left) :]
-        except (BlockingIOError, ConnectionError):
-            # A wire that is closed is seen when it is read.
-            return
+            self.send(result(message["id"]))
 
 
 def homes(number: int) -> list[Place]:
@@ -189,7 +174,7 @@ class Crowd:
     def _open_anew(self, robot: Robot) -> None:
         """Connect a robot again; where the gateway has no time for it, that is tried at its next position."""
         try:
-            robot.connect()
+            robot.open()
         except ConnectionError:
             return
         self.add(robot)

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import json
 import os
-import subprocess
 import time
 from collections.abc import Iterator
 from contextlib import AbstractContextManager, contextmanager
@@ -14,10 +12,10 @@ from typing import Any, NamedTuple
 
 from benchmarks.clock import table
 from benchmarks.linked import HERE, PROBING, START, Linked, NotMeasuredError, linked
-from benchmarks.swarm import cpu_seconds
+from benchmarks.swarm import Onlooker, cpu_seconds
 from benchmarks.trial import size
 from tests.support.errors import StageError
-from tests.support.processes import Processes, dying_with_this, free_port
+from tests.support.processes import Processes, free_port
 from tests.support.robots.ros_nodes import own_domain
 from tests.support.robots.ros_peer import DISTRIBUTION, ros_python
 from tests.support.robots.rosbridge_peer import rosbridge_command
@@ -75,7 +73,7 @@ class Crowd(NamedTuple):
     robots: int
     rate: float
     processes: Processes
-    listener: subprocess.Popen[str]
+    listener: Onlooker
 
     @property
     def name(self) -> str:
@@ -142,15 +140,13 @@ def _window(link: Linked, crowd: Crowd, *others: int) -> list[str]:
     # What discovery still has to do is none of what positions cost.
     time.sleep(size(10.0, 1.0))
     listener = crowd.listener
-    assert listener.stdin is not None and listener.stdout is not None
-    listener.stdin.write(json.dumps({"begin": time.monotonic(), "seconds": SECONDS}) + "\n")
-    listener.stdin.flush()
+    listener.tell(begin=time.monotonic(), seconds=SECONDS)
     pids = (listener.pid, *others)
     before = [cpu_seconds(pid) for pid in pids]
     window = link.window(SECONDS)
     used = [(cpu_seconds(pid) - was) / SECONDS for pid, was in zip(pids, before, strict=True)]
     own, *rest = [f"{100 * one:.0f} %" for one in used]
-    heard: dict[str, Any] = json.loads(listener.stdout.readline())
+    heard: dict[str, Any] = listener.line()
     delays = ["–" if one is None else f"{one:.1f}" for one in heard["delays"]]
     return [f"{heard['heard'] / SECONDS:.0f}", *delays, own, *window.row(), *rest]
 
@@ -165,19 +161,12 @@ def publishing(python: Path, robots: int, rate: float) -> Iterator[Processes]:
 
 
 @contextmanager
-def _listening(python: Path, robots: int) -> Iterator[subprocess.Popen[str]]:
-    listener = subprocess.Popen(
-        dying_with_this([python, HERE / "ros_crowd.py", "listen", str(robots)]),
-        stdin=subprocess.PIPE,
-        stdout=subprocess.PIPE,
-        text=True,
-        env={**os.environ, **NETWORK},
-    )
+def _listening(python: Path, robots: int) -> Iterator[Onlooker]:
+    listener = Onlooker(python, HERE / "ros_crowd.py", "listen", str(robots), env=NETWORK)
     try:
-        assert listener.stdout is not None
-        if listener.stdout.readline() != "up\n":
-            raise NotMeasuredError("rclpy's subscriber did not come up")
+        listener.line()
         yield listener
+    except RuntimeError as error:
+        raise NotMeasuredError(str(error)) from error
     finally:
-        listener.kill()
-        listener.wait()
+        listener.end()

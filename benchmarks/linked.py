@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import os
 import re
-import subprocess
 import sys
 import tempfile
 import time
@@ -14,11 +13,10 @@ from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 from benchmarks.load import serving
-from benchmarks.swarm import cpu_seconds, megabytes_of
-from tests.support.processes import Processes, dying_with_this
+from benchmarks.swarm import Onlooker, cpu_seconds, megabytes_of
+from tests.support.processes import Processes
 
 HERE = Path(__file__).parent
 FRESH = re.compile(r'^robot_bridge_robots\{state="fresh"\} (\S+)', re.MULTILINE)
@@ -55,7 +53,7 @@ class Linked:
     def __init__(self, port: int, gateway: int, adapter: int, folder: Path, processes: Processes) -> None:
         self.port, self.folder, self.processes = port, folder, processes
         self._gateway, self._adapter = gateway, adapter
-        self._operators: subprocess.Popen[str] | None = None
+        self._operators: Onlooker | None = None
 
     def wait_for(self, robots: int) -> None:
         """Wait until so many robots are fresh; raises NotMeasuredError."""
@@ -72,34 +70,27 @@ class Linked:
             **{"host": "127.0.0.1", "port": self.port, "operators": 1, "operator_rate": 5.0},
             **{"probe_rate": PROBING, "stuck": 0, "rpc": True},
         }
-        self._operators = subprocess.Popen(
-            dying_with_this([sys.executable, "-m", "benchmarks.swarm_operators", json.dumps(plan)]),
-            cwd=HERE.parent,
-            stdin=subprocess.PIPE,
-            stdout=subprocess.PIPE,
-            text=True,
-        )
-        self._line()
+        operators = [sys.executable, "-m", "benchmarks.swarm_operators", json.dumps(plan)]
+        self._operators = Onlooker(*operators)
+        self._operators.line()
         time.sleep(SETTLE)
 
     def window(self, seconds: float) -> Window:
         """Return what comes of the next seconds."""
-        assert self._operators is not None and self._operators.stdin is not None
+        assert self._operators is not None
         pids = (self._adapter, self._gateway)
         begin = time.monotonic()
-        self._operators.stdin.write(json.dumps({"begin": begin, "seconds": seconds}) + "\n")
-        self._operators.stdin.flush()
+        self._operators.tell(begin=begin, seconds=seconds)
         before = [cpu_seconds(pid) for pid in pids]
         time.sleep(max(0.0, begin + seconds - time.monotonic()))
         took = time.monotonic() - begin
         adapter, gateway = ((cpu_seconds(p) - b) / took for p, b in zip(pids, before, strict=True))
-        return Window(self._line()["delays"], adapter, gateway)
+        return Window(self._operators.line()["delays"], adapter, gateway)
 
     def end(self) -> None:
         """Let the desk go."""
         if self._operators is not None:
-            self._operators.kill()
-            self._operators.wait()
+            self._operators.end()
 
     def megabytes(self) -> tuple[float, float]:
         """Return the resident memory of the adapter and of the gateway, in MB."""
@@ -109,13 +100,6 @@ class Linked:
         with urllib.request.urlopen(f"http://127.0.0.1:{self.port}/metrics", timeout=START) as page:
             found = FRESH.search(page.read().decode())
         return int(float(found.group(1))) if found else 0
-
-    def _line(self) -> Any:
-        assert self._operators is not None and self._operators.stdout is not None
-        line = self._operators.stdout.readline()
-        if not line:
-            raise RuntimeError(f"the desk ended with status {self._operators.wait()}")
-        return None if line == "ready\n" else json.loads(line)
 
 
 @contextmanager

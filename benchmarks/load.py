@@ -17,10 +17,9 @@ from benchmarks.page import Part, goal
 from benchmarks.swarm import READ_WITHIN, Plan, Seen, Swarm
 from benchmarks.trial import size
 from robot_bridge.core.sites.settings_tables import LimitSettings
+from tests.support.fleet import SITE, serve
 from tests.support.processes import Processes
-from tools.plugin_files import ROOT
 
-SITE = ROOT / "resources" / "sample_site"
 HERE = Path(__file__).parent
 SERVER_CORE, SWARM_CORE = 0, 1
 FEW_ROBOTS, MANY = size((100, 1000), (20, 100))
@@ -42,6 +41,7 @@ per_address = 5000
 desks_per_account = 100
 """
 MALLOC = {"MALLOC_MMAP_THRESHOLD_": "4194304", "MALLOC_TRIM_THRESHOLD_": "67108864"}
+"""As the systemd unit sets it."""
 
 TEXT = """\
 Robots on WebSocket send positions; operators subscribe to all robots at {operator_rate:g} Hz, in the form
@@ -263,20 +263,14 @@ def site_with_room(folder: Path) -> Path:
 @contextmanager
 def serving(peer: str = "") -> Iterator[tuple[int, int]]:
     with tempfile.TemporaryDirectory() as name:
-        folder = Path(name)
-        command: list[str | Path] = [sys.executable, HERE / "plain_fanout.py", peer]
-        if not peer:
-            options = [
-                "--site",
-                site_with_room(folder),
-                "--database",
-                f"sqlite:///{folder}/fleet.db",
-                "--port",
-                "0",
-            ]
-            command = [sys.executable, "-m", "robot_bridge", "serve", *options]
+        folder, pinned = Path(name), ["taskset", "-c", str(SERVER_CORE)]
         with Processes(folder / "logs") as processes:
-            pinned = ["taskset", "-c", str(SERVER_CORE), *command]
-            process = processes.start("server", pinned, env=MALLOC)
-            port = processes.wait_for_line("server", r"listening on ws://\S+:(\d+)", 60).group(1)
-            yield process.pid, int(port)
+            if peer:
+                command = [*pinned, sys.executable, HERE / "plain_fanout.py", peer]
+                process = processes.start("server", command, env=MALLOC)
+                port = processes.wait_for_line("server", r"listening on ws://\S+:(\d+)", 60).group(1)
+                yield process.pid, int(port)
+            else:
+                url = f"sqlite:///{folder}/fleet.db"
+                served = serve(processes, site_with_room(folder), url, env=MALLOC, through=pinned)
+                yield served.process.pid, served.port

@@ -94,6 +94,58 @@ class Inbox:
         return 2 + extended, int.from_bytes(self._bytes[at + 2 : at + 2 + extended], "big")
 
 
+class Peer:
+    """A robot's or a link's end of a connection, for crowds in one thread: nobody waits for a socket."""
+
+    def __init__(self, host: str, port: int, path: str) -> None:
+        self._where = host, port, path
+        self.open()
+
+    def open(self) -> None:
+        """Connect, also for another time.
+
+        :raises ConnectionError: when the server does not take it.
+        """
+        self.sock = connect(*self._where)
+        self._inbox = Inbox()
+        self._left = b""
+
+    def send(self, message: bytes = b"") -> None:
+        """Send a frame; what the socket does not take now goes first the next time."""
+        self._left += message
+        try:
+            while self._left:
+                self._left = self._left[self.sock.send(self._left) :]
+        except (BlockingIOError, ConnectionError):
+            # A wire that is closed is seen when it is read.
+            return
+
+    def offer(self, message: bytes) -> bool:
+        """Send a frame, or return false where the socket does not take it."""
+        try:
+            self._left = self._left[self.sock.send(self._left) :] if self._left else b""
+            if not self._left:
+                self._left = message[self.sock.send(message) :]
+                return True
+        except BlockingIOError:
+            pass
+        return False
+
+    def received(self) -> list[tuple[int, bytes]]:
+        """Return the frames that have come, opcode and payload; pings are answered.
+
+        :raises ConnectionError: when the server has closed the connection.
+        """
+        data = self.sock.recv(1 << 16)
+        if not data:
+            raise ConnectionError(f"{self._where[2]}: the server closed")
+        frames = self._inbox.take(data)
+        for opcode, payload in frames:
+            if opcode == PING:
+                self.send(pong(payload))
+        return frames
+
+
 class Stream:
     """One connection of an operator."""
 

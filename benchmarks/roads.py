@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import importlib.util
+import importlib
 import resource
-import sys
 from collections.abc import Callable, Sequence
 from itertools import pairwise
 from pathlib import Path
@@ -31,6 +30,7 @@ from robot_bridge.core.roads.network import Network, build_network
 from robot_bridge.core.roads.network_checks import count_by_kind, find_road_defects, repaired_network
 from robot_bridge.core.roads.path_smoothing import Driving, dense_path
 from robot_bridge.core.roads.routes import Router
+from tools.plugin_files import PACKAGE, register_plugin
 
 TOLERANCE = 0.5
 SIDE = size(317, 40)
@@ -45,7 +45,6 @@ RUNS, CLOSED = size(5, 2), 100
 PRECISE, NEAR = 1e-6, 0.1
 """Metres that lengths may differ by, and that a path may be off a surface."""
 ENGINES = {"contraction": PAIRS, "scipy": SLOW, "plain": SLOW}
-ROOT = Path(__file__).parents[1]
 
 TEXT = """\
 Ways per second count a whole question: both places taken to the nearest edge, the way, and its stretches;
@@ -179,15 +178,8 @@ def _rivals(network: Network) -> dict[str, tuple[Callable[[int, int], object], i
 
 def _graph_engine() -> type:
     """Return the plugin's engine, by the name that QGIS knows the plugin's package by."""
-    name = "fleet_supervisor"
-    if name not in sys.modules:
-        spec = importlib.util.spec_from_file_location(
-            name, ROOT / "__init__.py", submodule_search_locations=[str(ROOT)]
-        )
-        assert spec is not None and spec.loader is not None
-        sys.modules[name] = importlib.util.module_from_spec(spec)
-        spec.loader.exec_module(sys.modules[name])
-    engine: type = importlib.import_module(f"{name}.plugin.processing.algorithms.find_route").GraphEngine
+    register_plugin()
+    engine: type = importlib.import_module(f"{PACKAGE}.plugin.processing.algorithms.find_route").GraphEngine
     return engine
 
 

@@ -16,35 +16,32 @@ from contextlib import contextmanager
 from dataclasses import asdict, dataclass
 from importlib.util import find_spec
 from pathlib import Path
-from typing import Any
 
-from sqlalchemy import Connection, make_url
 from websockets.exceptions import ConnectionClosed
-from websockets.sync.client import ClientConnection, connect
 
 from benchmarks.clock import Spread, spread, table
 from benchmarks.page import Part
 from benchmarks.sql_robots import Plan, Seen
+from benchmarks.swarm import cpu_seconds
 from benchmarks.trial import size
 from robot_bridge.gateway.storage import revisions
 from robot_bridge.gateway.storage.database import run_once
-from robot_bridge.gateway.storage.roles.choice import role_manager_on
 from robot_bridge.gateway.storage.wakeups import LONGEST_S, SHORTEST_S
-from tests.support.databases.database_server import DatabaseServer
+from tests.support.databases.database_server import DatabaseServer, add_accounts
 from tests.support.databases.mariadb import MariaDb
 from tests.support.databases.postgresql import PostgreSql
+from tests.support.fleet import SITE, serve
+from tests.support.operators import Desk, open_desk
 from tests.support.processes import Processes, dying_with_this
 from tools.plugin_files import ROOT
 
 Databases = Iterator[tuple[str, str]]
 NUMBERS = itertools.count(1)
-SITE = ROOT / "resources" / "sample_site"
 COUNTS = size((1, 20, 100), (1, 5))
 ROUNDS = size(3, 2)
 """How often each is measured on the same database, for so many seconds:"""
 SECONDS = size(2.0, 1.0)
 ONCE_A_SECOND, ON_AND_ON = 1.0, 0.0
-PASSWORD = "robot-of-the-benchmark"
 GATHER_S, BLOCK = 0.002, 4096
 """Seconds that the bare loop waits for more in one of its ways, and bytes that are written to the disk."""
 POLL_S = {"sqlite": 0.002, "postgresql": 0.0, "mariadb": 0.004}
@@ -200,7 +197,7 @@ def measured(
     # Accounts belong to the server: each run has names of its own.
     names = {f"robot{next(NUMBERS)}": url for _ in range(robots)}
     if case.kind != "sqlite":
-        names = run_once(admin_url, _accounts, list(names), make_url(url))
+        names = add_accounts(url, admin_url, list(names))
     plan = Plan(names, SECONDS, rate, POLL_S[case.kind], case.durable)
     with tempfile.TemporaryDirectory() as folder, Processes(Path(folder)) as processes:
         rounds = (
@@ -224,21 +221,12 @@ def _databases(case: Case) -> Iterator[Databases]:
         yield ((url, server.admin_url(url)) for url in iter(server.new_database, None))
 
 
-def _accounts(connection: Connection, names: list[str], url: Any) -> dict[str, str]:
-    keeper = role_manager_on(connection)
-    for name in names:
-        keeper.add_robot(name, PASSWORD)
-    shared = url.set(database=keeper.robots_database(), password=PASSWORD)
-    return {name: shared.set(username=name).render_as_string(hide_password=False) for name in names}
-
-
 def _with_gateway(processes: Processes, url: str, plan: Plan) -> list[tuple[Seen, float]]:
-    serve = ["serve", "--site", SITE, "--port", "0", "--database", url]
-    gateway = processes.start("gateway", [sys.executable, "-m", "robot_bridge", *serve])
-    address = processes.wait_for_line("gateway", r"listening on (ws://[\w.]+:\d+)", 30).group(1)
-    with connect(f"{address}/desk") as desk:
-        threading.Thread(target=_watch, args=(desk,), daemon=True).start()
-        return [_ask(plan, gateway.pid) for _ in range(ROUNDS)]
+    gateway = serve(processes, SITE, url)
+    with open_desk(gateway.address) as desk:
+        desk.ask("subscribe", {"rate": 5})
+        threading.Thread(target=_look_on, args=(desk,), daemon=True).start()
+        return [_ask(plan, gateway.process.pid) for _ in range(ROUNDS)]
 
 
 def _with_bare_loop(processes: Processes, url: str, plan: Plan, gather: float) -> list[tuple[Seen, float]]:
@@ -250,7 +238,7 @@ def _with_bare_loop(processes: Processes, url: str, plan: Plan, gather: float) -
 
 def _ask(plan: Plan, pid: int) -> tuple[Seen, float]:
     """Let the robots ask; return what they saw, and the cores that process ``pid`` took meanwhile."""
-    began, used = time.perf_counter(), _cpu(pid)
+    began, used = time.perf_counter(), cpu_seconds(pid)
     done = subprocess.run(
         dying_with_this([sys.executable, "-m", "benchmarks.sql_robots"]),
         cwd=ROOT,
@@ -259,16 +247,14 @@ def _ask(plan: Plan, pid: int) -> tuple[Seen, float]:
         text=True,
         check=True,
     )
-    cpu = (_cpu(pid) - used) / (time.perf_counter() - began)
+    cpu = (cpu_seconds(pid) - used) / (time.perf_counter() - began)
     return Seen(**json.loads(done.stdout)), cpu
 
 
-def _watch(desk: ClientConnection) -> None:
+def _look_on(desk: Desk) -> None:
     """Be an operator who looks on."""
-    for number, (method, params) in enumerate((("hello", {"operator": "Ada"}), ("subscribe", {"rate": 5}))):
-        desk.send(json.dumps({"jsonrpc": "2.0", "id": number, "method": method, "params": params}))
     with contextlib.suppress(ConnectionClosed):
-        for _ in desk:
+        for _ in desk.connection:
             pass
 
 
@@ -287,12 +273,6 @@ def _milliseconds_to_disk() -> Spread:
             os.fdatasync(file.fileno())
             times.append((time.perf_counter() - began) * 1e3)
     return spread(times)
-
-
-def _cpu(pid: int) -> float:
-    """Return the seconds of processor time that a process has used."""
-    fields = Path(f"/proc/{pid}/stat").read_text(encoding="ascii").rsplit(")", 1)[1].split()
-    return (int(fields[11]) + int(fields[12])) / 100
 
 
 def _table(runs: list[Run]) -> str:

@@ -13,6 +13,7 @@ import subprocess
 import sys
 import time
 import urllib.request
+from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from types import TracebackType
@@ -93,6 +94,43 @@ class Seen:
         return self.late < BEHIND_MS
 
 
+class Onlooker:
+    """A process that is told of windows, and says as JSON what came of each."""
+
+    def __init__(self, *command: str | Path, env: Mapping[str, str] | None = None) -> None:
+        self._process = subprocess.Popen(
+            dying_with_this(command),
+            cwd=ROOT,
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            text=True,
+            env={**os.environ, **(env or {})},
+        )
+        self.pid = self._process.pid
+
+    def tell(self, **window: float) -> None:
+        """Tell of the next window."""
+        assert self._process.stdin is not None
+        self._process.stdin.write(json.dumps(window) + "\n")
+        self._process.stdin.flush()
+
+    def line(self) -> Any:
+        """Return what it says next, None where that is that it is ready.
+
+        :raises RuntimeError: when it has ended.
+        """
+        assert self._process.stdout is not None
+        line = self._process.stdout.readline()
+        if not line:
+            raise RuntimeError(f"{self._process.args!r} ended with status {self._process.wait()}")
+        return None if line in ("ready\n", "up\n") else json.loads(line)
+
+    def end(self) -> None:
+        """End it."""
+        self._process.kill()
+        self._process.communicate()
+
+
 class Swarm:
     """A context in which everybody of a plan is connected, and the server has done all that came of it.
 
@@ -102,49 +140,36 @@ class Swarm:
 
     def __init__(self, plan: Plan, core: int) -> None:
         self._plan = plan
+        robots = "benchmarks.swarm_link" if plan.over_link else "benchmarks.swarm_robots"
         self._robots, self._operators = (
-            subprocess.Popen(
-                dying_with_this(
-                    ["taskset", "-c", str(core), sys.executable, "-m", name, json.dumps(asdict(plan))]
-                ),
-                cwd=ROOT,
-                stdin=subprocess.PIPE,
-                stdout=subprocess.PIPE,
-                text=True,
-            )
-            for name in (
-                "benchmarks.swarm_link" if plan.over_link else "benchmarks.swarm_robots",
-                "benchmarks.swarm_operators",
-            )
+            Onlooker("taskset", "-c", str(core), sys.executable, "-m", module, json.dumps(asdict(plan)))
+            for module in (robots, "benchmarks.swarm_operators")
         )
 
     def __enter__(self) -> Swarm:
-        self.arrival = float(_line(self._robots))
-        _line(self._operators)
+        self.arrival = float(self._robots.line())
+        self._operators.line()
         self._wait_until_idle()
         return self
 
     def __exit__(
         self, _kind: type[BaseException] | None, _error: BaseException | None, _trace: TracebackType | None
     ) -> None:
-        for process in (self._robots, self._operators):
-            assert process.stdin is not None
-            process.stdin.close()
-            process.kill()
-            process.wait()
+        self._robots.end()
+        self._operators.end()
 
     def window(self, rate: float, seconds: float) -> Seen:
         """Return what comes of ``rate`` messages a second of each robot for that long, after SETTLE."""
         pid, before = self._plan.pid, self._count()
         begin = time.monotonic() + 0.2
         measured, end = begin + SETTLE, begin + SETTLE + seconds
-        _tell(self._robots, {"begin": begin, "seconds": end - begin, "rate": rate, "measured": SETTLE})
-        _tell(self._operators, {"begin": measured, "seconds": seconds})
+        self._robots.tell(begin=begin, seconds=end - begin, rate=rate, measured=SETTLE)
+        self._operators.tell(begin=measured, seconds=seconds)
         time.sleep(measured - time.monotonic())
         cpu, began, memory = cpu_seconds(pid), time.monotonic(), megabytes_of(pid)
         time.sleep(max(0.0, end - time.monotonic()))
         cpu = (cpu_seconds(pid) - cpu) / (time.monotonic() - began)
-        sent, told = _line(self._robots), _line(self._operators)
+        sent, told = self._robots.line(), self._operators.line()
         unread, read_after = self._wait(before + sent["messages"], end)
         return Seen(
             rate=sent["messages"] / (end - begin),
@@ -185,20 +210,6 @@ class Swarm:
             text = f"the server says nothing for {ANSWER_WITHIN:g} s: the machine is too busy to measure on"
             raise RuntimeError(text) from None
         return int(float(found.group(1))) if found else 0
-
-
-def _tell(process: subprocess.Popen[str], window: dict[str, float]) -> None:
-    assert process.stdin is not None
-    process.stdin.write(json.dumps(window) + "\n")
-    process.stdin.flush()
-
-
-def _line(process: subprocess.Popen[str]) -> Any:
-    assert process.stdout is not None
-    line = process.stdout.readline()
-    if not line:
-        raise RuntimeError(f"{process.args!r} ended with status {process.wait()}")
-    return None if line == "ready\n" else json.loads(line)
 
 
 def cpu_seconds(pid: int) -> float:

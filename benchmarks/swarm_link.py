@@ -10,7 +10,7 @@ import select
 import struct
 import time
 
-from benchmarks.raw_websocket import BINARY, PING, Inbox, call, connect, frame, pong
+from benchmarks.raw_websocket import BINARY, Peer, call, frame
 from benchmarks.swarm_robots import ARRIVED_WITHIN, Sent, serve
 
 TOGETHER = 0.05
@@ -25,16 +25,14 @@ class LinkRobots:
     def __init__(self, plan: dict[str, object]) -> None:
         self._count = int(str(plan["robots"]))
         self._names = [f"load-{n}" for n in range(self._count)]
-        self._sock = connect(str(plan["host"]), int(str(plan["port"])), "/link")
-        self._inbox = Inbox()
-        self._left = b""
+        self._peer = Peer(str(plan["host"]), int(str(plan["port"])), "/link")
         self._poll = select.poll()
-        self._poll.register(self._sock, select.POLLIN)
+        self._poll.register(self._peer.sock, select.POLLIN)
         self._let_in = 0
-        self._send(call("hello", {"protocol": 1, "kind": "bench"}, 0))
+        self._peer.send(call("hello", {"protocol": 1, "kind": "bench"}, 0))
         for number, name in enumerate(self._names, 1):
             ready = {"robot": name, "magic": number, "abilities": ["targets", "paths"]}
-            self._send(call("Ready", ready, number))
+            self._peer.send(call("Ready", ready, number))
 
     def arrive(self) -> None:
         """Hear until every robot is let in."""
@@ -48,13 +46,9 @@ class LinkRobots:
         """Take in what comes for that long, and send what the socket did not take."""
         until = time.monotonic() + seconds
         while (left := until - time.monotonic()) > 0:
-            self._send(b"")
+            self._peer.send()
             if self._poll.poll(left * 1000):
-                for opcode, payload in self._inbox.take(self._sock.recv(1 << 16)):
-                    if opcode == PING:
-                        self._send(pong(payload))
-                    elif b'"result"' in payload:
-                        self._let_in += 1
+                self._let_in += sum(b'"result"' in payload for _, payload in self._peer.received())
 
     def drive(self, begin: float, seconds: float, rate: float, measured: float) -> Sent:
         """Send ``rate`` positions a second of each robot, evenly, from ``begin``."""
@@ -70,7 +64,7 @@ class LinkRobots:
             due = min(due, self._count)
             if due > 0:
                 sent.late = max(sent.late, (now - begin - number * gap - TOGETHER) * 1e3)
-                self._send(frame(self._table(number, due), BINARY))
+                self._peer.send(frame(self._table(number, due), BINARY))
                 number += due
                 sent.messages += due
             self.hear(TOGETHER)
@@ -90,14 +84,6 @@ class LinkRobots:
         return b"".join(
             [struct.pack("<I", length), head.ljust(length), struct.pack(f"<{len(values)}d", *values)]
         )
-
-    def _send(self, message: bytes) -> None:
-        self._left += message
-        try:
-            while self._left:
-                self._left = self._left[self._sock.send(self._left) :]
-        except BlockingIOError:
-            return
 
 
 if __name__ == "__main__":

@@ -13,7 +13,7 @@ import time
 from dataclasses import asdict, dataclass
 from typing import Any
 
-from benchmarks.raw_websocket import PING, Inbox, call, connect, frame, pong, result
+from benchmarks.raw_websocket import TEXT, Peer, call, frame, result
 
 PAUSE = 0.0005
 """seconds between two looks at the clock."""
@@ -34,18 +34,16 @@ class Sent:
     own_cpu: float = 0.0
 
 
-class Robot:
+class Robot(Peer):
     """One robot: it takes its map, says where it is, and answers pings; ``arrived`` once it has the map."""
 
     def __init__(self, host: str, port: int, number: int, *, rpc: bool) -> None:
-        self.sock = connect(host, port, f"/robot?robot=load-{number}")
-        self._inbox = Inbox()
-        self._left = b""
+        super().__init__(host, port, f"/robot?robot=load-{number}")
         self._x, self._step = 10.0 + number % 30, 0
         self._number = number
         self.arrived = not rpc
         if rpc:
-            self.sock.sendall(call("Ready", {"magic": number}, 1))
+            self.send(call("Ready", {"magic": number}, 1))
 
     def tell(self) -> bool:
         """Send a position; return false when the socket takes no more."""
@@ -54,32 +52,19 @@ class Robot:
             f'{{"jsonrpc":"2.0","method":"SendPos","params":{{"x":{self._x + self._step % 50 * 0.1:.3f},'
             f'"y":{20 + self._number / 1000:.3f},"theta":0.5,"v":1.0,"t":{time.time():.6f}}}}}'
         )
-        return self._send(message)
-
-    def _send(self, message: bytes) -> bool:
-        """Send a frame, or return false where the socket does not take it."""
-        try:
-            self._left = self._left[self.sock.send(self._left) :] if self._left else b""
-            if not self._left:
-                self._left = message[self.sock.send(message) :]
-                return True
-        except BlockingIOError:
-            pass
-        return False
+        return self.offer(message)
 
     def hear(self) -> None:
         """Take in what came."""
-        for opcode, payload in self._inbox.take(self.sock.recv(1 << 16)):
-            if opcode == PING:
-                self._send(pong(payload))
-            elif not self.arrived:
+        for opcode, payload in self.received():
+            if opcode == TEXT and not self.arrived:
                 self._take_map(payload)
 
     def _take_map(self, payload: bytes) -> None:
         """Acknowledge the map, if this is it."""
         message = json.loads(payload)
         if message.get("method") == "SetMap":
-            self._send(result(message["id"]))
+            self.send(result(message["id"]))
             self.arrived = True
 
 

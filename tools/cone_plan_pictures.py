@@ -17,12 +17,12 @@ from pathlib import Path
 import numpy as np
 
 from robot_bridge.core.sites.site import read_site
-from tests.support.fleet import PROJECT, SITE, start_gateway
+from tests.support.fleet import PROJECT, SITE, Start, new_database, start_gateway, start_robots
 from tests.support.picture import reduce_colours
 from tests.support.processes import Processes
 from tests.support.program import ended
-from tests.support.qgis import Profile, virtual_screen
-from tests.support.session import follow, start_qgis
+from tests.support.qgis import virtual_screen
+from tests.support.session import play
 from tools.plugin_files import ROOT
 
 FOLDER = Path(os.environ.get("FLEET_DESKTOP_FOLDER") or ROOT / "build" / "cone_plan_pictures")
@@ -30,7 +30,7 @@ WINDOW = (1360, 850)
 TIMEOUT = 300.0
 EXTENT = (4.0, -4.0, 130.0, 136.0)
 """What of the site the map shows, metres."""
-STARTS = {"r1": (24.0, 2.0, 0.0), "r2": (62.0, 2.0, 0.0), "r3": (104.0, 2.0, math.pi)}
+STARTS = (Start("r1", (24.0, 2.0, 0.0)), Start("r2", (62.0, 2.0, 0.0)), Start("r3", (104.0, 2.0, math.pi)))
 ORIGIN = (12.0, 6.2)
 """Where the layout begins, heading east."""
 DIMENSIONS = {"vehicle_width": 1.7, "exit_length": 15.0}
@@ -42,34 +42,18 @@ def run(pictures: Path) -> None:
 
     :raises StageError: when something does not come up or does not happen.
     """
-    FOLDER.mkdir(parents=True, exist_ok=True)
-    database = FOLDER / "fleet.db"
-    for file in FOLDER.glob("fleet.db*"):
-        file.unlink()
+    database = new_database(FOLDER)
     with Processes(FOLDER / "logs") as processes:
         display = virtual_screen(processes, *WINDOW)
         address = start_gateway(processes, database)
-        killed = start_robots(processes, address)
-        profile = Profile(FOLDER / "profile", link=False)
-        told = plan(address, pictures)
-        qgis = start_qgis(processes, profile, "cone_plan_session.py", told, display)
-        for entry in follow(processes, qgis, Path(str(told["journal"])), TIMEOUT, killed=["r1"]):
+        robots = start_robots(processes, address, database, SPEED, STARTS)
+        session, told = "cone_plan_session.py", plan(address, pictures)
+        for entry in play(processes, FOLDER, session, told, TIMEOUT, display=display, killed=["r1"]):
             print(entry["text"], flush=True)
             if entry["step"] == "kill r1":
-                killed.kill()
+                robots["r1"].kill()
     for picture in sorted(pictures.glob("cone-plan-*.png")):
         reduce_colours(picture)
-
-
-def start_robots(processes: Processes, address: str):
-    """Start three robots and return the process of the first."""
-    made = {}
-    for seed, (name, pose) in enumerate(STARTS.items(), start=1):
-        where = ",".join(str(number) for number in pose)
-        options = ["--name", name, f"--pose={where}", "--seed", str(seed), "--speed", str(SPEED)]
-        command = [sys.executable, "-m", "robot_bridge", "robot", "--url", f"{address}/robot", *options]
-        made[name] = processes.start(name, command)
-    return made["r1"]
 
 
 def plan(address: str, pictures: Path) -> dict[str, object]:
@@ -77,10 +61,9 @@ def plan(address: str, pictures: Path) -> dict[str, object]:
     frame = read_site(SITE).frame
     corners = frame.to_crs(np.array([EXTENT[:2], EXTENT[2:]]))
     return {
-        "journal": str(FOLDER / "journal.jsonl"),
         "project": str(PROJECT),
         "gateway": address,
-        "robots": list(STARTS),
+        "robots": [start.name for start in STARTS],
         "pictures": str(pictures),
         "window": WINDOW,
         "crs": frame.crs,

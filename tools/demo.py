@@ -22,14 +22,14 @@ from pathlib import Path
 import numpy as np
 
 from robot_bridge.core.sites.site import Site, read_site
-from tests.support.desk_wire import ask
 from tests.support.fleet import PROJECT, SITE, STARTS, start_gateway, start_robots
 from tests.support.map_export import export
+from tests.support.operators import ask
 from tests.support.processes import Processes
 from tests.support.program import ended
 from tests.support.qgis import Profile, virtual_screen
 from tests.support.report import PAPER_BYTES_PER_M2, Report
-from tests.support.session import follow, start_qgis
+from tests.support.session import play
 from tests.support.verdict import Errand, Outcome, judge
 from tools.plugin_files import ROOT, version
 from tools.zalazone import demonstration
@@ -67,7 +67,7 @@ class Demonstration:
         start_robots(self._processes, address, database, SPEED)
         profile = Profile(FOLDER / "profile", link=False)
         self._export(profile)
-        self._drive(profile, address)
+        self._drive(address)
         self._judge(address)
 
     def _export(self, profile: Profile) -> None:
@@ -80,11 +80,10 @@ class Demonstration:
             f"as text {exported.text_bytes} bytes, {per_m2}; as binary {exported.binary_bytes}, the same map"
         )
 
-    def _drive(self, profile: Profile, address: str) -> None:
-        display = virtual_screen(self._processes, *SCREEN)
+    def _drive(self, address: str) -> None:
         plan = desk_plan(self._site, address)
-        qgis = start_qgis(self._processes, profile, "demo_session.py", plan, display)
-        for entry in follow(self._processes, qgis, Path(str(plan["journal"])), DESK_TIMEOUT):
+        display, session = virtual_screen(self._processes, *SCREEN), "demo_session.py"
+        for entry in play(self._processes, FOLDER, session, plan, DESK_TIMEOUT, display=display):
             self._happened(entry["text"])
 
     def _judge(self, address: str) -> None:
@@ -110,7 +109,6 @@ def in_words(outcome: Outcome) -> str:
 def desk_plan(site: Site, address: str) -> dict[str, object]:
     """Return what the session inside QGIS is told; places are in the site's CRS, metres."""
     return {
-        "journal": str(FOLDER / "journal.jsonl"),
         "project": str(PROJECT),
         "gateway": address,
         "robots": [start.name for start in STARTS],

@@ -16,12 +16,12 @@ from pathlib import Path
 import numpy as np
 
 from robot_bridge.core.sites.site import read_site
-from tests.support.fleet import PROJECT, SITE, STARTS, start_gateway, start_robots
+from tests.support.fleet import PROJECT, SITE, STARTS, new_database, start_gateway, start_robots
 from tests.support.picture import reduce_colours
 from tests.support.processes import Processes
 from tests.support.program import ended
-from tests.support.qgis import Profile, has_screen, virtual_screen
-from tests.support.session import follow, start_qgis
+from tests.support.qgis import has_screen, virtual_screen
+from tests.support.session import play
 from tools.plugin_files import ROOT
 
 FOLDER = Path(os.environ.get("FLEET_DESKTOP_FOLDER") or ROOT / "build" / "desktop")
@@ -42,7 +42,6 @@ def plan(address: str, picture: Path | None) -> dict[str, object]:
     """Return what the session inside QGIS is told."""
     frame = read_site(SITE).frame
     told: dict[str, object] = {
-        "journal": str(FOLDER / "journal.jsonl"),
         "project": str(PROJECT),
         "gateway": address,
         "operator": "operator" if picture else getpass.getuser(),
@@ -77,19 +76,14 @@ def run(picture: Path | None) -> None:
 
     :raises StageError: when something does not come up.
     """
-    FOLDER.mkdir(parents=True, exist_ok=True)
-    database = FOLDER / "fleet.db"
-    for file in FOLDER.glob("fleet.db*"):
-        file.unlink()
+    database = new_database(FOLDER)
     with Processes(FOLDER / "logs") as processes:
         display = display_for(processes, picture)
         address = start_gateway(processes, database)
         start_robots(processes, address, database)
-        profile = Profile(FOLDER / "profile", link=False)
-        told = plan(address, picture)
-        qgis = start_qgis(processes, profile, "desktop_session.py", told, display)
         patience = PICTURE_TIMEOUT if picture else float("inf")
-        for entry in follow(processes, qgis, Path(str(told["journal"])), patience):
+        told = plan(address, picture)
+        for entry in play(processes, FOLDER, "desktop_session.py", told, patience, display=display):
             print(f"{entry['text']}", flush=True)
     if picture is not None:
         reduce_colours(picture)

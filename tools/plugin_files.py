@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import importlib.metadata
+import importlib.util
+import sys
 from collections.abc import Iterator
 from configparser import ConfigParser
 from pathlib import Path
@@ -83,3 +85,15 @@ def _vendored_files() -> Iterator[tuple[str, bytes]]:
             f"{VENDORED} {distribution.version} has {licences} licence files where one is expected; "
             f"install it from its wheel: .venv/bin/python -m pip install --force-reinstall {VENDORED}"
         )
+
+
+def register_plugin() -> None:
+    """Make the repository's root importable under the name that QGIS gives it."""
+    if PACKAGE in sys.modules:
+        return
+    spec = importlib.util.spec_from_file_location(
+        PACKAGE, ROOT / "__init__.py", submodule_search_locations=[str(ROOT)]
+    )
+    assert spec is not None and spec.loader is not None
+    sys.modules[PACKAGE] = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(sys.modules[PACKAGE])

@@ -9,15 +9,15 @@ import argparse
 import sys
 from pathlib import Path
 
+from tests.support.fleet import PROJECT
 from tests.support.picture import reduce_colours
 from tests.support.processes import Processes
 from tests.support.program import ended
-from tests.support.qgis import Profile, virtual_screen
-from tests.support.session import follow, start_qgis
+from tests.support.qgis import virtual_screen
+from tests.support.session import play
 from tools.plugin_files import ROOT
 
 FOLDER = ROOT / "build" / "roles_picture"
-PROJECT = ROOT / "resources" / "sample_site" / "sample_site.qgz"
 SCREEN = (1360, 850)
 TIMEOUT = 90.0
 
@@ -29,16 +29,9 @@ def run(picture: Path) -> None:
     """
     FOLDER.mkdir(parents=True, exist_ok=True)
     with Processes(FOLDER / "logs") as processes:
+        plan = {"project": str(PROJECT), "picture": str(picture), "window": SCREEN}
         display = virtual_screen(processes, *SCREEN)
-        profile = Profile(FOLDER / "profile", link=False)
-        plan = {
-            "journal": str(FOLDER / "journal.jsonl"),
-            "project": str(PROJECT),
-            "picture": str(picture),
-            "window": SCREEN,
-        }
-        qgis = start_qgis(processes, profile, "roles_session.py", plan, display)
-        for entry in follow(processes, qgis, Path(plan["journal"]), TIMEOUT):
+        for entry in play(processes, FOLDER, "roles_session.py", plan, TIMEOUT, display=display):
             print(entry["text"], flush=True)
     reduce_colours(picture)
 

@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 
 from robot_bridge.core.robotmap.text_format import read_text
-from tests.support.desk_wire import ask
+from tests.support.operators import ask
 from tests.support.patience import START
 from tests.support.processes import Processes
 from tests.support.qgis import program

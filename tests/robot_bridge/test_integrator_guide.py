@@ -22,8 +22,8 @@ from robot_bridge.protocol.codec import decode_answer, decode_desk_request, deco
 from robot_bridge.protocol.json_schemas import NOTIFICATIONS
 from tests.support.bridge.bridge_accounts import bearing
 from tests.support.bridge.bridge_programs import wait_until
-from tests.support.bridge.bridge_wires import RefusedError
 from tests.support.bridge.command_line import run_command
+from tests.support.wire import RefusedError
 
 ROOT = Path(__file__).resolve().parents[2]
 GUIDE = (ROOT / "docs" / "integrator.md").read_text(encoding="utf-8")

@@ -48,6 +48,28 @@ def start_qgis(
     return processes.start("qgis", [program("qgis"), *options], env=env)
 
 
+def play(
+    processes: Processes,
+    folder: Path,
+    session: str,
+    plan: Mapping[str, object],
+    seconds: float,
+    *,
+    display: str | None,
+    killed: Collection[str] = (),
+    settings: Mapping[str, str] | None = None,
+) -> Iterator[dict[str, Any]]:
+    """Let ``session`` work by ``plan`` in a QGIS with a profile in ``folder``, and :func:`follow` it.
+
+    :param display: the screen that it opens on; None for the user's own.
+    """
+    journal = folder / "journal.jsonl"
+    told = {"journal": str(journal), **plan}
+    profile = Profile(folder / "profile", link=False)
+    qgis = start_qgis(processes, profile, session, told, display, settings=settings)
+    return follow(processes, qgis, journal, seconds, killed)
+
+
 def follow(
     processes: Processes,
     qgis: subprocess.Popen[bytes],

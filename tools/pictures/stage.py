@@ -5,16 +5,14 @@ from __future__ import annotations
 import argparse
 import contextlib
 import importlib
-import importlib.util
 import os
-import sys
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 from types import ModuleType
 from typing import Any
 
 from tests.support.picture import reduce_colours
-from tools.plugin_files import PACKAGE, ROOT
+from tools.plugin_files import PACKAGE, ROOT, register_plugin
 
 SITE = ROOT / "resources" / "sample_site"
 STYLES = ROOT / "resources" / "styles"
@@ -33,7 +31,7 @@ def drawing(doc: str) -> Iterator[Path]:
 
     application = QgsApplication([], True)
     application.initQgis()
-    _register_plugin()
+    register_plugin()
     yield folder
 
 
@@ -99,12 +97,3 @@ def draw_map(
     if not job.renderedImage().save(str(picture)):
         raise SystemExit(f"{picture} cannot be written: choose a folder that exists.")
     reduce_colours(picture)
-
-
-def _register_plugin() -> None:
-    spec = importlib.util.spec_from_file_location(
-        PACKAGE, ROOT / "__init__.py", submodule_search_locations=[str(ROOT)]
-    )
-    module = importlib.util.module_from_spec(spec)
-    sys.modules[PACKAGE] = module
-    spec.loader.exec_module(module)

@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from tests.support.desk_wire import ask, greet
 from tests.support.errors import StageError
+from tests.support.operators import ask, open_desk
 
 Place = tuple[float, float]
 """Metres in the site frame."""
@@ -44,4 +44,5 @@ class Gateway:
 
     def emergency(self) -> dict[str, Any]:
         """Return the emergency stop in force, or the last one."""
-        return dict(greet(self.address, self.token)["emergency"])
+        with open_desk(self.address, self.token) as desk:
+            return dict(desk.emergency)

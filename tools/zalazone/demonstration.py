@@ -18,14 +18,15 @@ from pathlib import Path
 import numpy as np
 
 from robot_bridge.core.sites.site import read_site
-from tests.support.desk_wire import ask, watch
 from tests.support.errors import StageError
 from tests.support.fleet import start_gateway
+from tests.support.operators import ask, open_desk
 from tests.support.patience import BUSY
 from tests.support.picture import reduce_colours
 from tests.support.processes import Processes
-from tests.support.qgis import Profile, virtual_screen
-from tests.support.session import follow, start_qgis
+from tests.support.qgis import virtual_screen
+from tests.support.session import play
+from tests.support.wire import RefusedError
 from tools.plugin_files import ROOT
 from tools.zalazone.links import Links, peer
 from tools.zalazone.places import AWAY, CONE, GOAL, GRASS, ROAD_CLASS, START, same_ground, spellings
@@ -54,7 +55,7 @@ CONES = 6
 WATCHED_S = 6.0
 LOOKS = 5
 """On a machine that is busy otherwise an operator is told less at times."""
-RECORDED_HZ = 10.0
+RECORDED_HZ, WATCH_HZ = 10.0, 20.0
 LEAST_RATE = 9.0
 LARGEST_ERROR_M = 0.05
 QGIS_TIMEOUT = 600.0
@@ -78,9 +79,9 @@ class ZalaZone:
         self._publish()
         self._address = start_gateway(self._processes, FOLDER / "fleet.db", FOLDER / "site")
         self._happened(f"the gateway serves it at {self._address}")
-        self._links = Links(self._processes, FOLDER / "links", self._address, self._site.settings)
+        self._links = Links(self._processes, python, FOLDER / "links", self._address, self._site.settings)
         self._replay()
-        self._robots(python)
+        self._robots()
         self._questions()
         self._desk()
         self._cones()
@@ -128,9 +129,9 @@ class ZalaZone:
         )
         self._happened(f"they are marked as replay and cannot be commanded: {self._refusal(names[0])!r}")
 
-    def _robots(self, python: Path) -> None:
-        self._links.start_robot(python, FIRST, AWAY, SPEEDS[FIRST])
-        self._links.start_robot(python, SECOND, START, SPEEDS[SECOND])
+    def _robots(self) -> None:
+        self._links.start_robot(FIRST, AWAY, SPEEDS[FIRST])
+        self._links.start_robot(SECOND, START, SPEEDS[SECOND])
         self._links.start_ros()
         self._wait("the two ROS 2 robots", lambda: self._fresh([FIRST, SECOND]))
         self._happened(
@@ -176,11 +177,9 @@ class ZalaZone:
         )
 
     def _desk(self) -> None:
-        display = virtual_screen(self._processes, *WINDOW)
         plan = self._plan()
-        profile = Profile(FOLDER / "profile", link=False)
-        qgis = start_qgis(self._processes, profile, "zalazone_session.py", plan, display)
-        for entry in follow(self._processes, qgis, Path(str(plan["journal"])), QGIS_TIMEOUT):
+        display, session = virtual_screen(self._processes, *WINDOW), "zalazone_session.py"
+        for entry in play(self._processes, FOLDER, session, plan, QGIS_TIMEOUT, display=display):
             self._happened(entry["text"])
         reduce_colours(Path(str(plan["picture"])))
 
@@ -194,7 +193,6 @@ class ZalaZone:
             return frame.to_crs(np.array([point]))[0].tolist()
 
         return {
-            "journal": str(FOLDER / "journal.jsonl"),
             "project": str(FOLDER / "site" / "proving_ground.qgz"),
             "gateway": self._address,
             "window": WINDOW,
@@ -242,13 +240,13 @@ class ZalaZone:
         )
 
     def _refusal(self, robot: str) -> str:
-        command = {"command": "demo-refused-0001", "robot": robot, "op": "SetPosEnd"}
         x, y = CONE
         try:
-            ask(self._address, ("send", {**command, "params": {"x": x, "y": y}}))
-        except StageError as error:
+            with open_desk(self._address) as desk:
+                desk.send("demo-refused-0001", robot, "SetPosEnd", x=x, y=y)
+        except RefusedError as error:
             if "only seen" in str(error):
-                return str(error).partition("send: ")[2]
+                return str(error)
             raise
         raise StageError(f"{robot} is a recording, and the gateway took a command for it")
 
@@ -261,7 +259,10 @@ class ZalaZone:
         """Return each robot's places, those that are told twice once."""
         east, north = self._site.settings.origin
         seen: dict[str, list[Sample]] = {}
-        for snapshot in watch(self._address, seconds):
+        with open_desk(self._address) as desk:
+            desk.ask("subscribe", {"rate": WATCH_HZ})
+            desk.listen(seconds)
+        for snapshot in desk.snapshots:
             for robot in snapshot["robots"]:
                 if robot.get("x") is None:
                     continue

@@ -8,11 +8,9 @@ from pathlib import Path
 
 from robot_bridge.core.sites.settings import SiteSettings
 from tests.support.errors import StageError
-from tests.support.patience import START
 from tests.support.processes import Processes
-from tests.support.robots.ros_nodes import own_domain
+from tests.support.robots.ros_nodes import Nodes
 from tests.support.robots.ros_peer import DISTRIBUTION, ros_python
-from tools.plugin_files import ROOT
 from tools.zalazone.places import Place
 
 CARS = """\
@@ -45,7 +43,6 @@ place_cone = "/{{robot}}/place_cone"
 crs = "{crs}"
 origin = [{east}, {north}]
 """
-NODE = ROOT / "tests" / "support" / "robots" / "ros_robot.py"
 WITHOUT_PEER = (
     "the ROS 2 robots of this demonstration are real rclpy nodes, and they cannot be had here: {why}\n"
     "They are made once, in ~/.cache/fleet-supervisor, from packages of PyPI. That needs the network, "
@@ -56,12 +53,14 @@ WITHOUT_PEER = (
 class Links:
     """Starts what speaks for cars and robots; everything ends with ``processes``."""
 
-    def __init__(self, processes: Processes, folder: Path, address: str, site: SiteSettings):
+    def __init__(
+        self, processes: Processes, python: Path, folder: Path, address: str, site: SiteSettings
+    ) -> None:
         self._processes = processes
         self._folder = folder
         self._address = address
         self._site = site
-        self._domain = own_domain()
+        self._nodes = Nodes(processes, python)
         folder.mkdir(parents=True, exist_ok=True)
 
     def start_replay(self, recording: Path, cars: dict[str, str]) -> None:
@@ -74,21 +73,18 @@ class Links:
         """Start the adapter on the robots' DDS network. Their map begins at the site's origin."""
         east, north = self._site.origin
         places = {"crs": self._site.crs, "east": east, "north": north}
-        text = ROBOTS.format(address=self._address, domain=self._domain, distribution=DISTRIBUTION, **places)
+        text = ROBOTS.format(
+            address=self._address, domain=self._nodes.domain, distribution=DISTRIBUTION, **places
+        )
         self._start("ros2", "nav2", text)
 
-    def start_robot(self, python: Path, name: str, place: Place, speed: float) -> None:
+    def start_robot(self, name: str, place: Place, speed: float) -> None:
         """Start a ROS 2 robot of that name, which stands at ``place``, and wait until it is up."""
-        options = [f"--x={place[0]}", f"--y={place[1]}", f"--speed={speed}"]
-        environment = {"ROS_DOMAIN_ID": str(self._domain), "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST"}
-        self._processes.start(name, [python, NODE, name, *options], env=environment)
-        self._processes.wait_for_line(name, '"up"', START)
+        self._nodes.start(name, f"--x={place[0]}", f"--y={place[1]}", f"--speed={speed}")
 
     def said(self, name: str, event: str) -> list[dict]:
         """Return what the robot itself has said of an event."""
-        text = self._processes.log(name).read_text(encoding="utf-8", errors="replace")
-        lines = [line for line in text.splitlines() if line.startswith("{") and line.endswith("}")]
-        return [entry for entry in map(json.loads, lines) if entry["event"] == event]
+        return [entry for entry in self._nodes.events(name) if entry["event"] == event]
 
     def _start(self, kind: str, name: str, settings: str) -> None:
         file = self._folder / f"{name}.toml"

@@ -16,7 +16,7 @@ from qgis.PyQt.QtCore import QPoint, Qt
 from qgis.PyQt.QtTest import QTest
 
 from tests.plugin.loop.conftest import Loop
-from tests.support.desk_wire import ask
+from tests.support.operators import ask
 from tests.support.patience import BUSY
 from tests.support.processes import Processes
 

@@ -51,7 +51,7 @@ def knows_way(operator):
 
 
 def told(operator):
-    return operator.desk and operator._find(QLabel, "fleet_draft_text").text()
+    return operator.desk and operator.find(QLabel, "fleet_draft_text").text()
 
 
 def standing_cones():

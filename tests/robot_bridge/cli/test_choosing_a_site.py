@@ -10,8 +10,9 @@ import pytest
 from robot_bridge.core.robotmap.binary import decode
 from robot_bridge.core.sites.site import read_site, write_site
 from tests.support.bridge.bridge_programs import wait_until
-from tests.support.bridge.bridge_wires import RefusedError, map_bytes
 from tests.support.errors import StageError
+from tests.support.robots.robot_wires import map_bytes
+from tests.support.wire import RefusedError
 
 
 def publish(folder, sample, **changes):

@@ -13,7 +13,7 @@ from sqlalchemy import make_url
 from robot_bridge.gateway.fleet.emergency_persistence import StopJournal, journal_file
 from robot_bridge.gateway.storage.repositories.emergency_stops import StopRow
 from tests.support.bridge.bridge_programs import wait_until
-from tests.support.bridge.bridge_wires import RefusedError
+from tests.support.wire import RefusedError
 
 FIRST = StopRow("stop-0001", 1000.5, "Ada", "child on the track")
 SECOND = StopRow("stop-0002", 1001.0, "Ben", None)

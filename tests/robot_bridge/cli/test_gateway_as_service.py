@@ -147,7 +147,7 @@ def test_a_new_publication_is_taken_over_and_robots_and_desks_are_told(bridge, s
     desk.until(lambda: any(frame["method"] == "site" for frame in told))
     (news,) = [frame["params"] for frame in told if frame["method"] == "site"]
     assert (news["id"], news["version"]) == ("sample", 2)
-    from tests.support.bridge.bridge_wires import map_bytes
+    from tests.support.robots.robot_wires import map_bytes
 
     sent = robot.wait_for("SetMap")
     assert decode(map_bytes(sent)).meta["version"] == "2"

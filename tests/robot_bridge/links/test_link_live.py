@@ -15,8 +15,8 @@ from robot_bridge.links.base.linked_robots import frame_of
 from robot_bridge.protocol import jsonrpc
 from tests.support.bridge.adapter_on_the_line import LinkOnTheLine
 from tests.support.bridge.bridge_programs import wait_until
-from tests.support.bridge.bridge_wires import RefusedError, Wire
 from tests.support.patience import BUSY
+from tests.support.wire import RefusedError, Wire
 
 DRIVES = ("targets", "paths")
 NUMBERS = itertools.count(1)

@@ -7,7 +7,7 @@ import itertools
 import pytest
 
 from robot_bridge.core.robotmap.binary import decode
-from tests.support.bridge.either_wire import WIRES
+from tests.support.robots.robot_wires import WIRES
 
 NUMBERS = itertools.count(1)
 

@@ -7,7 +7,7 @@ import sqlite3
 
 import pytest
 
-from tests.support.bridge.bridge_wires import RefusedError
+from tests.support.wire import RefusedError
 
 
 @pytest.fixture

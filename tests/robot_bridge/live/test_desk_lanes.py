@@ -10,7 +10,7 @@ import sqlite3
 
 import pytest
 
-from tests.support.bridge.bridge_wires import Desk
+from tests.support.operators import Desk
 
 NUMBERS = itertools.count(1)
 SLOW = 60

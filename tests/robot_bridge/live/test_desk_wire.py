@@ -11,8 +11,8 @@ from pathlib import Path
 import pytest
 
 from tests.support.bridge.bridge_programs import wait_until
-from tests.support.bridge.bridge_wires import RefusedError
 from tests.support.patience import BUSY
+from tests.support.wire import RefusedError
 
 POSE = {"x": 1.0, "y": 2.0, "theta": 0.5, "v": 0.0}
 

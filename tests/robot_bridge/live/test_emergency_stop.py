@@ -10,7 +10,7 @@ import time
 import pytest
 
 from tests.support.bridge.bridge_programs import wait_until
-from tests.support.bridge.bridge_wires import RefusedError
+from tests.support.wire import RefusedError
 
 
 @pytest.fixture

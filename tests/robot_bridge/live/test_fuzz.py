@@ -11,10 +11,10 @@ from websockets.exceptions import ConnectionClosed
 from websockets.sync.client import connect
 
 from tests.support.bridge.bridge_programs import wait_until
-from tests.support.bridge.bridge_wires import is_shut
 from tests.support.hostile.fuzzing import handshakes, knock, try_cases
 from tests.support.hostile.siege import GENEROUS, WORST_ROWS, Siege, cases, unread_rows
 from tests.support.processes import Processes
+from tests.support.wire import is_shut
 
 SAID, WAITING, BESIDE = 100, 25, 15
 """cases on each kind of database: said one by one, waiting at the start, written beside an emergency stop."""

@@ -7,8 +7,8 @@ import base64
 import pytest
 
 from robot_bridge.core.robotmap.binary import decode
-from tests.support.bridge.bridge_wires import RefusedError
-from tests.support.bridge.either_wire import WIRES
+from tests.support.robots.robot_wires import WIRES
+from tests.support.wire import RefusedError
 
 PNG = b"\x89PNG\r\n\x1a\n" + bytes(range(256)) * 40
 JPEG = b"\xff\xd8\xff\xe0" + b"jpeg" * 100

@@ -9,8 +9,8 @@ import pyproj
 import pytest
 
 from tests.support.bridge.bridge_programs import wait_until
-from tests.support.bridge.bridge_wires import RefusedError
 from tests.support.bridge.command_line import run_command
+from tests.support.wire import RefusedError
 
 PNG = b"\x89PNG\r\n\x1a\n" + bytes(range(256)) * 40
 

@@ -6,8 +6,8 @@ import pytest
 
 from robot_bridge.protocol.jsonrpc import FORBIDDEN
 from tests.support.bridge.bridge_programs import wait_until
-from tests.support.bridge.bridge_wires import RefusedError
-from tests.support.bridge.either_wire import WIRES
+from tests.support.robots.robot_wires import WIRES
+from tests.support.wire import RefusedError
 
 WHY = "enters the keepout Loading bay; because: the bay is cleared"
 

@@ -7,7 +7,7 @@ import random
 import pytest
 
 from tests.support.bridge.bridge_programs import wait_until
-from tests.support.bridge.bridge_wires import RefusedError
+from tests.support.wire import RefusedError
 
 CONES = [(26.0 + 4 * n, 20.0 + (n % 2)) for n in range(6)]
 

@@ -12,8 +12,8 @@ from websockets.sync.client import connect
 
 from robot_bridge.core.robotmap.binary import decode
 from tests.support.bridge.bridge_programs import wait_until
-from tests.support.bridge.bridge_wires import RefusedError, RobotWire, map_bytes
-from tests.support.bridge.either_wire import SqlRobot
+from tests.support.robots.robot_wires import RobotWire, SqlRobot, map_bytes
+from tests.support.wire import RefusedError
 
 SITE_BORDER = (0.0, 0.0, 200.0, 160.0)
 POSE = {"x": 1.0, "y": 2.0, "theta": 0.5, "v": 0.0}
@@ -137,12 +137,12 @@ def sql_robot(bridge):
     robots = []
 
     def make(name):
-        robots.append(SqlRobot(bridge.file, name))
+        robots.append(SqlRobot(bridge.database, name))
         return robots[-1]
 
     yield make
     for robot in robots:
-        robot.connection.close()
+        robot.close()
 
 
 def test_plug_and_play_over_plain_sql(bridge, sql_robot):
@@ -192,7 +192,7 @@ def test_junk_in_rr_is_answered_and_removed(bridge, sql_robot):
         ("no robot", "Alive", None, "robot name 'no robot' cannot be used"),
     ):
         bridge.sql("insert into rr (robot, op, params) values (?, ?, ?)", name, op, params)
-        _, ack, _ = SqlRobot(bridge.file, name).read("OpAck")
+        _, ack, _ = SqlRobot(bridge.database, name).read("OpAck")
         assert ack["ok"] is False
         assert reason in ack["reason"]
     wait_until(lambda: bridge.sql("select id from rr where robot in ('sql3', 'no robot')") == [])

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.support.bridge.bridge_wires import RefusedError
+from tests.support.wire import RefusedError
 
 
 @pytest.fixture(scope="module")

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from robot_bridge.core.sites.site import read_site
-from tests.support.bridge.bridge_wires import RefusedError
+from tests.support.wire import RefusedError
 
 PLACES = {
     (20.0, 8.0): "asphalt",

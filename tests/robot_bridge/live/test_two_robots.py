@@ -8,7 +8,7 @@ import time
 import pytest
 
 from tests.support.bridge.bridge_programs import wait_until
-from tests.support.bridge.either_wire import WIRES
+from tests.support.robots.robot_wires import WIRES
 
 LINKS = pytest.mark.parametrize("sql", [False, True], ids=["websocket", "sql"])
 

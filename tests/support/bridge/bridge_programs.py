@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import contextlib
 import itertools
-import socket
 import sys
 import time
 from collections.abc import Callable, Sequence
@@ -12,10 +11,13 @@ from pathlib import Path
 from subprocess import Popen
 from typing import Any
 
-from tests.support.bridge.bridge_wires import Desk, RobotWire
 from tests.support.databases.database_client import DatabaseClient
-from tests.support.patience import BUSY, START
+from tests.support.fleet import serve
+from tests.support.operators import Desk
+from tests.support.patience import BUSY
 from tests.support.processes import Processes
+from tests.support.robots.robot_wires import RobotWire
+from tests.support.wire import Wire
 
 RUNS = itertools.count(1)
 
@@ -39,7 +41,7 @@ class Bridge:
         """More options of the gateway's command line."""
         self._processes = processes
         self._names: list[str] = []
-        self._wires: list[Any] = []
+        self._wires: list[Wire] = []
 
     @property
     def file(self) -> Path:
@@ -48,10 +50,10 @@ class Bridge:
 
     def start_gateway(self) -> None:
         """Start the gateway, on the port it had if it ran before; return once it listens."""
-        options = ["--site", self.site, "--port", str(self.port), "--database", self.database]
-        name = self._run("gateway", ["serve", *options, *self.options])
-        found = self._processes.wait_for_line(name, r"listening on (wss?://\S+:(\d+))", START)
-        self.address, self.port = found.group(1), int(found.group(2))
+        name = self._unique("gateway")
+        served = serve(self._processes, self.site, self.database, *self.options, port=self.port, name=name)
+        self.gateway = self.process = served.process
+        self.address, self.port = served.address, served.port
 
     def start_robot(
         self,
@@ -80,13 +82,13 @@ class Bridge:
         self._run(f"link-{kind}", ["link", kind, "--config", config])
         return self.process
 
-    def _run(self, name: str, command: list[Any]) -> str:
-        unique = f"{name}-{next(RUNS)}"
+    def _run(self, name: str, command: list[Any]) -> None:
+        unique = self._unique(name)
         self.process = self._processes.start(unique, [sys.executable, "-m", "robot_bridge", *command])
-        if name == "gateway":
-            self.gateway = self.process
-        self._names.append(unique)
-        return unique
+
+    def _unique(self, name: str) -> str:
+        self._names.append(f"{name}-{next(RUNS)}")
+        return self._names[-1]
 
     def kill_gateway(self) -> None:
         """End the gateway the way a power cut does."""
@@ -108,8 +110,7 @@ class Bridge:
     def hang_up(self) -> None:
         """Cut every connection; a close in good order would wait for what nobody read."""
         for wire in self._wires:
-            with contextlib.suppress(OSError):
-                wire.connection.socket.shutdown(socket.SHUT_RDWR)
+            wire.hang_up()
 
     def end(self) -> None:
         """End the gateway and the robots, so that they take no time from the next test."""

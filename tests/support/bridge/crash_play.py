@@ -124,6 +124,8 @@ class Play:
         """Close what is open."""
         await self.database.close()
         self._client.close()
+        for robot in self.robots.values():
+            robot.end()
 
     def _stop_all(self, call_id):
         for robot in self.robots.values():

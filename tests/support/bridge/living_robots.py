@@ -6,7 +6,6 @@ Each keeps a record of what it really did, which no database can be wrong about.
 from __future__ import annotations
 
 import contextlib
-import json
 import math
 from dataclasses import dataclass, field
 
@@ -14,6 +13,7 @@ from robot_bridge.core.errors import StoreError
 from robot_bridge.core.messages import OpAck, Ready, SendPos, SetObject, Stopped, to_json
 from robot_bridge.gateway.fleet.emergency_persistence import HELD_BACK
 from robot_bridge.protocol.codec import parse_params
+from tests.support.robots.robot_lives import MindOverSql, Said
 
 SPEED = 4.0
 """metres a second."""
@@ -102,6 +102,9 @@ class Robot:
 
     def lose_link(self):
         """The gateway is gone, or cannot be reached."""
+
+    def end(self):
+        """The play is over."""
 
     def start_anew(self):
         """Start as a program that knows nothing of before; the robot stands where it was."""
@@ -247,22 +250,22 @@ class WebSocketRobot(Robot):
 
 
 class SqlRobot(Robot):
-    """A robot that writes into RR and reads and deletes its rows of SA, whether a gateway runs or not."""
+    """A robot on RR and SA, whether a gateway runs or not; it is the mind of its own life there."""
 
     link = "sql"
 
-    def __init__(self, *how, **more):
-        super().__init__(*how, **more)
-        self._admitted = False
-        self._greet_at = 0.0
+    def __init__(self, play, *how, **more):
+        super().__init__(play, *how, **more)
+        self._life = MindOverSql(self, play.url, lambda: play.now)
+        self._unsaid: list[Said] = []
 
     def see(self, told):
-        """Write that it saw an object."""
-        self._write(told)
+        """Say that it saw an object, until the gateway has stored it."""
+        self._unsaid.append(Said(type(told).__name__, to_json(told)))
 
     def start_anew(self):
         super().start_anew()
-        self._admitted, self._greet_at = False, 0.0
+        self._life.begin()
 
     async def exchange(self):
         """Read and write what there is to read and to write."""
@@ -270,39 +273,38 @@ class SqlRobot(Robot):
 
     def turn(self):
         """As :meth:`exchange`; it needs no gateway."""
-        if self.play.now < self.away_until:
-            return
-        if not self._admitted and self.play.now >= self._greet_at:
-            self._greet_at = self.play.now + 2.0
-            self._write(Ready(self.magic))
-        rows = self.play.sql(
-            "select id, op, params from sa where robot = ? order by urgent desc, id", self.name
-        )
-        for id, op, text in rows:
-            self._read(id, op, parse_params(op, text) or {})
-        if self._admitted:
-            self._write(self.position())
-            if self.task is None and not self._told_stopped:
-                self._write(Stopped())
-                self._told_stopped = True
+        if self.play.now >= self.away_until:
+            self._life.turn()
 
-    def _read(self, id, op, params):
-        if op == "Start":
-            self.count_ids_of(params.get("database"))
-            self._write(Ready(self.magic))
-        elif op == "OpAck" and params.get("magic") is not None:
-            if params["magic"] != self.magic:
-                return
-            self._admitted = params.get("ok", True)
-            self.count_ids_of(params.get("database"))
-        elif not self._admitted:
-            return
-        elif op != "OpAck":
-            self.hear(id, op, params)
-        self.play.sql("delete from sa where id = ?", id)
-        if op != "OpAck":
-            self._write(OpAck(id=id))
+    def end(self):
+        self._life.close()
 
-    def _write(self, request):
-        values = self.name, type(request).__name__, json.dumps(to_json(request))
-        self.play.sql("insert into rr (robot, op, params) values (?, ?, ?)", *values)
+    def note(self, what, **details):
+        """Keep no journal: what it did is in its record."""
+
+    def belongs_to(self, database):
+        if database is not None:
+            self.count_ids_of(database)
+
+    def pose(self, _now):
+        return to_json(self.position())
+
+    def request(self, now):
+        if self.task is None and not self._told_stopped:
+            self._told_stopped = True
+            self._unsaid.append(Said("Stopped", {}))
+        if not self._unsaid or now < self._unsaid[0].say_at:
+            return None
+        if self._unsaid[0].op == "Stopped" and self.task is not None:
+            # It drives again: that it has stopped is not said once more.
+            del self._unsaid[0]
+            return None
+        self._unsaid[0].say_at = math.inf
+        return self._unsaid[0]
+
+    def taken(self):
+        del self._unsaid[:1]
+
+    def untold(self, after=0.0):
+        if self._unsaid:
+            self._unsaid[0].say_at = self.play.now + after

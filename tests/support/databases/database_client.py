@@ -3,10 +3,17 @@
 from __future__ import annotations
 
 import contextlib
+import importlib
 import sqlite3
 from typing import Any
 
 from sqlalchemy import make_url
+
+PATIENCE_S = 15
+"""seconds that a statement waits for others that hold its table, or for a server that says nothing."""
+DRIVERS = {"sqlite": "sqlite3", "postgresql": "psycopg", "mariadb": "pymysql"}
+LEVEL = "set session transaction isolation level read committed"
+"""At the level that MariaDB begins with, many robots' inserts lock each other out."""
 
 
 class DatabaseClient:
@@ -15,6 +22,7 @@ class DatabaseClient:
     def __init__(self, url: str):
         self.url = make_url(url)
         self.kind = self.url.drivername
+        self.driver = importlib.import_module(DRIVERS[self.kind])
         self._connection: Any = None
 
     def sql(self, text: str, *values: Any) -> list[tuple[Any, ...]]:
@@ -44,16 +52,10 @@ class DatabaseClient:
 
     def _connect(self) -> Any:
         if self.kind == "sqlite":
-            return sqlite3.connect(self.url.database, timeout=5, isolation_level=None)
+            return sqlite3.connect(self.url.database, timeout=PATIENCE_S, isolation_level=None)
         where = {"host": self.url.host, "port": self.url.port, "user": self.url.username}
+        where |= {"password": self.url.password, "autocommit": True, "connect_timeout": 5}
         if self.kind == "postgresql":
-            import psycopg
-
-            return psycopg.connect(
-                **where, password=self.url.password, dbname=self.url.database, autocommit=True
-            )
-        import pymysql
-
-        return pymysql.connect(
-            **where, password=self.url.password, database=self.url.database, autocommit=True
-        )
+            return self.driver.connect(**where, dbname=self.url.database)
+        limits = {"read_timeout": PATIENCE_S, "write_timeout": PATIENCE_S, "init_command": LEVEL}
+        return self.driver.connect(**where, **limits, database=self.url.database)

@@ -17,11 +17,37 @@ import time
 from collections.abc import Sequence
 from pathlib import Path
 
+from sqlalchemy import URL, Connection, make_url
+
+from robot_bridge.gateway.storage.database import run_once
+from robot_bridge.gateway.storage.roles.choice import role_manager_on
 from tests.support.errors import StageError
 from tests.support.processes import free_port
 
 OWNER = "fleet"
 """The account that owns every new database; it is no superuser and may make no accounts."""
+
+
+def add_accounts(url: str, admin_url: str, robots: Sequence[str], gateway: str = "") -> dict[str, str]:
+    """Make accounts of robots, and of a gateway where one is named; return what each connects with.
+
+    :param url: the owner's, of the database that they are for.
+    """
+    secret, database = secrets.token_urlsafe(12), make_url(url)
+
+    def add(connection: Connection) -> dict[str, URL]:
+        manager = role_manager_on(connection)
+        for name in robots:
+            manager.add_robot(name, secret)
+        if gateway:
+            manager.add_gateway(gateway, secret)
+        return {**dict.fromkeys(robots, database.set(database=manager.robots_database())), gateway: database}
+
+    return {
+        name: url.set(username=name, password=secret).render_as_string(hide_password=False)
+        for name, url in run_once(admin_url, add).items()
+        if name
+    }
 
 
 class DatabaseServer(abc.ABC):

@@ -12,9 +12,8 @@ import threading
 from dataclasses import dataclass
 from pathlib import Path
 
-from tests.support.faults.journal import Journal, entries
-from tests.support.faults.mind import Mind
-from tests.support.faults.wires import SqlRobot, WebSocketRobot
+from tests.support.faults.mind import Journal, Mind, entries
+from tests.support.robots.robot_lives import MindOverSql, MindOverWebSocket
 
 
 @dataclass(frozen=True)
@@ -40,8 +39,8 @@ def run(plan: Plan) -> None:
     threads = []
     for name, (url, home) in plan.robots.items():
         mind = Mind(name, (home[0], home[1]), journal, plan.life, past)
-        robot = (WebSocketRobot if url.startswith("ws") else SqlRobot)(mind, url, ended)
-        threads.append(threading.Thread(target=robot.run, name=name))
+        robot = (MindOverWebSocket if url.startswith("ws") else MindOverSql)(mind, url)
+        threads.append(threading.Thread(target=robot.run, args=(ended,), name=name))
     for thread in threads:
         thread.start()
     for thread in threads:

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import contextlib
 import itertools
-import json
 import random
 import threading
 import time
@@ -13,9 +11,9 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from websockets.exceptions import WebSocketException
-from websockets.sync.client import ClientConnection, connect
 
 from tests.support.faults.mind import FIRST_X, STEP_X
+from tests.support.wire import Wire
 
 ANSWER_WITHIN = 40.0
 """seconds after which an answer is no longer waited for: the same is asked again on a new connection."""
@@ -52,7 +50,7 @@ class Task:
         return [message["command"] for message in self.messages]
 
 
-class Desk(threading.Thread):
+class SendingDesk(threading.Thread):
     """One connection for some robots; each has one task at a time, and the next after that has ended."""
 
     def __init__(
@@ -67,7 +65,6 @@ class Desk(threading.Thread):
         self._tasks: dict[str, Task] = {}
         self._rest_until = dict.fromkeys(robots, 0.0)
         self._asked: dict[int, tuple[str, float]] = {}
-        self._calls = itertools.count(1)
         self.resting = threading.Event()
         self.ending = threading.Event()
 
@@ -80,28 +77,22 @@ class Desk(threading.Thread):
         """Work until told to end, on one connection after the other."""
         while not self.ending.is_set():
             try:
-                with connect(
-                    f"{self._address()}/desk",
-                    max_size=None,
-                    compression=None,
-                    open_timeout=10,
-                    close_timeout=0.2,
-                ) as wire:
+                with Wire(f"{self._address()}/desk", open_timeout=10, close_timeout=0.2) as wire:
                     self._work(wire)
             except (OSError, TimeoutError, WebSocketException):
                 self.ending.wait(0.1)
             self._ledger.repeated += len({id for id, _ in self._asked.values() if id})
             self._asked.clear()
 
-    def _work(self, wire: ClientConnection) -> None:
+    def _work(self, wire: Wire) -> None:
         self._ask(wire, "hello", {"operator": "Ada"})
         for robot in self._tasks:
             self._ask(wire, "get_commands", {"robot": robot, "limit": 5})
         while not self.ending.is_set():
             for message in self._due(time.time()):
                 self._ask(wire, "send", message)
-            with contextlib.suppress(TimeoutError):
-                self._hear(json.loads(wire.recv(0.03)))
+            if frame := wire.receive(0.03):
+                self._hear(frame)
             if any(time.time() - at > ANSWER_WITHIN for _, at in self._asked.values()):
                 return
 
@@ -140,11 +131,10 @@ class Desk(threading.Thread):
             messages.append({"command": f"{id}-abort", "robot": robot, "op": "Abort"})
         return Task(robot, messages)
 
-    def _ask(self, wire: ClientConnection, method: str, params: dict[str, Any]) -> None:
-        call = next(self._calls)
+    def _ask(self, wire: Wire, method: str, params: dict[str, Any]) -> None:
+        call = wire.begin(method, params)
         if method == "send":
             self._asked[call] = (params["command"], time.time())
-        wire.send(json.dumps({"jsonrpc": "2.0", "id": call, "method": method, "params": params}))
 
     def _hear(self, frame: dict[str, Any]) -> None:
         if frame.get("method") == "command":

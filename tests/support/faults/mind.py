@@ -7,19 +7,19 @@ number in their x: ``FIRST_X + number * STEP_X``.
 from __future__ import annotations
 
 import hashlib
+import json
+import os
 import random
 import time
-from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator, Mapping
+from pathlib import Path
 from typing import Any
 
-from tests.support.faults.journal import Journal
+from tests.support.robots.robot_lives import Said
 
 FIRST_X, STEP_X = 10.0, 0.01
 """metres: the x of command 0, and what each further one adds."""
 POSE_EVERY, OBJECT_EVERY = 0.25, 2.0
-AGAIN_AFTER = 1.0
-"""seconds after which a refused observation is told again, under the same source."""
 LONGEST_DRIVE = 0.4
 JPEG = bytes.fromhex("ffd8ffe000104a464946")
 
@@ -30,14 +30,27 @@ def number_of(params: Mapping[str, Any]) -> int:
     return round((x - FIRST_X) / STEP_X)
 
 
-@dataclass
-class Observation:
-    """What a robot saw and tells until it is told that it was taken."""
+class Journal:
+    """What robots write down before they do it: a file of JSON lines that only grows.
 
-    op: str
-    params: dict[str, Any]
-    image: bytes | None
-    tell_at: float = 0.0
+    Each is one write: a killed process leaves whole lines.
+    """
+
+    def __init__(self, file: Path, **always: Any) -> None:
+        self._always = always
+        self._file = os.open(file, os.O_WRONLY | os.O_CREAT | os.O_APPEND, 0o600)
+
+    def note(self, robot: str, what: str, **details: Any) -> None:
+        """Write one line."""
+        line = {"at": time.time(), "robot": robot, "what": what, **self._always, **details}
+        os.write(self._file, json.dumps(line).encode() + b"\n")
+
+
+def entries(file: Path) -> Iterator[dict[str, Any]]:
+    """Yield what was written so far, oldest first."""
+    if file.is_file():
+        for line in file.read_bytes().splitlines():
+            yield json.loads(line)
 
 
 class Mind:
@@ -58,7 +71,7 @@ class Mind:
         self._pose_at = 0.0
         self._object_at = time.time() + self._random.uniform(0, OBJECT_EVERY)
         self._sources = 0
-        self._telling: Observation | None = None
+        self._telling: Said | None = None
         for entry in past:
             self._remember(entry)
         if not self.magic:
@@ -101,15 +114,15 @@ class Mind:
         speed = 0.0 if self._place == self._goal else 0.5
         return {"x": self._place[0], "y": self._place[1], "theta": 0.0, "v": speed, "t": now}
 
-    def observation(self, now: float) -> Observation | None:
-        """Return what is to be told now; it is told again until :meth:`taken`, or after :meth:`untold`."""
+    def request(self, now: float) -> Said | None:
+        """Return the object or the image that is told now."""
         if self._telling is None and now >= self._object_at:
             self._object_at = now + OBJECT_EVERY
             self._telling = self._saw()
         told = self._telling
-        if told is None or now < told.tell_at:
+        if told is None or now < told.say_at:
             return None
-        told.tell_at = float("inf")
+        told.say_at = float("inf")
         return told
 
     def taken(self) -> None:
@@ -123,9 +136,9 @@ class Mind:
     def untold(self, after: float = 0.0) -> None:
         """Tell the last observation again: it is not known whether it was taken."""
         if self._telling is not None:
-            self._telling.tell_at = time.time() + after
+            self._telling.say_at = time.time() + after
 
-    def _saw(self) -> Observation:
+    def _saw(self) -> Said:
         self._sources += 1
         params = {
             "x": round(self._random.uniform(5, 195), 3),
@@ -135,8 +148,8 @@ class Mind:
         }
         self.note("telling", source=params["source"])
         if self._random.random() < 0.3:
-            return Observation("SendImage", params, JPEG + self._random.randbytes(5000))
-        return Observation("SetObject", params, None)
+            return Said("SendImage", params, JPEG + self._random.randbytes(5000))
+        return Said("SetObject", params)
 
     def _drive(self, goal: tuple[float, float]) -> None:
         self._goal = goal

@@ -18,27 +18,25 @@ from sqlalchemy import Connection, func, make_url, select
 
 from robot_bridge.gateway.storage import revisions
 from robot_bridge.gateway.storage.database import run_once
-from robot_bridge.gateway.storage.roles.choice import role_manager_on
 from robot_bridge.gateway.storage.schema import trajectories
-from tests.support.databases.database_server import DatabaseServer
-from tests.support.desk_wire import ask
+from tests.support.databases.database_server import DatabaseServer, add_accounts
 from tests.support.errors import StageError
 from tests.support.faults.crew import Plan
-from tests.support.faults.desk import Desk, Ledger
-from tests.support.faults.journal import entries
+from tests.support.faults.desk import Ledger, SendingDesk
+from tests.support.faults.mind import entries
 from tests.support.faults.proxy import Proxy
+from tests.support.fleet import SITE, serve
+from tests.support.operators import ask
 from tests.support.patience import BUSY
 from tests.support.processes import Processes
 from tools.plugin_files import ROOT
 
-SITE = ROOT / "resources" / "sample_site"
 EVERY_POSITION = """
 [trajectories]
 min_distance_m = 0.0
 min_turn_deg = 0.0
 min_interval_s = 0.0
 """
-PASSWORD = "robot-of-the-yard"
 GATEWAY_KILLED, ROBOTS_KILLED = "gateway killed", "two robots killed"
 DESKS = 4
 STORED_WITHIN_S = 2.0
@@ -104,7 +102,7 @@ class Yard:
         self._site = _site(self.folder)
         self._port = self._gateways = self._started = 0
         self.address = ""
-        self._desks: list[Desk] = []
+        self._desks: list[SendingDesk] = []
         self.crews: list[Crew] = []
         try:
             self.start_gateway()
@@ -126,12 +124,9 @@ class Yard:
     def start_gateway(self) -> None:
         """Start the gateway on the port it had; return once it listens."""
         self._gateways += 1
-        options = ["--site", self._site, "--port", str(self._port), "--database", self.place.gateway_url]
-        self._gateway = self._run(f"gateway-{self._gateways}", "robot_bridge", "serve", *options)
-        listening = self._processes.wait_for_line(
-            f"gateway-{self._gateways}", r"listening on (ws://[\w.]+:(\d+))", 30
-        )
-        self.address, self._port = listening.group(1), int(listening.group(2))
+        name, url = f"gateway-{self._gateways}", self.place.gateway_url
+        served = serve(self._processes, self._site, url, port=self._port, name=name)
+        self._gateway, self.address, self._port = served.process, served.address, served.port
 
     def kill_gateway(self) -> None:
         """End the gateway the way a power cut does."""
@@ -165,7 +160,8 @@ class Yard:
         plan.write_text(
             json.dumps(asdict(Plan(crew.robots, str(crew.journal), crew.life, remembers))), encoding="utf-8"
         )
-        crew.process = self._run(name, "tests.support.faults.crew", plan)
+        command = [sys.executable, "-m", "tests.support.faults.crew", plan]
+        crew.process = self._processes.start(name, command, env={"PYTHONPATH": str(ROOT)})
 
     def robot_ends(self) -> dict[str, list[Death]]:
         """Return for each robot when it was killed."""
@@ -232,7 +228,7 @@ class Yard:
             raise StageError("the robots did not all come; see the logs of the crews")
         for number in range(DESKS):
             rows = {name: homes[name][1] for name in list(robots)[number::DESKS]}
-            desk = Desk(lambda: self.address, rows, f"{self.seed} {number}", self.ledger)
+            desk = SendingDesk(lambda: self.address, rows, f"{self.seed} {number}", self.ledger)
             self._desks.append(desk)
             desk.start()
 
@@ -246,10 +242,6 @@ class Yard:
             if entry["what"] == "pose":
                 last[entry["robot"]] = max(entry["t"], last.get(entry["robot"], 0.0))
         return run_once(self.place.url, _newest_stored) == last
-
-    def _run(self, name: str, module: str, *words: str | Path) -> subprocess.Popen[bytes]:
-        command = [sys.executable, "-m", module, *words]
-        return self._processes.start(name, command, env={"PYTHONPATH": str(ROOT)})
 
     def _wait(self, condition: Callable[[], bool], seconds: float) -> bool:
         until = time.monotonic() + seconds
@@ -284,18 +276,9 @@ def server_place(server: DatabaseServer, network: Proxy, count: int) -> Place:
     url = server.new_database()
     run_once(url, revisions.create)
     robots = names(count)
-    accounts = [name for name in robots if name.startswith("sq")]
-    urls = run_once(server.admin_url(url), _accounts, accounts, make_url(url))
+    urls = add_accounts(url, server.admin_url(url), [name for name in robots if name.startswith("sq")])
     through = make_url(url).set(port=network.port).render_as_string(hide_password=False)
     return Place(url, through, {name: urls.get(name, "") for name in robots}, server, network)
-
-
-def _accounts(connection: Connection, robots: list[str], url: Any) -> dict[str, str]:
-    keeper = role_manager_on(connection)
-    for name in robots:
-        keeper.add_robot(name, PASSWORD)
-    shared = url.set(database=keeper.robots_database(), password=PASSWORD)
-    return {name: shared.set(username=name).render_as_string(hide_password=False) for name in robots}
 
 
 def _newest_stored(connection: Connection) -> dict[str, float]:

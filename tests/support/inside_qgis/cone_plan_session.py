@@ -18,7 +18,6 @@ from qgis.PyQt.QtWidgets import (
 )
 from qgis.utils import iface
 
-from tests.support.inside_qgis.desk_view import NotHappenedError
 from tests.support.inside_qgis.session import Session, end, start
 
 TIMEOUT = 30
@@ -35,20 +34,13 @@ class Film:
         self.window = session.window()
         self.shots = 0
 
-    def find(self, kind: type, name: str):
-        """Return a part of the window."""
-        found = self.window.findChild(kind, name)
-        if found is None:
-            raise NotHappenedError(f"the window has no {kind.__name__} named {name}")
-        return found
-
     def text(self, name: str) -> str:
         """Return what a label says."""
-        return self.find(QLabel, name).text()
+        return self.operator.find(QLabel, name).text()
 
     def press(self, name: str) -> None:
         """Click a button of the panel once it can be used."""
-        button = self.find(QAbstractButton, name)
+        button = self.operator.find(QAbstractButton, name)
         self.operator.wait(f"{name} being usable", lambda: button.isEnabled() and button.isVisible(), TIMEOUT)
         button.click()
         QApplication.processEvents()
@@ -92,15 +84,15 @@ def set_up(film: Film) -> None:
     film.session.size_window(*plan["window"])
     film.session.open_project()
     for panel in ("Browser", "Layers"):
-        film.find(QDockWidget, panel).close()
+        film.operator.find(QDockWidget, panel).close()
     operator.connect(f"{plan['gateway']}/desk", "anna")
     operator.wait("three robots", lambda: len(operator.robots()) == len(plan["robots"]), TIMEOUT)
-    film.find(QAction, "fleet_plan_panel").trigger()
+    film.operator.find(QAction, "fleet_plan_panel").trigger()
     operator.show_map(plan["extent"], plan["crs"])
 
 
 def place_layout(film: Film) -> None:
-    film.find(QAction, "fleet_cone_layout_iso3888_1").trigger()
+    film.operator.find(QAction, "fleet_cone_layout_iso3888_1").trigger()
     tool = iface.mapCanvas().mapTool()
     # The straight of the sample site is a little shorter than the standard's layout.
     tool.layout = type(tool.layout).of(film.plan["dimensions"])
@@ -110,12 +102,12 @@ def place_layout(film: Film) -> None:
 
 
 def make_plan(film: Film) -> None:
-    robots = film.find(QTableView, "fleet_plan_robots").model()
+    robots = film.operator.find(QTableView, "fleet_plan_robots").model()
     film.operator.wait("robots in the panel", lambda: robots.rowCount() == 3, TIMEOUT)
     for row in range(robots.rowCount()):
         for column, value in enumerate((12, 12, film.plan["speed"]), 1):
             robots.setData(robots.index(row, column), f"{value:g}")
-    film.find(QDoubleSpinBox, "fleet_plan_seconds").setValue(2.0)
+    film.operator.find(QDoubleSpinBox, "fleet_plan_seconds").setValue(2.0)
     film.press("fleet_plan_solve")
     film.operator.wait("the plan", lambda: "Not sent yet" in film.text("fleet_plan_text"), TIMEOUT)
     film.shoot("plan", film.text("fleet_plan_text"))
@@ -123,7 +115,7 @@ def make_plan(film: Film) -> None:
 
 def send(film: Film) -> None:
     film.press("fleet_plan_send")
-    question = film.find(QMessageBox, "fleet_plan_question")
+    question = film.operator.find(QMessageBox, "fleet_plan_question")
     next(button for button in question.buttons() if button.text() == "Send").click()
     film.operator.wait("cones being placed", lambda: film.done() >= 7, DRIVING)
     film.shoot("driving", film.text("fleet_plan_text"))
@@ -144,7 +136,7 @@ def go_on_without_r1(film: Film) -> None:
 
 
 def report(film: Film) -> None:
-    film.find(QTabWidget, "fleet_plan_tabs").setCurrentIndex(1)
+    film.operator.find(QTabWidget, "fleet_plan_tabs").setCurrentIndex(1)
     film.operator.pause(0.5)
     film.shoot("as-placed", film.text("fleet_placed_figures"))
 

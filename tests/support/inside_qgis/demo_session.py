@@ -19,9 +19,9 @@ def work(session: Session) -> None:
     operator.close_panel("Browser")
     operator.show_map(plan["extent"], plan["crs"])
     connect(session)
-    send_cone(session, "r1", plan["cone"])
-    send_route(session, "r2", plan["route"])
-    send_cone(session, "r3", plan["far"])
+    send(session, "r1", "cone target", [plan["cone"]])
+    send(session, "r2", f"route of {len(plan['route'])} points", plan["route"])
+    send(session, "r3", "cone target", [plan["far"]])
     picture(session)
     abort(session, "r3")
     for robot in ("r1", "r2"):
@@ -38,41 +38,16 @@ def connect(session: Session) -> None:
     operator.connect(f"{plan['gateway']}/desk", "demo")
     seconds = operator.wait("connecting", lambda: "Connected" in operator.link_state(), STEP_TIMEOUT)
     session.happened("connect", f"the desk connected to {plan['gateway']}/desk", connected_after=seconds)
-
-    def all_fresh() -> bool:
-        states = {name: row["State"] for name, row in operator.robots().items()}
-        return states == dict.fromkeys(plan["robots"], "fresh")
-
-    operator.wait("every robot being fresh", all_fresh, STEP_TIMEOUT)
+    operator.wait_for_fleet(plan["robots"], STEP_TIMEOUT)
     links = ", ".join(f"{name} over {row['Link']}" for name, row in operator.robots().items())
     session.happened("robots", f"the table shows {links}, all fresh")
 
 
-def send_cone(session: Session, robot: str, place: list[float]) -> None:
-    operator = session.operator
-    operator.select(robot)
-    operator.choose("fleet_cone_target")
-    operator.click_map(*place, session.plan["crs"])
-    send(session, robot, "cone target")
-
-
-def send_route(session: Session, robot: str, places: list[list[float]]) -> None:
-    operator = session.operator
-    operator.select(robot)
-    operator.choose("fleet_draw_route")
-    for place in places:
-        operator.click_map(*place, session.plan["crs"])
-    send(session, robot, f"route of {len(places)} points")
-
-
-def send(session: Session, robot: str, what: str) -> None:
+def send(session: Session, robot: str, what: str, places: list[list[float]]) -> None:
     operator = session.operator
     before = len(operator.commands())
-    operator.press("fleet_send")
-    operator.wait(f"a command for {robot}", lambda: len(operator.commands()) > before, STEP_TIMEOUT)
-    seconds = operator.wait(
-        f"{robot} acknowledging", lambda: operator.state_of(robot) == "acknowledged", STEP_TIMEOUT
-    )
+    operator.send_to(robot, places, session.plan["crs"])
+    seconds = operator.wait_until_taken(robot, before, STEP_TIMEOUT)
     session.happened(f"{robot} {what}", f"sent {robot} a {what}: acknowledged", acknowledged_after=seconds)
 
 
@@ -81,7 +56,7 @@ def picture(session: Session) -> None:
     plan, operator = session.plan, session.operator
     operator.pause(2)
     for robot in plan["robots"]:
-        operator.wait(f"{robot} driving", lambda robot=robot: operator.speed(robot) >= 0.5, STEP_TIMEOUT)
+        operator.wait_until_driving(robot, STEP_TIMEOUT)
     operator.wait_for_map()
     operator.take_picture(operator.canvas, Path(plan["picture"]))
     session.happened("picture", f"all of them drive; the map was saved as {plan['picture']}")

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import weakref
+from collections.abc import Callable, Hashable, Iterable
 from dataclasses import dataclass
 
 from qgis.gui import QgisInterface
 from qgis.PyQt.QtCore import QObject, Qt
 from qgis.PyQt.QtWidgets import QDockWidget, QLabel, QTableView, QTreeView
-
-from tests.support.inside_qgis.found_again import FoundAgain
+from qgis.PyQt.sip import isdeleted
 
 
 class NotHappenedError(Exception):
@@ -22,6 +23,28 @@ class LoggedCommand:
     what: str
     state: str
     details: str
+
+
+class FoundAgain:
+    """Remembers what each search found: to search all of QGIS's window takes its only thread 20 ms.
+
+    Nothing stays because of it. What was made in C++ is searched for each time: nothing holds what Python
+    knows it by.
+    """
+
+    def __init__(self) -> None:
+        self._found: dict[Hashable, weakref.ref[QObject]] = {}
+
+    def get(
+        self, sought: Hashable, search: Callable[[], QObject | None], holds: Callable[[QObject], bool]
+    ) -> QObject | None:
+        """Return what was found for ``sought`` if it still ``holds``, and else what ``search`` finds now."""
+        found = self._found[sought]() if sought in self._found else None
+        if found is None or isdeleted(found) or not holds(found):
+            found = search()
+            if found is not None:
+                self._found[sought] = weakref.ref(found)
+        return found
 
 
 class DeskView:
@@ -42,15 +65,15 @@ class DeskView:
 
     def link_state(self) -> str:
         """Return the dock's line on the connection."""
-        return self._find(QLabel, "fleet_link_state").text()
+        return self.find(QLabel, "fleet_link_state").text()
 
     def draft_text(self) -> str:
         """Return what the dock says of the draft, or of what happened last."""
-        return self._find(QLabel, "fleet_draft_text").text()
+        return self.find(QLabel, "fleet_draft_text").text()
 
     def robots(self) -> dict[str, dict[str, str]]:
         """Return the robot table: a row of column title and text for each robot."""
-        model = self._find(QTableView, "fleet_robot_table").model()
+        model = self.find(QTableView, "fleet_robot_table").model()
         horizontal = Qt.Orientation.Horizontal
         titles = [model.headerData(column, horizontal) for column in range(model.columnCount())]
         rows = (
@@ -59,9 +82,14 @@ class DeskView:
         )
         return {row["Robot"]: row for row in rows}
 
+    def are_fresh(self, robots: Iterable[str]) -> bool:
+        """Tell whether the table shows these robots, all of them fresh, and no others."""
+        states = {name: row["State"] for name, row in self.robots().items()}
+        return states == dict.fromkeys(robots, "fresh")
+
     def selected_robots(self) -> list[str]:
         """Return the robots whose rows are selected in the table."""
-        rows = self._find(QTableView, "fleet_robot_table").selectionModel().selectedRows()
+        rows = self.find(QTableView, "fleet_robot_table").selectionModel().selectedRows()
         return [index.data() for index in rows]
 
     def speed(self, robot: str) -> float:
@@ -71,7 +99,7 @@ class DeskView:
 
     def commands(self) -> list[LoggedCommand]:
         """Return the command log's commands, newest first."""
-        model = self._find(QTreeView, "fleet_command_log").model()
+        model = self.find(QTreeView, "fleet_command_log").model()
         return [
             LoggedCommand(*(model.index(row, column).data() or "" for column in (1, 2, 3)))
             for row in range(model.rowCount())
@@ -85,7 +113,11 @@ class DeskView:
         """Return the state that the log shows for the newest command of ``robot``, empty when it has none."""
         return next((entry.state for entry in self.commands() if entry.what.startswith(f"{robot} ")), "")
 
-    def _find(self, kind: type, name: str):
+    def find(self, kind: type, name: str):
+        """Return a part of the window by its kind and its object name.
+
+        :raises NotHappenedError: when there is none.
+        """
         found = self._found.get(
             (kind, name),
             search=lambda: self._window.findChild(kind, name),

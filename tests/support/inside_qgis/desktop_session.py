@@ -16,16 +16,11 @@ def work(session: Session) -> None:
         session.size_window(*plan["window"])
     session.open_project()
     operator.connect(f"{plan['gateway']}/desk", plan["operator"])
-    operator.wait("three fresh robots", lambda: all_fresh(session), TIMEOUT)
+    operator.wait_for_fleet(plan["robots"], TIMEOUT)
     session.happened("ready", f"QGIS is open and connected to {plan['gateway']}/desk")
     if "picture" in plan:
         picture(session)
         end()
-
-
-def all_fresh(session: Session) -> bool:
-    states = {name: row["State"] for name, row in session.operator.robots().items()}
-    return states == dict.fromkeys(session.plan["robots"], "fresh")
 
 
 def picture(session: Session) -> None:
@@ -34,12 +29,8 @@ def picture(session: Session) -> None:
     operator.close_panel("Browser")
     operator.show_map(plan["extent"], plan["crs"])
     for robot, places in plan["errands"].items():
-        operator.select(robot)
-        operator.choose("fleet_cone_target" if len(places) == 1 else "fleet_draw_route")
-        for place in places:
-            operator.click_map(*place, plan["crs"])
-        operator.press("fleet_send")
-        operator.wait(f"{robot} driving", lambda robot=robot: operator.speed(robot) > 0.5, TIMEOUT)
+        operator.send_to(robot, places, plan["crs"])
+        operator.wait_until_driving(robot, TIMEOUT)
     operator.pause(plan["drive_seconds"])
     operator.wait_for_map()
     operator.take_picture(session.window(), Path(plan["picture"]))

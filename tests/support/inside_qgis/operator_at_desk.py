@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 
 from qgis.core import (
@@ -56,14 +56,14 @@ class OperatorAtDesk(DeskView):
     def connect(self, url: str, operator: str) -> None:
         """Type the gateway's address and the operator's name and press Connect."""
         for name, text in (("fleet_url", url), ("fleet_operator", operator)):
-            field = self._find(QLineEdit, name)
+            field = self.find(QLineEdit, name)
             field.selectAll()
             QTest.keyClicks(field, text)
         self.press("fleet_connect")
 
     def select(self, robot: str) -> None:
         """Click the robot's row in the table."""
-        table = self._find(QTableView, "fleet_robot_table")
+        table = self.find(QTableView, "fleet_robot_table")
         model = table.model()
         index = next(i for i in (model.index(r, 0) for r in range(model.rowCount())) if i.data() == robot)
         table.scrollTo(index)
@@ -71,17 +71,42 @@ class OperatorAtDesk(DeskView):
 
     def close_panel(self, name: str) -> None:
         """Close one of QGIS's own panels."""
-        self._find(QDockWidget, name).close()
+        self.find(QDockWidget, name).close()
 
     def press(self, action: str) -> None:
         """Click the dock's button of ``action``."""
-        button = self._find(QAbstractButton, f"{action}_button")
+        button = self.find(QAbstractButton, f"{action}_button")
         self.wait(f"button {action} becoming usable", button.isEnabled, 5)
         self._click(button, button.rect().center())
 
+    def send_to(self, robot: str, places: Sequence[Sequence[float]], crs: str) -> None:
+        """Click a target for a robot, or a route of more places than one, and press Send."""
+        self.select(robot)
+        self.choose("fleet_cone_target" if len(places) == 1 else "fleet_draw_route")
+        for place in places:
+            self.click_map(*place, crs)
+        self.press("fleet_send")
+
+    def wait_for_fleet(self, robots: Iterable[str], seconds: float) -> None:
+        """Wait until the table shows these robots, all fresh."""
+        self.wait("every robot being fresh", lambda: self.are_fresh(robots), seconds)
+
+    def wait_until_driving(self, robot: str, seconds: float) -> None:
+        """Wait until the table says that a robot drives."""
+        self.wait(f"{robot} driving", lambda: self.speed(robot) >= 0.5, seconds)
+
+    def wait_until_taken(self, robot: str, before: int, seconds: float) -> float:
+        """Wait until a robot has acknowledged what was sent when the log had ``before`` commands.
+
+        Return the seconds from its being in the log.
+        """
+        self.wait(f"a command for {robot}", lambda: len(self.commands()) > before, seconds)
+        taken = ("acknowledged", "reached")
+        return self.wait(f"{robot} acknowledging", lambda: self.state_of(robot) in taken, seconds)
+
     def choose(self, tool: str) -> None:
         """Click the dock's button of a map tool, unless the tool is in hand already."""
-        if not self._find(QAbstractButton, f"{tool}_button").isChecked():
+        if not self.find(QAbstractButton, f"{tool}_button").isChecked():
             self.press(tool)
 
     def click_map(self, x: float, y: float, crs: str) -> None:

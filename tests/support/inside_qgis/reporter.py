@@ -40,8 +40,7 @@ from qgis.PyQt.QtWidgets import (
 from qgis.PyQt.sip import unwrapinstance
 from qgis.utils import iface, plugins
 
-from tests.support.inside_qgis.desk_view import DeskView, NotHappenedError
-from tests.support.inside_qgis.found_again import FoundAgain
+from tests.support.inside_qgis.desk_view import DeskView, FoundAgain, NotHappenedError
 from tests.support.inside_qgis.out_of_sight import what_is_out_of_sight
 
 PLUGIN = "fleet_supervisor"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 
 from qgis.core import (
@@ -60,12 +61,7 @@ def work(session: Session) -> None:
 def connect(session: Session) -> None:
     plan, operator = session.plan, session.operator
     operator.connect(f"{plan['gateway']}/desk", "operator")
-
-    def all_fresh() -> bool:
-        states = {name: row["State"] for name, row in operator.robots().items()}
-        return states == dict.fromkeys(plan["robots"], "fresh")
-
-    operator.wait("six cars and two robots being fresh", all_fresh, STEP)
+    operator.wait_for_fleet(plan["robots"], STEP)
     session.happened("robots", "the desk shows six cars marked as replay and two ROS 2 robots, all fresh")
 
 
@@ -133,7 +129,7 @@ def place_cone(session: Session, cone: dict) -> None:
     operator.select(robot)
     operator.choose("fleet_cone_target")
     told = type_coordinates(session, cone)
-    send(session, robot)
+    send(session, robot, lambda: operator.press("fleet_send"))
     seconds = reached(session, robot)
     session.happened(
         f"cone in {cone['called']}",
@@ -185,10 +181,7 @@ def type_coordinates(session: Session, cone: dict) -> str:
 def drive_away(session: Session) -> None:
     """Send the first robot off the place of the cones by a click."""
     plan, operator = session.plan, session.operator
-    operator.select(plan["first"])
-    operator.choose("fleet_cone_target")
-    operator.click_map(*plan["away"], plan["crs"])
-    send(session, plan["first"])
+    send(session, plan["first"], lambda: operator.send_to(plan["first"], [plan["away"]], plan["crs"]))
     reached(session, plan["first"])
 
 
@@ -201,9 +194,9 @@ def drive_route(session: Session) -> None:
     operator.click_map(*plan["goal"], plan["crs"])
     operator.wait("a way to the click", lambda: operator.draft_text().startswith(f"Route for {robot}"), STEP)
     told = operator.draft_text().partition(". ")[0]
-    send(session, robot)
+    send(session, robot, lambda: operator.press("fleet_send"))
     session.happened("route", f"a click with the tool for routes on roads: {told}. Sent, and acknowledged")
-    operator.wait(f"{robot} driving", lambda: operator.speed(robot) > 0.5, STEP)
+    operator.wait_until_driving(robot, STEP)
     operator.pause(8)
     picture(session)
     seconds = reached(session, robot)
@@ -221,21 +214,17 @@ def picture(session: Session) -> None:
     session.happened("picture", f"the window of QGIS with all of it was saved as {path}")
 
 
-def send(session: Session, robot: str) -> None:
-    """Press Send and wait until the robot has acknowledged."""
+def send(session: Session, robot: str, press: Callable[[], None]) -> None:
+    """Send by ``press`` and wait until the robot has acknowledged."""
     operator = session.operator
     before = len(operator.commands())
     said: list[str] = []
     QgsApplication.messageLog().messageReceived.connect(lambda text, *_: said.append(text))
-    operator.press("fleet_send")
+    press()
     try:
-        operator.wait(f"a command for {robot}", lambda: len(operator.commands()) > before, STEP)
-    except NotHappenedError:
-        raise NotHappenedError(
-            f"nothing was sent to {robot}; QGIS said: {' '.join(said) or 'nothing'}"
-        ) from None
-    taken = ("acknowledged", "reached")
-    operator.wait(f"{robot} acknowledging", lambda: operator.state_of(robot) in taken, STEP)
+        operator.wait_until_taken(robot, before, STEP)
+    except NotHappenedError as error:
+        raise NotHappenedError(f"{error}; QGIS said: {' '.join(said) or 'nothing'}") from None
 
 
 def reached(session: Session, robot: str) -> float:

@@ -6,7 +6,7 @@ import pytest
 
 from tests.support.bridge.bridge_accounts import bearing
 from tests.support.bridge.bridge_programs import wait_until
-from tests.support.bridge.bridge_wires import RefusedError, is_refused
+from tests.support.wire import RefusedError, is_refused
 
 LAST = "would leave no supervisor"
 

@@ -16,8 +16,8 @@ from websockets.sync.client import connect
 from robot_bridge.protocol.jsonrpc import TOO_MANY
 from tests.support.bridge.bridge_programs import wait_until
 from tests.support.bridge.bridge_sockets import frame, plain_socket
-from tests.support.bridge.bridge_wires import RefusedError
 from tests.support.patience import START
+from tests.support.wire import RefusedError
 
 LIMITS = """
 [limits]

@@ -7,7 +7,7 @@ from websockets.exceptions import ConnectionClosed, InvalidStatus
 
 from tests.support.bridge.bridge_accounts import bearing
 from tests.support.bridge.bridge_programs import wait_until
-from tests.support.bridge.bridge_wires import RefusedError, Wire
+from tests.support.wire import RefusedError, Wire
 
 
 @pytest.fixture(scope="module")

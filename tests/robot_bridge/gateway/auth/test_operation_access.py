@@ -17,7 +17,7 @@ import pytest
 from robot_bridge.core.messages import Role
 from robot_bridge.core.sites.settings_tables import LimitSettings
 from tests.support.bridge.bridge_accounts import bearing
-from tests.support.bridge.bridge_wires import Desk
+from tests.support.operators import Desk
 from tests.support.patience import START
 from tests.support.processes import Processes
 

@@ -11,7 +11,7 @@ import pytest
 
 from robot_bridge.core.messages import DESK_REQUESTS
 from robot_bridge.protocol.jsonrpc import FORBIDDEN
-from tests.support.bridge.bridge_wires import RefusedError
+from tests.support.wire import RefusedError
 
 VIEWER, OPERATOR, SUPERVISOR = "viewer", "operator", "supervisor"
 ROLES = [VIEWER, OPERATOR, SUPERVISOR]

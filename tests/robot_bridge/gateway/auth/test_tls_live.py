@@ -11,7 +11,7 @@ import pytest
 
 from robot_bridge.gateway.auth import certificates
 from tests.support.bridge.bridge_programs import wait_until
-from tests.support.bridge.bridge_wires import Desk
+from tests.support.operators import Desk
 
 
 @pytest.fixture(scope="module")

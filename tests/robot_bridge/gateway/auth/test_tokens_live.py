@@ -13,8 +13,8 @@ from robot_bridge.gateway.auth.accounts import TokenKind, new_token
 from tests.support.bridge.bridge_accounts import bearing
 from tests.support.bridge.bridge_programs import wait_until
 from tests.support.bridge.bridge_sockets import frame, plain_socket
-from tests.support.bridge.bridge_wires import RefusedError, is_refused, is_shut
 from tests.support.patience import BUSY
+from tests.support.wire import RefusedError, is_refused, is_shut
 
 
 @pytest.fixture(scope="module")

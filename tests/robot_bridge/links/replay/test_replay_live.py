@@ -12,8 +12,8 @@ from pathlib import Path
 import pytest
 
 from tests.support.bridge.bridge_programs import wait_until
-from tests.support.bridge.bridge_wires import RefusedError
 from tests.support.bridge.command_line import run_command
+from tests.support.wire import RefusedError
 
 GUIDE = (Path(__file__).parents[4] / "docs/links-replay.md").read_text(encoding="utf-8")
 SETTINGS = re.findall(r"```toml\n(.*?)```", GUIDE, re.DOTALL)

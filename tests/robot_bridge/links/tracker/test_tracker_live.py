@@ -13,10 +13,10 @@ from pathlib import Path
 import pytest
 
 from tests.support.bridge.bridge_programs import wait_until
-from tests.support.bridge.bridge_wires import RefusedError
 from tests.support.bridge.command_line import run_command
 from tests.support.bridge.cut_line import CUT, CutLine
 from tests.support.processes import free_port
+from tests.support.wire import RefusedError
 
 GUIDE = (Path(__file__).parents[4] / "docs/links-tracker.md").read_text(encoding="utf-8")
 SETTINGS = re.findall(r"```toml\n(.*?)```", GUIDE, re.DOTALL)

@@ -24,7 +24,7 @@ from qgis.PyQt.QtWidgets import (
 from qgis.utils import iface
 
 from tests.support.inside_qgis.mouse import move_mouse
-from tests.support.inside_qgis.operator_at_desk import NotHappenedError, OperatorAtDesk
+from tests.support.inside_qgis.operator_at_desk import OperatorAtDesk
 
 LIVE_LAYER = "Robots (live)"
 LEFT = Qt.MouseButton.LeftButton
@@ -67,8 +67,8 @@ class Shift:
     def put_away(self) -> None:
         """Put down what is in hand and list all robots; what is open stays open."""
         iface.actionPan().trigger()
-        self._find(QLineEdit, "fleet_robot_search").clear()
-        self._find(QComboBox, "fleet_robot_filter").setCurrentIndex(0)
+        self._operator.find(QLineEdit, "fleet_robot_search").clear()
+        self._operator.find(QComboBox, "fleet_robot_filter").setCurrentIndex(0)
         self._canvas.setRotation(0.0)
         self._look_at_home()
 
@@ -134,9 +134,9 @@ class Shift:
 
     def search_and_sort(self) -> Generator[float, None, None]:
         """Narrow the table, sort it by each column, show the robots without a task."""
-        search = self._find(QLineEdit, "fleet_robot_search")
-        which = self._find(QComboBox, "fleet_robot_filter")
-        header = self._find(QTableView, "fleet_robot_table").horizontalHeader()
+        search = self._operator.find(QLineEdit, "fleet_robot_search")
+        which = self._operator.find(QComboBox, "fleet_robot_filter")
+        header = self._operator.find(QTableView, "fleet_robot_table").horizontalHeader()
         for text in ("robot-00", "robot fresh", ""):
             search.setText(text)
             yield 0.5
@@ -152,7 +152,7 @@ class Shift:
 
     def leaf_through_the_lists(self) -> Generator[float, None, None]:
         """Show each list of the Fleet panel."""
-        tabs = self._find(QTabWidget, "fleet_tabs")
+        tabs = self._operator.find(QTabWidget, "fleet_tabs")
         for index in (*range(tabs.count()), 0):
             self._select_one()
             tabs.setCurrentIndex(index)
@@ -160,12 +160,12 @@ class Shift:
 
     def acknowledge_alarms(self) -> Generator[float, None, None]:
         """Look at the alarms, say that they were seen, read their log."""
-        tabs = self._find(QTabWidget, "fleet_tabs")
+        tabs = self._operator.find(QTabWidget, "fleet_tabs")
         tabs.setCurrentIndex(tabs.count() - 1)
         yield 1.0
-        self._find(QAbstractButton, "fleet_acknowledge_all").click()
+        self._operator.find(QAbstractButton, "fleet_acknowledge_all").click()
         yield 0.5
-        self._find(QAbstractButton, "fleet_alarm_log").click()
+        self._operator.find(QAbstractButton, "fleet_alarm_log").click()
         yield 1.0
         self._close("fleet_alarm_log_dialog")
         tabs.setCurrentIndex(0)
@@ -175,13 +175,13 @@ class Shift:
         self._select_one()
         self._trigger("fleet_replay")
         yield 0.5
-        self._find(QComboBox, "fleet_replay_last").setCurrentIndex(0)
-        self._find(QAbstractButton, "fleet_replay_selected").setChecked(self._chance.random() < 0.7)
-        load = self._find(QAbstractButton, "fleet_replay_load")
+        self._operator.find(QComboBox, "fleet_replay_last").setCurrentIndex(0)
+        self._operator.find(QAbstractButton, "fleet_replay_selected").setChecked(self._chance.random() < 0.7)
+        load = self._operator.find(QAbstractButton, "fleet_replay_load")
         load.click()
         yield 5.0
-        self._find(QComboBox, "fleet_replay_speed").setCurrentIndex(4)
-        play = self._find(QAbstractButton, "fleet_replay_play")
+        self._operator.find(QComboBox, "fleet_replay_speed").setCurrentIndex(4)
+        play = self._operator.find(QAbstractButton, "fleet_replay_play")
         play.click()
         yield 4.0
         play.click()
@@ -256,7 +256,7 @@ class Shift:
         self._operator.press("fleet_abort")
         yield 0.5
         if self._chance.random() < 0.3:
-            self._find(QAbstractButton, "fleet_abort_all_button").click()
+            self._operator.find(QAbstractButton, "fleet_abort_all_button").click()
             yield 2.0
 
     def stop_everything_and_clear(self) -> Generator[float, None, None]:
@@ -269,8 +269,8 @@ class Shift:
             self._trigger("fleet_clear_emergency")
             yield 0.5
             if self._window.findChild(QDialog, "fleet_clear_dialog") is not None:
-                self._find(QLineEdit, "fleet_clear_reason").setText("the yard is free")
-                self._find(QAbstractButton, "fleet_clear_confirm").click()
+                self._operator.find(QLineEdit, "fleet_clear_reason").setText("the yard is free")
+                self._operator.find(QAbstractButton, "fleet_clear_confirm").click()
                 yield 1.0
                 return
             yield 1.0
@@ -293,15 +293,9 @@ class Shift:
         return QPoint(round(size.width() * part[0]), round(size.height() * part[1]))
 
     def _trigger(self, name: str) -> None:
-        self._find(QAction, name).trigger()
+        self._operator.find(QAction, name).trigger()
 
     def _close(self, dialog: str) -> None:
         found = self._window.findChild(QDialog, dialog)
         if found is not None:
             found.close()
-
-    def _find(self, kind: type, name: str):
-        found = self._window.findChild(kind, name)
-        if found is None:
-            raise NotHappenedError(f"the window has no {kind.__name__} named {name}; is the plugin loaded?")
-        return found

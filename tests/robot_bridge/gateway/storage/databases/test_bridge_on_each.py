@@ -8,8 +8,8 @@ import pytest
 
 from tests.robot_bridge.gateway.storage.databases.accounts import Accounts
 from tests.support.bridge.bridge_programs import wait_until
-from tests.support.bridge.bridge_wires import RefusedError
 from tests.support.patience import START
+from tests.support.wire import RefusedError
 
 FULL_LIFE = ["queued", "delivered", "acknowledged", "reached"]
 SERVERS = pytest.mark.parametrize("kind", ["postgresql", "mariadb"], indirect=True)

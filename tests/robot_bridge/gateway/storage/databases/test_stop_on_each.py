@@ -10,9 +10,9 @@ from concurrent.futures import ThreadPoolExecutor
 import pytest
 
 from tests.support.bridge.bridge_programs import wait_until
-from tests.support.bridge.bridge_wires import RefusedError
 from tests.support.databases.database_client import DatabaseClient
 from tests.support.patience import BUSY
+from tests.support.wire import RefusedError
 
 WITHIN = 1.0
 """seconds of an idle machine until every other robot has its Abort."""

@@ -15,8 +15,8 @@ import pytest
 
 from robot_bridge.core.robotmap.binary import decode
 from tests.support.bridge.bridge_programs import wait_until
-from tests.support.bridge.bridge_wires import Desk
 from tests.support.databases.database_server import DatabaseServer
+from tests.support.operators import Desk
 from tests.support.patience import START
 from tests.support.processes import Processes
 

@@ -1,4 +1,9 @@
-"""The two ways in which a robot of these tests speaks to the gateway, written against the wire."""
+"""A robot's life on either wire, in a thread or turn by turn: it comes back for ever.
+
+What it says is never lost, whatever dies: it says again what may not have been heard, does once what it hears
+twice, and leaves what is not for this life. What it does and remembers is its mind's, which has what
+:class:`tests.support.faults.mind.Mind` has.
+"""
 
 from __future__ import annotations
 
@@ -6,54 +11,59 @@ import base64
 import json
 import threading
 import time
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
 from typing import Any
 
 from websockets.exceptions import WebSocketException
-from websockets.sync.client import ClientConnection, connect
 
-from tests.support.faults.mind import AGAIN_AFTER, Mind
-from tests.support.faults.tables import Tables, open_tables
+from tests.support.robots.robot_wires import RobotWire, SqlRobot
 
 RETRY_AFTER = 0.3
+AGAIN_AFTER = 1.0
+"""seconds after which a refused request is said again, under the same source."""
 SAY_READY_AGAIN_AFTER = 1.0
 LOOK_EVERY = 0.05
 """seconds between two looks at SA."""
 
 
-class WebSocketRobot:
+@dataclass
+class Said:
+    """A request that is said until the gateway has acknowledged it."""
+
+    op: str
+    params: dict[str, Any]
+    image: bytes | None = None
+    say_at: float = 0.0
+
+
+class MindOverWebSocket:
     """Speaks JSON-RPC; connects again for ever."""
 
-    def __init__(self, mind: Mind, url: str, ended: threading.Event) -> None:
+    def __init__(self, mind: Any, url: str) -> None:
         self._mind = mind
         self._url = f"{url}/robot?robot={mind.name}"
-        self._ended = ended
         self._ready = False
         self._calls: dict[int, str] = {}
 
-    def run(self) -> None:
+    def run(self, ended: threading.Event) -> None:
         """Live until told to end."""
-        while not self._ended.is_set():
+        while not ended.is_set():
             try:
-                with connect(
-                    self._url, max_size=None, compression=None, open_timeout=10, close_timeout=5
-                ) as wire:
-                    self._live(wire)
+                with RobotWire(self._url, open_timeout=10, close_timeout=5) as wire:
+                    self._live(wire, ended)
             except (OSError, TimeoutError, WebSocketException):
-                self._ended.wait(RETRY_AFTER)
+                ended.wait(RETRY_AFTER)
 
-    def _live(self, wire: ClientConnection) -> None:
+    def _live(self, wire: RobotWire, ended: threading.Event) -> None:
         self._ready = False
         self._calls.clear()
         self._mind.untold()
         ready_at = float("inf")
-        while not self._ended.is_set():
-            try:
-                frame = json.loads(wire.recv(LOOK_EVERY))
-            except TimeoutError:
-                frame = {}
+        while not ended.is_set():
+            frame = wire.receive(LOOK_EVERY)
             if frame.get("method") == "Start" or time.time() > ready_at:
-                self._call(wire, "Ready", {"magic": self._mind.magic})
+                self._calls[wire.begin("Ready", {"magic": self._mind.magic})] = "Ready"
                 ready_at = float("inf")
             if "method" in frame:
                 self._do(wire, frame)
@@ -62,12 +72,12 @@ class WebSocketRobot:
             if self._ready:
                 self._tell(wire)
 
-    def _do(self, wire: ClientConnection, frame: dict[str, Any]) -> None:
+    def _do(self, wire: RobotWire, frame: dict[str, Any]) -> None:
         params = frame.get("params") or {}
         self._mind.belongs_to(params.get("database"))
         if frame.get("id") is not None:
             self._mind.hear(frame["id"], frame["method"], params)
-            wire.send(json.dumps({"jsonrpc": "2.0", "id": frame["id"], "result": {}}))
+            wire.say(frame["id"])
 
     def _hear_answer(self, frame: dict[str, Any]) -> bool:
         """Take in the answer to a call; return false when it was a Ready that is refused."""
@@ -83,62 +93,67 @@ class WebSocketRobot:
             self._mind.untold(AGAIN_AFTER)
         return True
 
-    def _tell(self, wire: ClientConnection) -> None:
+    def _tell(self, wire: RobotWire) -> None:
         now = time.time()
         if (pose := self._mind.pose(now)) is not None:
-            wire.send(json.dumps({"jsonrpc": "2.0", "method": "SendPos", "params": pose}))
+            wire.tell("SendPos", pose)
             self._mind.note("pose", t=now, place=(pose["x"], pose["y"]))
-        if (seen := self._mind.observation(now)) is not None:
+        if (seen := self._mind.request(now)) is not None:
             image = {} if seen.image is None else {"image": base64.b64encode(seen.image).decode()}
-            self._call(wire, seen.op, {**seen.params, **image})
-
-    def _call(self, wire: ClientConnection, op: str, params: dict[str, Any]) -> None:
-        id = max(self._calls, default=0) + 1
-        self._calls[id] = op
-        wire.send(json.dumps({"jsonrpc": "2.0", "id": id, "method": op, "params": params}))
+            self._calls[wire.begin(seen.op, {**seen.params, **image})] = seen.op
 
 
-class SqlRobot:
-    """Reads and deletes its rows of SA, writes into RR; connects again for ever."""
+class MindOverSql:
+    """Reads and deletes its rows of SA, writes into RR; connects again for ever.
 
-    def __init__(self, mind: Mind, url: str, ended: threading.Event) -> None:
-        self._mind = mind
-        self._url = url
-        self._ended = ended
-        self._ready = False
-        self._ready_at = 0.0
+    ``clock`` tells the time that the mind goes by.
+    """
+
+    def __init__(self, mind: Any, url: str, clock: Callable[[], float] = time.time) -> None:
+        self._mind, self._clock = mind, clock
+        self._robot = SqlRobot(url, mind.name)
         self._unsaid: list[int] = []
         self._heard: set[int] = set()
+        self.begin()
 
-    def run(self) -> None:
+    def run(self, ended: threading.Event) -> None:
         """Live until told to end."""
-        while not self._ended.is_set():
-            tables = open_tables(self._mind.name, self._url)
+        while not ended.is_set():
+            self.begin()
             try:
-                self._live(tables)
-            except tables.errors as error:
+                while not ended.is_set():
+                    self.turn()
+                    ended.wait(LOOK_EVERY)
+            except self._robot.errors as error:
                 self._mind.note("cut off", text=" ".join(str(error).split())[:120])
-                self._ended.wait(RETRY_AFTER)
+                ended.wait(RETRY_AFTER)
             finally:
-                tables.close()
+                self.close()
 
-    def _live(self, tables: Tables) -> None:
-        # What was said last may have been committed or not, and an OpAck does not tell what it is for; that
-        # of Ready does, and comes after those of everything before.
+    def close(self) -> None:
+        """End the connection; the next turn makes another."""
+        self._robot.close()
+
+    def begin(self) -> None:
+        """Say Ready with the next turn.
+
+        What was said last may have been committed or not, and an OpAck does not tell what it is for; that of
+        Ready does, and comes after those of everything before.
+        """
         self._ready, self._ready_at = False, 0.0
-        while not self._ended.is_set():
-            rows = tables.read()
-            # What was acted on is acknowledged even if the row is gone when it can be said at last.
-            read = self._hear_all(rows)
-            self._write(tables, read, self._unsaid)
-            self._unsaid = []
-            self._ended.wait(LOOK_EVERY)
 
-    def _hear_all(self, rows: Iterable[tuple[int, str, str | None]]) -> list[int]:
+    def turn(self) -> None:
+        """Read and write what there is to read and to write; raises the driver's errors."""
+        # What was acted on is acknowledged even if the row is gone when it can be said at last.
+        read = self._hear_all(self._robot.waiting())
+        self._write(read, self._unsaid)
+        self._unsaid = []
+
+    def _hear_all(self, rows: Iterable[tuple[Any, ...]]) -> list[int]:
         """Take in messages in their order; return the ids of those that can go."""
         read: list[int] = []
         was_ready, is_behind = self._ready, False
-        for id, op, params in rows:
+        for id, op, params, _ in rows:
             if self._hear(id, op, json.loads(params or "{}")):
                 read.append(id)
             else:
@@ -177,7 +192,7 @@ class SqlRobot:
         if params["magic"] != self._mind.magic:
             return False
         self._ready = params["ok"]
-        self._ready_at = float("inf") if self._ready else time.time() + SAY_READY_AGAIN_AFTER
+        self._ready_at = float("inf") if self._ready else self._clock() + SAY_READY_AGAIN_AFTER
         self._mind.untold()
         return True
 
@@ -188,9 +203,9 @@ class SqlRobot:
             self._mind.note("refused", text=params.get("reason"))
             self._mind.untold(AGAIN_AFTER)
 
-    def _write(self, tables: Tables, read: list[int], acknowledged: list[int]) -> None:
+    def _write(self, read: list[int], acknowledged: list[int]) -> None:
         """Delete what was read and write what there is to say, in one transaction."""
-        now = time.time()
+        now = self._clock()
         said: list[tuple[str, dict[str, Any], bytes | None]] = [
             ("OpAck", {"id": id}, None) for id in acknowledged
         ]
@@ -200,10 +215,10 @@ class SqlRobot:
         pose = self._mind.pose(now) if self._ready else None
         if pose is not None:
             said.append(("SendPos", pose, None))
-        seen = self._mind.observation(now) if self._ready else None
+        seen = self._mind.request(now) if self._ready else None
         if seen is not None:
             said.append((seen.op, seen.params, seen.image))
         if read or said:
-            tables.write(read, [(op, json.dumps(params), payload) for op, params, payload in said])
+            self._robot.exchange(read, [(op, json.dumps(params), payload) for op, params, payload in said])
         if pose is not None:
             self._mind.note("pose", t=now, place=(pose["x"], pose["y"]))
