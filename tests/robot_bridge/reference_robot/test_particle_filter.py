@@ -180,10 +180,10 @@ def test_what_it_drives_while_it_may_be_in_two_places_does_not_count(yard):
     assert run.filter.belief.lost
 
 
-def along_a_corridor(wheels, seed, settings=SETTINGS):
-    """Drive 60 m between two plain walls without an end in reach; return errors, accuracy and beliefs."""
-    walls = [[(-60, y), (140, y)] for y in (0, 4)]
-    rows = [OutlineRow(one, ShapeType.OPEN_POLYGON, 3.0, "wall", f"walls:{one[0][1]}") for one in walls]
+def along_a_corridor(wheels, seed, settings=SETTINGS, end=140):
+    """Drive 60 m between two plain walls, closed at ``end``; return errors, accuracy and beliefs."""
+    walls = [(-60, 0), (end, 0), (end, 4), (-60, 4)]
+    rows = [OutlineRow(walls, ShapeType.OPEN_POLYGON, 3.0, "wall", "walls:1")]
     corridor = build_map(Outlines.from_rows(rows), Window.from_bounds(-60, -1, 140, 5), {"id": "corridor"})
     run, path = Run(corridor, seed, settings), [(0.4 * k, 2.0, 0.0) for k in range(150)]
     run.wheels = SimulatedOdometry(wheels, np.random.default_rng(seed))
@@ -206,6 +206,12 @@ def test_between_plain_walls_its_accuracy_grows_along_them_and_covers_what_it_is
         assert (errors < 3 * accuracy + 0.1).all()
     within = np.concatenate([errors <= 2 * accuracy for errors, accuracy, _ in drives])
     assert within.mean() >= 0.95
+
+
+def test_the_end_of_a_corridor_tells_how_far_it_came():
+    errors, accuracy, _ = along_a_corridor(OdometrySettings(drift_deg=0.0), 3, end=66)
+    assert accuracy.max() > 0.4 and errors.max() > 0.5
+    assert accuracy[-1] < 0.2 and errors[-1] <= 2 * accuracy[-1]
 
 
 def test_of_wheels_that_may_be_very_wrong_between_plain_walls_it_says_in_time_that_it_is_lost():
