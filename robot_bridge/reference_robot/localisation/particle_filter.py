@@ -85,7 +85,7 @@ class ParticleFilter:
         self._agreement = 0.0
         self._since_scan = math.inf
         """Metres driven, and radians turned, since a scan was weighed."""
-        self._by_scale = np.zeros(2)
+        self._by_scale: NDArray[Any] = np.zeros(2)
         """By how many metres the belief is off for each 1 that the wheels' scale is off, (2,)."""
         self._unsettled = 0.0
         """metres to drive until the place counts as found."""
