@@ -94,6 +94,8 @@ class ParticleFilter:
         self._since_fix = 0.0
         self._against: deque[bool] = deque(maxlen=settings.gps.of)
         """Which of the newest GPS positions are far from the belief."""
+        self._rival = False
+        """Whether another place had weight left when the robot, which is lost, looked for others last."""
         self._place: TruePose | None = None
         """The one place that the particles have been at while it counts as lost, moved on by the wheels."""
 
@@ -172,7 +174,8 @@ class ParticleFilter:
 
     def settle(self, metres: float) -> None:
         """Count as much as ``metres`` of driving towards a place that is known for sure."""
-        self._unsettled = max(0.0, self._unsettled - metres)
+        if self._place is not None:
+            self._unsettled = max(0.0, self._unsettled - metres)
 
     def observe(self, ranges: NDArray[Any]) -> None:
         """Weigh all particles by a scan, (B,) metres: NaN without reading, infinite without echo.
@@ -271,7 +274,8 @@ class ParticleFilter:
             return
         belief = self.belief
         recovery = self._settings.recovery
-        before, self._place = self._place, belief.pose if belief.share >= recovery.share else None
+        alone = belief.share >= recovery.share and not self._rival
+        before, self._place = self._place, belief.pose if alone else None
         if self._place is None:
             return
         if before is None or math.dist(before[:2], self._place[:2]) > recovery.place_m:
@@ -289,7 +293,7 @@ class ParticleFilter:
         self.weights = np.full(len(particles), 1 / len(particles))
         self._slow = self._fast = 0.0
         self._since_scan, self._by_scale = math.inf, np.zeros(2)
-        self._unsettled, self._place = 0.0, None
+        self._unsettled, self._place, self._rival = 0.0, None, False
         self._against.clear()
 
     def _together(self) -> NDArray[Any]:
@@ -323,6 +327,8 @@ class ParticleFilter:
         crowd = 1 / float(self.weights @ self.weights)
         if not looks and crowd > len(self.weights) / 2:
             return
+        if looks:
+            self._rival = self.belief.share < 1 - recovery.rival
         drawn = self.particles[low_variance(self.weights, len(self.weights), rng)]
         count = particles_for(occupied_bins(drawn, settings), settings)
         new = int(rng.binomial(count, max(lost, recovery.new_particles))) if looks else 0
@@ -353,7 +359,7 @@ class ParticleFilter:
         """Return poses where the scan fits, (count, 3)."""
         if self._search is None:
             walls = walls_of(self._map).higher_than(self._laser.height)
-            self._search = PlaceSearch(self._map, walls, self._laser, self._settings)
+            self._search = PlaceSearch(self._map, walls, self._laser, self._settings, self._model)
         near = self._near
         if near is not None:
             near = near[0], near[1], near[2] + self._since_fix

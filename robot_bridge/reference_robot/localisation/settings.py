@@ -95,8 +95,9 @@ class SearchSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     with ``again_per_area`` for each m² and ``again_most``: fewer, because it does so every metre.
     ``near_fix`` poses are compared around a GPS position. ``few_beams`` of a scan are enough to notice a
     place, by a likelihood field of ``wide_sigma`` metres: a pose beside the right one must be noticed, too.
-    The ``kept`` best are tried ``tries`` times around, in two rounds, with standard deviations of
-    ``rounds_m`` metres and ``rounds_deg`` degrees, by ``more_beams``.
+    The ``kept`` best, one of each bin of ``apart_m`` metres and ``apart_deg`` degrees, are tried ``tries``
+    times around, in two rounds, with standard deviations of ``rounds_m`` metres and ``rounds_deg`` degrees,
+    by ``more_beams``. Of these poses are drawn by the filter's model of all beams.
     """
 
     per_area: Positive = 85.0
@@ -108,6 +109,8 @@ class SearchSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     more_beams: Count = 40
     wide_sigma: Positive = 0.5
     kept: Count = 500
+    apart_m: Positive = 2.0
+    apart_deg: Angle = 45.0
     tries: Count = 16
     rounds_m: tuple[Metres, Metres] = (0.3, 0.1)
     rounds_deg: tuple[Degrees, Degrees] = (6.0, 2.0)
@@ -120,20 +123,23 @@ class RecoverySettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     fit by chance for some metres, and façades repeat every few. It is at one place when ``share`` of the
     particles' weight is within ``place_m`` metres and ``place_deg`` degrees of the middle. Every
     ``look_every_m`` metres or ``look_every_scans`` scans it looks for other places, and puts
-    ``new_particles`` of its particles there. A scan counts for ``scan_worth`` of what it does otherwise: in
-    each place the same walls are wrong scan after scan. Particles of one bin of ``group_m`` metres and
-    ``group_deg`` degrees are resampled apart from others, ``group_least`` of each, in the ``most_groups``
-    heaviest, down to ``group_share`` of the weight: none of several that look alike dies out by chance.
+    ``new_particles`` of its particles there. Where more than ``rival`` of the weight is at other places when
+    it looks again, another one fits as well, and it is at none: ``accuracy`` must hold at 95 % of the scans.
+    A scan counts for ``scan_worth`` of what it does otherwise: in each place the same walls are wrong scan
+    after scan. Particles of one bin of ``group_m`` metres and ``group_deg`` degrees are resampled apart from
+    others, ``group_least`` of each, in the ``most_groups`` heaviest, down to ``group_share`` of the weight:
+    none of several that look alike dies out by chance.
     """
 
     settled: Metres = 15.0
     share: Share = 0.8
+    rival: Share = 0.05
     place_m: Positive = 2.0
     place_deg: Angle = 30.0
     look_every_m: Metres = 1.0
     look_every_scans: Count = 10
     new_particles: Share = 0.1
-    scan_worth: Share = 0.25
+    scan_worth: Share = 0.15
     group_m: Positive = 4.0
     group_deg: Angle = 45.0
     group_least: Count = 20

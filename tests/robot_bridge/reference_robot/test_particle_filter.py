@@ -164,18 +164,21 @@ def test_what_it_drove_at_another_place_does_not_count_towards_this_one(yard):
     assert not run.filter.belief.lost
 
 
-def test_what_it_drives_while_it_may_be_in_two_places_does_not_count(yard):
+# The second: most likely at one place, and another that fits has kept a tenth of the weight.
+@pytest.mark.parametrize("every", [2, 10])
+def test_what_it_drives_while_it_may_be_in_two_places_does_not_count(yard, every):
     run = Run(yard)
     run.filter.place(CIRCLE[0], (0.1, 0.05))
     run.filter.doubt()
     together = run.filter.particles
     apart = together.copy()
-    apart[::2, 0] += 5.0
+    apart[::every, 0] += 5.0
     run.filter.particles = apart
     one_beam = np.full(LASER.beams, np.nan)
     one_beam[0] = 2.0
     run.filter.observe(one_beam)
     run.filter.move(Motion(20.0, 0.0))
+    run.filter.settle(20.0)
     run.filter.particles, run.filter.weights = together, np.full(len(together), 1 / len(together))
     assert run.filter.belief.lost
 
