@@ -23,7 +23,7 @@ TRACKER ?=
 MINUTES ?=
 export PYTHON DESTDIR PREFIX PROGRAM ARGS JOBS REPOSITORY TRACKER MINUTES
 
-.PHONY: help setup demo test test-core test-newer lint desktop screenshots install install-service uninstall-service translations package clean bench mutants
+.PHONY: help setup demo test test-core test-newer lint desktop screenshots install install-service uninstall-service serve-maps translations package clean bench mutants
 
 help: ## list the targets
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-18s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -75,6 +75,9 @@ install-service: ## put the gateway on this computer as a systemd service (DESTD
 
 uninstall-service: ## take that service away; settings and data stay
 	@scripts/service.sh uninstall
+
+serve-maps: $(READY) ## serve a project and the fleet as WMS, WMTS, WFS (ARGS="--fleet fleet.vrt --port 8790"); docs/services.md
+	@$(RUN) tools/serve_maps.py $(ARGS)
 
 translations: $(READY) ## bring resources/translations up to date with the source
 	@$(RUN) scripts/translations.py

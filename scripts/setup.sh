@@ -52,6 +52,8 @@ missing_servers() {
     has postgres || ls /usr/lib/postgresql/*/bin/postgres >/dev/null 2>&1 || echo postgresql
     has mariadbd || [ -x /usr/sbin/mariadbd ] || echo mariadb-server
     "$python" -c 'import MySQLdb' >/dev/null 2>&1 || echo python3-mysqldb
+    ls /usr/share/postgresql/*/extension/postgis.control >/dev/null 2>&1 || echo postgresql-postgis
+    has qgis_mapserver || echo qgis-server
     has mosquitto || [ -x /usr/sbin/mosquitto ] || echo mosquitto
 }
 

@@ -11,13 +11,16 @@ import typer
 from sqlalchemy import URL, Connection
 
 from ..core.errors import StoreError
+from ..core.files import replacement
 from ..core.messages import check_robot_name
+from ..core.sites.settings import SETTINGS_FILE, read_settings
 from ..gateway.storage import revisions
 from ..gateway.storage.backup import back_up, revision_in
 from ..gateway.storage.backup import restore as put_back
 from ..gateway.storage.database import run_once, shown
 from ..gateway.storage.dialects import SQLite
-from ..gateway.storage.roles.choice import has_accounts, role_manager_on
+from ..gateway.storage.map_views import map_views_on, views_made_again, virtual_layers
+from ..gateway.storage.roles.choice import has_accounts, map_readers_on, role_manager_on
 from ..gateway.storage.singleton_lock import no_gateway
 from .audited import act_audited, audited
 from .options import DEFAULT, DatabaseOption, PasswordFileOption, database_address
@@ -90,12 +93,77 @@ def account(
     typer.echo(f"account {name} is there: robot-bridge serve --database {shown(gateway)}", err=True)
 
 
+# --- ``robot-bridge database views`` and ``reader``: the fleet for GIS programs ---
+
+
+def views(
+    site: Annotated[
+        Path | None, typer.Option(help="Folder of the published site whose CRS and origin places have.")
+    ] = None,
+    remove: Annotated[bool, typer.Option("--remove", help="Remove the views.")] = False,
+    vrt: Annotated[
+        Path | None, typer.Option(help="SQLite: write the file by which GDAL and QGIS open the views.")
+    ] = None,
+    database: DatabaseOption = DEFAULT,
+    database_password_file: PasswordFileOption = None,
+) -> None:
+    """Make views of robots, trajectories, commands, cones and observations for QGIS and other GIS programs.
+
+    PostgreSQL needs PostGIS; on SQLite, --vrt writes the file that is opened.
+    """
+    address = _there(database_address(database, database_password_file))
+    if (site is None) != remove:
+        raise StoreError("give --site FOLDER to make the views, or --remove to remove them")
+    if vrt is not None and address.drivername != SQLite.name:
+        raise StoreError("--vrt is for SQLite; GIS programs open the views of PostgreSQL by themselves")
+    if site is None:
+        act_audited(address, "database views", shown(address), "removed", _without_views)
+        print(f"{shown(address)}: the views are removed")
+        return
+    frame = read_settings(site / SETTINGS_FILE).frame
+    names = act_audited(
+        address, "database views", shown(address), str(site), lambda db: map_views_on(db).make(frame)
+    )
+    print(f"{shown(address)}: made {', '.join(names)}")
+    if vrt is not None:
+        with replacement(vrt) as partial:
+            partial.write_text(virtual_layers(str(Path(address.database or "").absolute()), frame), "utf-8")
+        print(f"{vrt}: open it in QGIS, or with ogrinfo")
+
+
+def reader(
+    name: Annotated[str, typer.Argument(help="The account's name.")],
+    password_file: NewPasswordOption = None,
+    database: DatabaseOption = DEFAULT,
+    database_password_file: PasswordFileOption = None,
+) -> None:
+    """Make an account that reads the views and nothing else, for PostgreSQL, as the server's administrator.
+
+    The password is printed once, alone on standard output.
+    """
+    check_robot_name(name)
+    address = database_address(database, database_password_file)
+    password = new_password(password_file)
+    act_audited(
+        address, "database reader", name, None, lambda db: map_readers_on(db).add_map_reader(name, password)
+    )
+    if password_file is None:
+        print(password)
+    typer.echo(f"account {name} is there: {shown(address._replace(username=name, password=None))}", err=True)
+
+
+def _without_views(connection: Connection) -> None:
+    map_views_on(connection).remove()
+
+
 # --- ``robot-bridge database``: make the tables, bring them up to date, say how they are ---
 
 T = TypeVar("T")
 
 app = typer.Typer(help="Make, upgrade and check the database.", no_args_is_help=True)
 app.command()(account)
+app.command()(views)
+app.command()(reader)
 add_backup_commands(app)
 
 
@@ -147,12 +215,18 @@ def check(database: DatabaseOption = DEFAULT, database_password_file: PasswordFi
 async def _upgrade(address: URL) -> str:
     """Upgrade while no gateway runs; return the revision that was there."""
     async with no_gateway(address, "robot-bridge database upgrade"):
-        found = await asyncio.to_thread(_run, address, revisions.upgrade)
+        found = await asyncio.to_thread(_run, address, _upgrade_tables)
         if has_accounts(address.drivername):
             await asyncio.to_thread(
                 _run, address, lambda connection: role_manager_on(connection).renew_rights()
             )
     return found
+
+
+def _upgrade_tables(connection: Connection) -> str:
+    """Upgrade the tables; views, which keep columns from being changed, are made again behind that."""
+    with views_made_again(connection):
+        return revisions.upgrade(connection)
 
 
 def _there(address: URL) -> URL:

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from typing import Any
 
+import msgspec
 import numpy as np
 
 from robot_bridge.core.messages import PositionColumns
-from robot_bridge.gateway.fleet.operator_updates import packed
+from robot_bridge.gateway.fleet.operator_updates import METHOD, packed_frame
 
 SPEED = 1.5
 SILENT = 0.03
@@ -67,4 +68,5 @@ class DrivingFleet:
         }
         names = [f"robot-{number}" for number in range(count)]
         head = PositionColumns(0.0, names, [*columns, "device_time"], ["fresh", "websocket", "driving"])
-        return packed(head, columns.values())
+        text = msgspec.json.encode({"jsonrpc": "2.0", "method": METHOD, "params": head})
+        return packed_frame(text, columns.values())

@@ -7,7 +7,7 @@ import os
 import subprocess
 import time
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any, NamedTuple
@@ -19,13 +19,13 @@ from stage.ros_peer import DISTRIBUTION, ros_python
 from stage.rosbridge_peer import rosbridge_command
 
 from .clock import table
-from .linked import HERE, PROBING, START, Linked, NotMeasuredError, Window, linked, memory, memory_seconds
+from .linked import HERE, PROBING, START, Linked, NotMeasuredError, linked
 from .swarm import cpu_seconds
 from .trial import size
 
 CROWDS = size(((200, 10.0), (1000, 1.0)), ((10, 10.0), (20, 1.0)))
 SECONDS = size(30.0, 3.0)
-"""of a window; the first one, in which memory is measured, takes :func:`.memory_seconds`."""
+"""of a window."""
 ALL_HEARD = 0.95
 """of what is to be published that rclpy's subscriber must have heard, for the figures to say anything."""
 DOMAIN = 1 + os.getpid() % 50
@@ -61,12 +61,12 @@ Odometry of many robots, published by one rclpy node, best effort. An adapter te
 at {desk:g} Hz sees it: first over DDS, then over a rosbridge server (rosbridge-server-rs, CBOR, no throttle),
 each with a gateway of its own, while the same node goes on publishing. A second rclpy process, which does
 nothing but take the time, subscribes to the same topics all the while. Delays are from the message's stamp.
-CPU is of a core; a window takes {seconds:g} s, the first one {long:g} s. All processes share the machine.
+CPU is of a core; a window takes {seconds:g} s. All processes share the machine.
 {busy}
 
 {rows}
 
-{memory}
+{missing}
 """
 
 
@@ -87,40 +87,56 @@ class Crowd(NamedTuple):
 def section() -> str:
     """Return what was measured, as Markdown."""
     rows: list[list[str]] = []
-    remembered, starved, long = "", [], memory_seconds()
+    starved: list[str] = []
+    missing = ""
     try:
         python = ros_python()
         for robots, rate in CROWDS:
-            with _crowd(python, robots, rate) as crowd:
-                row, window = _over_dds(crowd, SECONDS if remembered else long)
-                remembered = remembered or memory(crowd.name, window)
-                rows.append(row)
-                rows.append(_over_rosbridge(crowd))
+            with (
+                publishing(python, robots, rate) as processes,
+                _listening(python, robots) as listener,
+            ):
+                crowd = Crowd(robots, rate, processes, listener)
+                rows.append(_dds_row(crowd))
+                rows.append(_rosbridge_row(crowd))
             starved += [row[0] for row in rows[-2:] if float(row[1]) < ALL_HEARD * robots * rate]
     except (StageError, NotMeasuredError) as error:
-        remembered += f"\n\n**Not measured any further**: {error}"
+        missing = f"**Not measured any further**: {error}"
     busy = f"It was too busy for {', '.join(starved)}: fewer came than were to." if starved else ""
-    return TEXT.format(
-        desk=PROBING, busy=busy, seconds=SECONDS, long=long, rows=table(HEAD, rows), memory=remembered
-    )
+    text = TEXT.format(desk=PROBING, busy=busy, seconds=SECONDS, rows=table(HEAD, rows), missing=missing)
+    return text.strip()
 
 
-def _over_dds(crowd: Crowd, seconds: float) -> tuple[list[str], Window]:
-    with linked("ros2", OVER_DDS) as link:
-        row, window = _window(link, crowd, seconds)
-    return [f"{crowd.name}, DDS", *row, "–"], window
+def over_dds() -> AbstractContextManager[Linked]:
+    """Run an adapter over DDS, and a gateway for it."""
+    return linked("ros2", OVER_DDS)
 
 
-def _over_rosbridge(crowd: Crowd) -> list[str]:
+def over_rosbridge(port: int) -> AbstractContextManager[Linked]:
+    """Run an adapter to the rosbridge server at ``port``, and a gateway for it."""
+    return linked("rosbridge", OVER_ROSBRIDGE.format(port=port, distribution=DISTRIBUTION))
+
+
+def rosbridge_server(processes: Processes) -> tuple[int, int]:
+    """Start a rosbridge server among ``processes``; return its process id and port once it listens."""
     port, name = free_port(), "rosbridge"
-    server = crowd.processes.start(name, rosbridge_command(port), env=NETWORK)
-    crowd.processes.wait_for_line(name, "listening", START)
-    with linked("rosbridge", OVER_ROSBRIDGE.format(port=port, distribution=DISTRIBUTION)) as link:
-        row, _ = _window(link, crowd, SECONDS, server.pid)
-    return [f"{crowd.name}, rosbridge", *row]
+    server = processes.start(name, rosbridge_command(port), env=NETWORK)
+    processes.wait_for_line(name, "listening", START)
+    return server.pid, port
 
 
-def _window(link: Linked, crowd: Crowd, seconds: float, *others: int) -> tuple[list[str], Window]:
+def _dds_row(crowd: Crowd) -> list[str]:
+    with over_dds() as link:
+        return [f"{crowd.name}, DDS", *_window(link, crowd), "–"]
+
+
+def _rosbridge_row(crowd: Crowd) -> list[str]:
+    server, port = rosbridge_server(crowd.processes)
+    with over_rosbridge(port) as link:
+        return [f"{crowd.name}, rosbridge", *_window(link, crowd, server)]
+
+
+def _window(link: Linked, crowd: Crowd, *others: int) -> list[str]:
     """Return a row of the page without its name; processor time is of ``others`` too."""
     link.wait_for(crowd.robots)
     link.look()
@@ -128,28 +144,25 @@ def _window(link: Linked, crowd: Crowd, seconds: float, *others: int) -> tuple[l
     time.sleep(size(10.0, 1.0))
     listener = crowd.listener
     assert listener.stdin is not None and listener.stdout is not None
-    listener.stdin.write(json.dumps({"begin": time.monotonic(), "seconds": seconds}) + "\n")
+    listener.stdin.write(json.dumps({"begin": time.monotonic(), "seconds": SECONDS}) + "\n")
     listener.stdin.flush()
     pids = (listener.pid, *others)
     before = [cpu_seconds(pid) for pid in pids]
-    window = link.window(seconds)
-    used = [(cpu_seconds(pid) - was) / seconds for pid, was in zip(pids, before, strict=True)]
+    window = link.window(SECONDS)
+    used = [(cpu_seconds(pid) - was) / SECONDS for pid, was in zip(pids, before, strict=True)]
     own, *rest = [f"{100 * one:.0f} %" for one in used]
     heard: dict[str, Any] = json.loads(listener.stdout.readline())
     delays = ["–" if one is None else f"{one:.1f}" for one in heard["delays"]]
-    return [f"{heard['heard'] / seconds:.0f}", *delays, own, *window.row(), *rest], window
+    return [f"{heard['heard'] / SECONDS:.0f}", *delays, own, *window.row(), *rest]
 
 
 @contextmanager
-def _crowd(python: Path, robots: int, rate: float) -> Iterator[Crowd]:
-    publisher = [python, HERE / "ros_crowd.py", "publish", str(robots), str(rate)]
-    with (
-        TemporaryDirectory() as folder,
-        Processes(Path(folder)) as processes,
-        _listening(python, robots) as listener,
-    ):
-        processes.start("crowd", publisher, env=NETWORK)
-        yield Crowd(robots, rate, processes, listener)
+def publishing(python: Path, robots: int, rate: float) -> Iterator[Processes]:
+    """Let so many robots of one rclpy node publish, among the processes that are returned."""
+    with TemporaryDirectory() as folder, Processes(Path(folder)) as processes:
+        crowd = [python, HERE / "ros_crowd.py", "publish", str(robots), str(rate)]
+        processes.start("crowd", crowd, env=NETWORK)
+        yield processes
 
 
 @contextmanager

@@ -14,10 +14,11 @@ from stage.errors import StageError
 from stage.processes import Processes
 
 from .clock import table
-from .linked import HERE, PROBING, START, NotMeasuredError, linked, memory, memory_seconds
+from .linked import HERE, PROBING, START, Linked, NotMeasuredError, linked
 from .trial import size
 
 VEHICLES, RATE = size(200, 10), 1.0
+SECONDS = size(90.0, 6.0)
 HEAD = ("vehicles", "delay to the desk, ms: median", "p99", "adapter's CPU", "gateway's CPU")
 TEXT = """\
 ### VDA 5050
@@ -27,30 +28,32 @@ message with the fields that the standard asks for. The delay is from the state'
 {desk:g} Hz; of {seconds:g} s.
 
 {rows}
-
-{memory}
 """
 
 
 def section() -> str:
     """Return what was measured, as Markdown."""
-    seconds = memory_seconds()
     try:
-        with _broker() as (processes, port):
-            settings = f'[vda5050]\nbroker = "mqtt://127.0.0.1:{port}"\n'
-            with linked("vda5050", settings) as link:
-                crowd = [sys.executable, HERE / "vda_crowd.py", str(port), str(VEHICLES), str(RATE)]
-                processes.start("crowd", crowd)
-                link.wait_for(VEHICLES)
-                link.look()
-                window = link.window(seconds)
+        with driving(VEHICLES, RATE) as link:
+            link.wait_for(VEHICLES)
+            link.look()
+            window = link.window(SECONDS)
     except (StageError, NotMeasuredError) as error:
         return f"### VDA 5050\n\n**Not measured**: {error}"
-    name = f"{VEHICLES} × {RATE:g} Hz"
-    rows = table(HEAD, [[name, *window.row()]])
-    return TEXT.format(
-        vehicles=VEHICLES, rate=RATE, seconds=seconds, desk=PROBING, rows=rows, memory=memory(name, window)
-    )
+    rows = table(HEAD, [[f"{VEHICLES} × {RATE:g} Hz", *window.row()]])
+    return TEXT.format(vehicles=VEHICLES, rate=RATE, seconds=SECONDS, desk=PROBING, rows=rows)
+
+
+@contextmanager
+def driving(vehicles: int, rate: float) -> Iterator[Linked]:
+    """Let so many vehicles say their state at ``rate`` Hz to a broker, an adapter and its gateway."""
+    with (
+        _broker() as (processes, port),
+        linked("vda5050", f'[vda5050]\nbroker = "mqtt://127.0.0.1:{port}"\n') as link,
+    ):
+        crowd = [sys.executable, HERE / "vda_crowd.py", str(port), str(vehicles), str(rate)]
+        processes.start("crowd", crowd)
+        yield link
 
 
 @contextmanager

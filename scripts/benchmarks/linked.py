@@ -18,10 +18,8 @@ from typing import Any
 
 from stage.processes import Processes, dying_with_this
 
-from .clock import spread
 from .load import serving
 from .swarm import cpu_seconds, megabytes_of
-from .trial import size
 
 HERE = Path(__file__).parent
 FRESH = re.compile(r'^robot_bridge_robots\{state="fresh"\} (\S+)', re.MULTILINE)
@@ -34,26 +32,17 @@ SETTLE = 2.5
 """seconds after which a desk that came has been told all that was there before."""
 
 
-def memory_seconds() -> float:
-    """Return for how long memory is measured: MINUTES of the environment, a minute and a half without."""
-    minutes = os.environ.get("MINUTES")
-    return 60 * float(minutes) if minutes else size(90.0, 6.0)
-
-
 class NotMeasuredError(Exception):
     """Why something could not be measured; the page says so."""
 
 
 @dataclass(frozen=True)
 class Window:
-    """What came of some seconds: delays in ms (median, p99), processor time in cores, memory in MB."""
+    """What came of some seconds: delays in ms (median, p99), and processor time in cores."""
 
-    seconds: float
     delays: list[float | None]
     adapter: float
     gateway: float
-    megabytes: list[tuple[float, float]]
-    """of adapter and gateway, each some seconds."""
 
     def row(self) -> list[str]:
         """Return the delays, and the processor time of adapter and gateway, as a table tells them."""
@@ -93,20 +82,18 @@ class Linked:
         self._line()
         time.sleep(SETTLE)
 
-    def window(self, seconds: float, every: float = 5.0) -> Window:
-        """Return what comes of the next seconds; memory is looked at ``every`` so many of them."""
+    def window(self, seconds: float) -> Window:
+        """Return what comes of the next seconds."""
         assert self._operators is not None and self._operators.stdin is not None
         pids = (self._adapter, self._gateway)
         begin = time.monotonic()
         self._operators.stdin.write(json.dumps({"begin": begin, "seconds": seconds}) + "\n")
         self._operators.stdin.flush()
-        before, megabytes = [cpu_seconds(pid) for pid in pids], [self._megabytes()]
-        while (left := begin + seconds - time.monotonic()) > 0:
-            time.sleep(min(left, every))
-            megabytes.append(self._megabytes())
+        before = [cpu_seconds(pid) for pid in pids]
+        time.sleep(max(0.0, begin + seconds - time.monotonic()))
         took = time.monotonic() - begin
         adapter, gateway = ((cpu_seconds(p) - b) / took for p, b in zip(pids, before, strict=True))
-        return Window(seconds, self._line()["delays"], adapter, gateway, megabytes)
+        return Window(self._line()["delays"], adapter, gateway)
 
     def end(self) -> None:
         """Let the desk go."""
@@ -114,7 +101,8 @@ class Linked:
             self._operators.kill()
             self._operators.wait()
 
-    def _megabytes(self) -> tuple[float, float]:
+    def megabytes(self) -> tuple[float, float]:
+        """Return the resident memory of the adapter and of the gateway, in MB."""
         return megabytes_of(self._adapter), megabytes_of(self._gateway)
 
     def _fresh(self) -> int:
@@ -145,16 +133,3 @@ def linked(kind: str, settings: str, env: Mapping[str, str] | None = None) -> It
                 yield running
             finally:
                 running.end()
-
-
-def memory(name: str, window: Window) -> str:
-    """Return how the memory of adapter and gateway went in a window, in a sentence."""
-    told = []
-    for who, samples in zip(("adapter", "gateway"), zip(*window.megabytes, strict=True), strict=True):
-        half = len(samples) // 2
-        first, last = spread(samples[:half] or samples).median, spread(samples[half:]).median
-        told.append(f"the {who} from {first:.1f} to {last:.1f} MB")
-    return (
-        f"Memory, {name}, medians of both halves of {window.seconds / 60:.1f} minutes: {' and '.join(told)}. "
-        "`MINUTES=60` looks for as long as an hour; less shows what grows fast, and no more."
-    )

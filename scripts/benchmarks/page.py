@@ -46,6 +46,7 @@ BENCH = [
     "big_site",
     "load",
     "links",
+    "link_memory",
     "round_trip",
     "faults",
     "attack",

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import importlib.util
 import re
 import subprocess
 from collections.abc import Iterator
@@ -21,6 +22,8 @@ MODULES = [
     SCRIPTS / "mutation" / "report.py",
     *(path for path in sorted((SCRIPTS / "benchmarks").glob("*.py")) if path.name != INSTANCE),
 ]
+PRODUCT = {"plugin", "robot_bridge"}
+PROGRAMS = sorted(SCRIPTS.rglob("*.py"))
 PLACEHOLDER, CODE = re.compile(r"\{[^{}]*\}"), re.compile(r"`[^`]*`")
 NAMES = re.compile(r"E-n51-k5|\b1969\b|\bcodec \d|\bp\d\d\b|EPSG:\d+|10\*\*|ROS 2|VDA 5050|\bNav2\b")
 """What has a digit and is no figure: a public instance and its year, formats, percentiles, standards."""
@@ -30,6 +33,31 @@ WORD = r"(?:two|three|four|five|six|seven|eight|nine|ten|twenty|thirty|forty|fif
 IN_WORDS = re.compile(
     rf"\b{WORD} (?:milliseconds|seconds?|minutes?|hours?|MB|percent|times a second)\b", re.I
 )
+
+
+def test_what_programs_import_of_the_product_exists():
+    """A benchmark or a walk that nobody runs in the suite would break at a renaming without a word."""
+    missing = [
+        f"{path.relative_to(SCRIPTS)}: from {module} import {name}"
+        for path in PROGRAMS
+        for module, name in imported_names(path)
+        if not hasattr(importlib.import_module(module), name) and not is_module(f"{module}.{name}")
+    ]
+    assert missing == [], "\n" + "\n".join(missing)
+
+
+def imported_names(path: Path) -> Iterator[tuple[str, str]]:
+    """Yield module and name of what a program imports from the product, wherever in it."""
+    for node in ast.walk(ast.parse(path.read_text("utf-8"))):
+        if isinstance(node, ast.ImportFrom) and (node.module or "").partition(".")[0] in PRODUCT:
+            yield from ((node.module, alias.name) for alias in node.names)
+
+
+def is_module(name: str) -> bool:
+    try:
+        return importlib.util.find_spec(name) is not None
+    except ModuleNotFoundError:
+        return False
 
 
 def test_no_template_has_a_figure_typed_into_it():

@@ -122,10 +122,11 @@ def test_what_is_missing_is_left_out_where_it_was():
     left = joined(seen(1, 0.0, -15.0, radius=5.0, doubts="walls:bench"), site=site)
     assert [one.semantics for one in left.obstacles] == ["wall"]
     # In another publication the same name may be another thing.
-    assert joined(seen(1, 0.0, 0.0, radius=5.0, doubts="walls:bench"), site=site).obstacles == site.obstacles
-    assert (
-        joined(seen(1, 0.0, -15.0, radius=5.0, doubts="walls:other"), site=site).obstacles == site.obstacles
-    )
+    for other in (
+        seen(1, 0.0, 0.0, radius=5.0, doubts="walls:bench"),
+        seen(1, 0.0, -15.0, radius=5.0, doubts="walls:other"),
+    ):
+        assert list(joined(other, site=site).obstacles) == list(site.obstacles)
 
 
 def test_what_is_missing_is_no_object_itself():

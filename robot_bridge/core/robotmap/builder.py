@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import WindowError
-from .model import CUT, Border, Obstacle, RobotMap, ShapeType, Window
+from .model import CUT, Border, BuiltObstacles, RobotMap, ShapeType, Window
 from .outlines import (
     CLOSED_TYPES,
     Outlines,
@@ -138,6 +138,7 @@ __all__ = ["Window", "build_map"]
 Rows = slice | NDArray[Any]
 """Which segments, in their order."""
 
+_SHAPE_TYPES = {int(one): one for one in ShapeType}
 _WHEN_CUT = {
     ShapeType.CLOSED_POLYGON: ShapeType.OPEN_POLYGON,
     ShapeType.CLOSED_CURVE: ShapeType.OPEN_CURVE,
@@ -175,20 +176,12 @@ def map_of(
 ) -> RobotMap:
     """Return the map of ``border`` whose obstacles are the clipped ``segments`` of ``outlines``."""
     segments = without_vanished(segments)
-    obstacles = sorted(
+    chains = sorted(
         _numbered(_chains(segments, outlines), len(outlines)),
-        key=lambda item: (group_of(outlines, item[2]), item[2], item[0]),
+        key=lambda chain: (group_of(outlines, chain[2]), chain[2], chain[0]),
     )
-    heights, outdoor = np.round(segments.height, 2), outlines.outdoor[segments.outline]
-    return RobotMap(
-        border=border,
-        obstacles=tuple(
-            _obstacle(outlines, segments, heights[rows], outdoor[rows], id, rows, outline, closed)
-            for id, rows, outline, closed in obstacles
-        ),
-        meta=dict(meta or {}),
-        warnings=warnings,
-    )
+    obstacles = _built(outlines, segments, chains) if chains else ()
+    return RobotMap(border, obstacles, dict(meta or {}), warnings)
 
 
 def _bounds(found: OutlineValidation) -> Border:
@@ -261,27 +254,30 @@ def group_of(outlines: Outlines, outline: int) -> str:
     return outlines.semantics[outline].partition(",")[0]
 
 
-def _obstacle(
-    outlines: Outlines,
-    segments: Segments,
-    heights: NDArray[Any],
-    outdoor: NDArray[Any],
-    id: int,
-    rows: Rows,
-    outline: int,
-    closed: bool,
-) -> Obstacle:
-    shape_type = ShapeType(int(outlines.shape_type[outline]))
-    return Obstacle(
-        id=id,
-        shape_type=shape_type if closed else _WHEN_CUT.get(shape_type, shape_type),
-        semantics=outlines.semantics[outline],
-        a=segments.a[rows],
-        b=segments.b[rows],
-        height=heights,
-        outdoor=outdoor,
-        segment_semantics=("",) * len(heights),
-        ext=_ext(outlines, outline, cut=not closed and shape_type in CLOSED_TYPES),
+def _built(
+    outlines: Outlines, segments: Segments, chains: Sequence[tuple[int, Rows, int, bool]]
+) -> BuiltObstacles:
+    """Return the obstacles of ``chains``, in their order: id, segments, outline and whether it is closed."""
+    rows: list[int] = []
+    offsets, shape_types, extras = [0], [], []
+    types = outlines.shape_type[[outline for _, _, outline, _ in chains]].tolist()
+    for (_, own, outline, closed), number in zip(chains, types, strict=True):
+        rows += range(own.start, own.stop) if isinstance(own, slice) else own.tolist()
+        offsets.append(len(rows))
+        shape_type = _SHAPE_TYPES[number]
+        shape_types.append(shape_type if closed else _WHEN_CUT.get(shape_type, shape_type))
+        extras.append(_ext(outlines, outline, cut=not closed and shape_type in CLOSED_TYPES))
+    order = np.array(rows, dtype=np.int64)
+    return BuiltObstacles(
+        ids=[id for id, _, _, _ in chains],
+        shape_types=shape_types,
+        semantics=[outlines.semantics[outline] for _, _, outline, _ in chains],
+        ext=extras,
+        offsets=offsets,
+        a=segments.a[order],
+        b=segments.b[order],
+        height=np.round(segments.height[order], 2),
+        outdoor=outlines.outdoor[segments.outline[order]],
     )
 
 

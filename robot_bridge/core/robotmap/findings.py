@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from enum import Enum
 from typing import Any
@@ -106,7 +106,7 @@ class SegmentTable:
         )
 
     @property
-    def obstacles(self) -> tuple[Obstacle, ...]:
+    def obstacles(self) -> Sequence[Obstacle]:
         """The obstacles by row."""
         return self.robot_map.obstacles
 

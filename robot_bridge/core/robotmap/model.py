@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from enum import IntEnum
-from typing import Any, NamedTuple
+from functools import cached_property
+from typing import Any, NamedTuple, overload
 
 from numpy.typing import NDArray
 
@@ -99,6 +101,61 @@ class Obstacle:
 
 
 @dataclass(frozen=True, eq=False)
+class BuiltObstacles(Sequence[Obstacle]):
+    """K obstacles with n segments in columns, of which :class:`Obstacle` is made when one is asked for.
+
+    A map that is written as soon as it is built needs none of them, and making them is half of its time.
+    """
+
+    ids: Sequence[int]
+    shape_types: Sequence[ShapeType]
+    semantics: Sequence[str]
+    ext: Sequence[dict[str, str]]
+    offsets: Sequence[int]
+    """K + 1 rows: obstacle k has those from ``offsets[k]`` to ``offsets[k + 1]``."""
+    a: NDArray[Any]
+    """(n, 2) float64, metres in the site frame."""
+    b: NDArray[Any]
+    """(n, 2) float64, metres in the site frame."""
+    height: NDArray[Any]
+    """(n,) float64, metres."""
+    outdoor: NDArray[Any]
+    """(n,) bool."""
+
+    def __len__(self) -> int:
+        return len(self.ids)
+
+    def __iter__(self) -> Iterator[Obstacle]:
+        return iter(self._made)
+
+    @overload
+    def __getitem__(self, k: int) -> Obstacle: ...
+    @overload
+    def __getitem__(self, k: slice) -> Sequence[Obstacle]: ...
+    def __getitem__(self, k: int | slice) -> Obstacle | Sequence[Obstacle]:
+        return self._made[k]
+
+    @cached_property
+    def _made(self) -> tuple[Obstacle, ...]:
+        bounds = zip(self.offsets, self.offsets[1:], strict=False)
+        heads = zip(self.ids, self.shape_types, self.semantics, self.ext, bounds, strict=True)
+        return tuple(
+            Obstacle(
+                id=id,
+                shape_type=shape_type,
+                semantics=semantics,
+                a=self.a[begin:end],
+                b=self.b[begin:end],
+                height=self.height[begin:end],
+                outdoor=self.outdoor[begin:end],
+                segment_semantics=("",) * (end - begin),
+                ext=ext,
+            )
+            for id, shape_type, semantics, ext, (begin, end) in heads
+        )
+
+
+@dataclass(frozen=True, eq=False)
 class RobotMap:
     """A map of ``border`` with its obstacles.
 
@@ -108,7 +165,7 @@ class RobotMap:
     """
 
     border: Border
-    obstacles: tuple[Obstacle, ...]
+    obstacles: Sequence[Obstacle]
     meta: dict[str, str] = field(default_factory=dict)
     warnings: tuple[str, ...] = ()
     head: str | None = field(default=None, init=False, repr=False)
@@ -117,6 +174,8 @@ class RobotMap:
     @property
     def segment_count(self) -> int:
         """How many segments all obstacles have together."""
+        if isinstance(self.obstacles, BuiltObstacles):
+            return len(self.obstacles.a)
         return sum(len(obstacle.a) for obstacle in self.obstacles)
 
 

@@ -6,13 +6,14 @@ import math
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import islice, zip_longest
+from operator import sub
 from typing import Any, NoReturn
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import MapTextError, RobotMapError, counted
-from .model import Border, Obstacle, RobotMap, ShapeType
+from .model import Border, BuiltObstacles, Obstacle, RobotMap, ShapeType
 
 # --- Labels inside the text format: characters that mean something there are written ``\HH`` or ``\uHHHH``
 
@@ -326,6 +327,10 @@ _BLOCK = 4096
 """segments that are turned into Python's numbers at once, which take five times their room."""
 _PLAIN_FROM, _PLAIN_BELOW = 1e-4, 1e16
 """Between these Python writes a number without an exponent."""
+_MOST_CENTIMETRES = 1e13
+"""Below this a number of centimetres is told from the next one by two decimals of metres."""
+_HUNDREDTHS = [f"{hundredths / 100:g}"[1:] + ";" for hundredths in range(100)]
+"""What stands behind the whole metres."""
 
 
 def write_text(robot_map: RobotMap, *, strict: bool = False) -> str:
@@ -377,6 +382,9 @@ def _head(robot_map: RobotMap, strict: bool) -> Iterator[str]:
 
 def _texts(obstacles: Sequence[Obstacle], strict: bool) -> Iterator[str]:
     """Yield each obstacle as it was read, or as it is written."""
+    if isinstance(obstacles, BuiltObstacles):
+        yield from _built_texts(obstacles, strict)
+        return
     for begin in range(0, len(obstacles), _OBSTACLES):
         some = obstacles[begin : begin + _OBSTACLES]
         numbers = _numbers([one for one in some if strict or one.text is None])
@@ -387,10 +395,9 @@ def _texts(obstacles: Sequence[Obstacle], strict: bool) -> Iterator[str]:
 
 def _obstacle_lines(obstacle: Obstacle, numbers: Iterator[str], strict: bool) -> Iterator[str]:
     """Yield an obstacle's lines; ``numbers`` gives what stands before the labels of each of its segments."""
-    ext = write_ext({} if strict else obstacle.ext)
+    ext = {} if strict else obstacle.ext
     count = len(obstacle.a)
-    yield "obstacle;\n"
-    yield f"{obstacle.id};{int(obstacle.shape_type)};{count};{escape(obstacle.semantics)};{ext}\n#\n"
+    yield _obstacle_head(obstacle.id, obstacle.shape_type, count, obstacle.semantics, ext)
     extras = () if strict else obstacle.segment_ext
     if not extras and not any(obstacle.segment_semantics):
         for number, outdoor in zip(islice(numbers, count), obstacle.outdoor.tolist(), strict=True):
@@ -401,12 +408,32 @@ def _obstacle_lines(obstacle: Obstacle, numbers: Iterator[str], strict: bool) ->
         yield f"{number}{'01'[outdoor]};{escape(semantics)};{write_ext(ext_ or {})}\n#\n"
 
 
+def _built_texts(built: BuiltObstacles, strict: bool) -> Iterator[str]:
+    """Yield each obstacle as it is written."""
+    values = np.column_stack([built.a, built.b, built.height])
+    numbers = zip(_all_number_lines(values), built.outdoor.tolist(), strict=True)
+    lines = (f"{number}{'01'[outdoor]};;\n#\n" for number, outdoor in numbers)
+    counts = map(sub, built.offsets[1:], built.offsets)
+    heads = zip(built.ids, built.shape_types, counts, built.semantics, built.ext, strict=True)
+    for id, shape_type, count, semantics, ext in heads:
+        head = _obstacle_head(id, shape_type, count, semantics, {} if strict else ext)
+        yield "".join([head, *islice(lines, count)])
+
+
+def _obstacle_head(id: int, shape_type: ShapeType, count: int, semantics: str, ext: Mapping[str, str]) -> str:
+    return f"obstacle;\n{id};{shape_type:d};{count};{escape(semantics)};{write_ext(ext)}\n#\n"
+
+
 def _numbers(obstacles: Sequence[Obstacle]) -> Iterator[str]:
     """Yield the two ends and the height of each segment of ``obstacles``, as they are written."""
     if not obstacles:
         return
     ends = [np.concatenate(side) for side in zip(*((one.a, one.b) for one in obstacles), strict=True)]
-    values = np.column_stack([*ends, np.concatenate([one.height for one in obstacles])])
+    yield from _all_number_lines(np.column_stack([*ends, np.concatenate([one.height for one in obstacles])]))
+
+
+def _all_number_lines(values: NDArray[Any]) -> Iterator[str]:
+    """Yield a text for each row of ``values``, (n, 5), made of a block of them at once."""
     for begin in range(0, len(values), _BLOCK):
         yield from _number_lines(values[begin : begin + _BLOCK])
 
@@ -417,6 +444,13 @@ def _number_lines(values: NDArray[Any]) -> Iterator[str]:
     if not ((size < _PLAIN_BELOW) & ((size >= _PLAIN_FROM) | (size == 0))).all():
         for ax, ay, bx, by, height in values.tolist():
             yield f"{_point(ax, ay)}{_point(bx, by)}{format_number(height)};"
+        return
+    centimetres = np.rint(values * 100)
+    if ((centimetres / 100 == values) & (centimetres >= 0) & (centimetres < _MOST_CENTIMETRES)).all():
+        rows = zip(*(part.tolist() for part in np.divmod(centimetres.astype(np.int64), 100)), strict=True)
+        ends = _HUNDREDTHS
+        for (ax, ay, bx, by, height), (i, j, k, m, n) in rows:
+            yield f"{ax}{ends[i]}{ay}{ends[j]}\n{bx}{ends[k]}{by}{ends[m]}\n{height}{ends[n]}"
         return
     # A sum with zero has no sign of its own, as -0.0 has.
     for ax, ay, bx, by, height in (values + 0.0).tolist():

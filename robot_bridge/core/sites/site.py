@@ -304,7 +304,7 @@ def read_site(folder: Path | str) -> Site:
     return site
 
 
-def _write_site_cache(folder: Path, settings: SiteSettings, text: str, obstacles: CacheWriter) -> None:
+def write_site_cache(folder: Path, settings: SiteSettings, text: str, obstacles: CacheWriter) -> None:
     """Write ``site.cache`` beside the ``site.gpkg`` in ``folder`` that ``obstacles`` are published in.
 
     ``text`` is that of ``site.toml``, which says how large a map may be. What a gateway would refuse, or
@@ -395,7 +395,7 @@ def write_settings_and_cache(staged: StagedFiles, settings: SiteSettings, cache:
     """
     text = settings_text(settings, earlier_settings(staged.target, settings.id))
     (staged.folder / SETTINGS_FILE).write_text(text, encoding="utf-8")
-    _write_site_cache(staged.folder, settings, text, cache)
+    write_site_cache(staged.folder, settings, text, cache)
 
 
 def publish_staged(staged: StagedFiles) -> None:

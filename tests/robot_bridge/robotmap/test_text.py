@@ -178,12 +178,15 @@ def test_no_text_raises_anything_but_the_familys_errors(text):
         assert str(error).startswith("line ")
 
 
-PLAIN = [-0.0, 0.0, 0.01, -4.0, 12.1, 1e15 + 0.5, 123456.78]
+CENTIMETRES = [-0.0, 0.0, 0.01, 0.07, 0.29, 0.5, 4.0, 12.1, 123456.78, 99999999999.99]
+PLAIN = [*CENTIMETRES, -4.0, 1e15 + 0.5, 0.125]
 
 
-@pytest.mark.parametrize("odd", [None, 1e-5, 1e17, -1.5e300, 9e-5])
-def test_every_number_is_written_as_if_alone_whatever_stands_beside_it(odd):
-    values = [*PLAIN, *([] if odd is None else [odd])]
+@pytest.mark.parametrize(
+    "values",
+    [CENTIMETRES, [*CENTIMETRES, -0.01], PLAIN, *([*PLAIN, odd] for odd in (1e-5, 1e17, -1.5e300, 9e-5))],
+)
+def test_every_number_is_written_as_if_alone_whatever_stands_beside_it(values):
     ends = np.array([[x, y] for x in values for y in values])
     heights = np.resize(np.abs(values), len(ends))
     wall = Obstacle(

@@ -26,3 +26,10 @@ def role_manager_on(connection: Connection) -> RoleManager:
     if kind is None:
         raise AccountError("SQLite has no accounts: robots elsewhere come in over WebSocket, with a token")
     return kind(connection)
+
+
+def map_readers_on(connection: Connection) -> PostgreSqlRoles:
+    """Return who makes the accounts that read the views of the fleet; raises AccountError elsewhere."""
+    if connection.dialect.name != "postgresql":
+        raise AccountError("only PostgreSQL has accounts for the views of the fleet; a file is read as it is")
+    return PostgreSqlRoles(connection)

@@ -11,6 +11,7 @@ from typing import Any
 
 from sqlalchemy import text
 
+from ..map_views import PostGisViews
 from .role_manager import LIMITS, MOST_CONNECTIONS, STATEMENT_SECONDS, AccountError, RoleManager
 
 _ALL = "using (true)"
@@ -24,6 +25,8 @@ _GATEWAYS_MAY = {
     },
 }
 """The rows that a gateway may read, write and remove. Of SA it locks rows for update, and changes none."""
+MOST_READERS, READING_SECONDS = 32, 60
+"""Connections of an account that reads the views, and how long one of its statements may take."""
 _VERSION = "robots' side of the fleet, version 2"
 _SERVER_OWN = ("postgres", "public", "none")
 
@@ -74,6 +77,26 @@ class PostgreSqlRoles(RoleManager):
         self._all(_SUSPENSION.format(robots=_ROBOTS, version=version).split("\n\n"))
         if not found and self._is_superuser():
             self._close_what_everybody_may()
+
+    def add_map_reader(self, name: str, password: str) -> None:
+        """Make an account that reads the views of the fleet and may do nothing else.
+
+        :raises AccountError: when the name is taken.
+        :raises MapViewError: when there are no views.
+        """
+        self._check_name(name)
+        self._refuse_taken(name)
+        views = PostGisViews(self._connection)
+        views.require()
+        role, database = self._quoted(name), self._quoted(self.robots_database())
+        self._make_role(name, password, f"connection limit {MOST_READERS}")
+        self._all(
+            [
+                f"alter role {role} in database {database} set statement_timeout = '{READING_SECONDS}s'",
+                f"grant connect on database {database} to {role}",
+            ]
+        )
+        views.let_read(role)
 
     def renew_rights(self) -> None:
         if self._scalar("select count(*) from pg_namespace where nspname = 'for_robots'") != "0":
