@@ -5,7 +5,7 @@
 READY := .venv/.fleet-setup
 RUN := .venv/bin/python
 HEADLESS := env QT_QPA_PLATFORM=offscreen XDG_RUNTIME_DIR=$(CURDIR)/build/run
-DRAW := $(HEADLESS) PYTHONPATH=scripts $(RUN) -m pictures
+DRAW := $(HEADLESS) $(RUN) -m tools.pictures
 
 # Given on the command line: make test ARGS="-k robotmap" JOBS=0 (ARGS=-rs says why tests were skipped),
 # make install PROFILE=work LINK=1
@@ -30,14 +30,14 @@ help: ## list the targets
 
 setup: $(READY) ## install what is missing (QGIS, Xvfb, .venv); quick when nothing is
 
-$(READY): pyproject.toml scripts/setup.sh
-	@scripts/setup.sh
+$(READY): pyproject.toml tools/setup.sh
+	@tools/setup.sh
 
 build/run:
 	@mkdir -p -m 700 $@
 
 demo: $(READY) build/run ## run the main job once, headless, on the sample site; see build/demo/ (PARTS=zalazone)
-	@$(HEADLESS) $(RUN) scripts/demo.py $(PARTS)
+	@$(HEADLESS) $(RUN) -m tools.demo $(PARTS)
 
 test: $(READY) build/run ## run every test, style and import rules included, headless
 	@$(HEADLESS) $(RUN) -m pytest -q -rfEs $(SIDE_BY_SIDE) --durations=5 --durations-min=1 $(ARGS)
@@ -46,51 +46,51 @@ test-core: $(READY) ## run within a minute what needs neither QGIS nor database 
 	@$(RUN) -m pytest -q -rfE -p no:pytest_qgis --core -n 2 --dist loadfile --no-loadscope-reorder $(ARGS)
 
 test-newer: ## run every test on the newer QGIS of Debian forky, in a root folder of its own (as root)
-	@scripts/newer.sh
+	@tools/newer.sh
 
 lint: $(READY) ## check style, types and import rules only
 	@$(RUN) -m pytest -q tests/packaging/test_style.py
 
 desktop: $(READY) ## open QGIS Desktop with the plugin, the sample site and three driving robots
-	@$(RUN) scripts/desktop.py
+	@$(RUN) -m tools.desktop
 
 screenshots: $(READY) build/run ## make the pictures in docs/images, in real windows under Xvfb
-	@$(RUN) scripts/desktop.py --screenshot docs/images/desktop.png
-	@PYTHONPATH=scripts $(RUN) -m walkthrough --pictures docs/images
-	@$(RUN) scripts/roles_picture.py
+	@$(RUN) -m tools.desktop --screenshot docs/images/desktop.png
+	@$(RUN) -m tools.walkthrough --pictures docs/images
+	@$(RUN) -m tools.roles_picture
 	@$(DRAW).robot_maps
 	@$(DRAW).cones
 	@$(DRAW).assignment
 	@$(DRAW).supervisors
-	@$(RUN) scripts/cone_plan_pictures.py
+	@$(RUN) -m tools.cone_plan_pictures
 	@$(DRAW).roads
 	@$(DRAW).stored_loop
 	@$(DRAW).road_surfaces
 
 install: $(READY) ## put the plugin into your QGIS profile (PROFILE=name, LINK=1 links this folder)
-	@$(RUN) scripts/install_plugin.py --profile "$(PROFILE)" $(if $(LINK),--link)
+	@$(RUN) -m tools.install_plugin --profile "$(PROFILE)" $(if $(LINK),--link)
 
 install-service: ## put the gateway on this computer as a systemd service (DESTDIR=, PREFIX=/opt/robot-bridge)
-	@scripts/service.sh install
+	@tools/service.sh install
 
 uninstall-service: ## take that service away; settings and data stay
-	@scripts/service.sh uninstall
+	@tools/service.sh uninstall
 
 serve-maps: $(READY) ## serve a project and the fleet as WMS, WMTS, WFS (ARGS="--fleet fleet.vrt --port 8790"); docs/services.md
 	@$(RUN) tools/serve_maps.py $(ARGS)
 
 translations: $(READY) ## bring resources/translations up to date with the source
-	@$(RUN) scripts/translations.py
+	@$(RUN) -m tools.translations
 
 package: $(READY) ## build the zip for plugins.qgis.org
-	@$(RUN) scripts/package.py
+	@$(RUN) -m tools.package
 
 bench: $(READY) ## measure on the real data beside the project (PARTS=maps ..., MINUTES=5, TRIAL=1); see docs/benchmarks.md
-	@$(RUN) scripts/bench.py $(PARTS)
+	@$(RUN) -m benchmarks $(PARTS)
 
 mutants: $(READY) ## change what stops robots in every way that a test must notice (ARGS=emergency); docs/benchmarks.md
 	@.venv/bin/pip install -q $$($(RUN) -c 'import tomllib; print(*tomllib.load(open("pyproject.toml", "rb"))["project"]["optional-dependencies"]["mutation"])')
-	@nice -n 10 $(RUN) scripts/mutants.py $(ARGS)
+	@nice -n 10 $(RUN) -m tools.mutants $(ARGS)
 
 clean: ## remove build/ (what was built, not the environment)
 	rm -rf build

@@ -1,4 +1,4 @@
-"""What the packaging tests share: the scripts, the zip, and a Python that has PyQGIS but not the venv."""
+"""What the packaging tests share: the walks, the zip, and a Python that has PyQGIS but not the venv."""
 
 from __future__ import annotations
 
@@ -17,13 +17,12 @@ SCREEN, A4 = [800, 1280], [620, 877]
 """Pixels of pictures."""
 LARGEST = 400_000
 """Bytes of a picture that goes into the repository."""
-sys.path.insert(0, str(ROOT / "scripts"))
 
 
 @pytest.fixture(scope="session")
 def release(tmp_path_factory) -> Path:
     """The plugin's zip, built now."""
-    from package import build
+    from tools.package import build
 
     return build(tmp_path_factory.mktemp("release"))
 
@@ -47,11 +46,11 @@ def stock_python() -> str:
 def walk(tmp_path):
     """Take a walk through the desk with what is added to the environment; return how it went."""
     kept = {name: value for name, value in os.environ.items() if name not in ("DISPLAY", "WAYLAND_DISPLAY")}
-    kept |= {"FLEET_WALKTHROUGH_FOLDER": str(tmp_path / "walk"), "PYTHONPATH": str(ROOT / "scripts")}
+    kept |= {"FLEET_WALKTHROUGH_FOLDER": str(tmp_path / "walk"), "PYTHONPATH": str(ROOT)}
 
     def go(name: str, **added: str) -> subprocess.CompletedProcess[str]:
         return subprocess.run(
-            [sys.executable, "-m", "walkthrough", name, "--pictures", tmp_path / "pictures"],
+            [sys.executable, "-m", "tools.walkthrough", name, "--pictures", tmp_path / "pictures"],
             env={**kept, **added},
             cwd=ROOT,
             capture_output=True,

@@ -10,20 +10,23 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+
 from benchmarks.clock import spread
 from benchmarks.endurance_findings import Run, Sample, Unloaded
 from benchmarks.endurance_page import report
 from benchmarks.page import Beginning, Part, goal, with_part
 
-SCRIPTS = Path(__file__).resolve().parents[2] / "scripts"
+ROOT = Path(__file__).resolve().parents[2]
 INSTANCE = "e_n51_k5.py"
 """Numbers of a public instance, which are not said but computed with."""
 MODULES = [
-    SCRIPTS / "mutation" / "report.py",
-    *(path for path in sorted((SCRIPTS / "benchmarks").glob("*.py")) if path.name != INSTANCE),
+    ROOT / "tools" / "mutation" / "report.py",
+    *(path for path in sorted((ROOT / "benchmarks").glob("*.py")) if path.name != INSTANCE),
 ]
 PRODUCT = {"plugin", "robot_bridge"}
-PROGRAMS = sorted(SCRIPTS.rglob("*.py"))
+PROGRAMS = sorted(
+    path for part in ("benchmarks", "tests/support", "tools") for path in (ROOT / part).rglob("*.py")
+)
 PLACEHOLDER, CODE = re.compile(r"\{[^{}]*\}"), re.compile(r"`[^`]*`")
 NAMES = re.compile(r"E-n51-k5|\b1969\b|\bcodec \d|\bp\d\d\b|EPSG:\d+|10\*\*|ROS 2|VDA 5050|\bNav2\b")
 """What has a digit and is no figure: a public instance and its year, formats, percentiles, standards."""
@@ -38,7 +41,7 @@ IN_WORDS = re.compile(
 def test_what_programs_import_of_the_product_exists():
     """A benchmark or a walk that nobody runs in the suite would break at a renaming without a word."""
     missing = [
-        f"{path.relative_to(SCRIPTS)}: from {module} import {name}"
+        f"{path.relative_to(ROOT)}: from {module} import {name}"
         for path in PROGRAMS
         for module, name in imported_names(path)
         if not hasattr(importlib.import_module(module), name) and not is_module(f"{module}.{name}")
@@ -134,7 +137,7 @@ def test_a_part_says_what_it_ran_under(monkeypatch):
     table = "| " + " | ".join(["a long cell that no line may break"] * 5) + " |\n| --- |"
     part = Part("Maps", f"A paragraph.\n\n{table}", settings={"GDAL_CACHEMAX": "16"})
     page = with_part("", "maps", part, ["maps"], Beginning.now())
-    git = ["git", "-C", str(SCRIPTS), "rev-parse", "--short=8", "HEAD"]
+    git = ["git", "-C", str(ROOT), "rev-parse", "--short=8", "HEAD"]
     commit = subprocess.run(git, capture_output=True, text=True).stdout.strip()
     assert f"Made by `make bench PARTS=maps`{f' of commit {commit}' if commit else ''}" in page
     words = " ".join(page.split())

@@ -44,7 +44,7 @@ def test_what_it_selects_imports_no_qgis_and_starts_no_server(core):
 
 def test_a_test_of_it_that_reaches_for_qgis_fails(core, root, tmp_path):
     (tmp_path / "test_reaching.py").write_text(REACHES_QGIS, encoding="utf-8")
-    done = core(root / "tests" / "robot_bridge" / "test_counting.py", tmp_path / "test_reaching.py")
+    done = core(root / "tests" / "robot_bridge" / "core" / "test_counting.py", tmp_path / "test_reaching.py")
     assert done.returncode == 1
     assert "ModuleNotFoundError: No module named 'qgis.core'" in done.stdout, done.stdout
     assert "1 failed, 3 passed" in done.stdout

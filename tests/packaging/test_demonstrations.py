@@ -10,10 +10,10 @@ import time
 from pathlib import Path
 
 import pytest
-from stage.fleet import STARTS
-from stage.patience import BUSY
 
 from robot_bridge.core.robotmap.binary import decode_text
+from tests.support.fleet import STARTS
+from tests.support.patience import BUSY
 
 
 @pytest.fixture
@@ -41,7 +41,8 @@ def left_running(folder: Path) -> set[int]:
 
 def test_the_demo_does_what_it_says(root, tmp_path, environment):
     done = subprocess.run(
-        [sys.executable, root / "scripts" / "demo.py"],
+        [sys.executable, "-m", "tools.demo"],
+        cwd=root,
         env=environment,
         capture_output=True,
         text=True,
@@ -62,9 +63,9 @@ def test_the_demo_does_what_it_says(root, tmp_path, environment):
 
 
 def test_the_demo_fails_when_a_program_is_missing_and_leaves_nothing_running(root, tmp_path, environment):
-    script = root / "scripts" / "demo.py"
     done = subprocess.run(
-        [sys.executable, script],
+        [sys.executable, "-m", "tools.demo"],
+        cwd=root,
         env={**environment, "PATH": str(tmp_path)},
         capture_output=True,
         text=True,
@@ -79,9 +80,13 @@ def test_the_demo_fails_when_a_program_is_missing_and_leaves_nothing_running(roo
 def test_the_desktop_opens_connected_and_takes_everything_with_it_when_it_is_ended(
     root, tmp_path, environment
 ):
-    script = root / "scripts" / "desktop.py"
     with subprocess.Popen(
-        [sys.executable, script], env=environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+        [sys.executable, "-m", "tools.desktop"],
+        cwd=root,
+        env=environment,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
     ) as desktop:
         try:
             told = [desktop.stdout.readline() for _ in range(3)]

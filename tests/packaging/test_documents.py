@@ -10,12 +10,12 @@ import time
 from pathlib import Path
 
 import pytest
-from stage.desk_wire import ask
-from stage.patience import START
-from stage.processes import Processes
-from stage.qgis import program
 
 from robot_bridge.core.robotmap.text_format import read_text
+from tests.support.desk_wire import ask
+from tests.support.patience import START
+from tests.support.processes import Processes
+from tests.support.qgis import program
 
 ROOT = Path(__file__).resolve().parents[2]
 DOCUMENTS = [

@@ -5,8 +5,9 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from install_plugin import InstallError, install, profiles_folder
-from plugin_files import ROOT
+
+from tools.install_plugin import InstallError, install, profiles_folder
+from tools.plugin_files import ROOT
 
 PLACES = [
     ({"HOME": "/home/anna"}, "linux", "/home/anna/.local/share/QGIS/QGIS3/profiles"),

@@ -3,7 +3,8 @@
 import pyogrio
 import pytest
 import shapely
-from made_up_city import CRS, City
+
+from tools.made_up_city import CRS, City
 
 
 @pytest.fixture(scope="module")

@@ -27,15 +27,15 @@ from qgis.core import (
 from qgis.PyQt.QtCore import QSize
 from qgis.PyQt.QtGui import QImage
 from sqlalchemy import insert
-from stage.database_server import find_program, free_port
-from stage.errors import StageError
-from stage.processes import Processes
 
 from robot_bridge.core.sites.settings import read_settings
 from robot_bridge.gateway.storage import revisions
 from robot_bridge.gateway.storage.database import run_once
 from robot_bridge.gateway.storage.map_views import map_views_on, virtual_layers
 from robot_bridge.gateway.storage.schema import robots, trajectories
+from tests.support.databases.database_server import find_program, free_port
+from tests.support.errors import StageError
+from tests.support.processes import Processes
 
 ROOT = Path(__file__).resolve().parents[2]
 PROGRAM = ROOT / "tools" / "serve_maps.py"

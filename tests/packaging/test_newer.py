@@ -38,7 +38,7 @@ def newer(root, tmp_path):
             (programs / name).write_text(f"#!/bin/sh\n{text}\n", encoding="utf-8")
             (programs / name).chmod(0o755)
         process = subprocess.Popen(
-            [root / "scripts" / "newer.sh"],
+            [root / "tools" / "newer.sh"],
             env={
                 **os.environ,
                 "PATH": f"{programs}:{os.environ['PATH']}",

@@ -7,7 +7,8 @@ import sys
 from pathlib import Path
 
 import pytest
-from qgis4_types import PACKAGE, complaints
+
+from tools.qgis4_types import PACKAGE, complaints
 
 WRONG = {
     "an_argument": ("QtWidgets import QWidget", "QWidget().setFixedWidth(3.5)", '"float"; expected "int"'),

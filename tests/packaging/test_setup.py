@@ -17,8 +17,8 @@ NO_PYQGIS = 'case "$2" in *qgis*) echo no module named qgis >&2; exit 1;; esac'
 @pytest.fixture
 def machine(tmp_path, root):
     """A machine with a few programs and the given ones (name: shell text); a call runs the set-up there."""
-    (tmp_path / "project" / "scripts").mkdir(parents=True)
-    shutil.copy(root / "scripts" / "setup.sh", tmp_path / "project" / "scripts")
+    (tmp_path / "project" / "tools").mkdir(parents=True)
+    shutil.copy(root / "tools" / "setup.sh", tmp_path / "project" / "tools")
     programs = tmp_path / "bin"
     programs.mkdir()
     for tool in TOOLS:
@@ -28,7 +28,7 @@ def machine(tmp_path, root):
         for name, text in given.items():
             script(programs / name, text)
         return subprocess.run(
-            [tmp_path / "project" / "scripts" / "setup.sh"],
+            [tmp_path / "project" / "tools" / "setup.sh"],
             env={"PATH": str(programs), "HOME": str(tmp_path), **environment},
             stdin=subprocess.DEVNULL,
             capture_output=True,
@@ -50,11 +50,11 @@ def make_setup(project: Path) -> None:
 
 
 def test_the_set_up_runs_again_only_when_the_requirements_change(root, tmp_path):
-    (tmp_path / "scripts").mkdir()
+    (tmp_path / "tools").mkdir()
     (tmp_path / ".venv").mkdir()
     shutil.copy(root / "Makefile", tmp_path)
     (tmp_path / "pyproject.toml").touch()
-    script(tmp_path / "scripts" / "setup.sh", "echo run >> runs; touch .venv/.fleet-setup")
+    script(tmp_path / "tools" / "setup.sh", "echo run >> runs; touch .venv/.fleet-setup")
 
     make_setup(tmp_path)
     make_setup(tmp_path)

@@ -12,10 +12,11 @@ import sys
 import time
 
 import pytest
-from stage.errors import StageError
-from stage.processes import Processes
-from stage.session import follow
-from stage.verdict import Errand, judge
+
+from tests.support.errors import StageError
+from tests.support.processes import Processes
+from tests.support.session import follow
+from tests.support.verdict import Errand, judge
 
 SLEEP = [sys.executable, "-c", "import time; print('ready', flush=True); time.sleep(60)"]
 STUBBORN = [
@@ -26,7 +27,7 @@ STUBBORN = [
 INTERRUPTED = """\
 import sys, time
 from pathlib import Path
-from stage.processes import Processes, leave_on_signals
+from tests.support.processes import Processes, leave_on_signals
 leave_on_signals()
 with Processes(Path(sys.argv[1])) as processes:
     print(processes.start("one", sys.argv[2:]).pid, flush=True)
@@ -34,8 +35,8 @@ with Processes(Path(sys.argv[1])) as processes:
 """
 ENDING = """\
 import sys
-from stage.errors import StageError
-from stage.program import ended
+from tests.support.errors import StageError
+from tests.support.program import ended
 def work():
     {work}
 sys.exit(ended("show", work, "logs: here"))
@@ -59,7 +60,7 @@ def test_an_exception_ends_every_process(tmp_path):
 
 
 def test_a_process_that_ignores_sigterm_is_killed(tmp_path, monkeypatch):
-    monkeypatch.setattr("stage.processes.PATIENCE_S", 0.2)
+    monkeypatch.setattr("tests.support.processes.PATIENCE_S", 0.2)
     with Processes(tmp_path) as processes:
         pid = processes.start("stubborn", STUBBORN).pid
         processes.wait_for_line("stubborn", "ready", 10)
@@ -68,7 +69,7 @@ def test_a_process_that_ignores_sigterm_is_killed(tmp_path, monkeypatch):
 
 @pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGHUP, signal.SIGINT])
 def test_a_signal_ends_every_process(tmp_path, root, number):
-    env = {**os.environ, "PYTHONPATH": str(root / "scripts")}
+    env = {**os.environ, "PYTHONPATH": str(root)}
     command = [sys.executable, "-c", INTERRUPTED, tmp_path, *SLEEP]
     with subprocess.Popen(
         command, env=env, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True
@@ -80,7 +81,7 @@ def test_a_signal_ends_every_process(tmp_path, root, number):
 
 
 def test_a_killed_program_leaves_no_process_behind(tmp_path, root):
-    env = {**os.environ, "PYTHONPATH": str(root / "scripts")}
+    env = {**os.environ, "PYTHONPATH": str(root)}
     command = [sys.executable, "-c", INTERRUPTED, tmp_path, *STUBBORN]
     with subprocess.Popen(command, env=env, stdout=subprocess.PIPE, text=True) as outer:
         ended = os.pidfd_open(int(outer.stdout.readline()))
@@ -187,5 +188,5 @@ def test_anything_else_is_refused(commands, poses, complaint):
 )
 def test_a_program_ends_with_its_status_and_what_went_wrong_in_one_line(root, work, status, told):
     program = [sys.executable, "-c", ENDING.format(work=work)]
-    done = subprocess.run(program, cwd=root / "scripts", capture_output=True, text=True, check=False)
+    done = subprocess.run(program, cwd=root, capture_output=True, text=True, check=False)
     assert (done.returncode, done.stderr) == (status, told)

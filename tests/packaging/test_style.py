@@ -8,7 +8,8 @@ import sys
 from pathlib import Path
 
 import pytest
-from import_rules import check
+
+from tools.import_rules import check
 
 
 def run(root: Path, *command: str) -> subprocess.CompletedProcess[str]:

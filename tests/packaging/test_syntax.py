@@ -5,7 +5,8 @@ from __future__ import annotations
 import ast
 
 import pytest
-from syntax import TRIES, tree_of
+
+from tools.syntax import TRIES, tree_of
 
 
 def disturbed(times: int, monkeypatch) -> None:

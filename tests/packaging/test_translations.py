@@ -7,8 +7,9 @@ import string
 import xml.etree.ElementTree as ET
 
 import pytest
-import translations
-from plugin_files import plugin_files
+
+from tools import translations
+from tools.plugin_files import plugin_files
 
 LANGUAGES = sorted(translations.FORMS)
 PLAIN = "<p>{one} of {two:.1f} {three!r}</p>"

@@ -9,12 +9,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from stage.errors import StageError
-from stage.ros_peer import ros_python
-from zalazone.places import same_ground, spellings
-from zalazone.recording import Sample, compare
 
 from robot_bridge.core.sites.frame import SiteFrame
+from tests.support.errors import StageError
+from tests.support.robots.ros_peer import ros_python
+from tools.zalazone.places import same_ground, spellings
+from tools.zalazone.recording import Sample, compare
 
 RECORDED = {"1": np.array([(t / 10, 100.0 + t, 50.0) for t in range(60)])}
 
@@ -26,9 +26,10 @@ def demo(root, tmp_path):
     kept["FLEET_ZALAZONE_FOLDER"] = str(tmp_path / "zalazone")
 
     def run(*part: str, **environment: str) -> subprocess.CompletedProcess[str]:
-        command = [sys.executable, root / "scripts" / "demo.py", *part]
+        command = [sys.executable, "-m", "tools.demo", *part]
         return subprocess.run(
             command,
+            cwd=root,
             env=kept | environment,
             capture_output=True,
             text=True,

@@ -10,8 +10,9 @@ from configparser import ConfigParser
 from pathlib import PurePosixPath
 
 import pytest
-from package import LIMIT, build
-from plugin_files import PackageError, plugin_files, version
+
+from tools.package import LIMIT, build
+from tools.plugin_files import PackageError, plugin_files, version
 
 REQUIRED_KEYS = (
     "name",
@@ -48,7 +49,7 @@ def test_one_folder_holds_everything(names):
 def test_no_binary_no_test_no_hidden_file_is_in_it(names):
     assert not [name for name in names if name.endswith(BINARIES)]
     parts = {part for name in names for part in PurePosixPath(name).parts}
-    assert not parts & {"__pycache__", "__MACOSX", "tests", "scripts", ".git"}
+    assert not parts & {"__pycache__", "__MACOSX", "tests", "benchmarks", "tools", ".git"}
     assert not [part for part in parts if part.startswith(".")]
 
 

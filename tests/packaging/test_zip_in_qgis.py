@@ -8,9 +8,10 @@ import subprocess
 from pathlib import Path
 
 import pytest
-from stage.fleet import start_gateway
-from stage.processes import Processes
-from stage.qgis import SETTINGS, program
+
+from tests.support.fleet import start_gateway
+from tests.support.processes import Processes
+from tests.support.qgis import SETTINGS, program
 
 ALONE = Path(__file__).with_name("alone_in_qgis.py")
 

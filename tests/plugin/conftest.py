@@ -1,9 +1,399 @@
-"""What all tests of the plugin share: layers in memory."""
+"""A QGIS window with what a desk needs of it, and a small gateway on a real socket."""
 
 from __future__ import annotations
 
+import asyncio
+import itertools
+import json
+import threading
+import time
+from collections.abc import Callable
+from dataclasses import replace
+
 import pytest
-from qgis.core import QgsFeature, QgsGeometry, QgsVectorLayer
+from fleet_supervisor.robot_bridge.core.messages import (
+    CommandReport,
+    CommandState,
+    CommandStep,
+    EmergencyReport,
+    RobotReport,
+    RobotState,
+    SiteReport,
+    to_json,
+)
+from qgis.core import (
+    QgsCoordinateReferenceSystem,
+    QgsFeature,
+    QgsGeometry,
+    QgsLocator,
+    QgsProject,
+    QgsRectangle,
+    QgsSettings,
+    QgsVectorLayer,
+)
+from qgis.gui import QgsGui, QgsMapCanvas, QgsMapToolPan, QgsMessageBar
+from qgis.PyQt import sip
+from qgis.PyQt.QtCore import QCoreApplication, QEvent, QPoint, Qt
+from qgis.PyQt.QtTest import QTest
+from qgis.PyQt.QtWidgets import QAction, QApplication, QLabel, QMainWindow
+from websockets.asyncio.server import serve
+from websockets.exceptions import ConnectionClosed
+
+from tests.support.inside_qgis.mouse import move_mouse
+from tests.support.patience import BUSY
+
+ORIGIN = (488000.0, 5190000.0)
+BAR_SIZE = (600, 40)
+"""Pixels: the bar lies in no layout, and an item of QGIS 3.44 takes no more room than its bar has."""
+
+
+@pytest.fixture
+def site() -> SiteReport:
+    return SiteReport(
+        id="yard",
+        name="Yard",
+        version="1",
+        crs="EPSG:32633",
+        origin=ORIGIN,
+        rotation=0.0,
+        bounds=(0.0, 0.0, 200.0, 160.0),
+        reached_tolerance=0.2,
+        stale_after=3.0,
+        lost_after=10.0,
+    )
+
+
+def robot(name="r1", x=50.0, y=40.0, theta=0.0, **more) -> RobotReport:
+    values = {"state": RobotState.FRESH, "age": 0.0, "link": "websocket", "v": 0.5, "battery": 0.8}
+    return RobotReport(robot=name, x=x, y=y, theta=theta, **{**values, **more})
+
+
+@pytest.fixture
+def make_robot():
+    return robot
+
+
+class SmallGateway:
+    """Speaks the desk's wire over a real socket, from a thread of its own."""
+
+    def __init__(self, site: SiteReport):
+        self.site = site
+        self.port = 0
+        self.protocol = 1
+        self.database = ""
+        """What it tells a desk of its database; nothing where it is empty, as older gateways do."""
+        self.who: dict[str, str] = {}
+        """What it tells a desk of who that is: ``operator`` and ``role``, as gateways with accounts do."""
+        self.robots: dict[str, RobotReport] = {}
+        self.commands: dict[str, CommandReport] = {}
+        self.requests: list[tuple[str, dict]] = []
+        self.refuse: dict[str, str] = {}
+        self.emergency = EmergencyReport()
+        self.mute: set[str] = set()
+        """Methods that are taken in and never answered."""
+        self.raw: str | None = None
+        """What is sent in place of every answer."""
+        self.answers: dict[str, Callable[[dict], dict]] = {}
+        """By method, what answers it in place of what is here: returns {"result": …} or {"error": …}."""
+        self.subscriptions = 0
+        """How many desks have begun to be told of what happens."""
+        self._sockets: set = set()
+        self._clock = itertools.count(1_700_000_000)
+
+    @property
+    def url(self) -> str:
+        return f"ws://127.0.0.1:{self.port}/desk"
+
+    def start(self) -> None:
+        self._loop = asyncio.new_event_loop()
+        ready = threading.Event()
+        self._thread = threading.Thread(target=self._run, args=(ready,), daemon=True)
+        self._thread.start()
+        assert ready.wait(5)
+
+    def stop(self) -> None:
+        """Vanish as a killed process does: sockets reset, nothing said."""
+        if not self._loop.is_running():
+            return
+        self._loop.call_soon_threadsafe(self._stop.set)
+        self._thread.join(5)
+
+    def asked(self, method: str) -> list[dict]:
+        return [params for name, params in self.requests if name == method]
+
+    def show(self, *robots: RobotReport) -> None:
+        self.robots.update({robot.robot: robot for robot in robots})
+        self.tell("positions", {"t": time.time(), "robots": [to_json(robot) for robot in robots]})
+
+    def step(self, command: str, state: CommandState, by: str, **more) -> None:
+        known = self.commands[command]
+        steps = [*known.steps, CommandStep(state, float(next(self._clock)), by, more.pop("reason", None))]
+        values = {**vars(known), "state": state, "steps": steps, **more}
+        self.commands[command] = CommandReport(**values)
+        self.tell("command", to_json(self.commands[command]))
+
+    def stand(self, **how) -> None:
+        """Tell how an emergency stop stands."""
+        self.emergency = replace(self.emergency, **how)
+        self.tell("emergency", to_json(self.emergency))
+
+    def tell(self, method: str, params: dict) -> None:
+        """Send every desk a notification."""
+        text = json.dumps({"jsonrpc": "2.0", "method": method, "params": params})
+        for socket in list(self._sockets):
+            asyncio.run_coroutine_threadsafe(socket.send(text), self._loop).result(5)
+
+    def _run(self, ready: threading.Event) -> None:
+        asyncio.set_event_loop(self._loop)
+        self._loop.run_until_complete(self._serve(ready))
+        self._loop.close()
+
+    async def _serve(self, ready: threading.Event) -> None:
+        self._stop = asyncio.Event()
+        async with serve(self._desk, "127.0.0.1", self.port, close_timeout=0.05) as server:
+            self.port = server.sockets[0].getsockname()[1]
+            ready.set()
+            await self._stop.wait()
+            for socket in list(self._sockets):
+                socket.transport.abort()
+        self._sockets.clear()
+
+    async def _desk(self, socket) -> None:
+        if socket.request.path != "/desk":
+            await socket.close(1008, "no desk here")
+            return
+        try:
+            async for text in socket:
+                message = json.loads(text)
+                self.requests.append((message["method"], message["params"]))
+                if message["method"] in self.mute:
+                    continue
+                await socket.send(self.raw or json.dumps(self._answer(message)))
+                if message["method"] == "subscribe":
+                    self._sockets.add(socket)
+                    self.subscriptions += 1
+                    robots = [to_json(robot) for robot in self.robots.values()]
+                    params = {"t": time.time(), "robots": robots}
+                    await socket.send(json.dumps({"jsonrpc": "2.0", "method": "positions", "params": params}))
+        except ConnectionClosed:
+            pass
+        finally:
+            self._sockets.discard(socket)
+
+    def _answer(self, message: dict) -> dict:
+        method, params = message["method"], message["params"]
+        answer = {"jsonrpc": "2.0", "id": message["id"]}
+        if method in self.refuse:
+            return {**answer, "error": {"code": -32000, "message": self.refuse[method]}}
+        if method in self.answers:
+            return {**answer, **self.answers[method](params)}
+        if method == "hello":
+            facts = {"site": to_json(self.site), "emergency": to_json(self.emergency)}
+            facts |= {"database": self.database} if self.database else {}
+            return {**answer, "result": {"protocol": self.protocol, **facts, **self.who}}
+        if method == "send":
+            return {**answer, "result": to_json(self._queue(**params))}
+        if method in ("emergency_stop", "clear_emergency_stop"):
+            return {**answer, "result": to_json(self._stop_or_clear(method, params))}
+        if method == "abort_all":
+            queued = [self._queue(f"abort-{name}", name, "Abort") for name in self.robots]
+            return {**answer, "result": {"commands": [to_json(command) for command in queued]}}
+        if method == "get_commands":
+            newest_first = list(reversed(self.commands.values()))
+            return {**answer, "result": {"commands": [to_json(command) for command in newest_first]}}
+        return {**answer, "result": {}}
+
+    def _stop_or_clear(self, method: str, params: dict) -> EmergencyReport:
+        if method == "clear_emergency_stop":
+            self.emergency = replace(self.emergency, in_force=False)
+        elif self.emergency.stop != params["command"]:
+            robots = sorted(self.robots)
+            self.emergency = EmergencyReport(
+                True, params["command"], 1_700_000_000.0, "anna", robots=len(robots), waiting=robots
+            )
+        return self.emergency
+
+    def _queue(self, command: str, robot: str, op: str, params: dict | None = None) -> CommandReport:
+        if command not in self.commands:
+            steps = [CommandStep(CommandState.QUEUED, float(next(self._clock)), "anna")]
+            self.commands[command] = CommandReport(
+                command, robot, op, params or {}, "anna", CommandState.QUEUED, steps
+            )
+        return self.commands[command]
+
+
+@pytest.fixture
+def gateway(site):
+    small = SmallGateway(site)
+    small.start()
+    yield small
+    small.stop()
+
+
+def wait_until(true, seconds: float = 5.0, what: str = "the condition") -> None:
+    """Let Qt work until ``true()`` holds; ``seconds`` are an idle machine's."""
+    end = time.monotonic() + BUSY * seconds
+    while not true():
+        assert time.monotonic() < end, f"{what} did not come within {BUSY * seconds:g} s"
+        QTest.qWait(10)
+
+
+@pytest.fixture
+def wait():
+    return wait_until
+
+
+class Window(QMainWindow):
+    """The parts of QgisInterface that the desk uses, each a real one."""
+
+    def __init__(self):
+        super().__init__()
+        self.canvas = QgsMapCanvas()
+        self.canvas.setDestinationCrs(QgsCoordinateReferenceSystem("EPSG:32633"))
+        self.setCentralWidget(self.canvas)
+        self.bar = QgsMessageBar(self.canvas)
+        self.bar.resize(*BAR_SIZE)
+        self.plugins = self.menuBar().addMenu("Plugins")
+        self.plugin_help = self.menuBar().addMenu("Help").addMenu("Plugins")
+        self.locator = QgsLocator(self)
+        self.options_pages = []
+        self.drop_handlers = []
+        self.is_settled = lambda: True
+        """Whether what a click begins has come to its end."""
+        self._pan_tool = QgsMapToolPan(self.canvas)
+        self._pan = QAction("Pan", self)
+        self._pan.triggered.connect(lambda: self.canvas.setMapTool(self._pan_tool))
+        self._pan.trigger()
+
+    def mapCanvas(self):
+        return self.canvas
+
+    def messageBar(self):
+        return self.bar
+
+    def mainWindow(self):
+        return self
+
+    def actionPan(self):
+        return self._pan
+
+    def addToolBar(self, name):
+        return super().addToolBar(name)
+
+    def removeDockWidget(self, dock):
+        super().removeDockWidget(dock)
+
+    def addPluginToMenu(self, menu, action):
+        self.plugins.addAction(action)
+
+    def removePluginMenu(self, menu, action):
+        self.plugins.removeAction(action)
+
+    def pluginHelpMenu(self):
+        return self.plugin_help
+
+    def registerLocatorFilter(self, one):
+        self.locator.registerFilter(one)
+
+    def deregisterLocatorFilter(self, one):
+        self.locator.deregisterFilter(one)
+
+    def registerOptionsWidgetFactory(self, factory):
+        self.options_pages.append(factory)
+
+    def unregisterOptionsWidgetFactory(self, factory):
+        self.options_pages.remove(factory)
+
+    def registerCustomDropHandler(self, handler):
+        self.drop_handlers.append(handler)
+
+    def unregisterCustomDropHandler(self, handler):
+        self.drop_handlers.remove(handler)
+
+    def texts(self) -> list[str]:
+        """What hangs in the message bar."""
+        return [label.text() for label in self.bar.findChildren(QLabel, "fleet_notice")]
+
+    def look_at(self, x_min, y_min, x_max, y_max) -> None:
+        """Show a part of the site, in metres from its origin, when it is not rotated."""
+        self.canvas.setExtent(
+            QgsRectangle(ORIGIN[0] + x_min, ORIGIN[1] + y_min, ORIGIN[0] + x_max, ORIGIN[1] + y_max)
+        )
+
+    def pixel(self, x, y) -> QPoint:
+        """Return where on the canvas the site's (x, y) is, when it is not rotated and in EPSG:32633."""
+        at = self.canvas.getCoordinateTransform().transform(ORIGIN[0] + x, ORIGIN[1] + y)
+        return QPoint(round(at.x()), round(at.y()))
+
+    def hover(self, x, y) -> None:
+        """Move the mouse to there over the map."""
+        move_mouse(self.canvas.viewport(), self.pixel(x, y))
+
+    def click(self, x, y, button=Qt.MouseButton.LeftButton) -> None:
+        QTest.mouseClick(self.canvas.viewport(), button, Qt.KeyboardModifier.NoModifier, self.pixel(x, y))
+        wait_until(self.is_settled, what="the check of the draft")
+
+
+@pytest.fixture
+def iface(qgis_app):
+    QgsSettings().remove("fleet_supervisor")
+    QgsProject.instance().clear()
+    # Tests press faster than any hand; what a double click does has a test that sets it.
+    QApplication.setDoubleClickInterval(1)
+    window = Window()
+    window.resize(1280, 800)
+    window.show()
+    window.activateWindow()
+    # Before that, a canvas may still be given its size.
+    assert QTest.qWaitForWindowExposed(window, 20_000)
+    QApplication.processEvents()
+    window.look_at(0, 0, 120, 100)
+    yield window
+    window.canvas.stopRendering()
+    QgsProject.instance().clear()
+    QgsSettings().remove("fleet_supervisor")
+    if not sip.isdeleted(window):
+        # QGIS's list of shortcuts does not notice that an action is deleted.
+        for action in window.findChildren(QAction):
+            QgsGui.shortcutsManager().unregisterAction(action)
+        window.close()
+        window.deleteLater()
+    let_deleted_go()
+
+
+def let_deleted_go() -> None:
+    """Delete what asked to be deleted later."""
+    QCoreApplication.sendPostedEvents(None, QEvent.Type.DeferredDelete)
+    QApplication.processEvents()
+
+
+@pytest.fixture
+def plugin(iface):
+    from fleet_supervisor.plugin.plugin import FleetPlugin
+
+    loaded = FleetPlugin(iface)
+    loaded.initGui()
+    yield loaded
+    loaded.unload()
+    let_deleted_go()
+
+
+@pytest.fixture
+def at_desk(plugin, gateway, iface):
+    """The plugin connected to the small gateway with two robots on the map."""
+    gateway.show(robot("r1", 50, 40), robot("r2", 80, 60, theta=1.5))
+    window = plugin.window
+    window.dock.connection_panel._url.setText(gateway.url)
+    window.dock.connection_panel._operator.setText("anna")
+    window.actions.connect.trigger()
+    wait_until(lambda: len(window.desk.picture) == 2, what="two robots")
+    # What is known is shown in a piece of its own.
+    wait_until(lambda: window.dock.table.model().rowCount() == 2, what="two robots in the table")
+    iface.is_settled = lambda: not window.desk.checks.is_under_way
+    return window
+
+
+# --- layers in memory ---
 
 HEIGHT = "&field=height:double"
 

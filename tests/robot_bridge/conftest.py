@@ -1,21 +1,16 @@
-"""What the bridge's tests share: the sample site, and the rig that runs the real programs."""
+"""What the bridge's tests share: the sample site, real programs and database servers."""
 
 from __future__ import annotations
 
 import os
 import shutil
-import sys
 import tempfile
 from pathlib import Path
 
 import pytest
 from sqlalchemy import Connection, Engine, event
 
-ROOT = Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "scripts"))
-sys.path.insert(0, str(Path(__file__).with_name("rig")))
-
-from stage.errors import StageError  # noqa: E402 - found by the paths above
+from tests.support.errors import StageError
 
 
 class SharedStatements(dict):
@@ -79,7 +74,7 @@ def limited_site(sample_site, tmp_path_factory):
 @pytest.fixture(scope="module")
 def accounts_of():
     """The command line on a bridge's database: ``accounts_of(bridge)``."""
-    from bridge_accounts import Accounts
+    from tests.support.bridge.bridge_accounts import Accounts
 
     return lambda bridge: Accounts(bridge.database)
 
@@ -87,8 +82,8 @@ def accounts_of():
 @pytest.fixture(scope="module")
 def start_bridge(tmp_path_factory, new_database):
     """Start a gateway: ``start_bridge(site)``, or ``start_bridge(site, url)``; all ends with the module."""
-    from bridge_programs import Bridge
-    from stage.processes import Processes
+    from tests.support.bridge.bridge_programs import Bridge
+    from tests.support.processes import Processes
 
     folder = tmp_path_factory.mktemp("bridge")
     with Processes(folder / "logs") as processes:
@@ -114,7 +109,7 @@ def start_bridge(tmp_path_factory, new_database):
 @pytest.fixture(scope="session")
 def postgresql_server():
     """A real PostgreSQL of these tests' own, which can make databases, be killed and come back."""
-    from stage.postgresql import PostgreSql
+    from tests.support.databases.postgresql import PostgreSql
 
     yield from _serving(PostgreSql())
 
@@ -122,7 +117,7 @@ def postgresql_server():
 @pytest.fixture(scope="session")
 def mariadb_server():
     """A real MariaDB of these tests' own; as ``postgresql_server``."""
-    from stage.mariadb import MariaDb
+    from tests.support.databases.mariadb import MariaDb
 
     yield from _serving(MariaDb())
 
@@ -154,7 +149,7 @@ def new_database(request):
 
     Files of SQLite lie in memory where there is a folder of it: none need outlive a power cut.
     """
-    from database_maker import DatabaseMaker
+    from tests.support.databases.database_maker import DatabaseMaker
 
     memory = Path("/dev/shm")
     quick = memory if os.access(memory, os.W_OK) else None

@@ -11,10 +11,6 @@ from pathlib import Path
 
 import jsonschema
 import pytest
-from bridge_accounts import bearing
-from bridge_programs import wait_until
-from bridge_wires import RefusedError
-from command_line import run_command
 from websockets.frames import CloseCode
 
 from robot_bridge.core.messages import ANSWERS, DESK_REQUESTS, PAYLOADS, REQUESTS
@@ -24,6 +20,10 @@ from robot_bridge.protocol import jsonrpc
 from robot_bridge.protocol.asyncapi import documents
 from robot_bridge.protocol.codec import decode_answer, decode_desk_request, decode_request
 from robot_bridge.protocol.json_schemas import NOTIFICATIONS
+from tests.support.bridge.bridge_accounts import bearing
+from tests.support.bridge.bridge_programs import wait_until
+from tests.support.bridge.bridge_wires import RefusedError
+from tests.support.bridge.command_line import run_command
 
 ROOT = Path(__file__).resolve().parents[2]
 GUIDE = (ROOT / "docs" / "integrator.md").read_text(encoding="utf-8")

@@ -1,6 +1,6 @@
 """Opens what the plugin shows, in one language and look, and tells what is cut off.
 
-PYTHONPATH=scripts python desk_in_words.py LANGUAGE RESULT.json [--theme NAME] [--pictures FOLDER]
+python -m tests.plugin.language.desk_in_words LANGUAGE RESULT.json [--theme NAME] [--pictures FOLDER]
 
 LANGUAGE is a locale such as hu, or ``stretched``. In a process of its own: constants of modules take their
 language when they are imported. RESULT.json has, by the name of each part, what is wrong with it.
@@ -9,7 +9,6 @@ language when they are imported. RESULT.json has, by the name of each part, what
 from __future__ import annotations
 
 import argparse
-import importlib.util
 import json
 import os
 import sys
@@ -18,7 +17,6 @@ import time
 from collections.abc import Iterator
 from pathlib import Path
 
-from inside_qgis.cut_off import cut_off, too_large
 from qgis.core import QgsApplication, QgsProject, QgsSettings
 from qgis.PyQt.QtCore import QCoreApplication, QEvent, QSettings, QSize, Qt
 from qgis.PyQt.QtTest import QTest
@@ -33,7 +31,10 @@ from qgis.PyQt.QtWidgets import (
     QVBoxLayout,
     QWidget,
 )
-from stretched import StretchedLanguage
+
+from tests.conftest import register_plugin_package
+from tests.plugin.language.stretched import StretchedLanguage
+from tests.support.inside_qgis.cut_off import cut_off, too_large
 
 ROOT = Path(__file__).resolve().parents[3]
 ROOM = QSize(1280, 800)
@@ -131,8 +132,7 @@ def main() -> None:
             font = QApplication.font()
             font.setPointSize(wanted.points)
             QApplication.setFont(font)
-        tests = loaded("fleet_tests", ROOT / "tests" / "conftest.py")
-        tests.register_plugin_package()
+        register_plugin_package()
         language = speak(wanted.language)
         show = Show(wanted.pictures)
         show_all(show)
@@ -143,19 +143,12 @@ def main() -> None:
     os._exit(0)
 
 
-def loaded(name: str, path: Path):
-    """Return the module in the file ``path``, which is in no package."""
-    spec = importlib.util.spec_from_file_location(name, path)
-    module = sys.modules[name] = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
-
-
 def show_all(show: Show) -> None:
     """Load the plugin into a window, connect it, and look at all of it."""
-    desk_tests = loaded("desk_tests", ROOT / "tests" / "plugin" / "desk" / "conftest.py")
-    from every_dialog import dialogs
     from fleet_supervisor.plugin.plugin import FleetPlugin
+
+    from tests.plugin import conftest as desk_tests
+    from tests.plugin.language.every_dialog import dialogs
 
     QgsSettings().setValue("fleet_supervisor/tour_offered", True)
     window = desk_tests.Window()
@@ -228,10 +221,11 @@ def look_at_panel(show: Show, window, desk_window, gateway, desk_tests) -> None:
     desk_tests.wait_until(lambda: len(desk.picture) == 5, what="five robots")
     desk_tests.wait_until(lambda: alarm_bar(window) is not None, what="the alarm of a low battery")
     desk.select("r1")
-    watches = loaded("button_places", ROOT / "tests" / "plugin" / "desk" / "button_places.py")
+    from tests.support.button_places import Watched
+
     make_panels_narrow(window)
     settle()
-    show.watched = watches.Watched(dock)
+    show.watched = Watched(dock)
     order(desk, gateway, desk_tests)
     for tab in range(dock.tabs.count()):
         dock.tabs.setCurrentIndex(tab)

@@ -10,7 +10,8 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 import pytest
-from syntax import tree_of
+
+from tools.syntax import tree_of
 
 ROOT = Path(__file__).parents[3]
 TRANSLATED = ("tr", "tr_count", "tr_page")

@@ -8,7 +8,8 @@ from pathlib import Path
 
 import pytest
 from fleet_supervisor.plugin.ui.language import first_of
-from syntax import tree_of
+
+from tools.syntax import tree_of
 
 ROOT = Path(__file__).parents[3]
 THINGS = (

@@ -7,13 +7,10 @@ imported.
 from __future__ import annotations
 
 import json
-import os
 import subprocess
 import sys
-from pathlib import Path
 
 import pytest
-from inside_qgis.cut_off import cut_off, too_large
 from qgis.PyQt.QtCore import QSize, QStringListModel, Qt
 from qgis.PyQt.QtWidgets import (
     QComboBox,
@@ -28,16 +25,10 @@ from qgis.PyQt.QtWidgets import (
     QWidget,
 )
 
-HERE = Path(__file__).parent
+from tests.plugin.language.stretched import stretched
+from tests.support.inside_qgis.cut_off import cut_off, too_large
+
 LONG = "a text that is much longer than its place"
-
-
-@pytest.fixture
-def beside():
-    """Import a module that lies beside this one, as desk_in_words.py does."""
-    sys.path.insert(0, str(HERE))
-    yield lambda name: __import__(name)
-    sys.path.remove(str(HERE))
 
 
 @pytest.mark.parametrize(
@@ -55,16 +46,22 @@ def beside():
 )
 def test_nothing_is_cut_off_on_the_smallest_screen(language, points, theme, tmp_path, root):
     result = tmp_path / "faults.json"
-    command = [sys.executable, str(HERE / "desk_in_words.py"), language, str(result), "--points", str(points)]
+    command = [
+        sys.executable,
+        "-m",
+        "tests.plugin.language.desk_in_words",
+        language,
+        str(result),
+        "--points",
+        str(points),
+    ]
     command += ["--theme", theme] if theme else []
-    env = {**os.environ, "PYTHONPATH": str(root / "scripts")}
-    ran = subprocess.run(command, env=env, capture_output=True, text=True)
+    ran = subprocess.run(command, cwd=root, capture_output=True, text=True)
     assert ran.returncode == 0, ran.stderr
     assert json.loads(result.read_text(encoding="utf-8")) == {}
 
 
-def test_a_stretched_text_keeps_its_markup(beside):
-    stretched = beside("stretched").stretched
+def test_a_stretched_text_keeps_its_markup():
     for text in (
         "Send",
         "&Height",

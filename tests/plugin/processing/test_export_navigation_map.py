@@ -129,7 +129,7 @@ def export(provider, tmp_path):
     """Run the algorithm; return its results, the folder and what it warned of."""
     import processing
 
-    from .conftest import Listener
+    from tests.plugin.processing.conftest import Listener
 
     def run(source, feedback=None, project=None, **parameters):
         listener = feedback or Listener()

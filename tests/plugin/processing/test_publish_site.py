@@ -24,9 +24,10 @@ from qgis.core import (
     QgsProject,
     QgsVectorLayer,
 )
-from stage.patience import START
-from stage.processes import Processes
 from websockets.sync.client import connect
+
+from tests.support.patience import START
+from tests.support.processes import Processes
 
 RING = "Polygon((0 0, 20 0, 20 10, 0 10, 0 0), (5 3, 9 3, 9 7, 5 7, 5 3))"
 ROAD = "LineString(0 15, 50 15)"

@@ -24,8 +24,9 @@ from qgis.core import (
     QgsProject,
     QgsVectorLayer,
 )
-from stage.errors import StageError
-from stage.faults.disk import Disk
+
+from tests.support.errors import StageError
+from tests.support.faults.disk import Disk
 
 UTM = "EPSG:32633"
 EXTENT = "600000,600100,5100000,5100060"

@@ -16,8 +16,8 @@ from robot_bridge.core.sites.site import read_site
 def made(root, data, tmp_path_factory):
     """The folder that the script has filled."""
     out = tmp_path_factory.mktemp("proving_ground")
-    script = root / "scripts" / "proving_ground.py"
-    subprocess.run([sys.executable, str(script), str(out), str(data)], check=True, timeout=240)
+    command = [sys.executable, "-m", "tools.proving_ground", str(out), str(data)]
+    subprocess.run(command, check=True, timeout=240, cwd=root)
     return out
 
 
@@ -98,9 +98,11 @@ def test_the_project_is_drawn_with_surfaces_over_the_photo(made, opened, drawn):
 
 
 def test_missing_data_is_named(root, tmp_path):
-    script = root / "scripts" / "proving_ground.py"
     run = subprocess.run(
-        [sys.executable, str(script), str(tmp_path / "out"), str(tmp_path)], capture_output=True, text=True
+        [sys.executable, "-m", "tools.proving_ground", str(tmp_path / "out"), str(tmp_path)],
+        capture_output=True,
+        text=True,
+        cwd=root,
     )
     assert run.returncode == 1
     assert "university_track_centrelines.geojson is missing: give the folder of real data" in run.stderr

@@ -8,9 +8,10 @@ from collections import Counter
 from types import SimpleNamespace
 
 import pytest
-from stage.faults.audit import Deaths, Stored, judged
-from stage.faults.desk import Ledger
-from stage.faults.yard import GATEWAY_KILLED, Death, Fault
+
+from tests.support.faults.audit import Deaths, Stored, judged
+from tests.support.faults.desk import Ledger
+from tests.support.faults.yard import GATEWAY_KILLED, Death, Fault
 
 TARGET, STOP = "sq01-000001", "sq01-000001-abort"
 IMAGE = b"an image"

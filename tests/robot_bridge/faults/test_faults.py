@@ -9,10 +9,11 @@ import random
 import time
 
 import pytest
-from stage.errors import StageError
-from stage.faults import breaking
-from stage.faults.runs import broken_on_server, broken_on_small_disk
-from stage.faults.yard import GATEWAY_KILLED, ROBOTS_KILLED
+
+from tests.support.errors import StageError
+from tests.support.faults import breaking
+from tests.support.faults.runs import broken_on_server, broken_on_small_disk
+from tests.support.faults.yard import GATEWAY_KILLED, ROBOTS_KILLED
 
 CUT_S = 3.0
 LONGEST_S = 120.0

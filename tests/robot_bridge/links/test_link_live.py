@@ -9,14 +9,14 @@ import math
 
 import numpy as np
 import pytest
-from adapter_on_the_line import LinkOnTheLine
-from bridge_programs import wait_until
-from bridge_wires import RefusedError, Wire
-from stage.patience import BUSY
 
 from robot_bridge.core.messages import SendPos, SetObject, SetPosEnd
 from robot_bridge.links.base.linked_robots import frame_of
 from robot_bridge.protocol import jsonrpc
+from tests.support.bridge.adapter_on_the_line import LinkOnTheLine
+from tests.support.bridge.bridge_programs import wait_until
+from tests.support.bridge.bridge_wires import RefusedError, Wire
+from tests.support.patience import BUSY
 
 DRIVES = ("targets", "paths")
 NUMBERS = itertools.count(1)

@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import replace
 
 import pytest
-from adapter_on_the_line import LinkOnTheLine
 
 from robot_bridge.core.messages import SendPos
+from tests.support.bridge.adapter_on_the_line import LinkOnTheLine
 
 ROBOT = SendPos(60.0, 22.0, 0.0, 0.0)
 

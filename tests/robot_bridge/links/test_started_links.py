@@ -11,11 +11,11 @@ import urllib.request
 from types import SimpleNamespace
 
 import pytest
-from bridge_programs import wait_until
 
 from robot_bridge.core.sites.settings_tables import LinkOptions
 from robot_bridge.gateway.fleet import link_supervision
 from robot_bridge.gateway.fleet.link_supervision import LinkProcesses
+from tests.support.bridge.bridge_programs import wait_until
 
 SETTINGS = 'kind = "tracker"\n[tracker]\nnmea_udp = "127.0.0.1:0"\n[tracker.names]\n1 = "car-1"\n'
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 import itertools
 
 import pytest
-from either_wire import WIRES
 
 from robot_bridge.core.robotmap.binary import decode
+from tests.support.bridge.either_wire import WIRES
 
 NUMBERS = itertools.count(1)
 

@@ -6,7 +6,8 @@ import contextlib
 import sqlite3
 
 import pytest
-from bridge_wires import RefusedError
+
+from tests.support.bridge.bridge_wires import RefusedError
 
 
 @pytest.fixture

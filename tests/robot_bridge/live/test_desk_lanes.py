@@ -9,7 +9,8 @@ import re
 import sqlite3
 
 import pytest
-from bridge_wires import Desk
+
+from tests.support.bridge.bridge_wires import Desk
 
 NUMBERS = itertools.count(1)
 SLOW = 60

@@ -9,9 +9,10 @@ import time
 from pathlib import Path
 
 import pytest
-from bridge_programs import wait_until
-from bridge_wires import RefusedError
-from stage.patience import BUSY
+
+from tests.support.bridge.bridge_programs import wait_until
+from tests.support.bridge.bridge_wires import RefusedError
+from tests.support.patience import BUSY
 
 POSE = {"x": 1.0, "y": 2.0, "theta": 0.5, "v": 0.0}
 

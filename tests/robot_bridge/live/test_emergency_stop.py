@@ -8,8 +8,9 @@ import sqlite3
 import time
 
 import pytest
-from bridge_programs import wait_until
-from bridge_wires import RefusedError
+
+from tests.support.bridge.bridge_programs import wait_until
+from tests.support.bridge.bridge_wires import RefusedError
 
 
 @pytest.fixture

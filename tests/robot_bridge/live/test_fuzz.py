@@ -6,14 +6,15 @@
 from __future__ import annotations
 
 import pytest
-from bridge_programs import wait_until
-from bridge_wires import is_shut
 from hypothesis import HealthCheck, given, settings
-from stage.fuzzing import handshakes, knock, try_cases
-from stage.processes import Processes
-from stage.siege import GENEROUS, WORST_ROWS, Siege, cases, unread_rows
 from websockets.exceptions import ConnectionClosed
 from websockets.sync.client import connect
+
+from tests.support.bridge.bridge_programs import wait_until
+from tests.support.bridge.bridge_wires import is_shut
+from tests.support.hostile.fuzzing import handshakes, knock, try_cases
+from tests.support.hostile.siege import GENEROUS, WORST_ROWS, Siege, cases, unread_rows
+from tests.support.processes import Processes
 
 SAID, WAITING, BESIDE = 100, 25, 15
 """cases on each kind of database: said one by one, waiting at the start, written beside an emergency stop."""

@@ -10,7 +10,8 @@ import subprocess
 import sys
 
 import pytest
-from command_line import run_command
+
+from tests.support.bridge.command_line import run_command
 
 
 def run_program(*options):

@@ -6,7 +6,8 @@ import itertools
 import math
 
 import pytest
-from bridge_programs import wait_until
+
+from tests.support.bridge.bridge_programs import wait_until
 
 WAYS = {
     "r1": ("keepout", "Water basin", [(66.0, 27.0), (66.0, 38.0)]),

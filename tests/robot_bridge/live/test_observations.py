@@ -5,10 +5,10 @@ from __future__ import annotations
 import base64
 
 import pytest
-from bridge_wires import RefusedError
-from either_wire import WIRES
 
 from robot_bridge.core.robotmap.binary import decode
+from tests.support.bridge.bridge_wires import RefusedError
+from tests.support.bridge.either_wire import WIRES
 
 PNG = b"\x89PNG\r\n\x1a\n" + bytes(range(256)) * 40
 JPEG = b"\xff\xd8\xff\xe0" + b"jpeg" * 100

@@ -7,9 +7,10 @@ from itertools import pairwise
 
 import pyproj
 import pytest
-from bridge_programs import wait_until
-from bridge_wires import RefusedError
-from command_line import run_command
+
+from tests.support.bridge.bridge_programs import wait_until
+from tests.support.bridge.bridge_wires import RefusedError
+from tests.support.bridge.command_line import run_command
 
 PNG = b"\x89PNG\r\n\x1a\n" + bytes(range(256)) * 40
 

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import pytest
-from bridge_programs import wait_until
-from bridge_wires import RefusedError
-from either_wire import WIRES
 
 from robot_bridge.protocol.jsonrpc import FORBIDDEN
+from tests.support.bridge.bridge_programs import wait_until
+from tests.support.bridge.bridge_wires import RefusedError
+from tests.support.bridge.either_wire import WIRES
 
 WHY = "enters the keepout Loading bay; because: the bay is cleared"
 

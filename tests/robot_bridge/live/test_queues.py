@@ -5,8 +5,9 @@ from __future__ import annotations
 import random
 
 import pytest
-from bridge_programs import wait_until
-from bridge_wires import RefusedError
+
+from tests.support.bridge.bridge_programs import wait_until
+from tests.support.bridge.bridge_wires import RefusedError
 
 CONES = [(26.0 + 4 * n, 20.0 + (n % 2)) for n in range(6)]
 

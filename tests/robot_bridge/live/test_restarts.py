@@ -6,7 +6,8 @@ import json
 import math
 
 import pytest
-from bridge_programs import wait_until
+
+from tests.support.bridge.bridge_programs import wait_until
 
 
 @pytest.fixture

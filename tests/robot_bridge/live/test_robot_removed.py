@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from bridge_wires import RobotWire
+from tests.support.bridge.bridge_wires import RobotWire
 
 
 def plugged(bridge, name, **options) -> RobotWire:

@@ -7,13 +7,13 @@ import socket
 import time
 
 import pytest
-from bridge_programs import wait_until
-from bridge_wires import RefusedError, RobotWire, map_bytes
-from either_wire import SqlRobot
 from websockets.exceptions import InvalidStatus
 from websockets.sync.client import connect
 
 from robot_bridge.core.robotmap.binary import decode
+from tests.support.bridge.bridge_programs import wait_until
+from tests.support.bridge.bridge_wires import RefusedError, RobotWire, map_bytes
+from tests.support.bridge.either_wire import SqlRobot
 
 SITE_BORDER = (0.0, 0.0, 200.0, 160.0)
 POSE = {"x": 1.0, "y": 2.0, "theta": 0.5, "v": 0.0}

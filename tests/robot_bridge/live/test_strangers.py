@@ -8,7 +8,8 @@ import stat
 from pathlib import Path
 
 import pytest
-from bridge_wires import RefusedError
+
+from tests.support.bridge.bridge_wires import RefusedError
 
 
 @pytest.fixture(scope="module")

@@ -6,8 +6,9 @@ import itertools
 import json
 
 import pytest
-from bridge_programs import wait_until
-from bridge_sockets import frame, plain_socket
+
+from tests.support.bridge.bridge_programs import wait_until
+from tests.support.bridge.bridge_sockets import frame, plain_socket
 
 PING, CONTINUED = 9, 0
 NAMES = (f"stream-{number}" for number in itertools.count())

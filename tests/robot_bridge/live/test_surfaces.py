@@ -6,9 +6,9 @@ import time
 
 import numpy as np
 import pytest
-from bridge_wires import RefusedError
 
 from robot_bridge.core.sites.site import read_site
+from tests.support.bridge.bridge_wires import RefusedError
 
 PLACES = {
     (20.0, 8.0): "asphalt",

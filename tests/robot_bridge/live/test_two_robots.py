@@ -6,8 +6,9 @@ import signal
 import time
 
 import pytest
-from bridge_programs import wait_until
-from either_wire import WIRES
+
+from tests.support.bridge.bridge_programs import wait_until
+from tests.support.bridge.either_wire import WIRES
 
 LINKS = pytest.mark.parametrize("sql", [False, True], ids=["websocket", "sql"])
 

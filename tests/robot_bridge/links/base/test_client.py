@@ -6,7 +6,6 @@ import asyncio
 import json
 from types import SimpleNamespace
 
-from adapter_on_the_line import LinkOnTheLine
 from websockets.asyncio.server import serve
 
 from robot_bridge.core.messages.links import LINK_PROTOCOL
@@ -14,6 +13,7 @@ from robot_bridge.links.base.client import LinkClient
 from robot_bridge.links.base.linked_robots import OVERTAKEN, Commanding
 from robot_bridge.links.base.memory import LinkMemory
 from robot_bridge.protocol import jsonrpc
+from tests.support.bridge.adapter_on_the_line import LinkOnTheLine
 
 SITE = {
     "id": "s",

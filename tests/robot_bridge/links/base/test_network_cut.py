@@ -8,11 +8,11 @@ import time
 from types import SimpleNamespace
 
 import pytest
-from adapter_on_the_line import LinkOnTheLine
-from bridge_programs import wait_until
-from cut_line import CutLine
 
 from robot_bridge.core.messages import SendPos, SetObject
+from tests.support.bridge.adapter_on_the_line import LinkOnTheLine
+from tests.support.bridge.bridge_programs import wait_until
+from tests.support.bridge.cut_line import CutLine
 
 CUT = 10.0
 """seconds; a robot of this site is lost after 1.6 s."""

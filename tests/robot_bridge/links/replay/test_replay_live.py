@@ -10,9 +10,10 @@ from datetime import UTC, datetime, timedelta
 from pathlib import Path
 
 import pytest
-from bridge_programs import wait_until
-from bridge_wires import RefusedError
-from command_line import run_command
+
+from tests.support.bridge.bridge_programs import wait_until
+from tests.support.bridge.bridge_wires import RefusedError
+from tests.support.bridge.command_line import run_command
 
 GUIDE = (Path(__file__).parents[4] / "docs/links-replay.md").read_text(encoding="utf-8")
 SETTINGS = re.findall(r"```toml\n(.*?)```", GUIDE, re.DOTALL)

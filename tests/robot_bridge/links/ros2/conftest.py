@@ -6,10 +6,11 @@ import re
 from pathlib import Path
 
 import pytest
-from stage.errors import StageError
-from stage.processes import Processes
-from stage.ros_nodes import Nodes
-from stage.ros_peer import ros_python
+
+from tests.support.errors import StageError
+from tests.support.processes import Processes
+from tests.support.robots.ros_nodes import Nodes
+from tests.support.robots.ros_peer import ros_python
 
 DOCS = Path(__file__).resolve().parents[4] / "docs"
 

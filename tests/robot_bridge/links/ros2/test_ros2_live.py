@@ -8,11 +8,12 @@ import itertools
 import sys
 
 import pytest
-from bridge_programs import wait_until
-from cut_line import CutNetwork, outlast_a_cut
 from PIL import Image
-from stage.patience import BUSY
-from stage.processes import Processes
+
+from tests.support.bridge.bridge_programs import wait_until
+from tests.support.bridge.cut_line import CutNetwork, outlast_a_cut
+from tests.support.patience import BUSY
+from tests.support.processes import Processes
 
 SETTINGS = """
 [gateway]

@@ -6,13 +6,14 @@ import re
 from pathlib import Path
 
 import pytest
-from stage.database_server import free_port
-from stage.errors import StageError
-from stage.patience import START
-from stage.processes import Processes
-from stage.ros_nodes import Nodes
-from stage.ros_peer import ros_python
-from stage.rosbridge_peer import rosbridge_command
+
+from tests.support.databases.database_server import free_port
+from tests.support.errors import StageError
+from tests.support.patience import START
+from tests.support.processes import Processes
+from tests.support.robots.ros_nodes import Nodes
+from tests.support.robots.ros_peer import ros_python
+from tests.support.robots.rosbridge_peer import rosbridge_command
 
 DOCS = Path(__file__).resolve().parents[4] / "docs"
 

@@ -8,15 +8,15 @@ import json
 import sys
 
 import pytest
-from bridge_programs import wait_until
-from cut_line import CutLine, outlast_a_cut
-from stage.patience import BUSY
-from stage.processes import Processes
 from websockets.sync.client import connect
 
 from robot_bridge.links.rosbridge.connection import RosbridgeConnection, Subscription
 from robot_bridge.links.rosbridge.settings import Server
 from robot_bridge.protocol.credentials import ClientCredentials
+from tests.support.bridge.bridge_programs import wait_until
+from tests.support.bridge.cut_line import CutLine, outlast_a_cut
+from tests.support.patience import BUSY
+from tests.support.processes import Processes
 
 SETTINGS = """
 [gateway]

@@ -11,10 +11,11 @@ from http.client import HTTPConnection
 from pathlib import Path
 
 import pytest
-from bridge_programs import wait_until
-from bridge_wires import RefusedError
-from command_line import run_command
-from cut_line import CUT, CutLine
+
+from tests.support.bridge.bridge_programs import wait_until
+from tests.support.bridge.bridge_wires import RefusedError
+from tests.support.bridge.command_line import run_command
+from tests.support.bridge.cut_line import CUT, CutLine
 
 GUIDE = (Path(__file__).parents[4] / "docs/links-tracker.md").read_text(encoding="utf-8")
 SETTINGS = re.findall(r"```toml\n(.*?)```", GUIDE, re.DOTALL)

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from .driving import begin
-from .peers import Yard, require_peers
+from tests.robot_bridge.links.vda5050.driving import begin
+from tests.robot_bridge.links.vda5050.peers import Yard, require_peers
 
 
 @pytest.fixture(scope="module")
@@ -29,7 +29,7 @@ def desk(bridge):
 
 @pytest.fixture(scope="module")
 def yard(bridge, modules, tmp_path_factory):
-    from stage.processes import Processes
+    from tests.support.processes import Processes
 
     folder = tmp_path_factory.mktemp("yard")
     with Processes(folder / "logs") as processes:

@@ -12,10 +12,11 @@ from typing import Any
 
 import paho.mqtt.client as mqtt
 import pytest
-from stage.database_server import find_program, free_port
-from stage.errors import StageError
-from stage.patience import START
-from stage.processes import Processes
+
+from tests.support.databases.database_server import find_program, free_port
+from tests.support.errors import StageError
+from tests.support.patience import START
+from tests.support.processes import Processes
 
 VEHICLE = Path(__file__).with_name("virtual_vehicle.js")
 SDK_VEHICLE = Path(__file__).with_name("sdk_vehicle.py")
@@ -113,7 +114,7 @@ def require_peers(root: Path) -> str:
     except StageError as error:
         pytest.skip(str(error))
     done = subprocess.run(
-        [root / "scripts" / "vda5050_vehicles.sh"], capture_output=True, text=True, check=False
+        [root / "tools" / "vda5050_vehicles.sh"], capture_output=True, text=True, check=False
     )
     if done.returncode == 3:
         pytest.skip(done.stderr.strip().splitlines()[-1])

@@ -9,9 +9,6 @@ from pathlib import Path
 
 import aiomqtt
 import pytest
-from stage.database_server import find_program
-from stage.errors import StageError
-from stage.processes import Processes
 
 from robot_bridge.gateway.auth import certificates
 from robot_bridge.links.base.errors import LinkError
@@ -19,8 +16,10 @@ from robot_bridge.links.base.settings import read_settings
 from robot_bridge.links.vda5050.broker import Broker, check_granted
 from robot_bridge.links.vda5050.messages import Topics
 from robot_bridge.links.vda5050.settings import Vda5050Settings, broker_address, check
-
-from .peers import Yard
+from tests.robot_bridge.links.vda5050.peers import Yard
+from tests.support.databases.database_server import find_program
+from tests.support.errors import StageError
+from tests.support.processes import Processes
 
 PASSWORD = "not easily guessed"
 

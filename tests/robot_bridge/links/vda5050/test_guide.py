@@ -11,8 +11,7 @@ from robot_bridge.gateway.auth import certificates
 from robot_bridge.links.base.settings import read_settings
 from robot_bridge.links.kinds import load
 from robot_bridge.links.vda5050.settings import Vda5050Settings, check
-
-from .peers import Yard, require_peers
+from tests.robot_bridge.links.vda5050.peers import Yard, require_peers
 
 
 @pytest.fixture(scope="module")
@@ -42,7 +41,7 @@ def test_every_setting_is_named_and_can_be_used(guide, tmp_path):
 
 
 def test_the_shortest_settings_show_and_drive_a_vehicle(guide, root, start_bridge, sample_site, tmp_path):
-    from stage.processes import Processes
+    from tests.support.processes import Processes
 
     modules = require_peers(root)
     bridge = start_bridge(sample_site)

@@ -13,8 +13,7 @@ from robot_bridge.links.base.settings import read_settings
 from robot_bridge.links.vda5050.adapter import Vda5050Adapter
 from robot_bridge.links.vda5050.settings import Vda5050Settings
 from robot_bridge.links.vda5050.vehicle import VehicleController
-
-from .bench import state
+from tests.robot_bridge.links.vda5050.bench import state
 
 
 @pytest.fixture

@@ -4,9 +4,18 @@ from __future__ import annotations
 
 import signal
 
-from bridge_programs import wait_until
-
-from .driving import SLOW, begin, begin_sdk, reason, send, steps, wait_at, wait_for_standing, wait_under_way
+from tests.robot_bridge.links.vda5050.driving import (
+    SLOW,
+    begin,
+    begin_sdk,
+    reason,
+    send,
+    steps,
+    wait_at,
+    wait_for_standing,
+    wait_under_way,
+)
+from tests.support.bridge.bridge_programs import wait_until
 
 
 def test_a_target_is_reached(desk, vehicle):

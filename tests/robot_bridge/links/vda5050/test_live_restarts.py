@@ -2,7 +2,15 @@
 
 from __future__ import annotations
 
-from .driving import SLOW, begin, orders_of, reason, send, steps, wait_under_way
+from tests.robot_bridge.links.vda5050.driving import (
+    SLOW,
+    begin,
+    orders_of,
+    reason,
+    send,
+    steps,
+    wait_under_way,
+)
 
 
 def test_a_vehicle_that_is_killed_and_started_again_goes_on(desk, yard):

@@ -28,7 +28,7 @@ from fleet_supervisor.robot_bridge.links.vda5050.tasks import (
     begin_plan,
 )
 
-from .bench import Bench, fault, of_3_0, state
+from tests.robot_bridge.links.vda5050.bench import Bench, fault, of_3_0, state
 
 HEAD = {
     "headerId": 1,

@@ -5,14 +5,21 @@ from __future__ import annotations
 import time
 
 import pytest
-from cut_line import CutLine
-from stage.database_server import free_port
-from stage.processes import Processes
 
 from robot_bridge.gateway.auth import certificates
-
-from .driving import SLOW, begin, orders_of, send, steps, wait_for_standing, wait_under_way
-from .peers import Yard
+from tests.robot_bridge.links.vda5050.driving import (
+    SLOW,
+    begin,
+    orders_of,
+    send,
+    steps,
+    wait_for_standing,
+    wait_under_way,
+)
+from tests.robot_bridge.links.vda5050.peers import Yard
+from tests.support.bridge.cut_line import CutLine
+from tests.support.databases.database_server import free_port
+from tests.support.processes import Processes
 
 CUT_S = 10.0
 

@@ -6,7 +6,7 @@ import pytest
 from fleet_supervisor.robot_bridge.core.messages import Alive, SendPos, SetPath, SetPosEnd, SetPosIni, Stopped
 from fleet_supervisor.robot_bridge.links.vda5050.ledger import Keep, Publish, Settled
 
-from .bench import Bench, fault
+from tests.robot_bridge.links.vda5050.bench import Bench, fault
 
 TARGET = SetPosEnd(120.0, 50.0)
 LONG = SetPath([(100.0, 50.0), (200.0, 50.0), (200.0, 150.0)])

@@ -1,0 +1,89 @@
+"""The lid of the operator's laptop is closed for an hour: nothing old is taken for new, or done."""
+
+from __future__ import annotations
+
+import time
+from types import SimpleNamespace
+
+import pytest
+from fleet_supervisor.plugin.gateway_client import connection
+from fleet_supervisor.plugin.gateway_client.robot_table import STATES
+from fleet_supervisor.robot_bridge.core import clock as clock_module
+from fleet_supervisor.robot_bridge.core.messages import RobotState, to_json
+from qgis.PyQt.QtWidgets import QToolButton
+
+from tests.support.fleet_panel import press
+
+HOUR = 3600.0
+
+
+class Lid:
+    """Closed and opened again, so many seconds have gone by for every clock that counts them."""
+
+    asleep = 0.0
+
+    def clock_gettime(self, which: int) -> float:
+        return time.clock_gettime(which) + self.asleep
+
+
+@pytest.fixture
+def lid(monkeypatch):
+    made = Lid()
+    stand_in = SimpleNamespace(clock_gettime=made.clock_gettime, monotonic=time.monotonic)
+    monkeypatch.setattr(clock_module, "time", stand_in)
+    return made
+
+
+@pytest.fixture
+def laptop(lid, at_desk):
+    """A connected desk on a computer whose ``lid`` can be closed."""
+    return at_desk
+
+
+def states(window):
+    robots = window.desk.picture.arrays(window.desk.clock())
+    return {STATES[state] for state in robots.state.tolist()}
+
+
+def test_the_clock_counts_sleep_where_the_system_has_one_that_does():
+    if not hasattr(time, "CLOCK_BOOTTIME"):
+        pytest.skip("only Linux has a clock that counts sleep beside one that does not")
+    assert clock_module._COUNTS_SLEEP == time.CLOCK_BOOTTIME
+    assert clock_module.steady_time() == pytest.approx(time.clock_gettime(time.CLOCK_BOOTTIME), abs=60.0)
+
+
+def test_robots_are_lost_at_once_and_come_back_with_the_link(laptop, lid, gateway, wait):
+    assert states(laptop) == {RobotState.FRESH}
+    lid.asleep = HOUR
+    assert states(laptop) == {RobotState.LOST}
+    wait(lambda: len(gateway.asked("hello")) == 2, 10, "another link")
+    wait(lambda: states(laptop) == {RobotState.FRESH}, what="the robots")
+
+
+def test_what_had_come_in_before_is_not_taken_for_new(lid, monkeypatch, plugin, gateway, wait, make_robot):
+    # Here the message itself has to bring it to light.
+    monkeypatch.setattr(connection, "AWAKE_EVERY", HOUR)
+    window = plugin.window
+    window.dock.connection_panel._url.setText(gateway.url)
+    window.dock.connection_panel._operator.setText("anna")
+    window.actions.connect.trigger()
+    wait(lambda: gateway._sockets and window.desk.link.phase.value == "connected", what="the link")
+    lid.asleep = HOUR
+    gateway.tell("positions", {"t": time.time(), "robots": [to_json(make_robot("r9"))]})
+    wait(lambda: len(gateway.asked("hello")) == 2, 10, "another link")
+    wait(lambda: len(gateway.asked("get_commands")) == 2, what="its questions")
+    assert window.desk.picture.row("r9") is None
+
+
+def test_an_order_from_before_is_handed_back_and_not_sent_again(laptop, lid, gateway, wait, iface):
+    laptop.desk.select("r1")
+    laptop.actions.cone.trigger()
+    iface.click(70, 55)
+    gateway.mute.add("send")
+    press(laptop, QToolButton, "fleet_send_button")
+    wait(lambda: gateway.asked("send"), what="the order")
+    lid.asleep = HOUR
+    gateway.mute.clear()
+    wait(lambda: any("it was not repeated" in text for text in iface.texts()), 10, "the order")
+    assert len(gateway.asked("send")) == 1 and gateway.commands == {}
+    assert laptop.desk.drafts.draft is not None

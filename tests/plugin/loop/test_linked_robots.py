@@ -1,0 +1,176 @@
+"""Robots behind links, led by clicks on the canvas: real peers, the link's adapter, a gateway, the window."""
+
+from __future__ import annotations
+
+import math
+import sys
+from urllib.request import urlopen
+
+import pytest
+from fleet_supervisor.plugin.panel.emergency import ClearDialog
+from fleet_supervisor.robot_bridge.core.messages import CommandState
+from qgis.PyQt.QtWidgets import QLabel, QLineEdit, QPushButton
+
+from tests.robot_bridge.links.vda5050.peers import Yard, require_peers
+from tests.support.databases.database_server import free_port
+from tests.support.errors import StageError
+from tests.support.patience import START
+from tests.support.processes import Processes
+from tests.support.robots.ros_nodes import Nodes
+from tests.support.robots.ros_peer import ros_python
+from tests.support.robots.rosbridge_peer import rosbridge_command
+
+ROBOT = "linked"
+SETTINGS = """
+[gateway]
+url = "{address}/link"
+
+[{kind}]
+{where}
+distribution = "{distribution}"
+
+[{kind}.topics]
+stop = "/{{robot}}/stop"
+"""
+
+
+def start_adapter(processes, kind, file):
+    command = [sys.executable, "-m", "robot_bridge", "link", kind, "--config", file]
+    processes.start(f"link-{kind}", command)
+
+
+def start_ros(kind, loop, processes, folder):
+    """A real rclpy robot at (20, 8), by DDS or through a real rosbridge server."""
+    try:
+        nodes = Nodes(processes, ros_python())
+        port = free_port()
+        if kind == "rosbridge":
+            processes.start("server", rosbridge_command(port), env=nodes.environment())
+            processes.wait_for_line("server", "listening", START)
+    except StageError as error:
+        pytest.skip(str(error))
+    where = f'url = "ws://127.0.0.1:{port}"'
+    if kind == "ros2":
+        where = f'domain = {nodes.domain}\nrange = "localhost"'
+    text = SETTINGS.format(address=loop.address, kind=kind, where=where, distribution=nodes.distribution)
+    file = folder / f"{kind}.toml"
+    file.write_text(text, encoding="utf-8")
+    start_adapter(processes, kind, file)
+    nodes.start(ROBOT, "--speed", "3")
+
+
+@pytest.fixture
+def start_linked(root, tmp_path):
+    """Start a robot of a kind at (20, 8), and the adapter that links it."""
+    with Processes(tmp_path / "peers") as processes:
+
+        def start(kind, loop):
+            if kind != "vda5050":
+                return start_ros(kind, loop, processes, tmp_path)
+            yard = Yard(processes, tmp_path, require_peers(root))
+            yard.start_broker()
+            yard.start_adapter(loop.address)
+            return yard.start_vehicle(ROBOT, 20.0, 8.0, speed=3.0)
+
+        yield start
+
+
+def wait_for_newest(operator, state):
+    """Wait until the drive that was sent last has a state; return its report."""
+
+    def newest():
+        drives = [one for one in operator.sent_to(ROBOT) if one.op != "Abort"]
+        return drives[-1] if drives else None
+
+    operator.wait(f"the drive being {state.value}", lambda: newest() and newest().state is state, 60)
+    return newest()
+
+
+def send_to(operator, x):
+    sent = len(operator.sent_to(ROBOT))
+    operator.set_cone(ROBOT, x, 8.0)
+    operator.wait("its command", lambda: len(operator.sent_to(ROBOT)) > sent, 20)
+
+
+def send_far(operator):
+    before = operator.report(ROBOT).x
+    send_to(operator, 110.0)
+    operator.wait("it driving", lambda: abs(operator.report(ROBOT).x - before) > 1.0, 30)
+
+
+def clear_emergency(operator):
+    operator.press("fleet_clear_emergency")
+    window = operator._window
+    operator.wait("the question", lambda: window.findChild(ClearDialog), 5)
+    asked = window.findChild(ClearDialog)
+    asked.findChild(QLineEdit, "fleet_clear_reason").setText("it was a test")
+    asked.findChild(QPushButton, "fleet_clear_confirm").click()
+    operator.wait("the end of it", lambda: not operator.desk.emergency.in_force, 20)
+
+
+def banner(operator):
+    return operator._window.findChild(QLabel, "fleet_emergency_text").text()
+
+
+def is_at(operator, x, y):
+    seen = operator.report(ROBOT)
+    return math.dist((seen.x, seen.y), (x, y)) <= 0.5
+
+
+@pytest.mark.parametrize("kind", ["ros2", "rosbridge", "vda5050"])
+def test_a_linked_robot_is_led_from_the_canvas(kind, loop, operator, start_linked):
+    start_linked(kind, loop)
+    operator.connect_to(loop, [ROBOT])
+    operator.wait("where it is", lambda: is_at(operator, 20.0, 8.0), 20)
+
+    send_to(operator, 26.0)
+    wait_for_newest(operator, CommandState.REACHED)
+    operator.wait("it at the cone", lambda: is_at(operator, 26.0, 8.0), 10)
+
+    operator.choose("fleet_draw_route")
+    for place in ((28, 8), (31, 10), (34, 8)):
+        operator.click_site(*place)
+    operator.press("fleet_send")
+    operator.wait("both drives", lambda: len(operator.sent_to(ROBOT)) == 2, 20)
+    assert len(wait_for_newest(operator, CommandState.REACHED).params["points"]) == 3
+    operator.wait("it at the end", lambda: is_at(operator, 34.0, 8.0), 10)
+
+    send_far(operator)
+    operator.press("fleet_abort")
+    wait_for_newest(operator, CommandState.ABORTED)
+    operator.wait("it standing", lambda: abs(operator.report(ROBOT).v) < 0.05, 10)
+
+    send_far(operator)
+    operator.press("fleet_emergency_stop")
+    operator.wait("its banner", lambda: "1 of 1 robot acknowledged" in banner(operator), 20)
+    wait_for_newest(operator, CommandState.ABORTED)
+    operator.wait("it standing", lambda: abs(operator.report(ROBOT).v) < 0.05, 10)
+    assert operator.report(ROBOT).x < 105
+    clear_emergency(operator)
+    send_to(operator, operator.report(ROBOT).x + 5)
+    wait_for_newest(operator, CommandState.REACHED)
+
+
+def test_a_tracker_is_only_seen_and_a_target_for_it_is_refused_with_the_reason(loop, operator, tmp_path):
+    port = free_port()
+    file = tmp_path / "phones.toml"
+    text = f'[tracker]\nhttp = "127.0.0.1:{port}"\n[tracker.names]\n845213 = "{ROBOT}"\n'
+    file.write_text(f'[gateway]\nurl = "{loop.address}/link"\n{text}', encoding="utf-8")
+
+    def report():
+        place = "id=845213&lat=46.8805&lon=16.8436&speed=0&bearing=90&accuracy=4"
+        try:
+            return urlopen(f"http://127.0.0.1:{port}/?{place}", timeout=5).status == 200
+        except OSError:
+            return False
+
+    with Processes(tmp_path / "peers") as processes:
+        start_adapter(processes, "tracker", file)
+        operator.wait("the report of the phone", report, 20)
+        operator.connect_to(loop, [ROBOT])
+        operator.wait("where it is", lambda: operator.report(ROBOT).x is not None, 20)
+        operator.set_cone(ROBOT, 26.0, 8.0)
+        operator.wait(
+            "the reason", lambda: "was not sent: linked is only seen" in str(operator.notices()), 20
+        )
+        assert operator.sent_to(ROBOT) == []

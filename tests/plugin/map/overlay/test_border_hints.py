@@ -1,0 +1,32 @@
+"""Robots beyond the map's border are pointed to."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from fleet_supervisor.plugin.ui.glyphs import STATE_COLOURS
+from fleet_supervisor.robot_bridge.core.messages import RobotState
+
+from tests.plugin.map.on_canvas import (
+    expected,
+    scene_of,
+    show,
+    spots,
+)
+
+
+@pytest.mark.parametrize("rotation", [0.0, 90.0])
+def test_robots_beyond_the_border_are_pointed_to(canvas, site, rotation):
+    scene = scene_of((600, 50, 0.0, RobotState.FRESH), (602, 50, 0.0, RobotState.LOST))
+    overlay = show(canvas, site, scene, rotation=rotation)
+    canvas.grab()
+    (hint,) = overlay._painter.hints
+    assert sorted(hint.rows.tolist()) == [0, 1]
+    away = expected(canvas, site, 600, 50) - (canvas.width() / 2, canvas.height() / 2)
+    assert math.cos(hint.turn - math.atan2(away[1], away[0])) > 0.98
+    assert overlay.robots_beyond(hint.x, hint.y) == ["r1", "r2"]
+    assert 0 < hint.x < canvas.width() and 0 < hint.y < canvas.height()
+    red = spots(canvas, STATE_COLOURS[RobotState.LOST])
+    assert np.hypot(*(red - (hint.x, hint.y)).T).max() < 14

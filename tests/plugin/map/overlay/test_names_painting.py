@@ -1,0 +1,78 @@
+"""Which robots have their names written beside them, and what else stands there."""
+
+from __future__ import annotations
+
+import dataclasses
+
+import numpy as np
+from fleet_supervisor.plugin.map.overlay.scene import in_view
+from fleet_supervisor.robot_bridge.core.messages import RobotState
+from qgis.PyQt.QtCore import QRectF
+from qgis.PyQt.QtGui import QImage, QPainter
+
+from tests.plugin.map.on_canvas import (
+    arrays,
+    scene_of,
+    show,
+)
+
+
+def test_the_names_of_a_crowd_do_not_cover_each_other_and_the_lost_are_named_first(canvas, site):
+    from fleet_supervisor.plugin.map.overlay.labels import BESIDE, HEIGHT, Labels, NamesPainter
+
+    spread = np.random.default_rng(3).uniform(5, 95, (200, 2)).tolist()
+    crowd = [(x, y, 0.0, RobotState.FRESH) for x, y in spread]
+    scene = scene_of(*crowd, (51, 51, 0.0, RobotState.LOST), age=75.0)
+    overlay = show(canvas, site, scene)
+    names = NamesPainter(Labels())
+    screen = overlay.screen()
+    pixels = screen.pixels(overlay._placed.robots)
+    chosen = names._chosen(overlay._placed, in_view(overlay._placed, screen), screen)
+    assert chosen[0] == 200
+    assert 20 < len(chosen) < 200
+    boxes = [QRectF(*(pixels[row] + BESIDE), 8 * len(f"r{row + 1}"), HEIGHT - 1) for row in chosen[1:]]
+    assert not [1 for k, box in enumerate(boxes) for other in boxes[:k] if box.intersects(other)]
+
+
+def test_the_age_of_the_last_message_is_written_beside_a_lost_robot(qgis_app):
+    from fleet_supervisor.plugin.map.overlay.labels import texts
+
+    known = arrays((0, 0, 0, RobotState.LOST), (1, 1, 0, RobotState.FRESH), age=75.0)
+    assert texts(known, 0) == ["r1", "· lost 1 min"]
+    assert texts(known, 1) == ["r2"]
+
+
+def written_after(canvas, site, first, second):
+    """Return what is written beside robots, painted as ``first`` and then as ``second``."""
+    from fleet_supervisor.plugin.map.overlay.labels import Labels, NamesPainter
+
+    names = NamesPainter(Labels())
+    image = QImage(canvas.size(), QImage.Format.Format_ARGB32_Premultiplied)
+    for scene in (first, second):
+        overlay = show(canvas, site, scene)
+        screen = overlay.screen()
+        painter = QPainter(image)
+        names.paint(painter, overlay._placed, in_view(overlay._placed, screen), screen)
+        painter.end()
+    return names._written
+
+
+def test_what_is_written_follows_what_becomes_of_a_robot(canvas, site):
+    fresh = scene_of((60, 50, 0.0, RobotState.FRESH))
+    lost = (60, 50, 0.0, RobotState.LOST)
+    later = scene_of(lost, age=75.0, now=100.3)
+    assert written_after(canvas, site, fresh, later) == [["r1", "· lost 1 min"]]
+
+
+def test_of_two_at_one_place_the_live_one_is_named(canvas, site):
+    off, live = (60, 50, 0.0, RobotState.OFFLINE), (60, 50, 0.0, RobotState.FRESH)
+    assert written_after(canvas, site, scene_of(off), scene_of(off, live, now=100.3)) == [["r2"]]
+
+
+def test_what_is_written_beside_a_robot_is_never_that_of_another(canvas, site):
+    two = scene_of((60, 50, 0.0, RobotState.FRESH), (20, 20, 0.0, RobotState.FRESH))
+    others = scene_of((60, 50, 0.0, RobotState.FRESH), now=100.01)
+    assert written_after(canvas, site, two, others) == [["r1"]]
+    renamed = dataclasses.replace(two.robots, names=["a", "b"])
+    written = written_after(canvas, site, two, dataclasses.replace(two, robots=renamed))
+    assert sorted(written) == [["a"], ["b"]]

@@ -1,0 +1,202 @@
+"""Robots are painted where they are, pointing where they point, whatever the map's CRS and rotation."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+
+import numpy as np
+import pytest
+from fleet_supervisor.plugin.gateway_client.robot_table import STATES
+from fleet_supervisor.plugin.map.overlay import robots_painter
+from fleet_supervisor.plugin.map.overlay.scene import SceneTransformer
+from fleet_supervisor.plugin.ui.glyphs import SELECTED, STATE_COLOURS
+from fleet_supervisor.robot_bridge.core.messages import RobotState
+from qgis.PyQt.QtCore import QSize
+from qgis.PyQt.QtGui import QColor, QImage, QPainter
+
+from tests.plugin.map.on_canvas import (
+    expected,
+    placement_of,
+    scene_of,
+    show,
+    spots,
+    where,
+)
+
+BLUE = STATE_COLOURS[RobotState.FRESH]
+
+
+@pytest.mark.parametrize("site_rotation", [0.0, 0.7])
+@pytest.mark.parametrize("map_rotation", [0.0, 35.0, 180.0])
+@pytest.mark.parametrize("crs", ["EPSG:32633", "EPSG:3857", "EPSG:4326"])
+def test_a_robot_is_painted_where_it_is_and_points_where_it_points(
+    canvas, site, crs, map_rotation, site_rotation
+):
+    site = dataclasses.replace(site, rotation=site_rotation)
+    theta = 0.4
+    show(canvas, site, scene_of((60, 50, theta, RobotState.FRESH)), crs, map_rotation)
+    blue = spots(canvas, BLUE)
+    assert len(blue) > 60
+    at = expected(canvas, site, 60, 50)
+    assert np.hypot(*(blue - at).T).max() < 16.0
+    # The arrow's point is the blue farthest ahead of the robot's place; its last pixels are blended.
+    ahead = expected(canvas, site, 60 + 5 * math.cos(theta), 50 + 5 * math.sin(theta)) - at
+    tip = blue[np.argmax((blue - at) @ ahead)] - at
+    turn = math.degrees(math.atan2(tip[1], tip[0]) - math.atan2(ahead[1], ahead[0]))
+    assert abs((turn + 180) % 360 - 180) < 8.0
+    assert np.hypot(*tip) == pytest.approx(10.5, abs=2.0)
+    assert ((blue - at) @ ahead).min() / np.hypot(*ahead) > -11.0
+
+
+@pytest.mark.parametrize("state", STATES)
+def test_each_state_has_its_colour_and_its_own_shape(canvas, site, state):
+    show(canvas, site, scene_of((60, 50, 0.0, state), age=5.0))
+    assert len(spots(canvas, STATE_COLOURS[state])) > 20
+
+
+def test_drawings_are_made_before_robots_are_painted(canvas, site, monkeypatch):
+    overlay = show(canvas, site, scene_of((60, 50, 0.0, RobotState.FRESH)))
+    made, make = [], robots_painter.robot_atlas
+    monkeypatch.setattr(robots_painter, "robot_atlas", lambda *of: (made.append(of[-1]), make(*of))[1])
+    scene = scene_of((60, 50, 0.0, RobotState.FRESH), (70, 50, 0.0, RobotState.LOST))
+    overlay.show_scene(SceneTransformer().placed(scene, placement_of(canvas, site)))
+    assert made == [RobotState.LOST]
+    canvas.grab()
+    assert made == [RobotState.LOST]
+
+
+def test_states_differ_without_their_colours(qgis_app):
+    from fleet_supervisor.plugin.map.overlay.primitives import robot_atlas
+    from fleet_supervisor.plugin.ui.glyphs import CELL
+
+    grey = QImage.Format.Format_Grayscale8
+    atlases = [robot_atlas(1.0, 1.0, state).toImage().convertToFormat(grey) for state in STATES]
+    cells = [atlas.copy(0, 0, CELL, CELL) for atlas in atlases]
+    tables = [np.frombuffer(as_bytes(cell), np.uint8) for cell in cells]
+    for first in range(len(tables)):
+        for second in range(first):
+            assert (np.abs(tables[first].astype(int) - tables[second]) > 40).sum() > 60
+
+
+def as_bytes(image: QImage) -> bytes:
+    bits = image.constBits()
+    bits.setsize(image.sizeInBytes())
+    return bytes(bits)
+
+
+@pytest.mark.parametrize("ratio", [1.0, 1.5, 2.0])
+def test_on_a_dense_screen_robots_have_the_same_size_and_place(canvas, site, ratio):
+    overlay = show(canvas, site, scene_of((60, 50, 0.0, RobotState.FRESH)))
+    image = QImage(QSize(600, 500) * ratio, QImage.Format.Format_RGB32)
+    image.setDevicePixelRatio(ratio)
+    image.fill(QColor("white"))
+    painter = QPainter(image)
+    overlay.paint(painter)
+    painter.end()
+    blue = where(image, BLUE) / ratio
+    assert np.hypot(*(blue - expected(canvas, site, 60, 50)).T).max() < 16.0
+    assert blue[:, 0].max() - blue[:, 0].min() == pytest.approx(20.0, abs=2.5)
+
+
+def test_the_selected_robot_wears_a_ring(canvas, site):
+    show(canvas, site, scene_of((60, 50, 0.0, RobotState.FRESH), chosen=("r1",)))
+    ring = spots(canvas, SELECTED) - expected(canvas, site, 60, 50)
+    assert len(ring) > 60
+    assert np.hypot(*ring.T) == pytest.approx(18.0, abs=2.0)
+
+
+def test_speed_is_a_line_to_where_the_robot_will_be_soon(canvas, site):
+    show(canvas, site, scene_of((60, 50, 0.0, RobotState.FRESH), v=4.0), rotation=30.0)
+    image = canvas.grab().toImage()
+
+    def brightness(x, y):
+        at = expected(canvas, site, x, y)
+        return QColor(image.pixel(round(at[0]), round(at[1]))).lightness()
+
+    # White on a casing that is darker than the white canvas, up to 2 s ahead and no farther.
+    off = [brightness(67.2, 50 + side) for side in (-0.42, 0.42)]
+    assert brightness(67.2, 50) > 240 and min(off) < 200
+    assert brightness(70, 50.35) == brightness(50, 50.35) == 255
+
+
+def test_a_robot_whose_heading_is_not_known_has_no_line_of_speed(canvas, site):
+    show(canvas, site, scene_of((60, 50, 0.0, RobotState.FRESH), v=0.0))
+    still = canvas.grab().toImage()
+    show(canvas, site, scene_of((60, 50, np.nan, RobotState.FRESH), v=4.0))
+    image = canvas.grab().toImage()
+    ahead = expected(canvas, site, 67.2, 50).round().astype(int)
+    around = [(ahead[0], ahead[1] + side) for side in (-2, -1, 0, 1, 2)]
+    assert [image.pixel(x, y) for x, y in around] == [still.pixel(x, y) for x, y in around]
+
+
+@pytest.mark.parametrize("crs", ["EPSG:32633", "EPSG:3857", "EPSG:4326"])
+def test_accuracy_is_a_circle_of_so_many_metres_in_any_crs(canvas, site, crs):
+    show(canvas, site, scene_of((60, 50, 0.0, RobotState.FRESH), accuracy=20.0), crs)
+    image = canvas.grab().toImage()
+    inside, outside = [], []
+    for turn in np.linspace(0, 2 * np.pi, 16, endpoint=False):
+        for metres, found in ((18.5, inside), (21.5, outside)):
+            at = expected(canvas, site, 60 + metres * math.cos(turn), 50 + metres * math.sin(turn))
+            found.append(QColor(image.pixel(round(at[0]), round(at[1]))).name())
+    assert "#ffffff" not in inside
+    assert set(outside) == {"#ffffff"}
+
+
+def test_many_robots_are_drawn_small_and_those_to_be_noticed_larger(canvas, site):
+    def width(colour, number):
+        grid = [(3.0 * (k % 40), 3.0 * (k // 40), math.nan, RobotState.FRESH) for k in range(number)]
+        overlay = show(canvas, site, scene_of(*grid, (60, 95, math.nan, RobotState.LOST)))
+        found = spots(canvas, colour)
+        canvas.scene().removeItem(overlay)
+        at = expected(canvas, site, 60, 95)
+        near = found[np.hypot(*(found - at).T) < 16]
+        return np.ptp(near[:, 0])
+
+    red = STATE_COLOURS[RobotState.LOST]
+    assert width(red, 10) > width(red, 1240) > 8
+
+
+def test_a_lost_robot_lies_over_a_fresh_one_and_a_selected_one_over_both(canvas, site):
+    def colours(*states, chosen=()):
+        overlay = show(canvas, site, scene_of(*[(60, 50, 0.0, state) for state in states], chosen=chosen))
+        counts = [len(spots(canvas, STATE_COLOURS[state])) for state in (RobotState.FRESH, RobotState.LOST)]
+        canvas.scene().removeItem(overlay)
+        return counts
+
+    lost, fresh = RobotState.LOST, RobotState.FRESH
+    (_, red), (blue, _) = colours(lost), colours(fresh)
+    assert colours(lost, fresh)[1] == colours(fresh, lost)[1] == red > 20
+    assert colours(lost, fresh, chosen=("r2",))[0] == blue > 20
+    assert colours(fresh, lost, chosen=("r1",))[0] == blue
+
+
+def test_a_robot_that_is_off_lies_under_a_live_one_at_its_place(canvas, site):
+    def blue(*states):
+        overlay = show(canvas, site, scene_of(*[(60, 50, 0.0, state) for state in states]))
+        count = len(spots(canvas, STATE_COLOURS[RobotState.FRESH]))
+        canvas.scene().removeItem(overlay)
+        return count
+
+    fresh, offline = RobotState.FRESH, RobotState.OFFLINE
+    assert blue(fresh, offline) == blue(offline, fresh) == blue(fresh) > 20
+
+
+def test_robots_are_painted_layer_after_layer_from_the_top_and_those_side_by_side_in_their_order(qgis_app):
+    from fleet_supervisor.plugin.map.overlay.robots_painter import STRIP, _from_the_top
+
+    y = np.array([790.0, 3.0, 2.0, -9.0, 5000.0, 790.0 - STRIP])
+    assert _from_the_top(np.array([0, 0, 0, 0, 0, 0]), y).tolist() == [1, 2, 3, 5, 0, 4]
+    assert _from_the_top(np.array([0, 7, 0, 7, 2, 0]), y).tolist() == [2, 5, 0, 4, 1, 3]
+    in_a_strip = np.random.default_rng(1).uniform(STRIP, 2 * STRIP, 300)
+    assert _from_the_top(np.ones(300, dtype=np.intp), in_a_strip).tolist() == list(range(300))
+    assert _from_the_top(np.array([], dtype=np.intp), y[:0]).tolist() == []
+
+
+def test_robots_that_the_layers_style_draws_keep_their_rings(canvas, site):
+    overlay = show(canvas, site, scene_of((60, 50, 0.0, RobotState.FRESH), chosen=("r1",)))
+    assert len(spots(canvas, BLUE)) > 20
+    overlay.draw_arrows(False)
+    overlay.update()
+    assert len(spots(canvas, BLUE)) == 0
+    assert len(spots(canvas, SELECTED)) > 20

@@ -1,0 +1,36 @@
+"""A plugin that does not start leaves QGIS as it was, and starts the next time."""
+
+from __future__ import annotations
+
+import pytest
+from fleet_supervisor.plugin.locator import RobotLocator
+from fleet_supervisor.plugin.panel.window import WindowAlarms
+from fleet_supervisor.plugin.plugin import FleetPlugin
+from fleet_supervisor.plugin.tour.tour_panel import TourAction
+from fleet_supervisor.plugin.ui.actions import MenuLetters
+from qgis.core import QgsExpression
+
+from tests.support.left_behind import left_behind
+
+
+def state_of(iface):
+    return {**left_behind(iface), "functions": len(QgsExpression.Functions())}
+
+
+@pytest.mark.parametrize("part", [WindowAlarms, RobotLocator, TourAction, MenuLetters])
+def test_what_was_there_before_it_failed_is_taken_out(iface, monkeypatch, part):
+    def fail(*_):
+        raise RuntimeError("no such thing")
+
+    before = state_of(iface)
+    plugin = FleetPlugin(iface)
+    with monkeypatch.context() as broken:
+        broken.setattr(part, "__init__", fail)
+        with pytest.raises(RuntimeError, match="no such thing"):
+            plugin.initGui()
+    assert plugin.window is None
+    assert state_of(iface) == before
+    plugin.initGui()
+    assert plugin.window is not None
+    plugin.unload()
+    assert state_of(iface) == before

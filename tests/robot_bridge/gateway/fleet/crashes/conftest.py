@@ -1,0 +1,102 @@
+"""Plays in which the gateway dies, a transaction fails, or links are cut: at each moment in turn.
+
+Moments are the transactions that a scenario takes, or its seconds. One that stops robots is played once for
+each of them, another one for every third, beginning with the next one from scenario to scenario. With
+EVERY_CRASH=1 in the environment all are played at each, before and after the commit, with all that robots may
+do meanwhile.
+"""
+
+from __future__ import annotations
+
+import itertools
+import os
+import shutil
+import tempfile
+from pathlib import Path
+
+import pytest
+
+from tests.support.bridge.crash_play import DRIVE_ON, Play
+from tests.support.bridge.crash_scenarios import SCENARIOS
+from tests.support.bridge.mortal_database import Death
+
+STOPS = {"paused", "aborted", "aborted_too_late", "halted", "continued_at_once", "stopped"}
+"""Scenarios in which operators stop robots."""
+EVERY = 3
+"""Of how many moments one is played, where no robot is stopped."""
+
+
+@pytest.fixture
+def quick_folder():
+    """A folder in memory where there is one: what a gateway leaves there need not outlive a power cut."""
+    memory = Path("/dev/shm")
+    with tempfile.TemporaryDirectory(dir=memory if os.access(memory, os.W_OK) else None) as folder:
+        yield Path(folder)
+
+
+@pytest.fixture
+def crash(own_site, quick_folder):
+    """Play a scenario with one death of its gateway: ``await crash(scenario, url, death, how)``."""
+    journals = itertools.count()
+
+    async def crash(scenario, url, death, how, cut=None):
+        journal = quick_folder / f"{next(journals)}.stop"
+        roads = scenario.startswith(("led", "waited"))
+        play = Play(own_site, url, journal, death, how, cut=cut, roads=roads)
+        try:
+            await SCENARIOS[scenario](play)
+        except AssertionError as error:
+            raise AssertionError(f"{_told(death, cut)}, robots {how}: {error}") from error
+        finally:
+            await play.end()
+        return play
+
+    return crash
+
+
+def _told(death, cut):
+    if cut is not None:
+        return f"links were cut in turn {cut.turn} for {cut.seconds:g} s"
+    what = "the gateway died" if death.fails is None else f"{death.fails.__name__} came"
+    return f"{what} {'after' if death.done else 'before'} commit {death.at}"
+
+
+@pytest.fixture
+def play(crash, sqlite_url, quick_folder):
+    """Play a scenario on a new SQLite database: ``await play(scenario, death, how, cut)``; return it."""
+    file = quick_folder / "play.db"
+
+    async def play(scenario, death, how, cut=None):
+        for old in quick_folder.glob("play.db*"):
+            old.unlink()
+        shutil.copy(sqlite_url.removeprefix("sqlite:///"), file)
+        return await crash(scenario, f"sqlite:///{file}", death, how, cut)
+
+    return play
+
+
+@pytest.fixture
+def moments():
+    """Pair moments with what happens then: ``moments(scenario, all_moments, ways)``."""
+
+    def moments(scenario, times, ways):
+        if os.environ.get("EVERY_CRASH"):
+            return list(itertools.product(times, ways))
+        first = list(SCENARIOS).index(scenario)
+        some = times if scenario in STOPS else times[first % EVERY :: EVERY]
+        return [(at, ways[number % len(ways)]) for number, at in enumerate(some, first)]
+
+    return moments
+
+
+@pytest.fixture
+def writing(play):
+    """Return the numbers of the transactions that a scenario takes when nothing happens."""
+
+    async def writing(scenario):
+        undisturbed = Death()
+        await play(scenario, undisturbed, DRIVE_ON)
+        assert len(undisturbed.writing) > 10
+        return sorted(undisturbed.writing)
+
+    return writing

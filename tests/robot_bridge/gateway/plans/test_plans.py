@@ -1,0 +1,342 @@
+"""Cone plans that the gateway drives: entered in one step, followed, paused, planned again, kept."""
+
+from __future__ import annotations
+
+import asyncio
+
+import pytest
+
+from robot_bridge.core.assignment.job import STAY, AssignmentJob, ConeTarget, PlanRobot, StraightTravel
+from robot_bridge.core.assignment.plan import document_of
+from robot_bridge.core.assignment.solver import Objective, assign
+from robot_bridge.core.errors import OutdatedError, RefusedError
+from robot_bridge.core.messages import (
+    ClearEmergencyStop,
+    ClearPlan,
+    ConfirmReplan,
+    DiscardReplan,
+    EmergencyStop,
+    GetPlans,
+    MessageError,
+    PausePlan,
+    PlanCone,
+    PlanState,
+    Replan,
+    ResumePlan,
+    SubmitPlan,
+    TaskState,
+)
+
+CONES = {"c1": (30.0, 40.0), "c2": (40.0, 40.0), "c3": (50.0, 40.0), "c4": (60.0, 40.0)}
+LOST = 20.0
+"""seconds that r2 is not heard for."""
+
+
+def plan_of(robots=("r1", "r2"), cones=tuple(CONES), capacity=4):
+    targets = tuple(ConeTarget(name, *CONES[name]) for name in cones)
+    drivers = tuple(PlanRobot(name, 20.0, 40.0, capacity, aboard=capacity) for name in robots)
+    job = AssignmentJob(targets, drivers, (), STAY)
+    return assign(job, StraightTravel(job), Objective(time_limit_s=0.2))
+
+
+class Drive:
+    """A plan in a yard: an operator, two robots that obey at once, and the gateway that looks after it."""
+
+    def __init__(self, line):
+        self.line, self.yard, self.pushed = line, line.yard, []
+        self.listen()
+
+    def listen(self):
+        self.yard.fleet.listeners.add(self)
+
+    def notify(self, method, key, params):
+        if method == "plan":
+            self.pushed.append(params)
+
+    @property
+    def plans(self):
+        return self.yard.fleet.plans
+
+    async def submit(self, plan=None, name="plan-1", **more):
+        plan = plan or plan_of()
+        cones = [PlanCone(target.id, target.id, "row") for target in plan.targets]
+        request = SubmitPlan(name, document_of(plan), cones, seconds=0.2, **more)
+        report = await self.plans.submit(request, "Ada")
+        await self.line.go()
+        return report
+
+    async def seen(self, name="plan-1", **how):
+        (report,) = await self.plans.read(GetPlans(name, **how))
+        return report
+
+    async def go(self, *, robots=("r1", "r2"), times=1):
+        """Let each robot drive what it was sent to its end, so many times, and the gateway look."""
+        for _ in range(times):
+            for robot in robots:
+                await self.yard.take(robot)
+                for task in (await self.line.seen(robot, paths=True)).tasks[:1]:
+                    for x, y in task.path[::4]:
+                        await self.yard.at(x, y, v=1.0, robot=robot)
+                    await self.yard.at(task.x, task.y, robot=robot)
+            await self.line.go()
+        await self.plans.watch()
+
+    async def planned(self):
+        """Wait for what is being planned."""
+        await asyncio.gather(*self.plans._tasks)
+
+    async def lose(self, robot="r2", other="r1"):
+        """Let one robot fall silent for long, and the other go on being heard."""
+        self.yard.now += LOST
+        x, y = (self.yard.fleet.robots.get(other).pose.x, self.yard.fleet.robots.get(other).pose.y)
+        await self.yard.at(x, y, robot=other)
+        self.yard.fleet.age()
+        await self.line.go()
+        await self.plans.watch()
+
+    def cones(self):
+        return sorted(self.yard.sql("select cone from placements"))
+
+
+@pytest.fixture
+async def drive(line):
+    return Drive(line)
+
+
+@pytest.fixture
+async def line(two):
+    from tests.support.bridge.queue_line import Line
+
+    for robot in ("r1", "r2"):
+        await two.at(20.0, 40.0, robot=robot)
+    return Line(two)
+
+
+ALL = [("c1",), ("c2",), ("c3",), ("c4",)]
+
+
+async def test_a_plan_is_entered_followed_and_finished_and_every_operator_hears_of_it(drive):
+    report = await drive.submit()
+    assert (report.state, report.cones, report.done, report.robots) == (PlanState.DRIVEN, 4, 0, ["r1", "r2"])
+    assert {stop.id for stop in report.stops} == set(CONES) and drive.pushed
+    await drive.go(times=8)
+    seen = await drive.seen()
+    assert (seen.state, seen.done) == (PlanState.FINISHED, 4)
+    assert {stop.state for stop in seen.stops} == {TaskState.DONE}
+    assert drive.cones() == ALL and drive.pushed[-1]["state"] == "finished"
+
+
+async def test_all_of_it_is_entered_or_nothing(drive):
+    with pytest.raises(OutdatedError):
+        await drive.submit(revisions={"r2": 7})
+    assert [(await drive.line.seen(robot)).tasks for robot in ("r1", "r2")] == [[], []]
+    assert drive.yard.sql("select count(*) from plans") == [(0,)]
+    await drive.submit(revisions={"r1": 0, "r2": 0})
+    assert all([(await drive.line.seen(robot)).tasks for robot in ("r1", "r2")])
+
+
+async def test_submitted_twice_it_is_driven_once(drive):
+    plan = plan_of()
+    first, again = await drive.submit(plan), await drive.submit(plan)
+    assert [stop.task for stop in first.stops] == [stop.task for stop in again.stops]
+    with pytest.raises(RefusedError, match="'r1' drives plan 'plan-1'"):
+        await drive.submit(plan, "plan-2")
+
+
+async def test_it_is_paused_by_anybody_and_goes_on_from_there(drive):
+    await drive.submit()
+    report = await drive.plans.pause(PausePlan("plan-1", "people on the track"), "Bob")
+    assert (report.state, report.by, report.reason) == (PlanState.PAUSED, "Bob", "people on the track")
+    await drive.go(times=4)
+    assert len(drive.cones()) <= 2
+    with pytest.raises(OutdatedError):
+        await drive.plans.resume(ResumePlan("plan-1", report.revision - 1), "Ada")
+    await drive.plans.resume(ResumePlan("plan-1", report.revision), "Ada")
+    await drive.line.go()
+    await drive.go(times=8)
+    assert (await drive.seen()).state is PlanState.FINISHED and drive.cones() == ALL
+
+
+async def test_the_cones_of_a_lost_robot_are_placed_by_another_by_itself(drive):
+    await drive.submit(by_itself=True)
+    await drive.go(robots=["r1"])
+    await drive.lose()
+    assert (await drive.seen()).state is PlanState.REPLANNING
+    await drive.planned()
+    report = await drive.seen()
+    assert (report.state, report.robots, report.problems) == (PlanState.DRIVEN, ["r1"], [])
+    await drive.line.go()
+    await drive.go(robots=["r1"], times=8)
+    assert (await drive.seen()).state is PlanState.FINISHED and drive.cones() == ALL
+    assert (await drive.line.seen("r2")).tasks == []
+
+
+async def test_unless_that_was_chosen_somebody_has_to_ask_and_to_confirm(drive):
+    await drive.submit()
+    await drive.go(robots=["r1"])
+    await drive.lose()
+    report = await drive.seen()
+    assert report.state is PlanState.DRIVEN and [one.robot for one in report.problems] == ["r2"]
+    await drive.plans.replan(Replan("plan-1", report.revision), "Bob")
+    await drive.planned()
+    report = await drive.seen(documents=True)
+    assert report.state is PlanState.PROPOSED and report.proposal is not None
+    assert (await drive.line.seen("r1")).state.value == "paused"
+    discarded = await drive.plans.discard(DiscardReplan("plan-1", report.revision), "Bob")
+    assert discarded.state is PlanState.DRIVEN and (await drive.line.seen("r1")).state.value == "running"
+    await drive.plans.replan(Replan("plan-1", discarded.revision), "Bob")
+    await drive.planned()
+    await drive.plans.confirm(ConfirmReplan("plan-1", (await drive.seen()).revision), "Bob")
+    await drive.line.go()
+    await drive.go(robots=["r1"], times=8)
+    assert drive.cones() == ALL
+
+
+@pytest.mark.parametrize("state", ["driven", "proposed"])
+async def test_a_gateway_that_is_started_again_goes_on_with_it(drive, state):
+    await drive.submit(by_itself=state == "driven")
+    await drive.go()
+    before = drive.cones()
+    if state == "proposed":
+        await drive.plans.replan(Replan("plan-1", 1), "Ada")
+        await drive.planned()
+    tasks = [stop.task for stop in (await drive.seen()).stops]
+    poses = {robot: drive.yard.fleet.robots.get(robot).pose for robot in ("r1", "r2")}
+    places = {robot: (pose.x, pose.y) for robot, pose in poses.items()}
+    await drive.yard.restart()
+    drive.listen()
+    report = await drive.seen()
+    assert (report.state.value, report.done) == (state, len(before))
+    assert [stop.task for stop in report.stops] == tasks
+    for robot, (x, y) in places.items():
+        await drive.yard.ready(robot)
+        await drive.yard.at(x, y, robot=robot)
+    if state == "proposed":
+        await drive.plans.confirm(ConfirmReplan("plan-1", report.revision), "Bob")
+    await drive.line.go()
+    await drive.go(times=10)
+    assert (await drive.seen()).state is PlanState.FINISHED and drive.cones() == ALL
+
+
+async def test_after_a_restart_robots_have_time_to_come_back_before_it_is_planned_again(drive):
+    await drive.submit(by_itself=True)
+    await drive.go(robots=["r1"])
+    pose = drive.yard.fleet.robots.get("r1").pose
+    drive.yard.now += 60.0
+    await drive.yard.restart()
+    drive.yard.fleet.age()
+    await drive.plans.watch()
+    report = await drive.seen()
+    assert report.state is PlanState.DRIVEN and len(report.problems) == 2
+    await drive.yard.ready("r1")
+    await drive.yard.at(pose.x, pose.y)
+    await drive.plans.watch()
+    assert (await drive.seen()).state is PlanState.DRIVEN
+    await drive.lose()
+    assert (await drive.seen()).state is PlanState.REPLANNING
+    await drive.planned()
+    assert (await drive.seen()).robots == ["r1"]
+
+
+async def test_planning_that_the_gateways_end_cut_short_begins_anew(drive):
+    await drive.submit()
+    await drive.plans.replan(Replan("plan-1", 1), "Ada")
+    await drive.plans.finish()
+    await drive.yard.restart()
+    assert (await drive.seen()).state is PlanState.REPLANNING
+    await drive.planned()
+    assert (await drive.seen()).state is PlanState.PROPOSED
+
+
+async def test_after_an_emergency_stop_it_waits_for_somebody(drive):
+    await drive.submit(by_itself=True)
+    await drive.go()
+    await drive.yard.fleet.emergency.stop(EmergencyStop("stop-0001"), "Ada")
+    await drive.line.go()
+    await drive.plans.watch()
+    report = await drive.seen()
+    assert (report.state, report.by_itself) == (PlanState.PAUSED, False)
+    with pytest.raises(RefusedError, match="emergency stop"):
+        await drive.plans.resume(ResumePlan("plan-1", report.revision), "Ada")
+    with pytest.raises(RefusedError, match="emergency stop"):
+        await drive.plans.replan(Replan("plan-1", report.revision), "Ada")
+    await drive.yard.fleet.emergency.clear(ClearEmergencyStop("seen"), "Sue")
+    done = drive.cones()
+    await drive.lose()
+    assert (await drive.seen()).state is PlanState.PAUSED and drive.cones() == done
+
+
+async def test_a_plan_that_is_cleared_is_followed_no_more_and_its_tasks_stay(drive):
+    await drive.submit()
+    report = await drive.plans.clear(ClearPlan("plan-1"), "Bob")
+    assert report.state is PlanState.CLEARED
+    assert await drive.plans.clear(ClearPlan("plan-1"), "Bob") == report
+    assert (await drive.line.seen("r1")).tasks
+    await drive.submit(plan_of(), "plan-2")
+
+
+@pytest.mark.parametrize(
+    ("change", "why"),
+    [
+        ({"document": {}}, "no plan"),
+        ({"cones": []}, "does not name cone"),
+    ],
+)
+async def test_what_is_no_plan_is_refused(drive, change, why):
+    plan = plan_of()
+    asked = {"document": document_of(plan), "cones": [PlanCone(one.id, one.id) for one in plan.targets]}
+    with pytest.raises(RefusedError, match=why):
+        await drive.plans.submit(SubmitPlan("plan-1", **{**asked, **change}), "Ada")
+
+
+@pytest.mark.parametrize(
+    "wrong", [{"plan": ""}, {"plan": "a\nb"}, {"seconds": 0}, {"clearance_m": -1}, {"stand": [(0, 0)] * 5001}]
+)
+def test_bounds_of_a_submission(wrong):
+    with pytest.raises(MessageError):
+        SubmitPlan(**{"plan": "p", "document": {}, "cones": [], **wrong})
+
+
+async def test_planning_that_takes_too_long_leaves_the_robots_standing_and_says_so(drive, monkeypatch):
+    monkeypatch.setattr("robot_bridge.gateway.plans.replanning.PATIENCE", 0.0)
+    await drive.submit()
+    await drive.plans.replan(Replan("plan-1", 1), "Ada")
+    await drive.planned()
+    report = await drive.seen()
+    assert report.state is PlanState.PAUSED and "could not be planned" in report.reason
+
+
+@pytest.fixture(params=["postgresql", "mariadb"])
+def server_url(request, new_database):
+    return new_database(request.param)
+
+
+@pytest.fixture
+async def server_drive(server_url, site_maps):
+    from tests.support.bridge.queue_line import Line
+    from tests.support.bridge.yard import yard_of_two
+
+    async with yard_of_two(site_maps, server_url) as yard:
+        for robot in ("r1", "r2"):
+            await yard.at(20.0, 40.0, robot=robot)
+        yield Drive(Line(yard))
+
+
+async def test_a_server_keeps_it_as_well(server_drive):
+    await test_a_gateway_that_is_started_again_goes_on_with_it(server_drive, "proposed")
+
+
+async def test_what_nobody_foresaw_of_one_plan_keeps_no_other_from_being_followed(drive, monkeypatch, caplog):
+    await drive.submit(plan_of(["r1"], ["c1"]), "first")
+    await drive.submit(plan_of(["r2"], ["c2"]), "second")
+    follow = drive.plans._look
+
+    async def fails_of_the_first(one):
+        if one.plan.name == "first":
+            raise ZeroDivisionError
+        await follow(one)
+
+    monkeypatch.setattr(drive.plans, "_look", fails_of_the_first)
+    await drive.go(times=3)
+    assert (await drive.seen("second")).state is PlanState.FINISHED
+    assert (await drive.seen("first")).state is PlanState.DRIVEN and "plan first" in caplog.text

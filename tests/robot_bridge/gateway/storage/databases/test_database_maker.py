@@ -1,0 +1,51 @@
+"""Databases of PostgreSQL that are given again: as new, or not at all."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.support.databases.database_client import DatabaseClient
+
+CHANGES = [
+    "alter table rr add column seen boolean",
+    "alter table sa rename to sa_away",
+    "grant select on rr to public",
+    "alter table robots enable row level security",
+    "create function f() returns int language sql as 'select 1'",
+    "alter table sa add check (op <> 'Abort')",
+    "alter table sa disable trigger user",
+]
+
+
+@pytest.fixture
+def client(new_database):
+    client = DatabaseClient(new_database("postgresql"))
+    yield client
+    client.close()
+
+
+def say(client):
+    client.sql("insert into rr (robot, op) values ('r1', 'Ready')")
+    return client.sql("select id, robot from rr")
+
+
+def test_it_is_given_again_with_no_row_and_counts_from_one(client, new_database):
+    assert say(client) == [(1, "r1")]
+    client.close()
+    assert new_database("postgresql") == client.url.render_as_string(hide_password=False)
+    assert say(client) == [(1, "r1")]
+
+
+def test_nobody_is_given_what_another_is_connected_to(client, new_database):
+    say(client)
+    other = DatabaseClient(new_database("postgresql"))
+    assert other.url != client.url
+    assert other.sql("select id from rr") == []
+    other.close()
+
+
+@pytest.mark.parametrize("change", CHANGES)
+def test_what_was_made_otherwise_is_not_given_again(client, new_database, change):
+    client.sql(change)
+    client.close()
+    assert new_database("postgresql") != client.url.render_as_string(hide_password=False)

@@ -1,0 +1,128 @@
+"""A gateway on PostgreSQL is told of new rows while it dozes, and never begins to doze over one."""
+
+from __future__ import annotations
+
+import asyncio
+import time
+
+import psycopg
+import pytest
+from sqlalchemy import delete, insert, make_url
+
+from robot_bridge.gateway.storage.database import Database
+from robot_bridge.gateway.storage.schema import rr, sa
+from tests.support.patience import BUSY
+
+pytestmark = pytest.mark.parametrize("kind", ["postgresql"], indirect=True)
+
+
+@pytest.fixture
+async def gateway(url):
+    database = Database(url)
+    await database.open()
+    yield database
+    await database.close()
+
+
+@pytest.fixture
+async def robot(url):
+    database = Database(url)
+    yield database
+    await database.close()
+
+
+@pytest.fixture
+async def wakeup(gateway):
+    wakeup = gateway.wakeup("rr")
+    # The first time it is told at once, since nobody listened before.
+    assert await wakeup.doze()
+    await wakeup.wait(found=False)
+    yield wakeup
+    await wakeup.close()
+
+
+@pytest.fixture
+def told(url):
+    """Return how many notifications came since the last call."""
+    parts = make_url(url)
+    where = {"host": parts.host, "port": parts.port, "user": parts.username, "password": parts.password}
+    with psycopg.connect(**where, dbname=parts.database, autocommit=True) as connection:
+        connection.execute("listen rr")
+        yield lambda: len(list(connection.notifies(timeout=0.3)))
+
+
+def ask(connection):
+    connection.execute(insert(rr).values(robot="r1", op="Alive"))
+
+
+async def test_only_a_gateway_that_dozes_is_told_of_a_request(wakeup, robot, told):
+    await robot.run(ask)
+    assert told() == 0
+    assert await wakeup.doze()
+    await robot.run(ask)
+    assert told() == 1
+    await wakeup.wait(found=False)
+    await robot.run(ask)
+    assert told() == 0
+
+
+async def test_a_gateway_that_dozes_is_told_that_a_command_was_read_and_of_nothing_else_that_was(
+    wakeup, robot, told
+):
+    for op in ("Abort", "OpAck"):
+        await robot.run(lambda connection, op=op: connection.execute(insert(sa).values(robot="r1", op=op)))
+    assert await wakeup.doze()
+    await robot.run(lambda connection: connection.execute(delete(sa).where(sa.c.op == "OpAck")))
+    assert told() == 0
+    await robot.run(lambda connection: connection.execute(delete(sa).where(sa.c.op == "Abort")))
+    assert told() == 1
+
+
+async def test_a_gateway_wakes_at_once_and_sees_what_it_was_told_of(wakeup, robot):
+    took = []
+    for _ in range(5):
+        assert await wakeup.doze()
+        waiting = asyncio.ensure_future(wakeup.wait(found=False))
+        await asyncio.sleep(0.1)
+        began = time.monotonic()
+        await robot.run(ask)
+        await waiting
+        took.append(time.monotonic() - began)
+    assert min(took) < 0.8  # else it is the second after which it looks unasked
+
+
+async def test_no_gateway_begins_to_doze_while_somebody_writes_who_thinks_it_is_awake(wakeup, robot, told):
+    written, go = asyncio.Event(), asyncio.Event()
+    loop = asyncio.get_running_loop()
+
+    def write(connection):
+        ask(connection)
+        loop.call_soon_threadsafe(written.set)
+        asyncio.run_coroutine_threadsafe(go.wait(), loop).result(20)
+
+    writing = asyncio.ensure_future(robot.run(write))
+    await written.wait()
+    assert not await wakeup.doze()
+    go.set()
+    await writing
+    assert told() == 0
+    assert await wakeup.doze()
+
+
+async def test_a_gateway_that_found_something_as_it_began_to_doze_is_awake_again(wakeup, robot, told):
+    assert await wakeup.doze()
+    assert await wakeup.doze()
+    await wakeup.wait(found=True)
+    await robot.run(ask)
+    assert told() == 0
+
+
+async def test_what_a_gateway_was_to_be_told_is_over_with_its_connection(gateway, wakeup, robot, told):
+    assert await wakeup.doze()
+    await gateway.close()
+    # The server notices the end of a connection in its own time.
+    until = time.monotonic() + 10 * BUSY
+    await robot.run(ask)
+    while told() > 0:
+        assert time.monotonic() < until
+        await robot.run(ask)

@@ -1,0 +1,73 @@
+"""The AsyncAPI document is accepted by the specification's own parser, and tells of every message."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+
+import pytest
+
+from robot_bridge.core.messages import ANSWERS, DESK_REQUESTS, REQUESTS
+from robot_bridge.protocol.asyncapi import asyncapi, documents
+from robot_bridge.protocol.json_schemas import NOTIFICATIONS
+
+NO_PARSER = 3
+
+
+@pytest.fixture(scope="module")
+def parse(root, tmp_path_factory):
+    """Have a document parsed: ``parse(document)`` returns whether it is accepted, and what is said of it."""
+    script = root / "tools" / "asyncapi_parser.sh"
+    ready = subprocess.run([script], capture_output=True, text=True, timeout=300)
+    if ready.returncode == NO_PARSER:
+        pytest.skip(ready.stderr.strip().splitlines()[-1])
+    file = tmp_path_factory.mktemp("asyncapi") / "asyncapi.json"
+
+    def parse(document):
+        file.write_text(json.dumps(document), encoding="utf-8")
+        done = subprocess.run([script, file], capture_output=True, text=True, timeout=240)
+        assert done.returncode in (0, 1), done.stderr
+        return done.returncode == 0, [
+            line for line in done.stdout.splitlines() if not line.startswith("information:")
+        ]
+
+    return parse
+
+
+def test_the_parser_accepts_it_without_a_warning(parse):
+    assert parse(asyncapi()) == (True, [])
+
+
+def test_the_parser_refuses_it_where_a_message_is_missing(parse):
+    broken = asyncapi()
+    del broken["channels"]["robot"]["messages"]["Ready"]
+    accepted, said = parse(broken)
+    assert not accepted
+    assert any("/messages/Ready' does not exist" in line for line in said)
+
+
+def test_it_has_an_operation_for_every_message_of_all_endpoints():
+    assert set(asyncapi()["operations"]) == {
+        *(f"robot.{op}" for op in REQUESTS if op != "OpAck"),
+        *(f"gateway.{op}" for op in ANSWERS if op != "OpAck"),
+        *(f"desk.{method}" for method in DESK_REQUESTS),
+        *(f"news.{method}" for method in NOTIFICATIONS),
+        *(f"link.robot.{op}" for op in REQUESTS if op != "OpAck"),
+        *(f"link.gateway.{op}" for op in ANSWERS if op not in ("OpAck", "Start")),
+        *(f"link.{name}" for name in ("hello", "status", "get_areas", "positions")),
+        *(f"link.{name}" for name in ("Start", "Released", "AbortOfAll", "playback")),
+    }
+
+
+def test_it_says_who_speaks():
+    operations = asyncapi()["operations"]
+    assert operations["robot.SendPos"]["action"] == "receive"
+    assert operations["gateway.SetPosEnd"]["action"] == "send"
+    assert operations["desk.send"]["reply"]["messages"][0]["$ref"].endswith("/messages/sendResult")
+    assert "reply" not in operations["news.positions"]
+    assert operations["link.robot.SendPos"]["action"] == "receive"
+    assert operations["link.gateway.SetPosEnd"]["action"] == "send"
+
+
+def test_it_is_among_the_documents():
+    assert json.loads(documents()["asyncapi.json"]) == asyncapi()

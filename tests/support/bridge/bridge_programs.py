@@ -1,0 +1,128 @@
+"""The real programs: a gateway and reference robots, each a process of its own."""
+
+from __future__ import annotations
+
+import contextlib
+import itertools
+import socket
+import sys
+import time
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from subprocess import Popen
+from typing import Any
+
+from tests.support.bridge.bridge_wires import Desk, RobotWire
+from tests.support.databases.database_client import DatabaseClient
+from tests.support.patience import BUSY, START
+from tests.support.processes import Processes
+
+RUNS = itertools.count(1)
+
+
+def wait_until(condition: Callable[[], Any], seconds: float = 10.0, what: str = "") -> Any:
+    """Return what ``condition`` returns once that is true; fail after ``seconds`` of an idle machine."""
+    until = time.monotonic() + BUSY * seconds
+    while not (found := condition()):
+        assert time.monotonic() < until, f"not within {BUSY * seconds:g} s: {what or condition}"
+        time.sleep(0.02)
+    return found
+
+
+class Bridge:
+    """One gateway on one site and one database, its robots, and who talks to it."""
+
+    def __init__(self, processes: Processes, site: Path, database: str):
+        self.site, self.database = site, database
+        self.address, self.port = "", 0
+        self.options: list[Any] = []
+        """More options of the gateway's command line."""
+        self._processes = processes
+        self._names: list[str] = []
+        self._wires: list[Any] = []
+
+    @property
+    def file(self) -> Path:
+        """The file of a SQLite database."""
+        return Path(self.database.removeprefix("sqlite:///"))
+
+    def start_gateway(self) -> None:
+        """Start the gateway, on the port it had if it ran before; return once it listens."""
+        options = ["--site", self.site, "--port", str(self.port), "--database", self.database]
+        name = self._run("gateway", ["serve", *options, *self.options])
+        found = self._processes.wait_for_line(name, r"listening on (wss?://\S+:(\d+))", START)
+        self.address, self.port = found.group(1), int(found.group(2))
+
+    def start_robot(
+        self,
+        name: str,
+        pose: tuple[float, float, float],
+        *,
+        sql: bool | str = False,
+        options: Sequence[Any] = (),
+    ) -> Popen[bytes]:
+        """Start a fast reference robot, with more ``options`` of its command line.
+
+        ``sql`` is the URL of the database, or true for the gateway's own.
+        """
+        way = (
+            ["--database", self.database if sql is True else sql]
+            if sql
+            else ["--url", f"{self.address}/robot"]
+        )
+        where = ",".join(str(number) for number in pose)
+        fast = ["--speed", "5", "--turn-rate", "6", "--acceleration", "8", "--rate", "20"]
+        self._run(name, ["robot", *way, "--name", name, f"--pose={where}", *fast, *options])
+        return self.process
+
+    def start_link(self, kind: str, config: Path) -> Popen[bytes]:
+        """Start an adapter with the settings in ``config``."""
+        self._run(f"link-{kind}", ["link", kind, "--config", config])
+        return self.process
+
+    def _run(self, name: str, command: list[Any]) -> str:
+        unique = f"{name}-{next(RUNS)}"
+        self.process = self._processes.start(unique, [sys.executable, "-m", "robot_bridge", *command])
+        if name == "gateway":
+            self.gateway = self.process
+        self._names.append(unique)
+        return unique
+
+    def kill_gateway(self) -> None:
+        """End the gateway the way a power cut does."""
+        self.gateway.kill()
+        self.gateway.wait(5)
+
+    def desk(self, operator: str = "Ada", **options: Any) -> Desk:
+        """Return an operator's connection."""
+        desk = Desk(f"{self.address}/desk", operator, **options)
+        self._wires.append(desk)
+        return desk
+
+    def robot(self, name: str | None = None, **options: Any) -> RobotWire:
+        """Return a robot's connection that does nothing by itself."""
+        wire = RobotWire(f"{self.address}/robot" + (f"?robot={name}" if name else ""), **options)
+        self._wires.append(wire)
+        return wire
+
+    def hang_up(self) -> None:
+        """Cut every connection; a close in good order would wait for what nobody read."""
+        for wire in self._wires:
+            with contextlib.suppress(OSError):
+                wire.connection.socket.shutdown(socket.SHUT_RDWR)
+
+    def end(self) -> None:
+        """End the gateway and the robots, so that they take no time from the next test."""
+        self.hang_up()
+        for name in reversed(self._names):
+            self._processes.end(name)
+
+    def sql(self, text: str, *values: Any) -> list[tuple[Any, ...]]:
+        """Run one statement as any other program would."""
+        with contextlib.closing(DatabaseClient(self.database)) as client:
+            return client.sql(text, *values)
+
+    def output(self) -> str:
+        """Return what the gateway and the robots have printed."""
+        logs = [self._processes.log(name).read_text(encoding="utf-8") for name in self._names]
+        return "\n".join(logs)

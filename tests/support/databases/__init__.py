@@ -1,0 +1,1 @@
+"""Real database servers of the tests' own, and databases on them."""

@@ -1,0 +1,61 @@
+"""A PostgreSQL server of one's own."""
+
+from __future__ import annotations
+
+import signal
+from pathlib import Path
+
+from tests.support.databases.database_server import OWNER, DatabaseServer, find_program
+
+
+class PostgreSql(DatabaseServer):
+    """PostgreSQL 15 or newer, with passwords (SCRAM) for everyone."""
+
+    scheme = "postgresql"
+    account = "postgres"
+    admin = "postgres"
+    programs = ("postgres", "initdb", "pg_isready", "psql")
+    ending = signal.SIGINT  # the fast shutdown: it waits for no client
+
+    def sql(self, text: str, database: str | None = None) -> str:
+        address = ["-h", "127.0.0.1", "-p", str(self.port), "-U", self.admin, "-d", database or "postgres"]
+        options = ["-X", "-q", "-A", "-t", "-v", "ON_ERROR_STOP=1"]
+        return self._require(
+            [self._program("psql"), *options, *address], text, PGPASSWORD=self.admin_password
+        ).strip()
+
+    def _initialise(self) -> None:
+        secret = self.folder / "password"
+        secret.write_text(self.admin_password, encoding="utf-8")
+        secret.chmod(0o600)
+        self._give(secret)
+        options = ["--no-sync", "-A", "scram-sha-256", f"--pwfile={secret}", "-U", self.admin]
+        options += ["-E", "UTF8", "--locale=C.UTF-8", "-D", str(self.folder / "data")]
+        self._require([*self._as_account(), self._program("initdb"), *options])
+
+    def _command(self) -> list[str | Path]:
+        settings = {
+            "listen_addresses": "127.0.0.1",
+            "port": str(self.port),
+            "unix_socket_directories": str(self.folder),
+            "max_connections": "200",
+        }
+        if not self.durable:
+            # What is committed still outlives a kill of the server, though not of the computer.
+            settings |= {"fsync": "off", "full_page_writes": "off"}
+        given = [word for name, value in settings.items() for word in ("-c", f"{name}={value}")]
+        return [self._program("postgres"), "-D", self.folder / "data", *given]
+
+    def _answers(self) -> bool:
+        ask = [self._program("pg_isready"), "-q", "-h", "127.0.0.1", "-p", str(self.port)]
+        return self._run(ask).returncode == 0
+
+    def _make_owner(self) -> None:
+        self.sql(f"create role {OWNER} login password '{self.owner_password}'")
+
+    def _create_database(self, name: str) -> None:
+        self.sql(f'create database "{name}" owner {OWNER}')
+
+    def _program(self, name: str) -> str:
+        newest_first = sorted(Path("/usr/lib/postgresql").glob("*/bin"), reverse=True)
+        return find_program(name, *map(str, newest_first))

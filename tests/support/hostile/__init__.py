@@ -1,0 +1,1 @@
+"""What strangers and broken robots send to a gateway."""

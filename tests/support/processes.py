@@ -1,0 +1,140 @@
+"""Processes that end when the demonstration ends, however it ends."""
+
+from __future__ import annotations
+
+import os
+import re
+import shutil
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from types import FrameType
+
+from tests.support.errors import StageError
+
+PATIENCE_S = 5.0
+"""How long a process may take to end after SIGTERM before it is killed."""
+
+
+def dying_with_this(command: Sequence[str | Path]) -> list[str]:
+    """Return a command that is killed when this program ends, even when that is killed itself.
+
+    The system goes by the thread that starts the command.
+
+    :raises StageError: when the system has no setpriv.
+    """
+    # Not by PATH: whoever starts a stage may narrow that to what its programs shall find.
+    setpriv = shutil.which("setpriv", path=os.defpath)
+    if setpriv is None:
+        raise StageError(f"setpriv is not in {os.defpath}: install util-linux")
+    return [setpriv, "--pdeathsig", "KILL", *map(str, command)]
+
+
+class Processes:
+    """A context that starts processes, keeps their output in files, and ends each by its id at the end."""
+
+    def __init__(self, logs: Path):
+        self._logs = logs
+        self._running: dict[str, subprocess.Popen[bytes]] = {}
+
+    def __enter__(self) -> Processes:
+        self._logs.mkdir(parents=True, exist_ok=True)
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        for name in reversed(list(self._running)):
+            self.end(name)
+
+    def start(
+        self, name: str, command: Sequence[str | Path], *, env: Mapping[str, str] | None = None
+    ) -> subprocess.Popen[bytes]:
+        """Start ``command`` with ``env`` added to the environment; its output goes to ``NAME.log``."""
+        with self.log(name).open("wb") as log:
+            process = subprocess.Popen(
+                dying_with_this(command),
+                stdin=subprocess.DEVNULL,
+                stdout=log,
+                stderr=subprocess.STDOUT,
+                env={**os.environ, "PYTHONUNBUFFERED": "1", **(env or {})},
+            )
+        self._running[name] = process
+        return process
+
+    def log(self, name: str) -> Path:
+        """Return the file that holds what process ``name`` printed."""
+        return self._logs / f"{name}.log"
+
+    def wait_for_line(self, name: str, pattern: str, seconds: float) -> re.Match[str]:
+        """Return the match of ``pattern`` in the output of ``name``.
+
+        :raises StageError: when the process ends, or ``seconds`` pass, before it printed that.
+        """
+        until = time.monotonic() + seconds
+        while True:
+            ended = self._running[name].poll()
+            text = self.log(name).read_text(encoding="utf-8", errors="replace")
+            if found := re.search(pattern, text):
+                return found
+            if ended is not None:
+                raise StageError(f"{name} ended with status {ended} before it was ready{_said(text)}")
+            if time.monotonic() > until:
+                raise StageError(f"{name} was not ready after {seconds:.0f} s{_said(text)}")
+            time.sleep(0.05)
+
+    def wait(self, name: str, seconds: float | None = None) -> int:
+        """Return the exit status of ``name``.
+
+        :raises StageError: when it is still running after ``seconds``.
+        """
+        try:
+            return self._running[name].wait(seconds)
+        except subprocess.TimeoutExpired:
+            text = self.log(name).read_text(encoding="utf-8", errors="replace")
+            raise StageError(f"{name} was still running after {seconds:.0f} s{_said(text)}") from None
+
+    def require_running(self, *, but: Collection[str] = ()) -> None:
+        """Raise StageError when a process has ended that is none of ``but``."""
+        for name, process in self._running.items():
+            if name not in but and process.poll() is not None:
+                text = self.log(name).read_text(encoding="utf-8", errors="replace")
+                raise StageError(f"{name} ended with status {process.returncode}{_said(text)}")
+
+    @contextmanager
+    def halted(self, name: str) -> Iterator[None]:
+        """Let process ``name`` stand still inside the block, as one that has no time."""
+        self._running[name].send_signal(signal.SIGSTOP)
+        try:
+            yield
+        finally:
+            self._running[name].send_signal(signal.SIGCONT)
+
+    def end(self, name: str) -> None:
+        """End process ``name`` if it still runs, gently first."""
+        process = self._running.pop(name)
+        if process.poll() is not None:
+            return
+        process.terminate()
+        try:
+            process.wait(PATIENCE_S)
+        except subprocess.TimeoutExpired:
+            process.kill()
+            process.wait()
+
+
+def _said(text: str) -> str:
+    last = [line for line in text.splitlines() if line.strip()][-5:]
+    return "; it said:\n  " + "\n  ".join(last) if last else "; it said nothing"
+
+
+def leave_on_signals() -> None:
+    """Make SIGTERM and a closed terminal end this program the way an exception does, so that contexts end."""
+    for number in (signal.SIGTERM, signal.SIGHUP):
+        signal.signal(number, _leave)
+
+
+def _leave(number: int, _: FrameType | None) -> None:
+    sys.exit(128 + number)

@@ -1,0 +1,110 @@
+"""The cars and the robots: two links as an integrator starts them, and the ROS 2 nodes at the end of one."""
+
+from __future__ import annotations
+
+import json
+import os
+import sys
+from pathlib import Path
+
+from robot_bridge.core.sites.settings import SiteSettings
+from tests.support.errors import StageError
+from tests.support.patience import START
+from tests.support.processes import Processes
+from tests.support.robots.ros_peer import DISTRIBUTION, ros_python
+from tools.plugin_files import ROOT
+from tools.zalazone.places import Place
+
+CARS = """\
+[gateway]
+url = "{address}/link"
+
+[replay]
+file = "{recording}"
+robots = {{ {names} }}
+loop = true
+columns = {{ time = "t_s", robot = "vehicle", x = "x_utm33", y = "y_utm33", v = "speed_mps" }}
+
+[frame]
+crs = "EPSG:32633"
+"""
+ROBOTS = """\
+[gateway]
+url = "{address}/link"
+
+[ros2]
+domain = {domain}
+range = "localhost"
+distribution = "{distribution}"
+
+[ros2.topics]
+stop = "/{{robot}}/stop"
+place_cone = "/{{robot}}/place_cone"
+
+[frame]
+crs = "{crs}"
+origin = [{east}, {north}]
+"""
+NODE = ROOT / "tests" / "support" / "robots" / "ros_robot.py"
+WITHOUT_PEER = (
+    "the ROS 2 robots of this demonstration are real rclpy nodes, and they cannot be had here: {why}\n"
+    "They are made once, in ~/.cache/fleet-supervisor, from packages of PyPI. That needs the network, "
+    "cmake and g++ (apt-get install cmake g++), and about two minutes. Nothing takes their place."
+)
+
+
+class Links:
+    """Starts what speaks for cars and robots; everything ends with ``processes``."""
+
+    def __init__(self, processes: Processes, folder: Path, address: str, site: SiteSettings):
+        self._processes = processes
+        self._folder = folder
+        self._address = address
+        self._site = site
+        # Not those of the tests, which take 1 to 50; ROS allows up to 101.
+        self._domain = 51 + os.getpid() % 50
+        folder.mkdir(parents=True, exist_ok=True)
+
+    def start_replay(self, recording: Path, cars: dict[str, str]) -> None:
+        """Play ``recording``; ``cars`` are the robots' names by vehicle, without ``replay-``."""
+        names = ", ".join(f"{vehicle} = {json.dumps(name)}" for vehicle, name in cars.items())
+        text = CARS.format(address=self._address, recording=recording, names=names)
+        self._start("replay", "cars", text)
+
+    def start_ros(self) -> None:
+        """Start the adapter on the robots' DDS network. Their map begins at the site's origin."""
+        east, north = self._site.origin
+        places = {"crs": self._site.crs, "east": east, "north": north}
+        text = ROBOTS.format(address=self._address, domain=self._domain, distribution=DISTRIBUTION, **places)
+        self._start("ros2", "nav2", text)
+
+    def start_robot(self, python: Path, name: str, place: Place, speed: float) -> None:
+        """Start a ROS 2 robot of that name, which stands at ``place``, and wait until it is up."""
+        options = [f"--x={place[0]}", f"--y={place[1]}", f"--speed={speed}"]
+        environment = {"ROS_DOMAIN_ID": str(self._domain), "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST"}
+        self._processes.start(name, [python, NODE, name, *options], env=environment)
+        self._processes.wait_for_line(name, '"up"', START)
+
+    def said(self, name: str, event: str) -> list[dict]:
+        """Return what the robot itself has said of an event."""
+        text = self._processes.log(name).read_text(encoding="utf-8", errors="replace")
+        lines = [line for line in text.splitlines() if line.startswith("{") and line.endswith("}")]
+        return [entry for entry in map(json.loads, lines) if entry["event"] == event]
+
+    def _start(self, kind: str, name: str, settings: str) -> None:
+        file = self._folder / f"{name}.toml"
+        file.write_text(settings, encoding="utf-8")
+        state = {"ROBOT_BRIDGE_STATE": str(self._folder)}
+        command = [sys.executable, "-m", "robot_bridge", "link", kind, "--config", file]
+        self._processes.start(f"link-{name}", command, env=state)
+
+
+def peer() -> Path:
+    """Return the Python of the ROS 2 nodes.
+
+    :raises StageError: when there is none and none can be made, with what to install.
+    """
+    try:
+        return ros_python()
+    except StageError as error:
+        raise StageError(WITHOUT_PEER.format(why=error)) from None
