@@ -83,13 +83,13 @@ import json
 import pyogrio
 from benchmarks.desk_canvas import register
 register()
-from fleet_supervisor.plugin.gateway_client.connection import Connection
+from fleet_supervisor.plugin.gateway_client.connection import ConnectionThread
 from fleet_supervisor.plugin.ui.scheduling import PULL_EVERY_MS
-from fleet_supervisor.plugin.map.layers import AT_ONCE
+from fleet_supervisor.plugin.map.reported_layers import AT_ONCE
 from fleet_supervisor.plugin.ui.scheduling import SLICE_SECONDS
 lanes = pyogrio.read_info({lanes!r}, layer="lanes")["features"]
 slice_ms = 1000 * SLICE_SECONDS
-told = dict(asked=Connection().rate, pull=PULL_EVERY_MS, at_once=AT_ONCE, slice=slice_ms, lanes=lanes)
+told = dict(asked=ConnectionThread().rate, pull=PULL_EVERY_MS, at_once=AT_ONCE, slice=slice_ms, lanes=lanes)
 print(json.dumps(told))
 """
 

@@ -14,6 +14,7 @@ import sys
 import time
 from collections.abc import Callable
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -106,7 +107,7 @@ def overlay(data: str, number: int) -> None:
     """
     stage = Stage(data, number)
     now = [1000.0]
-    desk, view, _ = open_desk(stage, lambda: now[0])
+    desk, view, _ = open_desk(stage, SimpleNamespace(steady=lambda: now[0]))
     wire = importlib.import_module("fleet_supervisor.plugin.gateway_client.robot_table")
     times = []
     for _ in range(WARM_UP + UPDATES):
@@ -115,14 +116,14 @@ def overlay(data: str, number: int) -> None:
         told = wire.table_from_rows(stage.fleet.told(), now[0])
         marks = [time.thread_time()]
         for step in (
-            lambda told=told: desk.picture.merge(told),
+            lambda told=told: desk.state.robots.merge(told),
             view.show_now,
             stage.canvas.viewport().repaint,
-            lambda: view.layer.go_on(desk.picture, now[0]),
+            lambda: view.layer.go_on(desk.state.robots, now[0]),
         ):
             step()
             marks.append(time.thread_time())
-        view.layer.begin(len(desk.picture))
+        view.layer.begin(len(desk.state.robots))
         times.append(np.diff(marks) * 1e3)
     parts = np.array(times)[WARM_UP:]
     total = parts.sum(axis=1)
@@ -207,14 +208,14 @@ def watch_live(stage: Stage, opened: tuple[Any, Any, Any], number: int, rate: fl
     feed = subprocess.Popen(dying_with_this(command), stdout=subprocess.PIPE, text=True, cwd=ROOT)
     try:
         desk.open_link(f"ws://127.0.0.1:{feed.stdout.readline().strip()}/desk", "bench")
-        stage.wait(lambda: len(desk.picture) == number)
+        stage.wait(lambda: len(desk.state.robots) == number)
         stage.run(3.0)
         delays, seen = [], [view.overlay.frames, view.shown]
 
         def look() -> None:
             if view.overlay.frames != seen[0] and view.shown != seen[1]:
                 seen[:] = view.overlay.frames, view.shown
-                newest = desk.picture.view("robot-0", 0.0)
+                newest = desk.state.robots.view("robot-0", 0.0)
                 delays.append((time.monotonic() - newest.told["device_time"]) * 1e3)
 
         rounds: list[tuple[float, float, float]] = []
@@ -234,17 +235,17 @@ def hour(data: str, number: int) -> None:
     """Print the memory in MB before and after an hour of updates, one a second by the desk's clock."""
     stage = Stage(data, number)
     now = [1000.0]
-    desk, view, _ = open_desk(stage, lambda: now[0])
+    desk, view, _ = open_desk(stage, SimpleNamespace(steady=lambda: now[0]))
     wire = importlib.import_module("fleet_supervisor.plugin.gateway_client.robot_table")
     memory = []
     for second in range(HOUR):
         now[0] += 1.0
         stage.fleet.drive(1.0)
-        desk.picture.merge(wire.table_from_rows(stage.fleet.told(), now[0]))
+        desk.state.robots.merge(wire.table_from_rows(stage.fleet.told(), now[0]))
         view.show_now()
         stage.canvas.viewport().repaint()
-        view.layer.begin(len(desk.picture))
-        view.layer.go_on(desk.picture, now[0])
+        view.layer.begin(len(desk.state.robots))
+        view.layer.go_on(desk.state.robots, now[0])
         if second % 20 == 0:
             stage.application.processEvents()
         if second in (SETTLED, HOUR - 1):
@@ -252,7 +253,7 @@ def hour(data: str, number: int) -> None:
     stage.end(memory)
 
 
-def open_desk(stage: Stage, clock: Callable[[], float] = time.monotonic) -> tuple[Any, Any, Any]:
+def open_desk(stage: Stage, clock: Any = None) -> tuple[Any, Any, Any]:
     """Return a desk that knows its site, its live view, and the site."""
     register()
     from fleet_supervisor.plugin.control.fleet_controller import FleetController
@@ -261,7 +262,7 @@ def open_desk(stage: Stage, clock: Callable[[], float] = time.monotonic) -> tupl
     site = site_of(stage)
     desk = FleetController(stage.canvas, QgsProject.instance(), clock=clock)
     view = LiveView(desk)
-    desk._take_site(site, "")
+    desk.state.merge_site(site, "")
     stage.canvas.setLayers([view.layer.layer, *stage.layers])
     stage.run(0.2)
     stage.wait(lambda: not stage.canvas.isDrawing())

@@ -8,7 +8,7 @@ import msgspec
 import numpy as np
 
 from robot_bridge.core.messages import PositionColumns
-from robot_bridge.gateway.fleet.operator_updates import METHOD, packed_frame
+from robot_bridge.core.position_frame import METHOD, packed_frame
 
 SPEED = 1.5
 SILENT = 0.03

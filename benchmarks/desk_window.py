@@ -65,7 +65,7 @@ def open_window(stage: Stage) -> tuple[Any, Any, Any]:
     # Python would take both for garbage: nothing else holds them.
     stage.window = bare, window
     site = site_of(stage)
-    window.desk._take_site(site, "")
+    window.desk.state.merge_site(site, "")
     stage.canvas.setLayers([window.view.layer.layer, *stage.layers])
     stage.run(0.2)
     stage.wait(lambda: not stage.canvas.isDrawing())

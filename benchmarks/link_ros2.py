@@ -16,9 +16,8 @@ from benchmarks.clock import table
 from benchmarks.linked import HERE, PROBING, START, Linked, NotMeasuredError, linked
 from benchmarks.swarm import cpu_seconds
 from benchmarks.trial import size
-from tests.support.databases.database_server import free_port
 from tests.support.errors import StageError
-from tests.support.processes import Processes, dying_with_this
+from tests.support.processes import Processes, dying_with_this, free_port
 from tests.support.robots.ros_peer import DISTRIBUTION, ros_python
 from tests.support.robots.rosbridge_peer import rosbridge_command
 

@@ -12,9 +12,9 @@ from pathlib import Path
 from benchmarks.clock import table
 from benchmarks.linked import HERE, PROBING, START, Linked, NotMeasuredError, linked
 from benchmarks.trial import size
-from tests.support.databases.database_server import find_program, free_port
+from tests.support.databases.database_server import find_program
 from tests.support.errors import StageError
-from tests.support.processes import Processes
+from tests.support.processes import Processes, free_port
 
 VEHICLES, RATE = size(200, 10), 1.0
 SECONDS = size(90.0, 6.0)

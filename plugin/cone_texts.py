@@ -8,8 +8,6 @@ from ..robot_bridge.core.assignment.solver import AUTOMATIC, PREVIEW, PREVIEW_KE
 from ..robot_bridge.core.layouts.layout import Dimension, DimensionFault, Layout
 from .ui.language import tr
 
-# --- Cone layouts in the operator's language; files and ``DIMENSIONS=`` name them as the bridge does ---
-
 LAYOUT_TITLES = {
     "slalom": tr("Slalom"),
     "iso3888_1": tr("Double lane change"),
@@ -133,8 +131,6 @@ def fault_in_words(dimension: Dimension, fault: DimensionFault) -> str:
         return tr("give {least:g} or more", least=dimension.least)
     return tr("give a whole number") if fault is DimensionFault.NOT_WHOLE else tr("give a number")
 
-
-# --- What plans of cones can be, in the operator's language; files and parameters name it as the bridge does
 
 TASKS = {PLACE: tr("place them"), COLLECT: tr("collect them")}
 FINISHES = {STAY: tr("stay where they are"), TO_STORE: tr("drive to a store"), TO_START: tr("drive back")}

@@ -13,8 +13,6 @@ from qgis.PyQt.QtWidgets import QAction, QApplication, QDialog, QTextBrowser, QV
 
 from .ui.language import tr
 
-# --- Which page and which heading of the guides a part of the window is explained under ---
-
 
 @dataclass(frozen=True)
 class HelpTopic:
@@ -60,8 +58,6 @@ def topic_of(widget: QWidget | None) -> HelpTopic:
         widget = widget.parentWidget()
     return START
 
-
-# --- Shows the guides that come with the plugin; it needs no network ---
 
 DOCS = Path(__file__).parents[1] / "docs"
 WIDTH, HEIGHT = 760, 640
@@ -147,8 +143,6 @@ def show_help(topic: HelpTopic, parent: QWidget) -> HelpWindow:
     window.show_topic(topic)
     return window
 
-
-# --- F1 in the fleet panel, and the entry *Help* of the menus ---
 
 ICON = Path(__file__).parents[1] / "resources" / "icons" / "fleet.svg"
 

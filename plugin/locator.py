@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Protocol
 
 from qgis.core import Qgis, QgsFeedback, QgsLocatorContext, QgsLocatorFilter, QgsLocatorResult, QgsSettings
 from qgis.gui import QgisInterface, QgsLocatorWidget
@@ -17,8 +18,6 @@ from .gateway_client.state_texts import ROBOT_STATES
 from .ui.glyphs import state_icon
 from .ui.language import tr
 
-# --- Robots in QGIS's locator: ``rb name`` goes there and selects ---
-
 NAME = "fleet_robots"
 MOST = 50
 """Results: nobody reads more, and the list is made anew with each letter."""
@@ -30,11 +29,29 @@ class LastSearch:
 
     text: str = ""
 
+    def note(self, text: str) -> None:
+        """Keep what was searched for."""
+        self.text = text
+
+
+class RobotViewer(Protocol):
+    """Who shows a robot: the window."""
+
+    def go_to(self, robot: str) -> None:
+        """Select a robot alone and show where it is."""
+
+
+class LocatorField(Protocol):
+    """Who knows the locator's field."""
+
+    def typed(self) -> str | None:
+        """Return what stands in the field, None where there is none."""
+
 
 class RobotFilter(QgsLocatorFilter):
-    """Finds robots by any part of their name; ``go`` is called with the one that was chosen.
+    """Finds robots by any part of their name, and has ``viewer`` show the one that was chosen.
 
-    ``typed`` returns what stands in the locator's field, None where there is none.
+    ``field`` knows what stands in the locator's field.
 
     QGIS looks with a clone of the filter, in the window's thread: it is fast. In a thread of its own it could
     wait for Python for ever, where the plugin is unloaded meanwhile and QGIS waits for that thread.
@@ -44,17 +61,17 @@ class RobotFilter(QgsLocatorFilter):
         self,
         fleet: SnapshotHolder,
         icons: Mapping[str, QIcon],
-        go: Callable[[str], None],
-        typed: Callable[[], str | None],
+        viewer: RobotViewer,
+        field: LocatorField,
         last: LastSearch | None = None,
     ):
         super().__init__()
-        self._fleet, self._icons, self._go, self._typed = fleet, icons, go, typed
+        self._fleet, self._icons, self._viewer, self._field = fleet, icons, viewer, field
         self._robots: RobotSnapshot | None = None
         self._last = last or LastSearch()
 
     def clone(self):
-        return RobotFilter(self._fleet, self._icons, self._go, self._typed, self._last)
+        return RobotFilter(self._fleet, self._icons, self._viewer, self._field, self._last)
 
     def name(self):
         return NAME
@@ -77,7 +94,7 @@ class RobotFilter(QgsLocatorFilter):
         return []
 
     def fetchResults(self, string: str, context: QgsLocatorContext, feedback: QgsFeedback):
-        self._last.text = string.strip()
+        self._last.note(string.strip())
         robots = self._robots
         if robots is None or (not string.strip() and not context.usingPrefix):
             return
@@ -91,18 +108,18 @@ class RobotFilter(QgsLocatorFilter):
         # typed before, which may be another robot: what is typed counts.
         typed = self._typed_name()
         if typed is None:
-            self._go(result.displayString)
+            self._viewer.go_to(result.displayString)
             return
         robots = self._fleet.robots
         names = [name for _, name in rank_robots(typed, list(robots.rows))] if robots is not None else []
         if typed == self._last.text and result.displayString in names:
-            self._go(result.displayString)
+            self._viewer.go_to(result.displayString)
         elif names:
-            self._go(names[0])
+            self._viewer.go_to(names[0])
 
     def _typed_name(self) -> str | None:
         """Return what stands in the locator's field behind the prefix."""
-        text = self._typed()
+        text = self._field.typed()
         if text is None:
             return None
         prefix, space, name = text.partition(" ")
@@ -138,8 +155,6 @@ def rank_robots(wanted: str, names: list[str]) -> list[tuple[float, str]]:
     return sorted(found, key=lambda one: (-one[0], len(one[1]), one[1]))
 
 
-# --- Puts the filter for robots into QGIS's locator and takes it out again ---
-
 PREFIX = "rb"
 PREFIX_KEY = f"locator-filters/items/{NAME}/prefix"
 """Where QGIS keeps the prefix that the user has chosen."""
@@ -150,8 +165,8 @@ if Qgis.versionInt() < 33000:
 class RobotLocator:
     """The filter as long as the plugin is loaded. :meth:`remove` undoes the constructor."""
 
-    def __init__(self, iface: QgisInterface, fleet: SnapshotHolder, go: Callable[[str], None]):
-        self._iface, self._filter = iface, RobotFilter(fleet, _icons(), go, self._typed)
+    def __init__(self, iface: QgisInterface, fleet: SnapshotHolder, viewer: RobotViewer):
+        self._iface, self._filter = iface, RobotFilter(fleet, _icons(), viewer, self)
         settings = QgsSettings()
         # As if the user had chosen it: of plugins themselves QGIS takes none of less than three letters.
         if not settings.value(PREFIX_KEY, ""):
@@ -165,7 +180,7 @@ class RobotLocator:
         if settings.value(PREFIX_KEY, "") == PREFIX:
             settings.remove(PREFIX_KEY)
 
-    def _typed(self) -> str | None:
+    def typed(self) -> str | None:
         """Return what stands in the locator's field of the window, None where the window has none."""
         locator = self._iface.mainWindow().findChild(QgsLocatorWidget)
         field = None if locator is None else locator.findChild(QLineEdit)

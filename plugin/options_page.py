@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 from qgis.gui import QgisInterface, QgsOptionsPageWidget, QgsOptionsWidgetFactory
+from qgis.PyQt.QtCore import pyqtSignal
 from qgis.PyQt.QtGui import QIcon
 from qgis.PyQt.QtWidgets import QHBoxLayout, QPushButton, QTabWidget, QVBoxLayout, QWidget
 
 from .help import OPTIONS, show_help
-from .panel.alarms.rules import Thresholds, read_thresholds, write_thresholds
+from .panel.alarms.rules import Thresholds, read_thresholds
 from .panel.alarms.thresholds_form import ThresholdsForm
+from .panel.alarms.watch import AlarmWatch
 from .panel.window import FleetWindow
 from .settings.connections_widget import ConnectionsWidget
 from .settings.preferences import Preferences, PreferencesForm, read_preferences, write_preferences
@@ -18,19 +18,19 @@ from .ui.actions import ICONS
 from .ui.language import tr
 from .ui.scheduling import PULL_EVERY_MS
 
-# --- The page: connections, what the map shows, alarms ---
-
 
 class OptionsPage(QgsOptionsPageWidget):
     """Shows what is kept; OK and Apply of the options keep what stands in the fields.
 
-    Connections are kept at once, as elsewhere in QGIS. ``changed`` is called with what was kept.
+    Connections are kept at once, as elsewhere in QGIS.
     """
 
-    def __init__(self, changed: Callable[[Preferences, Thresholds], None], parent: QWidget | None = None):
+    kept = pyqtSignal(object, object)
+    """What was kept: the Preferences and the Thresholds."""
+
+    def __init__(self, parent: QWidget | None = None):
         super().__init__(parent)
         self.setObjectName("fleet_options")
-        self._changed = changed
         self.connections = ConnectionsWidget()
         self.preferences = PreferencesForm()
         self.alarms = ThresholdsForm()
@@ -58,7 +58,7 @@ class OptionsPage(QgsOptionsPageWidget):
         """Keep what stands in the fields; QGIS calls this on OK and on Apply."""
         preferences, limits = self.preferences.preferences(), self.alarms.limits()
         write_preferences(preferences)
-        self._changed(preferences, limits)
+        self.kept.emit(preferences, limits)
 
     def isValid(self) -> bool:
         return True
@@ -73,44 +73,41 @@ def _page(widget: QWidget, *, stretch: bool = True) -> QWidget:
     return page
 
 
-# --- Puts the page into QGIS's options, and what is set there to work ---
-
 TITLE = "Fleet Supervisor"
 
 
 class OptionsFactory(QgsOptionsWidgetFactory):
-    """Makes the page when the options are opened. :meth:`remove` undoes the constructor.
-
-    ``judge`` is called with limits of alarms that were set, where somebody watches by them.
-    """
+    """Makes the page when the options are opened. :meth:`remove` undoes the constructor."""
 
     def __init__(
         self,
         iface: QgisInterface,
         window: FleetWindow,
-        judge: Callable[[Thresholds], None] = write_thresholds,
+        alarms: AlarmWatch,
     ):
         super().__init__()
         self.setTitle(TITLE)
         self.setIcon(QIcon(str(ICONS / "fleet.svg")))
-        self._iface, self._window, self._judge = iface, window, judge
+        self._iface, self._window, self._alarms = iface, window, alarms
         iface.registerOptionsWidgetFactory(self)
         self._put_to_work(read_preferences())
 
     def createWidget(self, parent: QWidget | None = None) -> OptionsPage:
-        return OptionsPage(self._changed, parent)
+        page = OptionsPage(parent)
+        page.kept.connect(self._kept)
+        return page
 
     def remove(self) -> None:
         """Take the page out of the options."""
         self._iface.unregisterOptionsWidgetFactory(self)
 
-    def _changed(self, preferences: Preferences, limits: Thresholds) -> None:
-        self._judge(limits)
+    def _kept(self, preferences: Preferences, limits: Thresholds) -> None:
+        self._alarms.set_limits(limits)
         self._put_to_work(preferences)
 
     def _put_to_work(self, preferences: Preferences) -> None:
         view = self._window.view
-        self._window.desk.connection.rate = preferences.positions_rate
+        self._window.desk.connection.set_rate(preferences.positions_rate)
         view.layer_every = max(1, round(preferences.layer_seconds * 1000 / PULL_EVERY_MS))
         view.overlay.magnify(preferences.robot_size)
         view.draw_by_layer(preferences.drawn_by_layer)

@@ -10,10 +10,25 @@ from .expressions.functions import ExpressionFunctions
 from .expressions.robot_snapshot import SnapshotHolder
 from .layers.road_surfaces import SurfaceStore
 from .processing.provider import FleetProvider
+from .ui.errors import Part, remove_all
 from .ui.language import Language
 
 if TYPE_CHECKING:  # qgis_process has no window, and needs nothing of what one is made of
     from qgis.gui import QgisInterface
+
+
+class RegisteredProvider:
+    """The provider of algorithms, as long as the plugin is loaded."""
+
+    def __init__(self, provider: FleetProvider):
+        # The registry deletes a provider that it does not take, as when two copies of the plugin are loaded.
+        is_taken = QgsApplication.processingRegistry().addProvider(provider)
+        self._provider = provider if is_taken else None
+
+    def remove(self) -> None:
+        """Take the provider out, which QGIS deletes."""
+        if self._provider is not None:
+            QgsApplication.processingRegistry().removeProvider(self._provider)
 
 
 class FleetPlugin:
@@ -24,13 +39,10 @@ class FleetPlugin:
 
     def __init__(self, iface: QgisInterface | None, language: Language | None = None):
         self._iface = iface
-        self._language = language
-        self._provider = None
-        self._surfaces = None
-        self._functions = None
         self._fleet = SnapshotHolder()
         self._window = None
-        self._parts = []
+        self._parts: list[Part] = [] if language is None else [language]
+        """What was built, in its order; :meth:`unload` removes it in the reverse one."""
 
     @property
     def window(self):
@@ -38,24 +50,25 @@ class FleetPlugin:
         return self._window
 
     def initProcessing(self):
-        provider = FleetProvider()
-        # The registry deletes a provider that it does not take, as when two copies of the plugin are loaded.
-        if QgsApplication.processingRegistry().addProvider(provider):
-            self._provider = provider
-        self._surfaces = SurfaceStore(QgsProject.instance())
-        self._functions = ExpressionFunctions(self._surfaces, self._fleet)
+        self._add(RegisteredProvider(FleetProvider()))
+        self._surfaces = self._add(SurfaceStore(QgsProject.instance()))
+        self._add(ExpressionFunctions(self._surfaces, self._fleet))
 
     def initGui(self):
         try:
             self.initProcessing()
             if self._iface is not None:
-                self._open_desk()
+                self._open_desk(self._iface, QgsProject.instance())
         except Exception:
             # QGIS forgets a plugin that does not start; what it had put into QGIS by then would stay.
             self.unload()
             raise
 
-    def _open_desk(self):
+    def unload(self):
+        self._window = self._surfaces = None
+        remove_all(self._parts)
+
+    def _open_desk(self, iface: QgisInterface, project: QgsProject):
         # Only here, for qgis_process.
         from .admin.accounts_dialog import AccountsAction
         from .admin.recordings import RecordingsAction
@@ -77,52 +90,39 @@ class FleetPlugin:
         from .tour.tour_panel import TourAction
         from .ui.actions import MenuLetters, PluginMenu, Shortcuts
 
-        iface, project, add = self._iface, QgsProject.instance(), self._add
+        main = iface.mainWindow()
         # The first ones, so that they go last: everything else has left menu and project by then.
-        add(PluginMenu(iface.mainWindow(), MENU))
-        add(LiveLayers(project))
-        window = self._window = add(FleetWindow(iface))
-        alarms = add(WindowAlarms(iface, window, self._surfaces))
-        connections = window.dock.connection_panel.menu
-        add(ExpressionUpdater(window.desk, self._fleet))
-        add(OptionsFactory(iface, window, alarms.watch.set_limits))
-        add(RobotLocator(iface, self._fleet, window.go_to))
-        add(SiteDropHandler(iface, project, window.notices))
-        add(HelpActions(iface, MENU, window.dock))
-        add(RolesAction(iface, MENU))
-        add(LayoutAction(iface, MENU, window.notices))
-        add(SurfaceAction(iface, MENU, self._surfaces, window.notices))
-        add(PlansAction(iface, MENU, window.desk))
-        add(ObservationsAction(iface, MENU, window.desk))
-        add(ReplayAction(iface, MENU, window.desk))
-        add(RecordingsAction(iface, MENU, connections, window.desk))
-        add(AccountsAction(iface, MENU, connections, window.desk))
-        add(SiteChoiceAction(iface, MENU, connections, window.desk))
-        add(RobotRemoval(iface, MENU, connections, window.desk, window.dock.table))
-        add(TourAction(iface, MENU, window))
+        self._add(PluginMenu(main, MENU))
+        self._add(LiveLayers(project))
+        window = self._window = self._add(FleetWindow(iface))
+        alarms = self._add(WindowAlarms(iface, window, self._surfaces))
+        desk, notices, connections = window.desk, window.notices, window.dock.connection_panel.menu
+        for part, *needs in (
+            (ExpressionUpdater, desk.state, desk.beat, self._fleet),
+            (OptionsFactory, iface, window, alarms.watch),
+            (RobotLocator, iface, self._fleet, window),
+            (SiteDropHandler, iface, project, notices),
+            (HelpActions, iface, MENU, window.dock),
+            (RolesAction, iface, MENU),
+            (LayoutAction, iface, MENU, notices),
+            (SurfaceAction, iface, MENU, self._surfaces, notices),
+            (PlansAction, iface, MENU, desk),
+            (ObservationsAction, iface, MENU, desk),
+            (ReplayAction, iface, MENU, desk),
+            (RecordingsAction, iface, MENU, connections, desk),
+            (AccountsAction, iface, MENU, connections, desk),
+            (SiteChoiceAction, iface, MENU, connections, desk),
+            (RobotRemoval, iface, MENU, connections, desk, window.dock.table),
+            (TourAction, iface, MENU, window),
+        ):
+            self._add(part(*needs))
         others = [part.action for part in self._parts if hasattr(part, "action")]
         # The last ones, so that they go first: while every action is still there.
-        add(Shortcuts(iface.mainWindow(), [*window.actions.all(), *others]))
+        self._add(Shortcuts(main, [*window.actions.all(), *others]))
         for menu in ([*window.menu_entries(), *others], window.actions.for_drafts):
             # Letters may run out in a long menu: what has no key gets one first.
-            add(MenuLetters(sorted(menu, key=lambda entry: not entry.shortcut().isEmpty())))
+            self._add(MenuLetters(sorted(menu, key=lambda entry: not entry.shortcut().isEmpty())))
 
     def _add(self, part: Any):
         self._parts.append(part)
         return part
-
-    def unload(self):
-        while self._parts:
-            self._parts.pop().remove()
-        self._window = None
-        if self._functions is not None:
-            self._functions.remove()
-            self._functions = None
-            self._surfaces.remove()
-            self._surfaces = None
-        if self._provider is not None:
-            QgsApplication.processingRegistry().removeProvider(self._provider)
-            self._provider = None
-        if self._language is not None:
-            self._language.remove()
-            self._language = None

@@ -40,15 +40,13 @@ from ...robot_bridge.core.messages import (
     operators_report,
 )
 from ..control.fleet_controller import FleetController
-from ..gateway_client.link import ROLES
+from ..gateway_client.connection_status import ROLES
 from ..help import ACCOUNTS
 from ..panel.connection_panel import ConnectionMenu
 from ..ui.dialogs import QuestionDialog, WrappingLabel, confirm
 from ..ui.language import tr, tr_count
 from ..ui.tables import TextModel
 from .supervisor_dialog import DialogAction, SupervisorDialog, fit_columns
-
-# --- Operators' accounts as rows of a table ---
 
 COLUMNS = (tr("Operator"), tr("Role"), tr("Since"), tr("Last connected"), tr("Token"))
 NOW = tr("connected now")
@@ -112,8 +110,6 @@ def day_and_time(at: float | None) -> str:
     """Return a time since 1970 in the computer's time zone, to the minute; a dash for none."""
     return "–" if at is None else datetime.fromtimestamp(at).strftime("%Y-%m-%d %H:%M")
 
-
-# --- What is asked before an account is made or changed. None of these does anything by itself ---
 
 DAY = 86_400.0
 VALIDITIES = (
@@ -254,8 +250,6 @@ def _add_validity(question: QuestionDialog) -> QComboBox:
     return question.add_choice(tr("&Token holds"), VALIDITIES, "fleet_account_validity")
 
 
-# --- Shows a token that was just made, this one time ---
-
 EDGES = 24
 """Pixels beside the token in its field."""
 
@@ -328,8 +322,6 @@ def _field(token: str) -> QLineEdit:
     return field
 
 
-# --- The operators' accounts of the gateway: who has one, made and changed by a supervisor ---
-
 LIST = tr("Accounts")
 WIDEST = (
     tr("{operator} (you)", operator="00000000000"),
@@ -382,7 +374,7 @@ class AccountsDialog(SupervisorDialog):
         self._show(operators_report(result))
 
     def _show(self, found: Operators) -> None:
-        self._show_rows(read_accounts(found.operators, self._sessions, self._desk.link.operator))
+        self._show_rows(read_accounts(found.operators, self._sessions, self._desk.state.link.operator))
         self._has_none = not found.operators
         if found.operators:
             self._say_once_known(tr_count(len(found.operators), "1 account", "%n accounts"))
@@ -456,9 +448,6 @@ class AccountsDialog(SupervisorDialog):
         dialog.show()
         dialog.raise_()
         self._changed(tr("The token of {operator} is made.", operator=result["operator"]))
-
-
-# --- The menu entry that opens the operators' accounts ---
 
 
 class AccountsAction(DialogAction):

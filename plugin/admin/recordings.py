@@ -23,7 +23,7 @@ from qgis.PyQt.QtWidgets import (
 
 from ...robot_bridge.core.messages import PlaybackReport, SetPlayback
 from ..control.fleet_controller import FleetController
-from ..gateway_client.link import ConnectionPhase
+from ..gateway_client.connection_status import ConnectionPhase
 from ..help import RECORDINGS, show_help
 from ..panel.connection_panel import ConnectionMenu
 from ..ui.dialogs import WrappingLabel
@@ -45,7 +45,7 @@ class RecordingsDialog(QDialog):
         self.setObjectName("fleet_recordings_dialog")
         self.setWindowTitle(tr("Recordings on the map"))
         self._desk = desk
-        self._asking = PendingQueries(desk, self)
+        self._asking = PendingQueries(desk.orders, self)
         self._link = QComboBox()
         self._link.setObjectName("fleet_recordings_link")
         self._place = QSlider(Qt.Orientation.Horizontal)
@@ -85,13 +85,13 @@ class RecordingsDialog(QDialog):
 
     def _look(self, *_: object) -> None:
         """Ask how the recording is played now, or say why there is nothing to ask."""
-        names = [one.link for one in self._desk.links.reported.links if one.kind == REPLAY and one.up]
+        names = [one.link for one in self._desk.state.links.links if one.kind == REPLAY and one.up]
         if names != [self._link.itemText(row) for row in range(self._link.count())]:
             chosen = self._link.currentText()
             self._link.clear()
             self._link.addItems(names)
             self._link.setCurrentIndex(max(names.index(chosen) if chosen in names else 0, 0))
-        connected = self._desk.link.phase is ConnectionPhase.CONNECTED
+        connected = self._desk.state.link.phase is ConnectionPhase.CONNECTED
         for field in (self._place, self._seconds, self._speed, self._paused, self._loop):
             field.setEnabled(connected and bool(names))
         if not connected:

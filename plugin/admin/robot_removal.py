@@ -89,7 +89,7 @@ class RobotRemoval:
     ):
         self._iface, self._menu, self._connections = iface, menu, connections
         self._desk, self._table = desk, table
-        self._asking = PendingQueries(desk, table)
+        self._asking = PendingQueries(desk.orders, table)
         self._asking.refused.connect(desk.failed)
         self._question: RemovalDialog | None = None
         self.action = QAction(
@@ -111,11 +111,11 @@ class RobotRemoval:
     def ask(self) -> None:
         """Ask which robots are removed, or say why none can be."""
         gone = self._gone()
-        why = why_not(self._desk.link) or ("" if gone else tr("No robot is lost or offline."))
+        why = why_not(self._desk.state.link) or ("" if gone else tr("No robot is lost or offline."))
         if why:
             self._desk.complained.emit(tr("No robot was removed: {why}", why=why))
             return
-        chosen = set(self._desk.selection)
+        chosen = set(self._desk.selection.robots)
         dialog = RemovalDialog([name for name in gone if name in chosen], gone, self._iface.mainWindow())
         dialog.confirmed.connect(self._remove)
         dialog.open()
@@ -129,7 +129,7 @@ class RobotRemoval:
         self.action.deleteLater()
 
     def _gone(self) -> list[str]:
-        views = self._desk.picture.views(self._desk.clock())
+        views = self._desk.state.robots.views(self._desk.clock.steady())
         return [view.name for view in views if view.state in GONE]
 
     def _remove(self, robots: list[str], reason: str) -> None:

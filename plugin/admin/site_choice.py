@@ -18,8 +18,6 @@ from ..ui.language import tr, tr_count
 from ..ui.tables import TextModel
 from .supervisor_dialog import DialogAction, SupervisorDialog, fit_columns
 
-# --- The sites that a gateway may serve, as rows of a table ---
-
 COLUMNS = (tr("Site"), tr("Folder"), tr("Version"), tr("State"))
 SERVED = tr("served now")
 READY = tr("can be chosen")
@@ -41,9 +39,6 @@ def site_cells(offer: SiteOffer) -> tuple[str, ...]:
 def state_in_words(offer: SiteOffer) -> str:
     """Return whether a site is served, or can be, or why not."""
     return SERVED if offer.served else offer.refusal or READY
-
-
-# --- Asks whether another site is really to be served ---
 
 
 def confirm_site_choice(offer: SiteOffer, parent: QWidget, then: Callable[[], object]) -> QMessageBox:
@@ -68,8 +63,6 @@ def confirm_site_choice(offer: SiteOffer, parent: QWidget, then: Callable[[], ob
     return box
 
 
-# --- The sites that lie beside the one that is served, of which a supervisor chooses ---
-
 LIST = tr("Sites")
 WIDEST = ("0" * 24, "sample_site_00", "0000", READY)
 
@@ -85,7 +78,7 @@ class SiteChoiceDialog(SupervisorDialog):
         # Why a site cannot be chosen takes several lines.
         self.view.setWordWrap(True)
         self.view.verticalHeader().setSectionResizeMode(QHeaderView.ResizeMode.ResizeToContents)
-        desk.site_changed.connect(self._site_changed)
+        desk.state.site_changed.connect(self._site_changed)
         self._lay_out()
 
     def _ask_rows(self) -> None:
@@ -116,11 +109,8 @@ class SiteChoiceDialog(SupervisorDialog):
 
     def _site_changed(self) -> None:
         # Also when another supervisor chose.
-        if self.isVisible() and self._desk.site is not None:
+        if self.isVisible() and self._desk.state.site is not None:
             self._ask_rows()
-
-
-# --- The menu entry that opens the choice of the site ---
 
 
 class SiteChoiceAction(DialogAction):

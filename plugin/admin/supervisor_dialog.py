@@ -22,8 +22,9 @@ from qgis.PyQt.QtWidgets import (
 
 from ...robot_bridge.core.messages import Role
 from ..control.fleet_controller import FleetController
-from ..gateway_client.buffers import RequestResult
-from ..gateway_client.link import ConnectionPhase, ConnectionStatus, role_in_words
+from ..control.request_tracker import RequestTracker
+from ..gateway_client.connection_status import ConnectionPhase, ConnectionStatus, role_in_words
+from ..gateway_client.requests import RequestResult
 from ..help import HelpTopic, show_help
 from ..panel.connection_panel import ConnectionMenu
 from ..ui.actions import ICONS
@@ -31,8 +32,6 @@ from ..ui.dialogs import WrappingLabel, push_button
 from ..ui.errors import FleetError
 from ..ui.language import tr
 from ..ui.tables import RowModel, fit_headers
-
-# --- What a window asks the gateway, and who gets the answer when it comes ---
 
 Take = Callable[[dict[str, Any]], None]
 
@@ -46,16 +45,16 @@ class PendingQueries(QObject):
     refused = pyqtSignal(str)
     """Something was not done, or its answer cannot be read: why, for the operator."""
 
-    def __init__(self, desk: FleetController, parent: QObject | None = None):
+    def __init__(self, requests: RequestTracker, parent: QObject | None = None):
         super().__init__(parent)
-        self._desk = desk
+        self._requests = requests
         self._takers: dict[str, tuple[str, Take]] = {}
-        desk.answered.connect(self._answered)
+        requests.answered.connect(self._answered)
 
     def ask(self, request: Any, words: str, take: Take) -> None:
         """Ask for ``request``, which is ``words`` to the operator; ``take`` gets the result."""
         try:
-            self._takers[self._desk.inquire(request)] = words, take
+            self._takers[self._requests.inquire(request)] = words, take
         except FleetError as error:
             self.refused.emit(f"{words}: {error}")
 
@@ -82,9 +81,6 @@ class PendingQueries(QObject):
                     kind=kind,
                 )
             )
-
-
-# --- A menu entry that opens a window, in the plugin's menu and in that of the connections ---
 
 
 class DialogAction:
@@ -125,8 +121,6 @@ class DialogAction:
         self.action.deleteLater()
 
 
-# --- A window over one table of what only supervisors may see and change ---
-
 ASKING = tr("Asking the gateway …")
 SIZE = (940, 420)
 BESIDE = 16
@@ -147,7 +141,7 @@ class SupervisorDialog(QDialog):
         self.setObjectName(name)
         self.setWindowTitle(title)
         self._desk, self.model, self._topic = desk, model, topic
-        self._listing, self._changing = PendingQueries(desk, self), PendingQueries(desk, self)
+        self._listing, self._changing = PendingQueries(desk.orders, self), PendingQueries(desk.orders, self)
         self.view = _table(model, f"{name}_table")
         self.said = WrappingLabel(lines=2)
         self.said.setObjectName(f"{name}_said")
@@ -157,7 +151,7 @@ class SupervisorDialog(QDialog):
         self.view.selectionModel().selectionChanged.connect(self._renew)
         self._listing.refused.connect(self._not_listed)
         self._changing.refused.connect(self._not_changed)
-        desk.link_changed.connect(self._link_changed)
+        desk.state.link_changed.connect(self._link_changed)
         self.finished.connect(self._close_question)
 
     def selected(self) -> Any:
@@ -167,7 +161,7 @@ class SupervisorDialog(QDialog):
 
     def refresh(self) -> None:
         """Ask for the rows anew, or say why that cannot be."""
-        why = why_not(self._desk.link)
+        why = why_not(self._desk.state.link)
         if why:
             self._show_rows([])
             self.said.setText(why)
@@ -255,7 +249,7 @@ class SupervisorDialog(QDialog):
     def _changed(self, done: str) -> None:
         """Say what was changed, and ask for the rows as they are now unless that ended the link."""
         self.said.setText(done)
-        if self.isVisible() and not why_not(self._desk.link):
+        if self.isVisible() and not why_not(self._desk.state.link):
             self._ask_rows()
 
     def _not_changed(self, why: str) -> None:
@@ -265,7 +259,7 @@ class SupervisorDialog(QDialog):
 
     def _not_listed(self, why: str) -> None:
         # Without a link that is said already, and the rows are asked for when it is back.
-        if not why_not(self._desk.link):
+        if not why_not(self._desk.state.link):
             self.said.setText(f"✘ {why}")
 
     def _link_changed(self) -> None:
@@ -277,7 +271,7 @@ class SupervisorDialog(QDialog):
             self._show_rows([])
 
     def _renew(self) -> None:
-        can_ask = not why_not(self._desk.link)
+        can_ask = not why_not(self._desk.state.link)
         row = self.selected()
         can_change = can_ask and row is not None and self._can_change(row)
         for button, for_row in self._buttons:

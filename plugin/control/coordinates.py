@@ -20,8 +20,6 @@ from ..ui.errors import FleetError, MapTransformError
 from ..ui.language import tr
 from .pending_command import Point
 
-# --- Coordinates as people write and paste them ---
-
 _NUMBER = r"\d+(?:[.,]\d+)?"
 _ANGLE = re.compile(
     rf"""(?P<before>[NSEWO])?\s*(?P<sign>[-+−])?\s*
@@ -113,8 +111,6 @@ def _wrong(text: str, geographic: bool) -> PlaceTextError:
         right = tr("latitude, longitude, as in 48.2083, 16.3725")
     return PlaceTextError(tr("{shown!r} is no place: write {right}.", shown=shown, right=right))
 
-
-# --- Places of the site from coordinates that were typed or pasted in any CRS ---
 
 FURTHEST_M = 10_000.0
 """Metres outside the site's bounds up to which a place is accepted: further off, the numbers are wrong."""
@@ -210,9 +206,6 @@ def _far_error(text: str, away: float, site: SiteReport, crs: QgsCoordinateRefer
 
 def _order(crs: QgsCoordinateReferenceSystem) -> str:
     return tr("latitude, longitude") if crs.isGeographic() else tr("x, y")
-
-
-# --- By which way, and how exactly, coordinates of another CRS come into the site's ---
 
 
 @dataclass(frozen=True)

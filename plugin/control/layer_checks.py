@@ -29,7 +29,6 @@ from ..ui.language import tr
 from ..ui.scheduling import Steps
 from .pending_command import ROUTE, START, ApproachKind, Findings, PendingCommand, Point
 
-# --- What of a draft is looked at: places, and the ways between them ---
 # Each is looked at by itself, so that after a change only what has changed is looked at again.
 
 CheckedPath = tuple[Point, ...]
@@ -148,8 +147,6 @@ def _spans(draft: PendingCommand) -> Iterator[tuple[int, int]]:
         begin += leg
 
 
-# --- The features of a layer near many places ---
-
 FEW = 20
 """Places that the layer is asked for one by one; for more it is read once."""
 
@@ -224,9 +221,6 @@ def name_of(feature: QgsFeature, layer: QgsVectorLayer) -> str:
     return tr("{layer} (feature {id})", layer=layer.name(), id=feature.id())
 
 
-# --- Whether a draft leads into a keepout of the project's layers ---
-
-
 class KeepoutCheck:
     """Finds for each track the keepouts that it touches."""
 
@@ -278,8 +272,6 @@ class KeepoutCheck:
             yield 1.0
         return Findings(overridable=tuple(texts))
 
-
-# --- Whether a draft leads onto an obstacle of the project's layers ---
 
 CLEARANCE_M = 0.25
 """Metres within which a place is taken to be on an obstacle: half the width of a small robot."""
@@ -370,8 +362,6 @@ def _told(spot: str, name: str, away: float) -> str:
     where = tr("is on") if away <= 0.0 else tr("is {away:.2f} m from", away=away)
     return tr("{spot} {where} {name}. Choose a place or way beside it.", spot=spot, where=where, name=name)
 
-
-# --- Whether a draft leads to places, and along ways, on a road surface of the project's layers ---
 
 GAP_M = 0.5
 """Metres between two surfaces that a robot is not said to leave the road for."""

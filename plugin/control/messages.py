@@ -22,13 +22,12 @@ from ...robot_bridge.core.messages import (
     Suspensions,
     TaskState,
 )
-from ..gateway_client.report_caches import ObservationCache, QueueCache, is_pending
+from ..gateway_client.fleet_state import FleetState
+from ..gateway_client.report_caches import is_pending
 from ..ui.language import tr
 from ..ui.times import time_of_day
 from .pending_command import PendingCommandModel
-from .roads import RoadStatus
 
-# --- What the operator is told in QGIS's message bar, and what makes each message untrue ---
 # A message is posted with topics. When the condition that a topic names has ended, all messages with it are
 # withdrawn: what is no longer true hides nothing that is.
 
@@ -63,9 +62,7 @@ NO_DRAFT = Topic("no_draft")
 PLAN_ASKED = Topic("plan", "asked")
 """Something was asked of cone plans; it ends when something else is."""
 PLAN_SENT = Topic("plan", "sent")
-"""What robots have of the cone plan; it ends when something of it is sent or it is watched no more."""
-PLAN_TROUBLE = Topic("plan", "trouble")
-"""The cone plan cannot go on as it is."""
+"""What the gateway said of a cone plan; it ends when something else is asked of one, or none is shown."""
 REPLAY = Topic("replay")
 """What was loaded to be replayed; it ends when something else is."""
 
@@ -78,6 +75,11 @@ def request_topic(method: str, about: Hashable) -> Topic:
 def draft_topic(draft: Hashable) -> Topic:
     """Return the topic of a draft on the map: it ends when another one is there, or none."""
     return Topic("draft", draft)
+
+
+def plan_topic(plan: str, what: str) -> Topic:
+    """Return the topic of what is the matter with a cone plan that is driven: it ends when that is over."""
+    return Topic("plan", (plan, what))
 
 
 def conflict_topic(robot: str, other: str) -> Topic:
@@ -170,12 +172,15 @@ class MessageEndings(QObject):
     """Tells the board what is over; the desk says of each change that it has happened."""
 
     def __init__(
-        self, messages: MessageBoard, drafts: PendingCommandModel, roads: RoadStatus, parent: QObject
+        self, messages: MessageBoard, drafts: PendingCommandModel, state: FleetState, parent: QObject
     ):
         super().__init__(parent)
-        self._messages, self._drafts, self._roads = messages, drafts, roads
+        self._messages, self._drafts, self._state = messages, drafts, state
         drafts.changed.connect(self._draft_changed)
-        roads.conflicts_changed.connect(self._conflicts_changed)
+        state.conflicts_changed.connect(self._conflicts_changed)
+        state.commands_changed.connect(self.commands_changed)
+        state.queues_changed.connect(self._queues_changed)
+        state.observations_changed.connect(self._observations_changed)
 
     def emergency_cleared(self) -> None:
         """End what was refused because of an emergency stop."""
@@ -195,11 +200,11 @@ class MessageEndings(QObject):
         """End what was told of robots that are there no more."""
         self._messages.end_where("robot", lambda robot: robot in robots)
 
-    def queues_changed(self, queues: QueueCache) -> None:
+    def _queues_changed(self) -> None:
         """End what was told of queues that are paused or go on since, or of tasks that are done since."""
 
         def is_over(stand: QueueStand) -> bool:
-            queue = queues.get(stand.robot)
+            queue = self._state.queues.get(stand.robot)
             if stand.state is not None:
                 return stand.state != ("" if queue is None else queue.state.value)
             tasks = () if queue is None else queue.tasks
@@ -207,11 +212,11 @@ class MessageEndings(QObject):
 
         self._messages.end_where("queue", is_over)
 
-    def observations_changed(self, book: ObservationCache) -> None:
+    def _observations_changed(self) -> None:
         """End what was told of observations that somebody has reviewed since."""
 
         def is_over(number: int) -> bool:
-            report = book.get(number)
+            report = self._state.observations.get(number)
             return report is None or not is_pending(report)
 
         self._messages.end_where("observation", is_over)
@@ -224,7 +229,7 @@ class MessageEndings(QObject):
         self._messages.end_others("draft", holding)
 
     def _conflicts_changed(self) -> None:
-        conflicts = self._roads.conflicts.conflicts
+        conflicts = self._state.conflicts.conflicts
         holding = {conflict_topic(one.robot, one.other) for one in conflicts}
         self._messages.end_others("conflict", holding)
 
@@ -259,16 +264,15 @@ class SuspensionNotices(ReportNotices):
 
 
 class LinkNotices(ReportNotices):
-    """Texts about links to robots of another kind that are down."""
-
-    def __init__(self, parent: QObject | None = None):
-        super().__init__(parent)
-        self.reported = Links()
+    """Texts about links to robots of another kind that are down, or whose robots are not in order."""
 
     def show(self, links: Links) -> None:
         """Tell of the newest report."""
-        self.reported = links
-        self.renew([_down(one) for one in links.links if not one.up])
+        self.renew([_not_in_order(one) for one in links.links if one.text or not one.up])
+
+
+def _not_in_order(link: LinkReport) -> str:
+    return tr("Link {link}: {reason}.", link=link.link, reason=link.text) if link.up else _down(link)
 
 
 def _down(link: LinkReport) -> str:
@@ -295,8 +299,6 @@ def _suspended(suspension: Suspension) -> str:
         time=time_of_day(suspension.until),
     )
 
-
-# --- The one place where what went wrong becomes a text in QGIS's message bar ---
 
 TITLE = "Fleet Supervisor"
 LEVELS = {
@@ -351,7 +353,7 @@ class MessageBar(QObject):
         if item is not None:
             self._bar.popWidget(item)
 
-    def withdraw(self) -> None:
+    def remove(self) -> None:
         """Take down whatever still hangs there."""
         self._bar.widgetRemoved.disconnect(self._removed)
         for item in list(self._shown.values()):

@@ -18,8 +18,6 @@ from ...robot_bridge.core.messages import QueueTask, SetPath, SetPosEnd, SetPosI
 from ..ui.errors import FleetError, NotSentError
 from ..ui.language import tr, tr_count
 
-# --- What the operator is about to ask for: on the canvas, not sent yet ---
-
 Point = tuple[float, float]
 
 CONE = "cone"
@@ -332,7 +330,6 @@ def _place(point: Point) -> str:
     return tr("{x:.2f}, {y:.2f} m", x=point[0], y=point[1])
 
 
-# --- Changes of a route that is drawn: vertices moved, put in, taken out, and the whole turned round ---
 # Legs that follow the roads are the gateway's: their points are no vertices and are not changed by hand.
 
 
@@ -405,9 +402,6 @@ def _check_vertex(draft: PendingCommand, vertex: int) -> None:
                 "Backspace, or draw this part with Draw route."
             )
         )
-
-
-# --- Drafts as tasks of a robot's queue ---
 
 
 def queue_tasks(draft: PendingCommand) -> list[QueueTask]:

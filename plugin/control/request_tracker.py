@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import uuid
-from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
 from qgis.PyQt.QtCore import QObject, pyqtSignal
 
+from ...robot_bridge.core.clock import Clock
 from ...robot_bridge.core.messages import (
     Abort,
     AbortAll,
@@ -18,13 +18,55 @@ from ...robot_bridge.core.messages import (
     Send,
     to_json,
 )
-from ..gateway_client.buffers import OperatorRequest, RequestResult
+from ..gateway_client.connection import ConnectionThread
+from ..gateway_client.connection_status import ConnectionPhase
+from ..gateway_client.fleet_state import FleetState
+from ..gateway_client.requests import OperatorRequest, RequestResult
 from ..ui.errors import NotSentError
 from ..ui.language import tr, tr_count
 from .messages import Topic, conflict_topic, request_topic
 from .pending_command import TARGETS, PendingCommand
 
 SLOW_AFTER = 5.0
+
+
+class RequestSender(QObject):
+    """Hands requests to the connection while there is a link; an emergency stop also before there is one."""
+
+    failed = pyqtSignal(str)
+    """An emergency stop waits for the link: the text, which must not go unseen."""
+    settled = pyqtSignal(str)
+    """What ``failed`` told with this text is over."""
+
+    def __init__(self, connection: ConnectionThread, state: FleetState, parent: QObject | None = None):
+        super().__init__(parent)
+        self._connection, self._state = connection, state
+        self._not_sent_yet = ""
+        """What was told of a stop that waits for the link."""
+        state.link_changed.connect(self._link_changed)
+
+    def submit(self, request: OperatorRequest) -> None:
+        """Send a request; raises NotSentError when it cannot be sent."""
+        if self._state.link.phase is ConnectionPhase.CONNECTED:
+            self._connection.submit(request)
+            return
+        if request.method != EmergencyStop.method or not self._connection.is_open:
+            raise NotSentError(
+                tr(
+                    "the desk is not connected to a gateway. Connect first; to stop a robot now use the "
+                    "robot's own emergency stop."
+                )
+            )
+        self._connection.submit(request)
+        self._not_sent_yet = tr(
+            "EMERGENCY STOP is NOT sent yet: the link is down. It is sent as soon as that is back; use "
+            "the robots' own emergency stops now."
+        )
+        self.failed.emit(self._not_sent_yet)
+
+    def _link_changed(self) -> None:
+        if self._state.link.phase is ConnectionPhase.CONNECTED:
+            self.settled.emit(self._not_sent_yet)
 
 
 @dataclass
@@ -43,6 +85,8 @@ class PendingRequest:
 class RequestTracker(QObject):
     """Gives each press of a button its own id, hands it to the connection and tells what became of it."""
 
+    answered = pyqtSignal(object)
+    """What became of a request: the RequestResult."""
     refused = pyqtSignal(str, object, object)
     """An order was not carried out: the text, the draft it came from or None, and the text's topics."""
     asked_again = pyqtSignal(object)
@@ -56,12 +100,12 @@ class RequestTracker(QObject):
 
     def __init__(
         self,
-        submit: Callable[[OperatorRequest], None],
-        clock: Callable[[], float],
+        sender: RequestSender,
+        clock: Clock,
         parent: QObject | None = None,
     ):
         super().__init__(parent)
-        self._submit = submit
+        self._sender = sender
         self._clock = clock
         self._pending: dict[str, PendingRequest] = {}
 
@@ -99,7 +143,7 @@ class RequestTracker(QObject):
         :raises NotSentError: when it cannot be sent.
         """
         command = str(uuid.uuid4())
-        order = OperatorRequest(command, AbortAll.method, to_json(AbortAll(command)), self._clock())
+        order = OperatorRequest(command, AbortAll.method, to_json(AbortAll(command)), self._clock.steady())
         return self._put(order, tr("ABORT ALL"))
 
     @property
@@ -115,7 +159,7 @@ class RequestTracker(QObject):
         stop = str(uuid.uuid4())
         key = self._put(
             OperatorRequest(
-                stop, EmergencyStop.method, to_json(EmergencyStop(stop)), self._clock(), lasting=True
+                stop, EmergencyStop.method, to_json(EmergencyStop(stop)), self._clock.steady(), lasting=True
             ),
             tr("EMERGENCY STOP"),
         )
@@ -128,26 +172,51 @@ class RequestTracker(QObject):
         :raises NotSentError: when it cannot be sent.
         """
         params = to_json(ClearEmergencyStop(reason or None, stop))
-        order = OperatorRequest(str(uuid.uuid4()), ClearEmergencyStop.method, params, self._clock())
+        order = OperatorRequest(str(uuid.uuid4()), ClearEmergencyStop.method, params, self._clock.steady())
         return self._put(order, tr("Clear emergency stop"))
 
-    def ask(
+    def ask(self, request: Any, words: str, *topics: Topic, draft: PendingCommand | None = None) -> str:
+        """Ask the gateway for ``request``, which is ``words`` to the operator, and return its key.
+
+        What becomes of it comes with :attr:`answered`. A refusal is told until one of ``topics`` is over;
+        the ``draft`` that it was made of comes back then.
+
+        :raises NotSentError: when it cannot be sent.
+        """
+        return self.submit(self._order(request), words, topics, draft)
+
+    def inquire(self, request: Any, *, lasting: bool = False) -> str:
+        """Ask the gateway for what it knows, without a word to the operator, and return the request's key.
+
+        A ``lasting`` one is asked again however long the link was lost.
+
+        :raises NotSentError: when it cannot be sent.
+        """
+        order = self._order(request, lasting)
+        self._sender.submit(order)
+        return order.key
+
+    def submit(
         self,
         order: OperatorRequest,
         words: str,
         topics: tuple[Topic, ...] = (),
         draft: PendingCommand | None = None,
-    ) -> None:
-        """Ask for something else, which is ``words`` to the operator.
+    ) -> str:
+        """Ask for something that has its key already, and return that; as :meth:`ask` otherwise."""
+        return self._put(order, words, draft, topics)
 
-        ``topics`` are what else a refusal is about, ``draft`` what it was made of.
+    def _order(self, request: Any, lasting: bool = False) -> OperatorRequest:
+        return OperatorRequest(
+            str(uuid.uuid4()), request.method, to_json(request), self._clock.steady(), lasting
+        )
 
-        :raises NotSentError: when it cannot be sent.
-        """
-        self._put(order, words, draft, topics)
+    def accept_answer(self, answer: RequestResult) -> None:
+        """Take in what became of a request, and tell of it with :attr:`answered`."""
+        self._settle(answer)
+        self.answered.emit(answer)
 
-    def answered(self, answer: RequestResult) -> None:
-        """Take in what became of an order."""
+    def _settle(self, answer: RequestResult) -> None:
         pending = self._pending.pop(answer.order.key, None)
         if pending is None:
             return
@@ -181,7 +250,7 @@ class RequestTracker(QObject):
 
     def watch(self) -> None:
         """Tell once of each order that waits for its answer for too long."""
-        now = self._clock()
+        now = self._clock.steady()
         for pending in self._pending.values():
             if not pending.told_slow and now - pending.asked_at > SLOW_AFTER:
                 pending.told_slow = tr(
@@ -203,7 +272,7 @@ class RequestTracker(QObject):
     ) -> str:
         command = str(uuid.uuid4())
         send = Send(command, robot, op, params, override=override)
-        order = OperatorRequest(command, Send.method, to_json(send), self._clock())
+        order = OperatorRequest(command, Send.method, to_json(send), self._clock.steady())
         return self._put(order, words, draft)
 
     def _put(
@@ -216,7 +285,7 @@ class RequestTracker(QObject):
         topics = topics_of(order.method, order.params) + more
         self.asked_again.emit(topics[0])
         try:
-            self._submit(order)
+            self._sender.submit(order)
         except NotSentError as error:
             text = tr("{words} was NOT sent: {error}", words=words, error=error)
             raise NotSentError(text, topics) from error

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import uuid
-from collections.abc import Callable
 from dataclasses import dataclass
 
 from qgis.PyQt.QtCore import QObject, pyqtSignal
@@ -12,64 +11,30 @@ from qgis.PyQt.QtWidgets import QCheckBox, QDoubleSpinBox, QLineEdit, QWidget
 from ...robot_bridge.core.messages import (
     CloseRoad,
     ClosureReport,
-    Conflicts,
     OpenRoad,
-    ReplannedRobot,
     ResolveConflict,
     to_json,
 )
-from ..gateway_client.buffers import OperatorRequest, RoadUpdates
+from ..gateway_client.fleet_state import FleetState
+from ..gateway_client.requests import OperatorRequest
 from ..ui.dialogs import QuestionDialog
 from ..ui.language import tr
 from .pending_command import Point
-
-# --- The desk's roads: which are closed, which robots are in each other's way, and what is asked about them
-
-SILENT_AFTER = 10.0
-"""Seconds without news of them after which conflicts are not known any more."""
+from .request_tracker import RequestTracker
 
 
 class RoadStatus(QObject):
-    """Keeps what the gateway tells of roads; ``ask`` takes an order and what it is in words."""
+    """What the gateway reports of roads, and what the operator asks about them."""
 
-    closures_changed = pyqtSignal()
-    conflicts_changed = pyqtSignal()
-    failed = pyqtSignal(str, str)
-    """A robot stopped, or drives where it should not: the text, which must not go unseen, and the robot."""
-    remarked = pyqtSignal(str)
-
-    def __init__(
-        self,
-        ask: Callable[[OperatorRequest, str], None],
-        clock: Callable[[], float],
-        parent: QObject | None = None,
-    ):
+    def __init__(self, state: FleetState, requests: RequestTracker, parent: QObject | None = None):
         super().__init__(parent)
-        self._ask = ask
-        self._clock = clock
-        self._told_at = -SILENT_AFTER
-        self.closures: tuple[ClosureReport, ...] = ()
-        self.conflicts = Conflicts(0.0)
+        self._state, self._requests = state, requests
+        self.closures_changed = state.closures_changed
 
-    def apply_updates(self, news: RoadUpdates) -> None:
-        """Take in what the gateway told."""
-        if news.closures is not None and self.closures != tuple(news.closures.closures):
-            self.closures = tuple(news.closures.closures)
-            self.closures_changed.emit()
-        if news.conflicts is not None:
-            self._told_at = self._clock()
-            self._put(news.conflicts)
-        elif self._clock() - self._told_at > SILENT_AFTER:
-            # A gateway tells of them every second for as long as there are any.
-            self._put(Conflicts(self.conflicts.t))
-        for robot in news.replanned:
-            self._tell(robot)
-
-    def clear(self) -> None:
-        """Forget everything: it is another site's."""
-        self.closures = ()
-        self.closures_changed.emit()
-        self._put(Conflicts(0.0))
+    @property
+    def closures(self) -> tuple[ClosureReport, ...]:
+        """The roads that are closed."""
+        return self._state.closures
 
     def close(self, place: Point, reach: float, reason: str, seconds: float | None) -> str:
         """Ask for the road at ``place`` to be closed and return the closure's id.
@@ -78,7 +43,7 @@ class RoadStatus(QObject):
         """
         closure = str(uuid.uuid4())
         request = CloseRoad(closure, *place, reason or None, seconds, reach)
-        self._ask(
+        self._requests.submit(
             self._order(closure, request),
             tr(
                 "Closing the road at {x:.1f}, {y:.1f} m",
@@ -90,12 +55,12 @@ class RoadStatus(QObject):
 
     def open(self, closure: str) -> None:
         """Ask for a closed road to be opened; raises NotSentError when that cannot be sent."""
-        self._ask(self._order(str(uuid.uuid4()), OpenRoad(closure)), tr("Opening the road"))
+        self._requests.submit(self._order(str(uuid.uuid4()), OpenRoad(closure)), tr("Opening the road"))
 
     def resolve(self, robot: str, other: str) -> None:
         """Ask for ``robot`` to give way to ``other``; raises NotSentError when that cannot be sent."""
         request = ResolveConflict(robot, other)
-        self._ask(
+        self._requests.submit(
             self._order(str(uuid.uuid4()), request),
             tr(
                 "{robot} gives way to {other}",
@@ -105,22 +70,8 @@ class RoadStatus(QObject):
         )
 
     def _order(self, key: str, request: CloseRoad | OpenRoad | ResolveConflict) -> OperatorRequest:
-        return OperatorRequest(key, request.method, to_json(request), self._clock())
+        return OperatorRequest(key, request.method, to_json(request), self._state.clock.steady())
 
-    def _put(self, conflicts: Conflicts) -> None:
-        same = (conflicts.conflicts, conflicts.waiting) == (self.conflicts.conflicts, self.conflicts.waiting)
-        self.conflicts = conflicts
-        if not same:
-            self.conflicts_changed.emit()
-
-    def _tell(self, robot: ReplannedRobot) -> None:
-        if robot.became == "another way":
-            self.remarked.emit(robot.text)
-        else:
-            self.failed.emit(robot.text, robot.robot)
-
-
-# --- What an operator wants of the ways that *Route on roads* leads, and how that is asked ---
 
 ROUTE_CRITERIA = ((tr("the shortest"), False), (tr("the fastest"), True))
 WIDEST_ROAD = 50.0

@@ -17,8 +17,6 @@ from ..ui.language import tr
 from ..ui.times import age_in_words
 from .pending_command import CONE, ROUTE, START, TARGETS, Findings, PendingCommand
 
-# --- Which robots are near to one another: a grid in plain numpy, so that ten thousand take milliseconds
-
 Ints = npt.NDArray[np.int64]
 ROW = np.int64(2**32)
 """From a cell's number to that of the cell above it; the cell beside it is the next."""
@@ -83,8 +81,6 @@ def _pairs(begin: Ints, end: Ints) -> tuple[Ints, Ints]:
     return one, first + np.arange(len(one))
 
 
-# --- Whether the robot of a draft can do what the draft asks of it, as it said when it connected ---
-
 _NEEDED: dict[str, Ability] = {CONE: "targets", TARGETS: "targets", ROUTE: "paths", START: "start"}
 
 
@@ -115,8 +111,6 @@ def check_abilities(draft: PendingCommand, robot: RobotView | None) -> Findings:
         return Findings(warnings=(tr("{robot} places no cones: it only drives there.", robot=draft.robot),))
     return Findings()
 
-
-# --- Whether the robot of a draft is there, and whether somebody else has it do something ---
 
 REPLACING = (CONE, ROUTE)
 """What a robot does in place of what it is at."""
@@ -160,8 +154,6 @@ def check_orders(draft: PendingCommand, task: CommandReport | None, operator: st
         )
     )
 
-
-# --- Whether a target is clear of those of other robots ---
 
 CLEAR_M = 1.0
 """Metres between the targets of two robots."""

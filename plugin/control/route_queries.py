@@ -4,29 +4,27 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Callable
 from dataclasses import asdict, dataclass, replace
 from typing import Any, NamedTuple
 
 from qgis.PyQt.QtCore import QObject, pyqtSignal
 
+from ...robot_bridge.core.clock import Clock
 from ...robot_bridge.core.messages import (
     GetRoute,
     RobotReport,
     RouteReport,
-    SiteReport,
     route_report,
     to_json,
 )
-from ..gateway_client.buffers import OperatorRequest, RequestResult
+from ..gateway_client.fleet_state import FleetState
+from ..gateway_client.requests import OperatorRequest, RequestResult
 from ..ui.errors import FleetError, NotSentError
 from ..ui.language import tr
 from .pending_command import CONE, ROUTE, Approach, ApproachKind, PendingCommand, PendingCommandModel, Point
-from .request_tracker import SLOW_AFTER
+from .request_tracker import SLOW_AFTER, RequestSender
 from .roads import SHORTEST, RoutePreferences
 from .validation import ValidationRunner
-
-# --- The way along the roads to where the mouse is: asked of the gateway, one at a time and newest first
 
 UNANSWERED_AFTER = 3.0
 """Seconds after which a question that follows the mouse is taken to be lost, so that the next is asked."""
@@ -55,12 +53,12 @@ class RouteQuery(QObject):
 
     def __init__(
         self,
-        submit: Callable[[OperatorRequest], None],
-        clock: Callable[[], float],
+        sender: RequestSender,
+        clock: Clock,
         parent: QObject | None = None,
     ):
         super().__init__(parent)
-        self._submit = submit
+        self._sender = sender
         self._clock = clock
         self._numbers = itertools.count(1)
         self._asked: tuple[str, RouteQuestion, float] | None = None
@@ -123,7 +121,7 @@ class RouteQuery(QObject):
         if self._asked is None:
             return False
         _, question, asked_at = self._asked
-        return self._clock() - asked_at < (SLOW_AFTER if question.taken else UNANSWERED_AFTER)
+        return self._clock.steady() - asked_at < (SLOW_AFTER if question.taken else UNANSWERED_AFTER)
 
     def _ask_next(self) -> None:
         following, self._next = self._next, None
@@ -151,8 +149,8 @@ class RouteQuery(QObject):
             **_restrictions(question.wishes),
         )
         key = f"route-{id(self)}-{next(self._numbers)}"
-        self._submit(OperatorRequest(key, request.method, to_json(request), self._clock()))
-        self._asked = key, question, self._clock()
+        self._sender.submit(OperatorRequest(key, request.method, to_json(request), self._clock.steady()))
+        self._asked = key, question, self._clock.steady()
 
 
 def route_in(answer: RequestResult) -> tuple[RouteReport | None, str]:
@@ -208,8 +206,6 @@ def route_in_words(route: RouteReport, wishes: RoutePreferences, apart: str = ";
     return text + apart + route.note if route.note else text
 
 
-# --- The way by which a robot comes to a target or route on the map: what is drawn, checked, and sent ---
-
 MOVED_M = 0.5
 """Metres that a robot moves before the way from where it is is found again."""
 OUTDATED_M = 2.0
@@ -244,35 +240,30 @@ class TargetRoutes(QObject):
         self,
         board: PendingCommandModel,
         checks: ValidationRunner,
-        report_of: Callable[[str], RobotReport | None],
-        submit: Callable[[OperatorRequest], None],
-        clock: Callable[[], float],
+        state: FleetState,
+        sender: RequestSender,
         parent: QObject,
     ):
         super().__init__(parent)
         self._board, self._checks = board, checks
-        self._report_of = report_of
-        self._submit = submit
-        self._clock = clock
+        self._state, self._sender, self._clock = state, sender, state.clock
         self._prefix, self._numbers = f"target-way-{id(self)}-", itertools.count(1)
         self._asked: _Asked | None = None
         self._beside: dict[_Asked, PendingCommand] = {}
         """Questions for the ways of targets that go out when they are known."""
         self._asked_at = -math.inf
         self._is_amending = False
-        self.site: SiteReport | None = None
-        """The site that is served; None before it is known."""
         board.changed.connect(self.watch)
 
     def begun(self, draft: PendingCommand) -> PendingCommand:
         """Return a draft with its way as far as it is known at once; another kind of draft as it is."""
         if draft.kind not in DRIVEN_TO:
             return draft
-        report = self._report_of(draft.robot)
+        report = self._state.report_of(draft.robot)
         place = _robot_position(report)
         if place is None:
             return replace(draft, way=Approach(ApproachKind.UNKNOWN, note=_position_unknown(draft.robot)))
-        if draft.kind == ROUTE or draft.is_direct or self.site is None or not self.site.roads:
+        if draft.kind == ROUTE or draft.is_direct or self._state.site is None or not self._state.site.roads:
             return self._straight(draft, place, "")
         if report is not None and report.paths is None:
             return self._straight(draft, place, _not_declared(draft.robot))
@@ -280,7 +271,7 @@ class TargetRoutes(QObject):
 
     def is_outdated(self, draft: PendingCommand) -> bool:
         """Tell whether a draft's robot is not where its way begins any more."""
-        place = _robot_position(self._report_of(draft.robot))
+        place = _robot_position(self._state.report_of(draft.robot))
         line = draft.way.line
         return bool(line) and place is not None and math.dist(place, line[0]) > OUTDATED_M
 
@@ -342,7 +333,7 @@ class TargetRoutes(QObject):
         return True
 
     def _has_changed(self, draft: PendingCommand) -> bool:
-        report, way = self._report_of(draft.robot), draft.way
+        report, way = self._state.report_of(draft.robot), draft.way
         place = _robot_position(report)
         if place is None:
             return False
@@ -352,7 +343,7 @@ class TargetRoutes(QObject):
         return math.dist(place, way.line[0]) > MOVED_M or way.declared != (report and report.paths)
 
     def _seek(self, draft: PendingCommand) -> None:
-        now, goal = self._clock(), draft.points[0]
+        now, goal = self._clock.steady(), draft.points[0]
         asked = self._asked
         if asked is not None and (asked.robot, asked.goal) == (draft.robot, goal):
             if now - asked.at > SLOW_AFTER:
@@ -369,8 +360,8 @@ class TargetRoutes(QObject):
 
     def _ask(self, draft: PendingCommand) -> _Asked | None:
         """Ask for the way of a target; return None where that cannot be asked."""
-        goal, now = draft.points[0], self._clock()
-        place = _robot_position(self._report_of(draft.robot))
+        goal, now = draft.points[0], self._clock.steady()
+        place = _robot_position(self._state.report_of(draft.robot))
         if place is None:
             return None
         # By its place and not by the robot: of that a newer question, for the way to the mouse, would have
@@ -378,13 +369,13 @@ class TargetRoutes(QObject):
         request = GetRoute(*goal, start=place)
         key = f"{self._prefix}{next(self._numbers)}"
         try:
-            self._submit(OperatorRequest(key, request.method, to_json(request), now))
+            self._sender.submit(OperatorRequest(key, request.method, to_json(request), now))
         except NotSentError:
             return None
         return _Asked(key, draft.robot, goal, now)
 
     def _give_up_beside(self) -> None:
-        now = self._clock()
+        now = self._clock.steady()
         for asked, draft in list(self._beside.items()):
             if now - asked.at > SLOW_AFTER:
                 del self._beside[asked]
@@ -392,7 +383,7 @@ class TargetRoutes(QObject):
                 self.found.emit(replace(draft, way=refused, is_checked=False))
 
     def _answered(self, draft: PendingCommand, answer: RequestResult) -> PendingCommand:
-        report = self._report_of(draft.robot)
+        report = self._state.report_of(draft.robot)
         place = _robot_position(report)
         declared = None if report is None else report.paths
         route, why = route_in(answer)
@@ -408,7 +399,7 @@ class TargetRoutes(QObject):
         return replace(draft, way=way)
 
     def _straight(self, draft: PendingCommand, place: Point, note: str) -> PendingCommand:
-        report = self._report_of(draft.robot)
+        report = self._state.report_of(draft.robot)
         declared = None if report is None else report.paths
         way = Approach(ApproachKind.STRAIGHT, (place, draft.points[0]), note, declared=declared)
         return replace(draft, way=way)

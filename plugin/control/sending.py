@@ -19,8 +19,6 @@ from .request_tracker import RequestTracker
 from .route_queries import TargetRoutes
 from .validation import ValidationRunner, Work
 
-# --- Drafts that were sent before their check had ended, and that another draft has taken the place of since
-
 Then = Callable[[PendingCommand], None]
 
 
@@ -99,9 +97,6 @@ class OutgoingCommands(QObject):
         if self._waiting:
             self._check_first()
         self.changed.emit()
-
-
-# --- Sends the draft on the map once it has been checked afresh, and says so where it is not sent ---
 
 
 class CommandSender(QObject):

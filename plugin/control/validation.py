@@ -10,20 +10,16 @@ from qgis.core import QgsProject, QgsVectorLayer, QgsWkbTypes
 from qgis.PyQt.QtCore import QObject, QTimer, pyqtSignal
 
 from ...robot_bridge.core.messages import SiteReport
-from ..gateway_client.command_cache import CommandCache
-from ..gateway_client.report_caches import QueueCache
-from ..gateway_client.robot_states import RobotView
+from ..gateway_client.fleet_state import FleetState
 from ..layers.layer_source import LayerWatch
 from ..layers.roles import layers_with_role
-from ..layers.site_transform import SiteToMapTransform
+from ..layers.site_transform import SiteToCanvas, SiteToMapTransform
 from ..ui.errors import FleetError
 from ..ui.language import tr
 from ..ui.scheduling import CooperativeTask, Steps, scaled_progress
 from .layer_checks import CheckedPath, KeepoutCheck, ObstacleCheck, SurfaceCheck, is_looked_at
 from .pending_command import ROUTE, Findings, PendingCommand, PendingCommandModel, Point
 from .robot_checks import TargetCheck, check_abilities, check_heard, check_orders, has_ability
-
-# --- Whether a draft can be driven: inside the site, off keepouts and obstacles, on a road surface ---
 
 AT_ONCE = 500
 """Tracks that are gone through between two looks at the clock."""
@@ -247,14 +243,8 @@ def _listed(things: Iterable[T]) -> Steps[list[T]]:
     return found
 
 
-# --- All that a draft is held against: site, map, layers, other robots' targets, and what its robot is doing
-
-
 class CommandChecks(QObject):
-    """Looks at drafts for the ``operator``, on the site as ``placement`` puts it on the map now.
-
-    ``view`` tells how a robot stands at this moment.
-    """
+    """Checks drafts against the project's layers, and against what the gateway reports of site and robots."""
 
     changed = pyqtSignal()
     """A layer is not as it was: what is under way has to begin anew."""
@@ -262,21 +252,16 @@ class CommandChecks(QObject):
     def __init__(
         self,
         project: QgsProject,
-        placement: Callable[[], SiteToMapTransform],
-        operator: Callable[[], str],
-        book: CommandCache,
-        queues: QueueCache,
-        view: Callable[[str], RobotView | None],
+        site_to_canvas: SiteToCanvas,
+        state: FleetState,
         parent: QObject,
     ):
         super().__init__(parent)
-        self._placement = placement
-        self._operator = operator
-        self._book = book
-        self._view = view
+        self._site_to_canvas = site_to_canvas
+        self._state = state
         self._layers = LayerCheck(project, self)
         self._layers.changed.connect(self.changed)
-        self._targets = TargetCheck(book, queues)
+        self._targets = TargetCheck(state.commands, state.queues)
 
     def check_command(self, draft: PendingCommand, afresh: bool) -> Steps[PendingCommand]:
         """Look at a draft, all of it ``afresh`` or only what is new; return it with what was found.
@@ -285,15 +270,15 @@ class CommandChecks(QObject):
 
         :raises FleetError: when there is no site or a layer cannot be read.
         """
-        placement = self._placement()
+        placement = self._site_to_canvas.transform()
         found = check_bounds(draft.points, placement.site) + check_map(placement)
         found += yield from self._layers.check_command(draft, placement, afresh)
         found += _approach_findings(draft)
         # At the end, so that nobody is sent there meanwhile.
         found += self._targets.check_command(draft)
-        robot = self._view(draft.robot)
+        robot = self._state.robot(draft.robot)
         found += check_heard(draft, robot) + check_abilities(draft, robot)
-        found += check_orders(draft, self._book.task_of(draft.robot), self._operator())
+        found += check_orders(draft, self._state.commands.task_of(draft.robot), self._state.link.operator)
         override = draft.override if found.overridable == draft.findings.overridable else None
         cones = has_ability(robot, "cones")
         return replace(draft, findings=found, override=override, is_checked=True, places_cone=cones)
@@ -320,8 +305,6 @@ def _approach_findings(draft: PendingCommand) -> Findings:
         return Findings(warnings=(way.note,), of_way=(way.note,))
     return Findings()
 
-
-# --- Has the draft on the map checked while the window lives on, and says when it may be sent ---
 
 Work = Callable[[PendingCommand, bool], Steps[PendingCommand]]
 """Takes a draft, and whether all of it is to be looked at afresh; returns the draft with what was found."""

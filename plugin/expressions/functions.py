@@ -27,8 +27,6 @@ from ..ui.errors import FleetError
 from ..ui.language import tr, tr_page
 from .robot_snapshot import RobotSnapshot, SnapshotHolder
 
-# --- Which CRS a place in an expression is in ---
-
 
 def crs_of_place(given: Any, of_layer: Any) -> QgsCoordinateReferenceSystem:
     """Return the CRS of a place: as given, that of the layer that is looked at, that of the project.
@@ -45,8 +43,6 @@ def crs_of_place(given: Any, of_layer: Any) -> QgsCoordinateReferenceSystem:
     crs = QgsCoordinateReferenceSystem(str(of_layer or ""))
     return crs if crs.isValid() else QgsProject.instance().crs()
 
-
-# --- The expression function ``distance_to_robot(robot, geometry, crs)`` ---
 
 GROUP = tr("Fleet")
 """Where QGIS lists the functions."""
@@ -165,8 +161,6 @@ def _is_null(value: Any) -> bool:
     return value is None or (not isinstance(value, (QgsGeometry, QgsFeature)) and value == NULL)
 
 
-# --- The expression function ``road_surface(x, y, layer, crs)`` ---
-
 ROAD_SURFACE_FUNCTION = "road_surface"
 _ROAD_SURFACE_HELP = tr_page("""
 <h3>function road_surface</h3>
@@ -281,8 +275,6 @@ def _named(layer: Any) -> str:
     return layer.id() if isinstance(layer, QgsVectorLayer) else str(layer)
 
 
-# --- The expression functions ``robot_state``, ``robot_battery`` and ``robot_age`` ---
-
 _STATE_HELP = tr_page("""
 <h3>function robot_state</h3>
 <p>Returns how far what is known of a robot can be trusted: 'fresh', 'stale', 'lost' or 'offline'.</p>
@@ -371,9 +363,6 @@ def robot_values(fleet: SnapshotHolder) -> list[RobotValue]:
         RobotValue("robot_battery", _BATTERY_HELP + _NOTES, fleet, RobotSnapshot.charge),
         RobotValue("robot_age", _AGE_HELP + _NOTES, fleet, RobotSnapshot.silence),
     ]
-
-
-# --- Puts the plugin's expression functions into QGIS and takes them out again ---
 
 
 class ExpressionFunctions:

@@ -10,11 +10,10 @@ from qgis.core import QgsCoordinateReferenceSystem, QgsPointXY
 from qgis.PyQt.QtCore import QObject
 
 from ...robot_bridge.core.clock import steady_time
-from ..control.fleet_controller import FleetController
+from ..gateway_client.fleet_state import FleetState
 from ..gateway_client.robot_table import STATES
 from ..layers.site_transform import frame_of
-
-# --- The robots as expressions see them: whatever thread they are evaluated in, one picture that is whole
+from ..ui.scheduling import UpdateScheduler
 
 Numbers = npt.NDArray[np.float64]
 
@@ -69,8 +68,10 @@ class SnapshotHolder:
     def __init__(self) -> None:
         self.robots: RobotSnapshot | None = None
 
+    def replace(self, robots: RobotSnapshot | None) -> None:
+        """Hold another snapshot from now on."""
+        self.robots = robots
 
-# --- Passes the robots on to QGIS's expressions, twice a second ---
 
 _NAMES = np.array([state.value for state in STATES], dtype=object)
 
@@ -78,40 +79,41 @@ _NAMES = np.array([state.value for state in STATES], dtype=object)
 class ExpressionUpdater(QObject):
     """Makes a new picture for expressions out of the desk's; :meth:`remove` leaves them without one."""
 
-    def __init__(self, desk: FleetController, fleet: SnapshotHolder):
-        super().__init__(desk)
-        self._desk, self._fleet = desk, fleet
-        self._turn = desk.beat.turn()
+    def __init__(self, state: FleetState, scheduler: UpdateScheduler, fleet: SnapshotHolder):
+        super().__init__(state)
+        self._state, self._fleet = state, fleet
+        self._turn = scheduler.turn()
         self._rows: dict[str, int] = {}
         self._arrangement = -1
-        desk.pulled.connect(self._pulled)
-        desk.site_changed.connect(self.feed)
-        desk.robots_removed.connect(self.feed)
+        state.updated.connect(self._pulled)
+        state.site_changed.connect(self.feed)
+        state.robots_removed.connect(self.feed)
 
     def remove(self) -> None:
         """Feed nothing more."""
-        self._fleet.robots = None
+        self._fleet.replace(None)
 
     def feed(self) -> None:
         """Make the picture of this moment."""
-        desk, now = self._desk, self._desk.clock()
-        if desk.site is None:
-            self._fleet.robots = None
+        state, now = self._state, self._state.clock.steady()
+        if state.site is None:
+            self._fleet.replace(None)
             return
-        robots = desk.picture.arrays(now)
-        if self._arrangement != desk.picture.arrangement or len(self._rows) != len(robots.names):
-            self._arrangement = desk.picture.arrangement
+        robots = state.robots.arrays(now)
+        if self._arrangement != state.robots.arrangement or len(self._rows) != len(robots.names):
+            self._arrangement = state.robots.arrangement
             self._rows = {name: row for row, name in enumerate(robots.names)}
-        frame = frame_of(desk.site)
-        self._fleet.robots = RobotSnapshot(
-            crs=QgsCoordinateReferenceSystem(desk.site.crs),
+        frame = frame_of(state.site)
+        snapshot = RobotSnapshot(
+            crs=QgsCoordinateReferenceSystem(state.site.crs),
             rows=self._rows,
             states=_NAMES[robots.state].tolist(),
             xy=frame.to_crs(robots.xy),
             age=robots.age,
-            battery=desk.picture.column("battery"),
+            battery=state.robots.column("battery"),
             taken=now,
         )
+        self._fleet.replace(snapshot)
 
     def _pulled(self) -> None:
         if self._turn.has_come():

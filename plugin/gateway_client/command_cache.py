@@ -1,24 +1,92 @@
-"""Commands as last reported, as text, and how far robots are from their paths."""
+"""Commands: decoded, as last reported, as text, and how far robots are from their paths."""
 
 from __future__ import annotations
 
+import dataclasses
 import math
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
-from ...robot_bridge.core.messages import Abort, CommandReport, CommandState, SetPath, SetPosEnd
+from ...robot_bridge.core.messages import (
+    Abort,
+    CommandReport,
+    CommandState,
+    SetPath,
+    SetPosEnd,
+    command_report,
+)
 from ..ui.language import tr
 from .state_texts import COMMAND_STATES
-
-# --- The commands that the desk knows of ---
 
 UNDER_WAY = (CommandState.QUEUED, CommandState.DELIVERED, CommandState.ACKNOWLEDGED)
 MOST_COMMANDS = 2000
 DRIVE_OPERATIONS = (SetPosEnd.__name__, SetPath.__name__)
 """Operations that lead a robot somewhere; the others are done where it stands."""
+
+
+class PathPoints(Sequence[tuple[float, float]]):
+    """Points that never change, x and y in metres in the site frame; numpy takes them as an (n, 2) array."""
+
+    __slots__ = ("_points",)
+
+    def __init__(self, points: npt.NDArray[np.float64]) -> None:
+        self._points = points
+
+    def __len__(self) -> int:
+        return len(self._points)
+
+    def __iter__(self) -> Iterator[tuple[float, float]]:
+        return map(tuple, self._points.tolist())
+
+    def __getitem__(self, which: int | slice) -> Any:
+        if isinstance(which, slice):
+            return list(map(tuple, self._points[which].tolist()))
+        return tuple(self._points[which].tolist())
+
+    def __eq__(self, other: object) -> bool:
+        if isinstance(other, PathPoints):
+            return np.array_equal(self._points, other._points)
+        return NotImplemented
+
+    def __array__(self, dtype: Any = None, copy: bool | None = None) -> npt.NDArray[Any]:
+        return np.array(self._points, dtype=dtype)
+
+
+def pack_points(points: object) -> object:
+    """Return a path's points as :class:`PathPoints`; what is no list of pairs of numbers as it came."""
+    if not isinstance(points, list):
+        return points
+    try:
+        numbers = np.array(points, dtype=np.float64)
+    except (TypeError, ValueError):
+        return points
+    if numbers.ndim != 2 or numbers.shape[1] != 2 or not np.isfinite(numbers).all():
+        return points
+    return PathPoints(numbers)
+
+
+def command_in(values: dict[str, Any]) -> CommandReport:
+    """Return the command that a gateway sent as JSON.
+
+    A path along roads has hundreds of points, which would take 90 kB.
+    """
+    report = command_report(values)
+    if report.op != SetPath.__name__ or "points" not in report.params:
+        return report
+    return dataclasses.replace(
+        report, params={**report.params, "points": pack_points(report.params["points"])}
+    )
+
+
+def commands_in(result: dict[str, Any]) -> list[CommandReport]:
+    """Return the reports in an answer; oldest first, since get_commands answers with the newest first."""
+    if "commands" in result:
+        return [command_in(values) for values in reversed(result["commands"])]
+    return [command_in(result)] if "command" in result and "op" in result else []
 
 
 class CommandCache:
@@ -162,8 +230,6 @@ def _metres(value: object) -> str:
     return f"{value:.2f}" if isinstance(value, (int, float)) else "?"
 
 
-# --- Whether a robot has come to its path yet: it drives to the first point, by a way that nobody prescribed
-
 ON_PATH_M = 1.0
 """Metres beside a path within which a robot has come to it."""
 AWAY_M = 1.0
@@ -186,16 +252,14 @@ class PathApproach:
         self.nearest = min(self.nearest, to_first)
 
 
-# --- How far a robot is from where it was told to be ---
-
 Floats = npt.NDArray[np.float64]
 
 
 class PathDeviations:
     """Remembers of each robot whether it has come to its path: the way there is nobody's to prescribe."""
 
-    def __init__(self, book: CommandCache):
-        self._book = book
+    def __init__(self, commands: CommandCache):
+        self._commands = commands
         self._ways: dict[str, tuple[str, PathApproach]] = {}
         """By robot, the command whose path it is to drive, and how it comes to that."""
 
@@ -205,9 +269,9 @@ class PathDeviations:
         ``xy`` is where it is, in the site frame. None where it has neither, or is on its way to a target or
         to the first point of its path: it cannot be beside what it was not given.
         """
-        task = self._book.task_of(robot)
+        task = self._commands.task_of(robot)
         if task is None:
-            reached = self._book.reached_by(robot)
+            reached = self._commands.reached_by(robot)
             return None if reached is None else reached.deviation
         points = _path_points(task) if task.op == SetPath.__name__ else np.empty((0, 2))
         if xy is None or len(points) == 0:

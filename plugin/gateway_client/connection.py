@@ -11,15 +11,21 @@ from typing import Any
 
 from qgis.PyQt.QtCore import QObject, QThread
 
-from ...robot_bridge.core.clock import steady_time
+from ...robot_bridge.core.clock import Clock, steady_time
 from ..ui.errors import AddressError, GatewayLinkError, NotSentError
 from ..ui.language import tr
-from .buffers import OperatorRequest, StateUpdate, UpdateBuffer
-from .link import ConnectionPhase, ConnectionStatus, OperatorCredentials, check_address, explain
+from .connection_status import (
+    TOO_LARGE,
+    ConnectionPhase,
+    ConnectionStatus,
+    OperatorCredentials,
+    check_address,
+    explain,
+)
+from .fleet_state import StateUpdate, UpdateBuffer
 from .protocol import GatewayProtocol
+from .requests import OperatorRequest
 from .websocket_library import websocket_library
-
-# --- How long to wait before the next attempt to reach the gateway ---
 
 
 class Backoff:
@@ -53,8 +59,6 @@ class Backoff:
         self._attempts = 0
 
 
-# --- Keeps a link to the gateway up: connects, converses, and tries again when it breaks ---
-
 ANSWER_WITHIN = 5.0
 PING_EVERY = 2.0
 PONG_WITHIN = 2.5
@@ -75,16 +79,16 @@ class GatewayClient:
         self,
         url: str,
         operator: str,
-        mailbox: UpdateBuffer,
+        buffer: UpdateBuffer,
         library: ModuleType,
         rate: float = 10.0,
         credentials: OperatorCredentials | None = None,
     ):
         self._url = url
         self._credentials = credentials or OperatorCredentials()
-        self._mailbox = mailbox
+        self._buffer = buffer
         self._library = library
-        self._protocol = GatewayProtocol(operator, rate, url, mailbox, steady_time)
+        self._protocol = GatewayProtocol(operator, rate, url, buffer, Clock())
         self._backoff = Backoff()
         self._awake_at = steady_time()
         self._outgoing: asyncio.Queue[str] = asyncio.Queue()
@@ -94,17 +98,17 @@ class GatewayClient:
         reason = ""
         try:
             while True:
-                self._mailbox.put_link(ConnectionStatus(ConnectionPhase.CONNECTING, reason))
+                self._buffer.add(link=ConnectionStatus(ConnectionPhase.CONNECTING, reason))
                 failure = await self._attempt()
                 reason = str(failure)
                 if failure.final:
-                    self._mailbox.put_link(
-                        ConnectionStatus(ConnectionPhase.FAILED, reason, wants_token=failure.wants_token)
+                    self._buffer.add(
+                        link=ConnectionStatus(ConnectionPhase.FAILED, reason, wants_token=failure.wants_token)
                     )
                     return
                 wait = self._backoff.next_wait()
                 due = steady_time() + wait
-                self._mailbox.put_link(ConnectionStatus(ConnectionPhase.RETRYING, reason, next_try=due))
+                self._buffer.add(link=ConnectionStatus(ConnectionPhase.RETRYING, reason, next_try=due))
                 await asyncio.sleep(wait)
         finally:
             self._protocol.end()
@@ -122,12 +126,14 @@ class GatewayClient:
         except AddressError as error:
             return GatewayLinkError(str(error), final=True, wants_token=True)
         except Exception as error:
+            if getattr(getattr(error, "rcvd", None), "code", None) == TOO_LARGE:
+                self._protocol.hand_back_largest()
             explained = explain(error, self._url, self._library.exceptions)
             if explained is None:
                 raise
             return explained
         finally:
-            self._protocol.ready = False
+            self._protocol.end_link()
         return GatewayLinkError(tr("The gateway at {url} closed the link. It is tried again.", url=self._url))
 
     async def _hold(self) -> None:
@@ -189,7 +195,7 @@ class GatewayClient:
             ) from error
         self._backoff.reset()
         who = {"operator": self._protocol.operator, "role": self._protocol.role}
-        self._mailbox.put_link(ConnectionStatus(ConnectionPhase.CONNECTED, **who))
+        self._buffer.add(link=ConnectionStatus(ConnectionPhase.CONNECTED, **who))
         async for text in socket:
             self._check_awake()
             self._send_all(self._protocol.receive(text))
@@ -221,8 +227,6 @@ class GatewayClient:
             self._outgoing.put_nowait(text)
 
 
-# --- The connection to the gateway: one worker thread, out of the window's way ---
-
 STOP_WITHIN_MS = 3000
 CANCEL_WITHIN = 0.3
 
@@ -237,9 +241,13 @@ class ConnectionThread(QObject):
         super().__init__(parent)
         self._worker: _Worker | None = None
         self._ending: list[_Worker] = []
-        self._mailbox = UpdateBuffer()
+        self._buffer = UpdateBuffer()
         self.rate = 10.0
-        """How many times a second positions are asked for at most, by links that are opened from now on."""
+        """How many times a second positions are asked for at most."""
+
+    def set_rate(self, rate: float) -> None:
+        """Have links that are opened from now on ask for positions so many times a second at most."""
+        self.rate = rate
 
     @property
     def is_open(self) -> bool:
@@ -262,10 +270,10 @@ class ConnectionThread(QObject):
         credentials.check(url)
         library = websocket_library()
         self.close()
-        self._mailbox = UpdateBuffer()
-        self._mailbox.put_link(ConnectionStatus(ConnectionPhase.CONNECTING))
-        client = GatewayClient(url, operator, self._mailbox, library, self.rate, credentials)
-        self._worker = _Worker(client, self._mailbox)
+        self._buffer = UpdateBuffer()
+        self._buffer.add(link=ConnectionStatus(ConnectionPhase.CONNECTING))
+        client = GatewayClient(url, operator, self._buffer, library, self.rate, credentials)
+        self._worker = _Worker(client, self._buffer)
         self._worker.start()
 
     def close(self) -> None:
@@ -288,11 +296,11 @@ class ConnectionThread(QObject):
     def collect_updates(self) -> StateUpdate:
         """Return what arrived since the last call."""
         self._forget_ended()
-        news = self._mailbox.collect()
+        update = self._buffer.collect()
         if self._worker is None:
             # The worker that is ending may still have said that it will try again.
-            news.link = ConnectionStatus(ConnectionPhase.CLOSED)
-        return news
+            update.link = ConnectionStatus(ConnectionPhase.CLOSED)
+        return update
 
     def shut_down(self) -> None:
         """Close the link and wait until every thread has ended."""
@@ -308,11 +316,11 @@ class ConnectionThread(QObject):
 class _Worker(QThread):
     """Runs one client's event loop."""
 
-    def __init__(self, client: GatewayClient, mailbox: UpdateBuffer):
+    def __init__(self, client: GatewayClient, buffer: UpdateBuffer):
         super().__init__()
         self.setObjectName("fleet_connection")
         self._client = client
-        self._mailbox = mailbox
+        self._buffer = buffer
         self._lock = threading.Lock()
         self._early: list[OperatorRequest] = []
         self._loop: asyncio.AbstractEventLoop | None = None
@@ -342,8 +350,8 @@ class _Worker(QThread):
         try:
             self._run_loop()
         except Exception as error:
-            self._mailbox.put_link(
-                ConnectionStatus(
+            self._buffer.add(
+                link=ConnectionStatus(
                     ConnectionPhase.FAILED,
                     tr(
                         "The connection stopped on an internal fault ({name}: {error}). Press Connect to "

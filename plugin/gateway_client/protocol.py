@@ -5,9 +5,9 @@ from __future__ import annotations
 import itertools
 import json
 import math
-from collections.abc import Callable
 from typing import Any
 
+from ...robot_bridge.core.clock import Clock
 from ...robot_bridge.core.json_decoder import DOCUMENT, check_bounds
 from ...robot_bridge.core.messages import (
     LONGEST_OPERATOR,
@@ -16,11 +16,14 @@ from ...robot_bridge.core.messages import (
     EmergencyStop,
     GetClosures,
     GetCommands,
+    GetPlans,
     GetQueue,
     Hello,
     PositionForm,
     SiteReport,
     Subscribe,
+    closures_report,
+    conflicts_report,
     emergency_report,
     geofence_report,
     links_report,
@@ -29,32 +32,19 @@ from ...robot_bridge.core.messages import (
     one_line,
     placement_report,
     queue_report,
+    replanned_robot,
     site_report,
     suspensions_report,
     to_json,
 )
 from ..ui.errors import GatewayLinkError
 from ..ui.language import tr
-from .buffers import COMMAND_METHOD as COMMAND_NEWS
-from .buffers import OBSERVATION_METHOD as OBSERVATION_NEWS
-from .buffers import PLACEMENT_METHOD as PLACEMENT_NEWS
-from .buffers import QUEUE_METHOD as QUEUE_NEWS
-from .buffers import ROAD_METHODS as ROAD_NEWS
-from .buffers import (
-    OperatorRequest,
-    RequestOutbox,
-    RequestResult,
-    UpdateBuffer,
-    command_in,
-    commands_in,
-    observations_in,
-    placements_in,
-    queues_in,
-)
-from .link import DEFAULT_URL
+from .command_cache import command_in, commands_in
+from .connection_status import DEFAULT_URL
+from .fleet_state import UpdateBuffer
+from .report_caches import observations_in, placements_in, plan_in, plans_in, queues_in
+from .requests import OperatorRequest, RequestResult
 from .robot_table import table_from_frame, table_from_rows
-
-Clock = Callable[[], float]
 
 UNKNOWN_METHOD, WRONG_PARAMETERS = -32601, -32602
 """Error codes of JSON-RPC: robots' addresses know no greeting, and links' addresses another one."""
@@ -62,22 +52,92 @@ OUTDATED = -32006
 OVERRIDABLE = -32007
 """The error code of a change to what is not as it was seen; the newer state comes with it."""
 
+NEWEST_COUNTS = {
+    "emergency": emergency_report,
+    "suspensions": suspensions_report,
+    "links": links_report,
+    "geofence": geofence_report,
+    "nearness": nearness_report,
+    "closures": closures_report,
+    "conflicts": conflicts_report,
+}
+"""Notifications of which only the newest counts, each a topic of its name: what decodes it."""
+EACH_COUNTS = {
+    "command": ("commands", command_in),
+    "queue": ("queues", queue_report),
+    "plan": ("plans", plan_in),
+    "placement": ("placed_cones", placement_report),
+    "observation": ("observations", observation_report),
+    "replanned": ("replanned", replanned_robot),
+}
+"""Notifications of one thing among many: the topic, and what decodes it."""
+
 ALL_QUEUES = "every queue"
 """The key of what asks for all queues when a link begins."""
+ALL_PLANS = "every plan"
+"""The key of what asks for all cone plans when a link begins; older gateways know no such request."""
+
+
+class RequestOutbox:
+    """Keeps orders over the loss of a link, so that each is repeated until answered and then never again.
+
+    A robot must not drive off because of something that was asked for long ago: an order older than
+    ``repeat_within`` seconds is not repeated but handed back as not known to have arrived, unless it lasts.
+    """
+
+    def __init__(self, repeat_within: float = 30.0):
+        self._repeat_within = repeat_within
+        self._waiting: dict[str, OperatorRequest] = {}
+
+    def __len__(self) -> int:
+        return len(self._waiting)
+
+    def add(self, order: OperatorRequest) -> bool:
+        """Keep ``order`` until it is answered; false when the same order waits already."""
+        if order.key in self._waiting:
+            return False
+        self._waiting[order.key] = order
+        return True
+
+    def answered(self, key: str) -> OperatorRequest | None:
+        """Take out the order that was answered; None when it was answered before."""
+        return self._waiting.pop(key, None)
+
+    def renew(self, now: float) -> tuple[list[OperatorRequest], list[OperatorRequest]]:
+        """Return the orders to send on a new link, oldest first, and those that are too old, taken out."""
+        limit = now - self._repeat_within
+        too_old = [o for o in self._waiting.values() if o.asked_at < limit and not o.lasting]
+        for order in too_old:
+            del self._waiting[order.key]
+        return list(self._waiting.values()), too_old
+
+    def largest(self) -> tuple[OperatorRequest | None, int]:
+        """Take out the largest order that still waits, and return it with its bytes; a stop is never it."""
+        sizes = {key: len(json.dumps(one.params)) for key, one in self._waiting.items() if not one.lasting}
+        if not sizes:
+            return None, 0
+        key = max(sizes, key=sizes.__getitem__)
+        return self._waiting.pop(key), sizes[key]
+
+    def clear(self) -> list[OperatorRequest]:
+        """Take out every order that still waits and return them."""
+        left = list(self._waiting.values())
+        self._waiting.clear()
+        return left
 
 
 class GatewayProtocol:
     """One link after the other with the same gateway: hello, subscription, commands, orders and answers.
 
-    What is learnt goes to the mailbox. Orders wait in the outbox until the gateway answered them, across
+    What is learnt goes to the buffer. Orders wait in the outbox until the gateway answered them, across
     links; each is sent once on each link.
     """
 
-    def __init__(self, operator: str, rate: float, url: str, mailbox: UpdateBuffer, clock: Clock):
+    def __init__(self, operator: str, rate: float, url: str, buffer: UpdateBuffer, clock: Clock):
         self._operator = operator
         self._rate = rate
         self._url = url
-        self._mailbox = mailbox
+        self._buffer = buffer
         self._clock = clock
         self._outbox = RequestOutbox()
         self._ids = itertools.count(1)
@@ -100,10 +160,25 @@ class GatewayProtocol:
             return []
         return [self._request(order)]
 
+    def end_link(self) -> None:
+        """Send nothing until the next link has been greeted."""
+        self.ready = False
+
+    def hand_back_largest(self) -> None:
+        """Hand back the largest order: the gateway ended the link over its size, and would do so again."""
+        order, size = self._outbox.largest()
+        if order is not None:
+            text = tr(
+                "the gateway takes no message as large as this one of {size} kB. Ask for less at once, or "
+                "have largest_message_bytes raised in the site's settings.",
+                size=-(-size // 1000),
+            )
+            self._buffer.add_answer(RequestResult(order, error=text))
+
     def end(self) -> None:
         """Hand back every order that was not answered: nobody will ask for an answer any more."""
         for order in self._outbox.clear():
-            self._mailbox.put_answer(
+            self._buffer.add_answer(
                 RequestResult(
                     order,
                     error=tr(
@@ -120,7 +195,7 @@ class GatewayProtocol:
         """
         try:
             if isinstance(text, bytes):
-                self._mailbox.put_robots(table_from_frame(text, self._clock()))
+                self._buffer.add(robots=table_from_frame(text, self._clock.steady()))
                 return []
             # Numbers that are none are named by what reads them.
             check_bounds(text, DOCUMENT)
@@ -153,33 +228,14 @@ class GatewayProtocol:
 
     def _notified(self, method: str, params: dict[str, Any]) -> None:
         if method == "positions":
-            self._mailbox.put_robots(table_from_rows(params["robots"], self._clock(), params))
-        elif method == COMMAND_NEWS:
-            self._mailbox.put_commands([command_in(params)])
-        elif method == "emergency":
-            self._mailbox.put_emergency(emergency_report(params))
+            self._buffer.add(robots=table_from_rows(params["robots"], self._clock.steady(), params))
         elif method == "site":
-            self._mailbox.put_site(checked_site(site_report(params)))
-        elif method == QUEUE_NEWS:
-            self._mailbox.put_queue(queue_report(params))
-        elif method in ROAD_NEWS:
-            self._mailbox.put_roads(method, params)
-        elif method == "geofence":
-            self._mailbox.put_geofence(geofence_report(params))
-        elif method == PLACEMENT_NEWS:
-            self._mailbox.put_placements([placement_report(params)])
-        elif method == OBSERVATION_NEWS:
-            self._mailbox.put_observations([observation_report(params)])
-        else:
-            self._notified_of_robots(method, params)
-
-    def _notified_of_robots(self, method: str, params: dict[str, Any]) -> None:
-        if method == "suspensions":
-            self._mailbox.put_suspensions(suspensions_report(params))
-        elif method == "links":
-            self._mailbox.put_links(links_report(params))
-        elif method == "nearness":
-            self._mailbox.put_nearness(nearness_report(params))
+            self._buffer.add(site=checked_site(site_report(params)))
+        elif method in NEWEST_COUNTS:
+            self._buffer.add(**{method: NEWEST_COUNTS[method](params)})
+        elif method in EACH_COUNTS:
+            topic, decode = EACH_COUNTS[method]
+            self._buffer.add(**{topic: [decode(params)]})
         # Another notification is of a newer gateway and nothing that this desk asked for.
 
     def _answered(self, message: dict[str, Any]) -> list[str]:
@@ -242,14 +298,16 @@ class GatewayProtocol:
                 final=True,
             )
         database = str(result.get("database") or "")
-        self._mailbox.put_site(checked_site(site_report(result["site"])), greeting_of=database)
+        self._buffer.add(site=checked_site(site_report(result["site"])), greeting_of=database)
         self.operator, self.role = (str(result.get(name) or "") for name in ("operator", "role"))
         if "emergency" in result:
-            self._mailbox.put_emergency(emergency_report(result["emergency"]))
+            self._buffer.add(emergency=emergency_report(result["emergency"]))
         self.ready = True
-        orders, too_old = self._outbox.renew(self._clock())
+        orders, too_old = self._outbox.renew(self._clock.steady())
         for order in too_old:
-            self._mailbox.put_answer(RequestResult(order, error=_too_old(self._clock() - order.asked_at)))
+            self._buffer.add_answer(
+                RequestResult(order, error=_too_old(self._clock.steady() - order.asked_at))
+            )
         first = [
             OperatorRequest(
                 "subscribe", Subscribe.method, to_json(Subscribe(self._rate, PositionForm.COLUMNS))
@@ -257,6 +315,7 @@ class GatewayProtocol:
             OperatorRequest("get_commands", GetCommands.method, to_json(GetCommands())),
             OperatorRequest("get_closures", GetClosures.method),
             OperatorRequest(ALL_QUEUES, GetQueue.method, to_json(GetQueue())),
+            OperatorRequest(ALL_PLANS, GetPlans.method, to_json(GetPlans())),
         ]
         return [self._request(order) for order in (*first, *orders)]
 
@@ -265,32 +324,33 @@ class GatewayProtocol:
         if "error" in message:
             outdated = _code(message) == OUTDATED
             if outdated:
-                self._take_queues(message["error"].get("data") or {})
+                newer = message["error"].get("data") or {}
+                self._buffer.add(queues=queues_in(newer), plans=plans_in(newer))
+            if order.key == ALL_PLANS and _code(message) == UNKNOWN_METHOD:
+                self._buffer.add(is_driving=False)
             if waiting is not None:
                 found = _found(message) if _code(message) == OVERRIDABLE else ()
-                self._mailbox.put_answer(
+                self._buffer.add_answer(
                     RequestResult(order, error=_error_text(message), outdated=outdated, overridable=found)
                 )
             return []
         result = message.get("result") or {}
         if order.method in (EmergencyStop.method, ClearEmergencyStop.method):
-            self._mailbox.put_emergency(emergency_report(result))
+            self._buffer.add(emergency=emergency_report(result))
         if order.method == GetClosures.method:
-            self._mailbox.put_roads("closures", result)
-        if order.key == ALL_QUEUES:
-            self._mailbox.put_every_queue(queues_in(result))
-        else:
-            self._take_queues(result)
-        self._mailbox.put_commands(commands_in(result))
-        self._mailbox.put_placements(placements_in(result))
-        self._mailbox.put_observations(observations_in(result))
+            self._buffer.add(closures=closures_report(result))
+        self._buffer.add(
+            queues=queues_in(result),
+            are_all_queues=order.key == ALL_QUEUES,
+            plans=plans_in(result),
+            is_driving=True if order.key == ALL_PLANS else None,
+            commands=commands_in(result),
+            placed_cones=placements_in(result),
+            observations=observations_in(result),
+        )
         if waiting is not None:
-            self._mailbox.put_answer(RequestResult(order, result=result))
+            self._buffer.add_answer(RequestResult(order, result=result))
         return []
-
-    def _take_queues(self, values: dict[str, Any]) -> None:
-        for report in queues_in(values):
-            self._mailbox.put_queue(report)
 
 
 def checked_site(site: SiteReport) -> SiteReport:

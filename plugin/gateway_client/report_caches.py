@@ -1,9 +1,14 @@
-"""Queues, placed cones, observations, geofence and nearness as last reported."""
+"""Queues, cone plans, placed cones, observations, geofence and nearness: decoded, and as last reported."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, replace
+from typing import Any
 
+from ...robot_bridge.core.assignment.plan import ConePlan, plan_of_document
+from ...robot_bridge.core.clock import Clock
+from ...robot_bridge.core.errors import PlanFileError
 from ...robot_bridge.core.messages import (
     FenceAlarm,
     Geofence,
@@ -12,12 +17,15 @@ from ...robot_bridge.core.messages import (
     ObservationReport,
     ObservationState,
     PlacementReport,
+    PlanReport,
+    PlanState,
     QueueReport,
+    observation_report,
+    placement_report,
+    plan_report,
+    queue_report,
 )
 from ..ui.language import tr
-from .buffers import ObservationUpdates, PlacedConeUpdates, QueueUpdates
-
-# --- The queues of the robots, as the gateway told them last ---
 
 
 class QueueCache:
@@ -32,13 +40,16 @@ class QueueCache:
     def __len__(self) -> int:
         return len(self.queues)
 
-    def merge(self, news: QueueUpdates) -> list[str]:
-        """Take in news and return the robots of whose queues they tell something new."""
-        gone = self.queues.keys() - news.queues.keys() if news.every else set()
+    def merge(self, reports: Mapping[str, QueueReport], *, are_all: bool = False) -> list[str]:
+        """Take in reports by their robots and return the robots of whose queues they tell something new.
+
+        Queues that are not among them are forgotten where they ``are_all``.
+        """
+        gone = self.queues.keys() - reports.keys() if are_all else set()
         for robot in gone:
             del self.queues[robot]
-        new = [robot for robot, report in news.queues.items() if self.queues.get(robot) != report]
-        self.queues.update(news.queues)
+        new = [robot for robot, report in reports.items() if self.queues.get(robot) != report]
+        self.queues.update(reports)
         return [*gone, *new]
 
     def forget(self, robots: Iterable[str]) -> None:
@@ -60,7 +71,137 @@ class QueueCache:
         self.queues.clear()
 
 
-# --- The cones that robots put down, as the gateway told them last ---
+def queues_in(values: dict[str, Any]) -> list[QueueReport]:
+    """Return the queues in an answer, or in what comes with a refusal.
+
+    :raises KeyError: for what names itself a queue and is none; ValueError and TypeError likewise.
+    """
+    if {"robot", "revision", "tasks", "robot_state"} <= values.keys():
+        return [queue_report(values)]
+    return [queue_report(queue) for queue in values.get("queues") or ()]
+
+
+PLAN_ENDS = (PlanState.FINISHED, PlanState.CLEARED)
+MOST_ENDED_PLANS = 10
+MOST_STOPS = 20_000
+"""of one plan; a gateway drives 5000 cones in one, with stores between them."""
+
+
+@dataclass(frozen=True)
+class KnownPlan:
+    """A cone plan as the gateway reported it last.
+
+    ``document`` is what its robots drive by, ``proposal`` what is proposed of what is left; both as they were
+    at the plan's revision ``whole_at``, which is -1 before they came.
+    """
+
+    report: PlanReport
+    document: ConePlan | None = None
+    proposal: ConePlan | None = None
+    whole_at: int = -1
+
+    @property
+    def plan(self) -> str:
+        """The plan's name."""
+        return self.report.plan
+
+    @property
+    def is_open(self) -> bool:
+        """Whether the gateway drives it."""
+        return self.report.state not in PLAN_ENDS
+
+    @property
+    def is_whole(self) -> bool:
+        """Whether its documents are those of what was reported last."""
+        return self.whole_at == self.report.revision
+
+
+def newer_plan(known: KnownPlan | None, told: KnownPlan) -> KnownPlan:
+    """Return what is known of a plan once ``told`` was heard, which may have been overtaken on its way."""
+    if known is None:
+        return told
+    if told.report.revision < known.report.revision:
+        return known
+    return replace(known, report=told.report) if told.whole_at < 0 else told
+
+
+class PlanCache:
+    """The newest report of each cone plan, by its name; of those that ended only some."""
+
+    def __init__(self) -> None:
+        self._plans: dict[str, KnownPlan] = {}
+        self.is_driving: bool | None = None
+        """Whether this gateway drives cone plans, None before it has said so."""
+
+    def __iter__(self) -> Iterator[KnownPlan]:
+        return iter(self._plans.values())
+
+    def get(self, name: str | None) -> KnownPlan | None:
+        """Return a plan, None for one that is not known."""
+        return None if name is None else self._plans.get(name)
+
+    def open(self) -> list[KnownPlan]:
+        """Return the plans that the gateway drives, the newest first."""
+        return sorted(
+            (one for one in self if one.is_open), key=lambda one: one.report.submitted_at, reverse=True
+        )
+
+    def merge(self, told: Mapping[str, KnownPlan], is_driving: bool | None = None) -> list[str]:
+        """Take in plans by their names and return those of which they tell something new.
+
+        With ``is_driving``, which begins a link, there are no others.
+        """
+        gone: list[str] = []
+        if is_driving is not None:
+            self.is_driving = is_driving
+            gone = [name for name in self._plans if name not in told]
+            for name in gone:
+                del self._plans[name]
+        new = []
+        for name, one in told.items():
+            known = self._plans.get(name)
+            if is_driving is not None and known is not None and one.whole_at < 0:
+                one = replace(known, report=one.report)
+            elif is_driving is None:
+                one = newer_plan(known, one)
+            if one != known:
+                self._plans[name] = one
+                new.append(name)
+        ended = sorted((one for one in self if not one.is_open), key=lambda one: one.report.ended_at or 0.0)
+        for one in ended[: max(0, len(ended) - MOST_ENDED_PLANS)]:
+            del self._plans[one.plan]
+        return [*gone, *new]
+
+    def clear(self) -> None:
+        """Forget everything: it is another site's."""
+        self._plans.clear()
+        self.is_driving = None
+
+
+def plan_in(values: dict[str, Any]) -> KnownPlan:
+    """Return the plan that a gateway sent as JSON.
+
+    :raises KeyError: for what is none; ValueError and TypeError likewise.
+    """
+    if len(values.get("stops") or ()) > MOST_STOPS:
+        raise ValueError(f"plan {values['plan']!r} has more than {MOST_STOPS} stops")
+    report = replace(plan_report(values), document=None, proposal=None)
+    try:
+        document, proposal = (
+            None if values.get(name) is None else plan_of_document(values[name])
+            for name in ("document", "proposal")
+        )
+    except PlanFileError as error:
+        raise ValueError(str(error)) from error
+    return KnownPlan(report, document, proposal, -1 if document is None else report.revision)
+
+
+def plans_in(values: dict[str, Any]) -> list[KnownPlan]:
+    """Return the plans in an answer, or in what comes with a refusal; raises as :func:`plan_in`."""
+    if {"plan", "revision", "state", "submitted_by"} <= values.keys():
+        return [plan_in(values)]
+    return [plan_in(one) for one in values.get("plans") or ()]
+
 
 MOST_PLACEMENTS = 20_000
 MOST_ASKED = 5000
@@ -79,10 +220,10 @@ class PlacedConeCache:
     def __len__(self) -> int:
         return len(self._reports)
 
-    def merge(self, news: PlacedConeUpdates) -> list[int]:
-        """Take in news and return the numbers of the cones of which they tell something new."""
-        new = [number for number, one in news.placements.items() if self._reports.get(number) != one]
-        self._reports.update(news.placements)
+    def merge(self, reports: Mapping[int, PlacementReport]) -> list[int]:
+        """Take in reports and return the numbers of the cones of which they tell something new."""
+        new = [number for number, one in reports.items() if self._reports.get(number) != one]
+        self._reports.update(reports)
         for number in sorted(self._reports)[: max(0, len(self._reports) - MOST_PLACEMENTS)]:
             del self._reports[number]
         return new
@@ -92,7 +233,10 @@ class PlacedConeCache:
         self._reports.clear()
 
 
-# --- The observations that the desk knows of, as the gateway told them last ---
+def placements_in(values: dict[str, Any]) -> list[PlacementReport]:
+    """Return the placed cones in an answer; raises KeyError or TypeError for what names itself one."""
+    return [placement_report(placement) for placement in values.get("placements") or ()]
+
 
 MOST_REVIEWED = 1000
 """Reviewed ones that are kept; those that wait for their review are all kept."""
@@ -115,10 +259,10 @@ class ObservationCache:
         """How many wait for their review."""
         return sum(is_pending(report) for report in self._reports.values())
 
-    def merge(self, news: ObservationUpdates) -> list[int]:
-        """Take in news and return the numbers of those of which they tell something new."""
-        new = [number for number, one in news.observations.items() if self._reports.get(number) != one]
-        self._reports.update(news.observations)
+    def merge(self, reports: Mapping[int, ObservationReport]) -> list[int]:
+        """Take in reports and return the numbers of those of which they tell something new."""
+        new = [number for number, one in reports.items() if self._reports.get(number) != one]
+        self._reports.update(reports)
         if new:
             reviewed = sorted(n for n, one in self._reports.items() if not is_pending(one))
             for number in reviewed[: max(0, len(reviewed) - MOST_REVIEWED)]:
@@ -143,7 +287,15 @@ def is_pending(report: ObservationReport) -> bool:
     return report.state is ObservationState.PENDING
 
 
-# --- What the gateway told last of robots in keepouts and at obstacles, and what it does not watch ---
+def observations_in(values: dict[str, Any]) -> list[ObservationReport]:
+    """Return the observations in an answer.
+
+    :raises KeyError: for what names itself one and is none; ValueError and TypeError likewise.
+    """
+    if {"observation", "op", "object", "state"} <= values.keys():
+        return [observation_report(values)]
+    return [observation_report(one) for one in values.get("observations") or ()]
+
 
 GEOFENCE_SILENT_AFTER = 10.0
 """Seconds without a word after which nothing is known: a gateway tells of them every few seconds."""
@@ -151,29 +303,29 @@ NAMED = 3
 
 
 class GeofenceState:
-    """Keeps the newest report; ``clock`` returns seconds that only ever go on."""
+    """Keeps the newest report, for as long as it counts by ``clock``."""
 
-    def __init__(self, clock: Callable[[], float]):
+    def __init__(self, clock: Clock):
         self._clock = clock
         self._report: Geofence | None = None
-        self._since = clock()
+        self._since = clock.steady()
 
     def update(self, report: Geofence) -> None:
         """Take in what the gateway told."""
-        self._report, self._since = report, self._clock()
+        self._report, self._since = report, self._clock.steady()
 
     def begin_link(self) -> None:
         """Wait for the first word on a new link; what was told on the one before holds until then."""
-        self._since = self._clock()
+        self._since = self._clock.steady()
 
     def clear(self) -> None:
         """Forget everything, and wait for the first word of another gateway."""
-        self._report, self._since = None, self._clock()
+        self._report, self._since = None, self._clock.steady()
 
     @property
     def is_silent(self) -> bool:
         """Whether the gateway has not told of them for so long that nothing is known."""
-        return self._clock() - self._since > GEOFENCE_SILENT_AFTER
+        return self._clock.steady() - self._since > GEOFENCE_SILENT_AFTER
 
     @property
     def alarms(self) -> list[FenceAlarm]:
@@ -221,23 +373,21 @@ def _more(report: Geofence) -> str:
     return tr("{more} more are in keepouts or at obstacles and not listed.", more=report.more)
 
 
-# --- What the gateway told last of people and vehicles near robots ---
-
 NEARNESS_SILENT_AFTER = 5.0
 """Seconds without a word after which nobody is near: as long as somebody is, it is told every second."""
 
 
 class NearnessState:
-    """Keeps the newest report; ``clock`` returns seconds that only ever go on."""
+    """Keeps the newest report, for as long as it counts by ``clock``."""
 
-    def __init__(self, clock: Callable[[], float]):
+    def __init__(self, clock: Clock):
         self._clock = clock
         self._report: Nearness | None = None
-        self._since = clock()
+        self._since = clock.steady()
 
     def update(self, report: Nearness) -> None:
         """Take in what the gateway told."""
-        self._report, self._since = report, self._clock()
+        self._report, self._since = report, self._clock.steady()
 
     def clear(self) -> None:
         """Forget everything."""
@@ -257,4 +407,4 @@ class NearnessState:
         return tr("People near robots are not watched: {why}.", why=report.fault.rstrip("."))
 
     def _current(self) -> Nearness | None:
-        return None if self._clock() - self._since > NEARNESS_SILENT_AFTER else self._report
+        return None if self._clock.steady() - self._since > NEARNESS_SILENT_AFTER else self._report

@@ -5,15 +5,13 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from ...robot_bridge.core.messages import RobotReport, RobotState, robot_report
-from .robot_table import STATES, RobotTable
-
-# --- The order in which people look for names: r2 before r10, and capitals among small letters ---
+from .robot_table import STATES, RemovedRobots, RobotTable
 
 _NUMBER = re.compile(r"[0-9]+")
 _DIGITS = 20
@@ -25,8 +23,6 @@ def name_order(name: str) -> str:
     filled = _NUMBER.sub(lambda number: number[0].zfill(_DIGITS), name.casefold())
     return f"{filled}\0{name}"
 
-
-# --- What the desk knows of the robots, and how far it can be trusted as time goes on without news ---
 
 __all__ = ["STATES", "RemovedRobots", "RobotArrays", "RobotStates", "RobotView"]
 
@@ -52,13 +48,6 @@ class RobotView:
     def has_pose(self) -> bool:
         """Whether the robot ever said where it is."""
         return self.told.get("x") is not None and self.told.get("y") is not None
-
-
-class RemovedRobots(NamedTuple):
-    """Robots that are there no more, and (n,) the rows that they had."""
-
-    names: frozenset[str]
-    rows: npt.NDArray[np.intp]
 
 
 @dataclass(frozen=True)
@@ -104,23 +93,23 @@ class RobotStates:
     def __len__(self) -> int:
         return len(self._seen)
 
+    def set_limits(self, stale_after: float, lost_after: float) -> None:
+        """Have robots count as stale and as lost after so many seconds without a message."""
+        self.stale_after, self.lost_after = stale_after, lost_after
+
     def merge(self, sightings: RobotTable) -> RemovedRobots:
         """Take in newer sightings; one that arrived before what is known is passed over.
 
         Return the robots that are there no more.
         """
-        gone = self._gone_by(sightings)
-        if not sightings.tells_nothing:
-            self._seen.merge(sightings)
-            self.revision += 1
+        if sightings.tells_nothing:
+            return RemovedRobots(frozenset(), np.empty(0, dtype=np.intp))
+        gone = self._seen.merge(sightings)
+        self.revision += 1
         if gone.names:
             self._names, self._by_name, self._orders = [], [], []
             self.arrangement += 1
         return gone
-
-    def _gone_by(self, sightings: RobotTable) -> RemovedRobots:
-        rows = self._seen.gone_by(sightings)
-        return RemovedRobots(frozenset(self._seen.names[row] for row in rows), np.array(rows, dtype=np.intp))
 
     def clear(self) -> None:
         """Forget every robot."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Sequence
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -19,11 +19,8 @@ from ...robot_bridge.core.messages import (
 )
 from ...robot_bridge.core.position_frame import split_frame
 
-# --- Robots as the gateway told them: a table of numbers, one row a robot ---
-# Ten thousand robots ten times a second are too many to make an object of each. A snapshot becomes columns
-# on
-# the connection's thread; the window's thread works on whole columns and makes a report only of the robot
-# that
+# Ten thousand robots ten times a second are too many to make an object of each. A snapshot becomes columns on
+# the thread of the connection; the window works on whole columns and makes a report only of the robot that
 # somebody looks at.
 
 STATES = (RobotState.FRESH, RobotState.STALE, RobotState.LOST, RobotState.OFFLINE)
@@ -37,6 +34,13 @@ SPARE_WORDS = 1000
 _TEXTS_AT = [AT[name] for name in WORDED]
 
 Numbers = npt.NDArray[np.float64]
+
+
+class RemovedRobots(NamedTuple):
+    """Robots that are there no more, and (n,) the rows that they had."""
+
+    names: frozenset[str]
+    rows: npt.NDArray[np.intp]
 
 
 class RobotTable:
@@ -117,10 +121,15 @@ class RobotTable:
         """Return what was told last of the robot in ``row``."""
         return robot_report(self.told(row))
 
-    def merge(self, newer: RobotTable) -> None:
-        """Take over what is in ``newer``, which is used up, unless it arrived before what is known."""
-        if gone := self.gone_by(newer):
-            self.drop(gone)
+    def merge(self, newer: RobotTable) -> RemovedRobots:
+        """Take over what is in ``newer``, which is used up, unless it arrived before what is known.
+
+        Return the robots that are there no more.
+        """
+        rows = self.gone_by(newer)
+        gone = RemovedRobots(frozenset(self.names[row] for row in rows), np.array(rows, dtype=np.intp))
+        if rows:
+            self.drop(rows)
         self.everything |= newer.everything
         self.removed = (self.removed | newer.removed).difference(newer.names)
         numbers, received = newer._numbers[:, : len(newer)], AT["received"]
@@ -134,6 +143,7 @@ class RobotTable:
             self._numbers[:, rows[taken]] = numbers[:, taken]
         if len(self._words) > SPARE_WORDS + 2 * len(self):
             self._forget_words()
+        return gone
 
     def _say_in_own_words(self, numbers: Numbers, words: list[str]) -> None:
         """Make places in ``words`` places in this table's own, which grow by those that are new."""
@@ -170,9 +180,6 @@ class RobotTable:
         return np.fromiter(map(known.__getitem__, names), dtype=np.intp, count=len(names))
 
 
-# --- Which robots are there no more, as a message of positions tells ---
-
-
 def removed_robots(params: dict[str, Any]) -> dict[str, Any]:
     """Return ``removed`` and ``everything`` of a message, as :class:`RobotTable` has them.
 
@@ -190,8 +197,6 @@ def check_texts(name: str, values: Any) -> list[str]:
         raise ValueError(f"{name} is not a list of texts")
     return values
 
-
-# --- Positions that come as a JSON object for each robot, made into a table ---
 
 _STATE_CODES = {state.value: code for code, state in enumerate(STATES)}
 
@@ -265,9 +270,6 @@ def _state_code(state: Any) -> int:
     except (KeyError, TypeError):
         raise ValueError(f"{state!r} is not a robot's state; known are {', '.join(_STATE_CODES)}") from None
 
-
-# --- Positions that come as a table of numbers behind a JSON head: a binary frame, see ---
-# :mod:`~.robot_bridge.core.messages.operator_requests`.
 
 _KNOWN = {*POSITION_NUMBERS, *POSITION_FLAGS, *POSITION_TEXTS}
 

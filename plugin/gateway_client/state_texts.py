@@ -14,8 +14,6 @@ from ...robot_bridge.core.messages import (
 from ..ui.language import tr, tr_count
 from ..ui.times import time_of_day
 
-# --- States in the operator's language; in layers, expressions and files they stay as the protocol has them
-
 ROBOT_STATES = {
     RobotState.FRESH: tr("fresh"),
     RobotState.STALE: tr("stale"),
@@ -53,8 +51,6 @@ def longest_word(words: dict) -> str:
     """Return the word that needs the widest column."""
     return max(words.values(), key=len)
 
-
-# --- Tasks and queues in words ---
 
 TASK_KINDS = {
     TaskKind.DRIVE: tr("drive"),

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import re
 import sys
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
 from qgis.core import (
@@ -81,7 +81,12 @@ class TaggedFields:
 
 
 def read_tags(value: Any) -> dict[str, str]:
-    """Return the tags in one attribute, hstore or JSON; none where it is neither."""
+    """Return the tags in one attribute, hstore or JSON; none where it is neither.
+
+    QGIS parses JSON itself where the field's type says that it is JSON.
+    """
+    if isinstance(value, dict):
+        return _texts(value)
     if not isinstance(value, str) or len(value) > LONGEST_TEXT:
         return {}
     text = value.strip()
@@ -91,6 +96,10 @@ def read_tags(value: Any) -> dict[str, str]:
         tags = decode_json(text)
     except DecodingError:
         return {}
+    return _texts(tags)
+
+
+def _texts(tags: Mapping[str, Any]) -> dict[str, str]:
     return {key: str(tag) for key, tag in tags.items() if isinstance(tag, (str, int, float))}
 
 

@@ -1,12 +1,13 @@
-"""Source of a layer in its role: features, attributes, geometries, points."""
+"""Source of a layer in its role: features, attributes, geometries, points, and warnings about them."""
 
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from qgis.core import (
@@ -18,7 +19,10 @@ from qgis.core import (
     QgsExpressionContextUtils,
     QgsFeature,
     QgsFeatureRequest,
+    QgsFeatureSource,
+    QgsFeedback,
     QgsFields,
+    QgsGeometry,
     QgsProviderRegistry,
     QgsVectorLayer,
     QgsVectorLayerFeatureSource,
@@ -30,6 +34,7 @@ from qgis.PyQt.QtCore import QObject, pyqtSignal
 from ..ui.language import tr
 from .crs import stated_crs
 from .errors import LayerReadingError, LayerTypeError
+from .layer_expressions import FeatureFilter
 from .roles import EXPRESSIONS, FURNITURE, LayerExpressions, LayerSetup, setup_of
 from .site_transform import LayerToSiteTransform, SiteTransformError
 
@@ -283,6 +288,161 @@ class LayerWatch(QObject):
 
 def _signals_of(layer: QgsVectorLayer) -> list[str]:
     return [name for name in _CHANGES if hasattr(layer, name)]
+
+
+# --- Features of a layer read one after the other: those that count, with their geometry in metres ---
+
+
+def each_feature(
+    source: QgsFeatureSource, feedback: QgsFeedback, progress: float = 0.0
+) -> Iterator[QgsFeature]:
+    """Yield the features of ``source`` until a cancel; with the last one ``progress`` percent are done."""
+    total = max(source.featureCount(), 1) if progress else 1
+    step = max(total // 1000, 1)
+    for number, feature in enumerate(source.getFeatures()):
+        if feedback.isCanceled():
+            return
+        if progress and number % step == 0:
+            feedback.setProgress(progress * number / total)
+        yield feature
+
+
+class FeatureRow(NamedTuple):
+    """One feature, whether the filter ``counts`` it, and its geometry in metres; None where it has none.
+
+    ``notes`` say what is wrong; whoever reads on adds to them.
+    """
+
+    feature: QgsFeature
+    counts: bool
+    geometry: QgsGeometry | None
+    notes: list[str]
+
+
+@dataclass
+class FeatureReader:
+    """Yields every feature of the layer ``name``, which ``placing`` brings to the site, as FeatureRow.
+
+    Without a filter ``counted`` all count. ``complete`` is false after a cancel.
+    """
+
+    name: str
+    source: QgsFeatureSource | QgsAbstractFeatureSource
+    placing: LayerToSiteTransform
+    counted: FeatureFilter | None
+    feedback: QgsFeedback
+    progress: float = 0.0
+    complete: bool = True
+
+    def __iter__(self) -> Iterator[FeatureRow]:
+        for feature in each_feature(self.source, self.feedback, self.progress):
+            notes: list[str] = []
+            counts = self.counted is None or self.counted.keeps(feature, notes)
+            geometry = self.placing.of_feature(feature, notes) if counts else None
+            yield FeatureRow(feature, counts, geometry, notes)
+        self.complete = not self.feedback.isCanceled()
+
+
+# --- Warnings about features, summed up: a city has thousands that differ in nothing but the feature ---
+
+NAMED = 5
+"""How many features a warning about several names."""
+MOST_KINDS = 50
+"""How many kinds of warnings about one layer are told one by one."""
+
+_QUOTED = re.compile(r"'[^']*'|\"[^\"]*\"")
+_NUMBER = re.compile(r"\d+(?:[.,]\d+)*(?:e[-+]?\d+)?")
+
+
+@dataclass
+class SomeFeatures:
+    """How many features there are, and the ids of the first."""
+
+    count: int = 0
+    first: list[int] = field(default_factory=list)
+
+    def add(self, feature: int) -> None:
+        """Count the feature with this id."""
+        self.count += 1
+        if len(self.first) < NAMED:
+            self.first.append(feature)
+
+    def __str__(self) -> str:
+        shown = ", ".join(str(number) for number in self.first)
+        if self.count > len(self.first):
+            return tr("features {shown} and {more} more", shown=shown, more=self.count - len(self.first))
+        return tr("features {shown}", shown=shown) if self.count > 1 else tr("feature {shown}", shown=shown)
+
+
+@dataclass
+class _Kind:
+    """Notes that differ in numbers and quoted values only; ``notes`` are those of the first features."""
+
+    features: SomeFeatures = field(default_factory=SomeFeatures)
+    notes: list[str] = field(default_factory=list)
+    alike: bool = True
+
+    def add(self, feature: int, note: str) -> None:
+        self.features.add(feature)
+        if len(self.notes) < NAMED:
+            self.notes.append(note)
+        self.alike = self.alike and note == self.notes[0]
+
+    def texts(self, layer: str) -> list[str]:
+        """Return one warning, or one a feature where they are few and differ."""
+        features = self.features
+        if self.alike and features.count > 1:
+            return [
+                tr("Layer {layer}, {features}: {note}", layer=layer, features=features, note=self.notes[0])
+            ]
+        if features.count <= NAMED:
+            return [
+                tr("Layer {layer}, feature {id}: {note}", layer=layer, id=id, note=note)
+                for id, note in zip(features.first, self.notes, strict=True)
+            ]
+        return [
+            tr(
+                "Layer {layer}, {features}; of the first: {note}",
+                layer=layer,
+                features=features,
+                note=self.notes[0],
+            )
+        ]
+
+
+class FeatureWarnings:
+    """Warnings in the order of their kinds' first ones; many features of one kind become one warning."""
+
+    def __init__(self) -> None:
+        self._told: list[str | tuple[str, _Kind]] = []
+        self._kinds: dict[str, dict[str, _Kind]] = {}
+        self._others: dict[str, SomeFeatures] = {}
+
+    def add(self, layer: str, feature: int, note: str) -> None:
+        """Add ``note`` about the feature with this id."""
+        kinds = self._kinds.setdefault(layer, {})
+        pattern = _NUMBER.sub("0", _QUOTED.sub("''", note))
+        if pattern not in kinds and len(kinds) >= MOST_KINDS:
+            self._others.setdefault(layer, SomeFeatures()).add(feature)
+            return
+        if pattern not in kinds:
+            kinds[pattern] = _Kind()
+            self._told.append((layer, kinds[pattern]))
+        kinds[pattern].add(feature, note)
+
+    def add_text(self, text: str) -> None:
+        """Add a warning about a layer as a whole."""
+        self._told.append(text)
+
+    def texts(self) -> list[str]:
+        """Return every warning."""
+        told: list[str] = []
+        for one in self._told:
+            told += [one] if isinstance(one, str) else one[1].texts(one[0])
+        return told + [
+            tr("Layer {layer}: warnings of more kinds about {features}", layer=layer, features=features)
+            for layer, features in self._others.items()
+        ]
 
 
 # --- Points of a layer with the values of their fields, as cones, robots and stores are read ---

@@ -16,7 +16,6 @@ from ...robot_bridge.core.robotmap.model import ShapeType
 from ...robot_bridge.core.robotmap.outlines import OutlineRow, Outlines
 from ...robot_bridge.core.robotmap.parametric_shapes import Template, template
 from ..ui.language import tr, tr_count
-from .errors import FeatureWarnings, SomeFeatures
 from .geometry import (
     FARTHEST_M,
     NO_PLACE,
@@ -28,7 +27,7 @@ from .geometry import (
     shapes_of,
 )
 from .layer_expressions import FeatureFilter, FeatureValues, LayerRules, ObstacleValues
-from .layer_source import ObstacleSource, without_geometry
+from .layer_source import FeatureWarnings, ObstacleSource, SomeFeatures, without_geometry
 from .roles import OBSTACLE_ROLES, RAMP, STAIRS, LayerExpressions
 from .site_transform import Bounds, LayerToSiteTransform, SiteGeoreference, SiteTransformError, widen_bounds
 

@@ -23,7 +23,6 @@ from ...robot_bridge.core.roads.centrelines import (
 from ...robot_bridge.core.roads.network import Network
 from ...robot_bridge.core.sites.geopackage import Area, Centreline
 from ..ui.language import tr
-from .errors import FeatureWarnings, SomeFeatures
 from .geometry import (
     NO_PLACE,
     SAGITTA_M,
@@ -35,7 +34,7 @@ from .geometry import (
     shapes_of,
 )
 from .layer_expressions import FeatureFilter, LayerRules, as_flag, as_metres
-from .layer_source import ObstacleSource
+from .layer_source import FeatureReader, FeatureWarnings, ObstacleSource, SomeFeatures
 from .roles import KEEPOUT, ROAD_CENTRELINE, ROAD_SURFACE
 from .site_transform import LayerToSiteTransform, SiteGeoreference
 
@@ -413,17 +412,14 @@ class _GroundLayer:
         self, reading: GroundReading, feedback: QgsFeedback
     ) -> Iterator[tuple[QgsFeature, QgsGeometry]]:
         """Yield each feature that counts with its geometry in metres; warn of those that have none."""
-        for feature in self.source.features.getFeatures():
-            if feedback.isCanceled():
-                reading.complete = False
-                return
-            doubts: list[str] = []
-            counts = self._filter.keeps(feature, doubts)
-            geometry = self.placing.of_feature(feature, doubts) if counts else None
-            self.note(feature, doubts, reading)
-            if geometry is not None:
-                self.rules.at(feature)
-                yield feature, geometry
+        source = self.source
+        reader = FeatureReader(source.name, source.features, self.placing, self._filter, feedback)
+        for row in reader:
+            self.note(row.feature, row.notes, reading)
+            if row.geometry is not None:
+                self.rules.at(row.feature)
+                yield row.feature, row.geometry
+        reading.complete = reading.complete and reader.complete
 
     def label(self, feature: QgsFeature, notes: list[str]) -> str:
         """Return the label of the feature that was yielded last."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 import numpy.typing as npt
@@ -20,6 +21,7 @@ from qgis.core import (
     QgsRectangle,
     QgsSettings,
 )
+from qgis.gui import QgsMapCanvas
 from qgis.PyQt.QtCore import QObject, pyqtSignal
 
 from ...robot_bridge.core.messages import SiteReport
@@ -359,3 +361,30 @@ class PositionCrs(QObject):
         if self._crs.isValid() and self._crs.isGeographic():
             return f"{y:.7f}, {x:.7f}"
         return f"{x:.2f}, {y:.2f}"
+
+
+class SiteSource(Protocol):
+    """Who knows the site that is served, None before it is known."""
+
+    site: SiteReport | None
+
+
+class SiteToCanvas:
+    """The transform from the site frame to the CRS of the canvas, as site, canvas and project are now."""
+
+    def __init__(self, state: SiteSource, canvas: QgsMapCanvas, project: QgsProject):
+        self._state, self._canvas, self._project = state, canvas, project
+        self._known: SiteToMapTransform | None = None
+
+    def transform(self) -> SiteToMapTransform:
+        """Return the transform, which is the same object for as long as nothing has changed.
+
+        :raises MapTransformError: when no gateway said yet which site it serves, or the CRS is not usable.
+        """
+        site = self._state.site
+        if site is None:
+            raise MapTransformError(tr("The site is not known yet. Connect to a gateway first."))
+        target = self._canvas.mapSettings().destinationCrs(), self._project.transformContext()
+        if self._known is None or self._known.site is not site or not self._known.leads_to(*target):
+            self._known = SiteToMapTransform(site, *target)
+        return self._known

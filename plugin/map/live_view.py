@@ -16,13 +16,11 @@ from ..layers.site_transform import SiteToMapTransform
 from ..ui.errors import MapTransformError
 from ..ui.language import tr
 from ..ui.scheduling import PULL_EVERY_MS
-from .layers import RobotLayer
-from .overlay.fleet_overlay import FleetOverlay
-from .overlay.hover_card import HoverTracker, card
-from .overlay.paths_painter import MANY
-from .overlay.scene import SceneTransformer, SiteScene, TaskPaths
-from .overlay.screen import FollowMode, keep_in_view, show_places
+from .overlay.fleet_overlay import FleetOverlay, HoverTracker, card
+from .overlay.scene import FollowMode, SceneTransformer, SiteScene, TaskPaths, keep_in_view, show_places
+from .overlay.task_painter import MANY
 from .overlay.trails import Trails
+from .reported_layers import RobotLayer
 
 FRAME_MS = 15
 """For what the operator does; what robots do is painted when it was pulled."""
@@ -57,7 +55,7 @@ class LiveView(QObject):
         self.overlay = FleetOverlay(desk.canvas, self._trails)
         self.layer = RobotLayer(desk.project, desk.canvas, self)
         self._project = ProjectWatch(desk.project, self)
-        self._hovering = HoverTracker(desk.canvas, self.overlay, self._card, self)
+        self._hovering = HoverTracker(desk.canvas, self.overlay, self, self)
         self._frame = QTimer(self)
         self._frame.setSingleShot(True)
         self._frame.setInterval(FRAME_MS)
@@ -68,11 +66,11 @@ class LiveView(QObject):
         self._after_frame = QTimer(self)
         self._after_frame.setSingleShot(True)
         self._after_frame.timeout.connect(self._write_layer)
-        desk.pulled.connect(self._pulled)
-        desk.site_changed.connect(self._site_changed)
-        desk.robots_removed.connect(self._robots_removed)
-        desk.selection_changed.connect(self._selection_changed)
-        desk.commands_changed.connect(self._frame.start)
+        desk.state.updated.connect(self._pulled)
+        desk.state.site_changed.connect(self._site_changed)
+        desk.state.robots_removed.connect(self._robots_removed)
+        desk.selection.changed.connect(self._selection_changed)
+        desk.state.commands_changed.connect(self._frame.start)
         desk.drafts.changed.connect(self._frame.start)
         desk.drafts.pointed.connect(self._frame.start)
         desk.canvas.destinationCrsChanged.connect(self._way_changed)
@@ -97,21 +95,21 @@ class LiveView(QObject):
     def show_now(self) -> None:
         """Paint what the desk knows at this moment."""
         began = time.perf_counter()
-        if self._desk.site is None:
+        if self._desk.state.site is None:
             self.overlay.show_scene(None)
             return
         # Without the layer on the map there would be no robots at all.
         self.overlay.draw_arrows(not (self._by_layer and self.layer.layer in self._desk.canvas.layers()))
         try:
             if self._placement is None:
-                self._placement = self._desk.placement()
+                self._placement = self._desk.site_to_canvas.transform()
             self.overlay.show_scene(self._placer.placed(self._scene(), self._placement))
         except MapTransformError as error:
             self.overlay.show_scene(None)
             self._desk.complained.emit(str(error))
         self._last_frame = time.perf_counter()
         self._took = self._last_frame - began
-        self.shown = self._desk.picture.generation, self._desk.picture.revision
+        self.shown = self._desk.state.robots.generation, self._desk.state.robots.revision
 
     def draw_by_layer(self, wanted: bool) -> None:
         """Let the style of the layer of robots draw them, where that is on the map, in place of arrows."""
@@ -120,7 +118,7 @@ class LiveView(QObject):
 
     def zoom_to(self, *robots: str) -> None:
         """Show ``robots`` and their surroundings."""
-        views = [self._desk.picture.view(robot, self._desk.clock()) for robot in robots]
+        views = [self._desk.state.robots.view(robot, self._desk.clock.steady()) for robot in robots]
         placed = [view for view in views if view is not None and view.has_pose]
         if not placed:
             for robot in robots[:1]:
@@ -137,7 +135,7 @@ class LiveView(QObject):
     def _show(self, at: np.ndarray) -> None:
         around = np.array([(dx, dy) for dx in (-1, 1) for dy in (-1, 1)]) * ZOOM_METRES
         try:
-            corners = self._desk.placement().to_map((at[:, None, :] + around).reshape(-1, 2))
+            corners = self._desk.site_to_canvas.transform().to_map((at[:, None, :] + around).reshape(-1, 2))
         except MapTransformError as error:
             self._desk.complained.emit(str(error))
             return
@@ -146,7 +144,7 @@ class LiveView(QObject):
     def follow(self, whom: FollowMode) -> None:
         """Keep the selected robots or all of them in view, or stop doing so."""
         self.following = whom
-        if whom is FollowMode.SELECTED and not self._desk.selection:
+        if whom is FollowMode.SELECTED and not self._desk.selection.robots:
             self._desk.complained.emit(
                 tr("No robot is selected to be followed. Select one in the table or on the map.")
             )
@@ -157,7 +155,7 @@ class LiveView(QObject):
         self._after_pull.start(0)
 
     def _show_pulled(self) -> None:
-        picture = self._desk.picture
+        picture = self._desk.state.robots
         is_whole = self._plans.is_whole and self.overlay.is_whole
         is_new = self.shown != (picture.generation, picture.revision) or not is_whole
         rested = time.perf_counter() - self._last_frame
@@ -173,8 +171,8 @@ class LiveView(QObject):
 
     def _site_changed(self) -> None:
         if not self._project.is_reading:
-            self.layer.show_site(self._desk.site)
-        if self.shown[0] != self._desk.picture.generation:
+            self.layer.show_site(self._desk.state.site)
+        if self.shown[0] != self._desk.state.robots.generation:
             # Not for a moment does the map show what another gateway told.
             self.overlay.show_scene(None)
             self.layer.clear()
@@ -193,56 +191,58 @@ class LiveView(QObject):
         self._frame.start()
 
     def _selection_changed(self) -> None:
-        self.layer.mark(self._desk.selection)
+        self.layer.mark(self._desk.selection.robots)
         self._frame.start()
 
     def _selected_in_layer(self, robots: list[str]) -> None:
         # The one that drafts are made for stays so as long as it is among them.
-        self._desk.select_all(sorted(robots, key=lambda robot: robot == self._desk.selected))
+        self._desk.selection.select_all(sorted(robots, key=lambda robot: robot == self._desk.selection.last))
 
     def _write_layer(self) -> None:
         if self._project.is_reading:
             return
-        if self._desk.site is not None and self.layer.layer is None:
+        if self._desk.state.site is not None and self.layer.layer is None:
             # The project that held it was closed; the robots are still there.
-            self.layer.show_site(self._desk.site)
-        newcomers = len(self._desk.picture) != len(self.layer)
+            self.layer.show_site(self._desk.state.site)
+        newcomers = len(self._desk.state.robots) != len(self.layer)
         if self._pulls % self.layer_every == 0 or newcomers:
-            self.layer.begin(len(self._desk.picture))
-        self.layer.go_on(self._desk.picture, self._desk.clock())
+            self.layer.begin(len(self._desk.state.robots))
+        self.layer.go_on(self._desk.state.robots, self._desk.clock.steady())
         if self.layer.is_new:
-            self.layer.mark(self._desk.selection)
+            self.layer.mark(self._desk.selection.robots)
 
     def _go_after(self) -> None:
-        if self.following is FollowMode.NOBODY or self._desk.site is None:
+        if self.following is FollowMode.NOBODY or self._desk.state.site is None:
             return
-        robots = self._desk.picture.arrays(self._desk.clock())
+        robots = self._desk.state.robots.arrays(self._desk.clock.steady())
         xy = robots.xy
         if self.following is FollowMode.SELECTED:
-            rows = [self._desk.picture.row(name) for name in self._desk.selection]
+            rows = [self._desk.state.robots.row(name) for name in self._desk.selection.robots]
             xy = xy[[row for row in rows if row is not None]]
         there = xy[np.isfinite(xy).all(axis=1)]
         try:
-            places = self._desk.placement().to_map(there)
+            places = self._desk.site_to_canvas.transform().to_map(there)
         except MapTransformError as error:
             self._desk.complained.emit(str(error))
             return
         keep_in_view(self._desk.canvas, self.overlay.screen(), places)
 
     def _scene(self) -> SiteScene:
-        desk, now = self._desk, self._desk.clock()
-        robots = desk.picture.arrays(now)
+        desk, now = self._desk, self._desk.clock.steady()
+        robots = desk.state.robots.arrays(now)
         self._trails.extend(robots.xy, now)
-        plans = self._plans.of(desk.book.under_way(), NEW_PLANS)
-        measured = plans if len(plans) <= MANY else [p for p in plans if p.robot in desk.selection][:MANY]
-        named = {*desk.selection, *(plan.robot for plan in measured)}
+        plans = self._plans.of(desk.state.commands.under_way(), NEW_PLANS)
+        measured = (
+            plans if len(plans) <= MANY else [p for p in plans if p.robot in desk.selection.robots][:MANY]
+        )
+        named = {*desk.selection.robots, *(plan.robot for plan in measured)}
         if desk.drafts.draft is not None:
             named.add(desk.drafts.draft.robot)
-        rows = {name: row for name in named if (row := desk.picture.row(name)) is not None}
+        rows = {name: row for name in named if (row := desk.state.robots.row(name)) is not None}
         return SiteScene(
             robots=robots,
             now=now,
-            chosen=desk.selection,
+            chosen=desk.selection.robots,
             plans=plans,
             remaining={
                 plan.command: self._plans.remaining(plan, robots.xy[rows[plan.robot]])
@@ -254,14 +254,15 @@ class LiveView(QObject):
             rows=rows,
         )
 
-    def _card(self, robot: str) -> str | None:
-        view = self._desk.picture.view(robot, self._desk.clock())
-        if view is None or self._desk.site is None:
+    def card_text(self, robot: str) -> str | None:
+        """Return what is known of a robot as rich text, None where it is not known any more."""
+        view = self._desk.state.robots.view(robot, self._desk.clock.steady())
+        if view is None or self._desk.state.site is None:
             return None
-        task = self._desk.book.task_of(robot)
+        task = self._desk.state.commands.task_of(robot)
         left = None
         if task is not None and view.has_pose:
-            for plan in self._plans.of(self._desk.book.under_way()):
+            for plan in self._plans.of(self._desk.state.commands.under_way()):
                 if plan.robot == robot:
                     left = self._plans.remaining(plan, np.array([view.report.x, view.report.y]))
-        return card(view, task, left, self._desk.placement().frame)
+        return card(view, task, left, self._desk.site_to_canvas.transform().frame)

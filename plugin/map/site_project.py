@@ -10,16 +10,14 @@ from qgis.gui import QgisInterface, QgsCustomDropHandler
 from qgis.PyQt.QtCore import QMimeData, QObject, QTimer, pyqtSignal
 
 from ...robot_bridge.core.sites.frame import SiteFrame
-from ..control.fleet_controller import FleetController
 from ..control.messages import MessageBar
+from ..gateway_client.fleet_state import FleetState
 from ..layers.crs import own_frame
 from ..layers.live_layers import ProjectWatch
 from ..layers.publishing.published_layers import LoadedSite, load_site, loaded_already, site_folder
 from ..layers.site_transform import frame_of
 from ..ui.errors import FleetError
 from ..ui.language import tr, tr_count
-
-# --- Is the open project that of the site the gateway serves? ---
 
 SAME_PLACE = 0.01
 """Metres up to which two origins are one."""
@@ -39,13 +37,13 @@ class ProjectMatch(QObject):
     over = pyqtSignal(str)
     """What was told is not so any more."""
 
-    def __init__(self, desk: FleetController, parent: QObject | None = None):
+    def __init__(self, state: FleetState, project: QgsProject, parent: QObject | None = None):
         super().__init__(parent)
-        self._desk = desk
+        self._state, self._project = state, project
         self._told = ""
-        self._watch = ProjectWatch(desk.project, self)
+        self._watch = ProjectWatch(project, self)
         self._watch.opened.connect(self._compare)
-        desk.site_changed.connect(self._compare)
+        state.site_changed.connect(self._compare)
 
     def remove(self) -> None:
         """Compare no more."""
@@ -55,7 +53,7 @@ class ProjectMatch(QObject):
         if self._told:
             self.over.emit(self._told)
         self._told = ""
-        site, mine = self._desk.site, own_frame(self._desk.project)
+        site, mine = self._state.site, own_frame(self._project)
         if site is None or mine is None or _is_one(mine, frame_of(site)):
             return
         self._told = tr(
@@ -71,8 +69,6 @@ def _is_one(a: SiteFrame, b: SiteFrame) -> bool:
     turned = math.remainder(a.rotation - b.rotation, math.tau)
     return crs[0] == crs[1] and math.dist(a.origin, b.origin) < SAME_PLACE and abs(turned) < SAME_ANGLE
 
-
-# --- A published site that is dropped onto the QGIS window is loaded, from QGIS's browser panel, too ---
 
 WHOLE = ("directory", "collection")
 """What the browser panel calls a folder, and a GeoPackage with all that is in it."""

@@ -25,7 +25,7 @@ from ...robot_bridge.core.messages import ObservationReport, ReviewObservation
 from ..control.fleet_controller import FleetController
 from ..control.messages import observation_topic
 from ..gateway_client.report_caches import is_pending
-from ..map.overlay.screen import show_places
+from ..map.overlay.scene import show_places
 from ..ui.actions import ActionDock, DockAction
 from ..ui.dialogs import push_button
 from ..ui.errors import FleetError
@@ -40,8 +40,6 @@ from .observation_views import (
     ObservationModel,
     Thumbnails,
 )
-
-# --- What an operator makes of one observation: its word on the map, height, radius, and why ---
 
 WORDS = ("traffic cone", "barrier", "bin", "bench", "column", "vehicle", "object")
 """Offered besides what robots said; anything may be written. In English: robots read them on their maps."""
@@ -216,8 +214,6 @@ def _metres(name: str, largest: float) -> QDoubleSpinBox:
     return box
 
 
-# --- The panel of observations: what robots saw, and its review ---
-
 SHOW_AFTER_MS = 250
 """News of a crowd of robots are shown together."""
 AROUND = 15.0
@@ -264,7 +260,7 @@ class ObservationDock(ActionDock):
     def refresh(self) -> None:
         """Show what is known now."""
         chosen = self.chosen
-        book = self._desk.observations
+        book = self._desk.state.observations
         everything = self.reviewed.isChecked()
         self.model.show(
             [one for one in book.ordered() if everything or is_pending(one) or one.observation == chosen]
@@ -280,7 +276,7 @@ class ObservationDock(ActionDock):
         self.setWindowTitle(
             tr("Observations ({waiting})", waiting=waiting) if waiting else tr("Observations")
         )
-        self.layer.show(book, self._desk.site)
+        self.layer.show(book, self._desk.state.site)
         self._show_chosen()
 
     @property
@@ -297,19 +293,19 @@ class ObservationDock(ActionDock):
 
     def go_to(self, number: int) -> None:
         """Show the place of an observation on the map."""
-        report = self._desk.observations.get(number)
+        report = self._desk.state.observations.get(number)
         if report is None:
             return
         x, y = report.x, report.y
         around = np.array([(x - AROUND, y - AROUND), (x + AROUND, y + AROUND)])
         try:
-            show_places(self._desk.canvas, self._desk.placement().to_map(around))
+            show_places(self._desk.canvas, self._desk.site_to_canvas.transform().to_map(around))
         except FleetError as error:
             self._desk.complained.emit(str(error))
 
     def _wire(self) -> None:
-        self._desk.observations_changed.connect(self._refresh_later)
-        self._desk.site_changed.connect(lambda: self._timer.start(0))
+        self._desk.state.observations_changed.connect(self._refresh_later)
+        self._desk.state.site_changed.connect(lambda: self._timer.start(0))
         self.thumbnails.made.connect(self.model.picture_came)
         self.thumbnails.made.connect(self._refresh_later)
         self.reviewed.toggled.connect(self.refresh)
@@ -356,8 +352,8 @@ class ObservationDock(ActionDock):
 
     def _show_chosen(self) -> None:
         number = self.chosen
-        report = None if number is None else self._desk.observations.get(number)
-        words = [one.label for one in self._desk.observations if one.label][-20:]
+        report = None if number is None else self._desk.state.observations.get(number)
+        words = [one.label for one in self._desk.state.observations if one.label][-20:]
         self.form.show_report(report, words, asked=number is not None and self.feed.is_asked(number))
         file = "" if report is None else self._picture_of(report)
         self.form.show_picture(file)
@@ -365,7 +361,9 @@ class ObservationDock(ActionDock):
     def _picture_of(self, report: ObservationReport) -> str:
         """Return the picture of an observation, or of the newest image of the same object."""
         same = [
-            one for one in self._desk.observations if (one.robot, one.object) == (report.robot, report.object)
+            one
+            for one in self._desk.state.observations
+            if (one.robot, one.object) == (report.robot, report.object)
         ]
         numbers = [report.observation, *sorted((one.observation for one in same), reverse=True)]
         return next((file for file in map(self.thumbnails.file, numbers) if file), "")
@@ -381,9 +379,6 @@ class ObservationDock(ActionDock):
         self.setWidget(body)
         self.setFocusProxy(self.list)
         self.list.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
-
-
-# --- The menu entry that shows the panel of observations ---
 
 
 class ObservationsAction(DockAction):

@@ -31,16 +31,14 @@ from ...robot_bridge.core.messages import (
     SiteReport,
 )
 from ..control.fleet_controller import FleetController
-from ..gateway_client.buffers import RequestResult
-from ..gateway_client.link import ConnectionPhase
+from ..gateway_client.connection_status import ConnectionPhase
 from ..gateway_client.report_caches import ObservationCache
+from ..gateway_client.requests import RequestResult
 from ..layers.live_layers import RowLayer
 from ..panel.robot_details import DecodeTask
 from ..ui.errors import FleetError
 from ..ui.language import tr
 from ..ui.times import date_and_time, time_of_day
-
-# --- Small pictures of the images that robots sent, as files that layers and map tips show ---
 
 SIDE = 256
 """Pixels of the longer side of a picture."""
@@ -130,8 +128,6 @@ class ThumbnailTask(DecodeTask):
         return small.save(str(self._file), "PNG")
 
 
-# --- Asks the gateway for observations and their images, and tells it what operators make of them ---
-
 PAGE = 500
 REVIEWED = 200
 """Reviewed ones that are asked for when a link begins."""
@@ -156,22 +152,22 @@ class ObservationFeed(QObject):
         self._reviews: dict[str, int] = {}
         self._image: tuple[str, int] | None = None
         self._without: set[int] = set()
-        desk.link_changed.connect(self._link_changed)
-        desk.answered.connect(self._answered)
-        desk.observations_changed.connect(self._observations_changed)
-        desk.site_changed.connect(self._site_changed)
+        desk.state.link_changed.connect(self._link_changed)
+        desk.orders.answered.connect(self._answered)
+        desk.state.observations_changed.connect(self._observations_changed)
+        desk.state.site_changed.connect(self._site_changed)
         thumbnails.failed.connect(self._without.add)
 
     def review(self, request: ReviewObservation) -> None:
         """Tell the gateway what became of an observation; raises NotSentError when that cannot be sent."""
-        self._reviews[self._desk.inquire(request)] = request.observation
+        self._reviews[self._desk.orders.inquire(request)] = request.observation
 
     def is_asked(self, number: int) -> bool:
         """Tell whether a review of this observation is on its way."""
         return number in self._reviews.values()
 
     def _link_changed(self) -> None:
-        connected = self._desk.link.phase is ConnectionPhase.CONNECTED
+        connected = self._desk.state.link.phase is ConnectionPhase.CONNECTED
         if connected and not self._was_connected:
             self._without.clear()
             self._ask_page(GetObservations(state=ObservationState.PENDING, limit=PAGE))
@@ -182,7 +178,7 @@ class ObservationFeed(QObject):
 
     def _ask_page(self, request: GetObservations) -> None:
         try:
-            self._pages.add(self._desk.inquire(request))
+            self._pages.add(self._desk.orders.inquire(request))
         except FleetError:
             # The link is down again: all is asked anew when it is back.
             self._pages.clear()
@@ -204,7 +200,7 @@ class ObservationFeed(QObject):
 
     def _take_page(self, answer: RequestResult) -> None:
         if answer.error is not None:
-            if self._desk.link.phase is ConnectionPhase.CONNECTED:
+            if self._desk.state.link.phase is ConnectionPhase.CONNECTED:
                 self._desk.complained.emit(tr("What robots saw is not known: {error}", error=answer.error))
             return
         found = (answer.result or {}).get("observations") or []
@@ -220,22 +216,22 @@ class ObservationFeed(QObject):
 
     def _observations_changed(self, _numbers: list[int]) -> None:
         # The book forgets those that were reviewed long ago, and a picture is a file of up to 0.2 MB.
-        known = {one.observation for one in self._desk.observations}
+        known = {one.observation for one in self._desk.state.observations}
         self._thumbnails.keep(known)
         self._without &= known
         self._fetch_image()
 
     def _fetch_image(self) -> None:
         """Ask for the next image that is not there yet, when no other is on its way."""
-        if self._image is not None or self._desk.link.phase is not ConnectionPhase.CONNECTED:
+        if self._image is not None or self._desk.state.link.phase is not ConnectionPhase.CONNECTED:
             return
         wanted = next(
-            (one.observation for one in self._desk.observations.ordered() if self._lacks(one)), None
+            (one.observation for one in self._desk.state.observations.ordered() if self._lacks(one)), None
         )
         if wanted is None:
             return
         try:
-            self._image = self._desk.inquire(GetImage(wanted)), wanted
+            self._image = self._desk.orders.inquire(GetImage(wanted)), wanted
         except FleetError:
             self._image = None
 
@@ -246,12 +242,10 @@ class ObservationFeed(QObject):
         )
 
     def _site_changed(self) -> None:
-        if not len(self._desk.observations):
+        if not len(self._desk.state.observations):
             self._thumbnails.clear()
             self._without.clear()
 
-
-# --- Observations as an ordinary vector layer, with their images on the map and in the map tips ---
 
 FIELDS = (
     "observation:integer,state:string,robot:string,kind:string,object:string,label:string,height:double,"
@@ -362,8 +356,6 @@ def _picture() -> QgsMarkerSymbol:
     symbol.changeSymbolLayer(0, picture)
     return symbol
 
-
-# --- Observations as a list: what, by whom, when, in which state, with its image ---
 
 NUMBER = Qt.ItemDataRole.UserRole
 ICON = QSize(56, 42)

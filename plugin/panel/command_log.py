@@ -21,8 +21,8 @@ from ..control.fleet_controller import FleetController
 from ..control.messages import file_topic
 from ..control.request_tracker import SLOW_AFTER
 from ..gateway_client import command_cache
-from ..gateway_client.buffers import RequestResult
 from ..gateway_client.command_cache import asked_at, command_in_words, place_of
+from ..gateway_client.requests import RequestResult
 from ..gateway_client.robot_states import name_order
 from ..gateway_client.state_texts import COMMAND_STATES, longest_word
 from ..settings.preferences import export_path
@@ -32,8 +32,6 @@ from ..ui.language import tr, tr_count
 from ..ui.steady_widgets import ElidedText
 from ..ui.tables import TimeColumn, ZoomMenu, shrink_view, write_csv
 from .command_log_model import CSV_HEAD, PAGE, CommandChoice, CommandFilter, LogModel, csv_rows, summary
-
-# --- Commands of before this desk came: asked of the gateway, and what came of it told ---
 
 OLDER = 1000
 """Commands that are asked for at once."""
@@ -66,17 +64,19 @@ class OlderCommands(QObject):
         self._desk = desk
         self._wishes: dict[str, HistoryRequest] = {}
         """By the keys of the questions that are not answered yet."""
-        desk.answered.connect(self._answered)
-        desk.pulled.connect(self._watch)
-        desk.site_changed.connect(self._site_changed)
+        desk.orders.answered.connect(self._answered)
+        desk.state.updated.connect(self._watch)
+        desk.state.site_changed.connect(self._site_changed)
 
     def ask(self, robots: frozenset[str] | None) -> None:
         """Ask for the commands of ``robots``, None for all."""
-        wish = HistoryRequest(frozenset(report.command for report in self._desk.book), self._desk.clock())
+        wish = HistoryRequest(
+            frozenset(report.command for report in self._desk.state.commands), self._desk.clock.steady()
+        )
         try:
             # Of very many robots the newest commands of all will do: the log holds no more.
             for robot in sorted(robots) if robots and len(robots) <= MOST_ASKED else [None]:
-                self._wishes[self._desk.inquire(GetCommands(robot, OLDER), lasting=True)] = wish
+                self._wishes[self._desk.orders.inquire(GetCommands(robot, OLDER), lasting=True)] = wish
                 wish.waiting += 1
         except FleetError as error:
             wish.is_refused = True
@@ -101,7 +101,7 @@ class OlderCommands(QObject):
 
     def _watch(self) -> None:
         """Say so of a wish that waits for its answers too long, be it that the link is lost."""
-        now = self._desk.clock()
+        now = self._desk.clock.steady()
         late = {
             id(wish): wish
             for wish in self._wishes.values()
@@ -118,13 +118,13 @@ class OlderCommands(QObject):
             )
 
     def _site_changed(self) -> None:
-        if len(self._desk.book) == 0:
+        if len(self._desk.state.commands) == 0:
             # Another gateway's robots are here now: what was asked of the one before is nobody's wish.
             self._wishes.clear()
 
     def _look_at(self, told: list[str], wish: HistoryRequest) -> None:
         # The book has taken them in by now, and let go of the oldest where it was full.
-        kept = [command for command in told if command in self._desk.book]
+        kept = [command for command in told if command in self._desk.state.commands]
         wish.came += sum(command not in wish.known for command in kept)
         wish.ends_here = wish.ends_here or len(told) >= OLDER or len(kept) < len(told)
 
@@ -151,8 +151,6 @@ def _in_words(wish: HistoryRequest) -> str:
         end = tr("The gateway knows no others.")
     return f"{came} {end}"
 
-
-# --- The log of commands with what is above it: whose, which, how many are open, and what to do with it
 
 EVERY_ROBOT, SELECTED = tr("All robots"), tr("Selected robots")
 COMMAND_CHOICES = {
@@ -189,11 +187,11 @@ class CommandLog(QWidget):
         self._lay_out()
         self._robots.currentIndexChanged.connect(self.refresh)
         self._which.currentIndexChanged.connect(self.refresh)
-        ZoomMenu(self.view, self._go)
+        ZoomMenu(self.view).wanted.connect(self._go)
         self.view.selectionModel().selectionChanged.connect(self._allow)
-        desk.commands_changed.connect(self.show_reports)
-        desk.site_changed.connect(self._site_changed)
-        desk.selection_changed.connect(self._selection_changed)
+        desk.state.commands_changed.connect(self.show_reports)
+        desk.state.site_changed.connect(self._site_changed)
+        desk.selection.changed.connect(self._selection_changed)
         self._allow()
 
     def show_reports(self, reports: list[CommandReport]) -> None:
@@ -203,14 +201,14 @@ class CommandLog(QWidget):
             self.refresh()
             return
         if self._model.merge(reports):
-            self._model.keep(self._desk.book)
+            self._model.keep(self._desk.state.commands)
             self._let_go_of_old()
             self._open(self._model.index(0, 0))
         self._show_what_is_open()
 
     def refresh(self, *_what: object) -> None:
         """List anew what the filters keep."""
-        self._model.show_all(self._desk.book, self.filter())
+        self._model.show_all(self._desk.state.commands, self.filter())
         self._opened = None
         self._open(self._model.index(0, 0))
         self._show_what_is_open()
@@ -221,7 +219,7 @@ class CommandLog(QWidget):
         whose = self._robots.currentIndex()
         robots = None if whose == 0 else frozenset({self._robots.currentText()})
         if whose == 1:
-            robots = frozenset(self._desk.selection)
+            robots = frozenset(self._desk.selection.robots)
         return CommandFilter(robots, list(CommandChoice)[self._which.currentIndex()])
 
     def export(self, path: str) -> None:
@@ -284,7 +282,7 @@ class CommandLog(QWidget):
         self._robots.blockSignals(False)
 
     def _show_what_is_open(self) -> None:
-        self._summary.setText(summary(self._desk.book))
+        self._summary.setText(summary(self._desk.state.commands))
         shown = self._model.shown
         self._times.make_room((asked_at(shown[-1]) if shown else None) or None)
 
@@ -326,7 +324,7 @@ class CommandLog(QWidget):
             self.refresh()
 
     def _site_changed(self) -> None:
-        if len(self._desk.book) == 0:
+        if len(self._desk.state.commands) == 0:
             self._listed.clear()
             self._robots.blockSignals(True)
             while self._robots.count() > 2:

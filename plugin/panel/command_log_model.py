@@ -19,8 +19,6 @@ from ..ui.language import tr
 from ..ui.tables import iso_time
 from ..ui.times import date_and_time, short_time
 
-# --- Commands as rows of the log: in words, chosen by a filter, and as a table for a file ---
-
 FAILED = (CommandState.ABORTED, CommandState.FAILED, CommandState.EXPIRED)
 CSV_HEAD = (
     "command",
@@ -125,8 +123,6 @@ def _off(report: CommandReport) -> str:
         return ""
     return tr("{metres:.2f} m off", metres=report.deviation)
 
-
-# --- The log as a tree: a row for each command, newest on top, and beneath it a row for each step ---
 
 COLUMNS = (tr("Time"), tr("Command"), tr("State"), tr("Details"))
 TIME, STATE = 0, 2

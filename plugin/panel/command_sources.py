@@ -38,8 +38,6 @@ from ..ui.errors import FleetError
 from ..ui.glyphs import WRONG_STYLE
 from ..ui.language import tr
 
-# --- Coordinates typed in, in any CRS, with where they come to on the site and by which way ---
-
 WGS84 = "EPSG:4326"
 
 
@@ -76,7 +74,7 @@ class CoordinatesDialog(QDialog):
         self._text.textChanged.connect(self._read)
         self._crs.crsChanged.connect(self._read)
         self._set.clicked.connect(self._choose)
-        desk.site_changed.connect(self._read)
+        desk.state.site_changed.connect(self._read)
         self._read()
 
     def ask(self) -> None:
@@ -117,15 +115,15 @@ class CoordinatesDialog(QDialog):
         :raises FleetError: when it is no place, or there is no site yet.
         """
         crs = self._crs.crs()
-        site_crs = self._desk.placement().site_crs
+        site_crs = self._desk.site_to_canvas.transform().site_crs
         context = self._desk.project.transformContext()
         path = datum_transform(crs, site_crs, context).in_words()
         if not self._text.text().strip():
             order = tr("latitude, longitude") if crs.isGeographic() else tr("x, y")
             return tr("Write {order} in {crs}.\n{path}", order=order, crs=crs.authid(), path=path)
-        self._place = read_site_place(self._text.text(), crs, self._desk.site, context)
+        self._place = read_site_place(self._text.text(), crs, self._desk.state.site, context)
         site = tr("{x:.2f}, {y:.2f} m on the site", x=self._place[0], y=self._place[1])
-        ((east, north),) = self._desk.placement().frame.to_crs([self._place])
+        ((east, north),) = self._desk.site_to_canvas.transform().frame.to_crs([self._place])
         return tr(
             "{site}; {east:.2f}, {north:.2f} in {crs}.\n{path}",
             site=site,
@@ -139,8 +137,6 @@ class CoordinatesDialog(QDialog):
         if self._place is not None:
             self.chosen.emit(*self._place)
 
-
-# --- Drafts made of what is selected in a layer: a point, a line, or many points ---
 
 NAME_FIELDS = ("id", "name", "label")
 
@@ -156,7 +152,7 @@ def command_from_layer(layer: QgsVectorLayer | None, desk: FleetController) -> P
 
     :raises FleetError: naming what is wrong with the layer, the selection or the robot.
     """
-    if desk.selected is None:
+    if desk.selection.last is None:
         raise LayerCommandError(
             tr("No robot is selected. Select the one that the draft is for, then try again.")
         )
@@ -227,8 +223,8 @@ def _targets(layer: QgsVectorLayer, features: Sequence[QgsFeature], desk: FleetC
         )
     points = _in_site(places, desk)
     if len(points) == 1:
-        return PendingCommand(desk.selected, CONE, points)
-    return PendingCommand(desk.selected, TARGETS, points, names=tuple(names))
+        return PendingCommand(desk.selection.last, CONE, points)
+    return PendingCommand(desk.selection.last, TARGETS, points, names=tuple(names))
 
 
 def _route(layer: QgsVectorLayer, features: Sequence[QgsFeature], desk: FleetController) -> PendingCommand:
@@ -261,7 +257,7 @@ def _route(layer: QgsVectorLayer, features: Sequence[QgsFeature], desk: FleetCon
                 longest_path=LONGEST_PATH,
             )
         )
-    return PendingCommand(desk.selected, ROUTE, _in_site(places, desk), legs=(1,) * len(places))
+    return PendingCommand(desk.selection.last, ROUTE, _in_site(places, desk), legs=(1,) * len(places))
 
 
 def _moved(feature: QgsFeature, layer: QgsVectorLayer, desk: FleetController) -> QgsGeometry:
@@ -275,7 +271,9 @@ def _moved(feature: QgsFeature, layer: QgsVectorLayer, desk: FleetController) ->
             )
         )
     geometry = QgsGeometry(feature.geometry())
-    way = QgsCoordinateTransform(layer.crs(), desk.placement().site_crs, desk.project.transformContext())
+    way = QgsCoordinateTransform(
+        layer.crs(), desk.site_to_canvas.transform().site_crs, desk.project.transformContext()
+    )
     try:
         check_transform(way)
         geometry.transform(way)
@@ -293,7 +291,7 @@ def _moved(feature: QgsFeature, layer: QgsVectorLayer, desk: FleetController) ->
 
 
 def _in_site(places: Sequence[Point], desk: FleetController) -> tuple[Point, ...]:
-    in_site = desk.placement().frame.to_site(np.array(places, dtype=np.float64))
+    in_site = desk.site_to_canvas.transform().frame.to_site(np.array(places, dtype=np.float64))
     if not np.isfinite(in_site).all():
         raise LayerCommandError(
             tr("A coordinate of what is selected is no number. Correct it, or leave it out.")

@@ -17,15 +17,15 @@ from qgis.PyQt.QtWidgets import (
 
 from ...robot_bridge.core.messages import ConflictReport, GetWaysOut, HoldReport, WayOut, ways_out_report
 from ..control.fleet_controller import FleetController
-from ..gateway_client.buffers import RequestResult
+from ..control.request_tracker import RequestTracker
+from ..gateway_client.fleet_state import FleetState
+from ..gateway_client.requests import RequestResult
 from ..gateway_client.state_texts import MEETINGS
 from ..ui.errors import NotSentError
 from ..ui.language import tr
 from ..ui.steady_widgets import ElidedButton, ElidedText
 from ..ui.tables import shrink_view
 from ..ui.times import time_of_day
-
-# --- What two robots in each other's way can do about it, as the gateway reckons it again and again ---
 
 Pair = tuple[str, str]
 
@@ -40,9 +40,9 @@ class ResolutionQuery(QObject):
 
     changed = pyqtSignal()
 
-    def __init__(self, desk: FleetController, parent: QObject | None = None):
+    def __init__(self, requests: RequestTracker, state: FleetState, parent: QObject | None = None):
         super().__init__(parent)
-        self._desk = desk
+        self._requests, self._state = requests, state
         self._pair: Pair | None = None
         self._kind = ""
         self._ways: dict[tuple[str, str], WayOut] = {}
@@ -50,8 +50,8 @@ class ResolutionQuery(QObject):
         self._asked_at = 0.0
         self.why_not = ""
         """Why it is not known what the robots can do; empty where it is known or was just asked."""
-        desk.pulled.connect(self._ask_again)
-        desk.answered.connect(self._answered)
+        state.updated.connect(self._ask_again)
+        requests.answered.connect(self._answered)
 
     def watch(self, pair: Pair | None, kind: str = "") -> None:
         """Ask about ``pair`` from now on, None for no pair; at once where they meet in another way."""
@@ -71,15 +71,15 @@ class ResolutionQuery(QObject):
 
     def _ask_again(self) -> None:
         waits = ASK_EVERY if self._key is None else ANSWERED_WITHIN
-        if self._pair is not None and self._desk.clock() - self._asked_at >= waits:
+        if self._pair is not None and self._state.clock.steady() - self._asked_at >= waits:
             self._ask()
 
     def _ask(self) -> None:
         if self._pair is None:
             return
-        self._asked_at = self._desk.clock()
+        self._asked_at = self._state.clock.steady()
         try:
-            self._key = self._desk.inquire(GetWaysOut(*self._pair))
+            self._key = self._requests.inquire(GetWaysOut(*self._pair))
         except NotSentError as error:
             self._key = None
             self._know({}, str(error))
@@ -103,8 +103,6 @@ class ResolutionQuery(QObject):
             self._ways, self.why_not = ways, why_not
             self.changed.emit()
 
-
-# --- The robots that will be in each other's way, and who shall give way ---
 
 OVER_MS = 3000
 """For so long the row of a conflict that is over stays, disabled: what is below it does not move up under
@@ -135,7 +133,7 @@ class ConflictPanel(QWidget):
         self._conflicts: dict[Pair, ConflictReport] = {}
         self._list = _conflict_list()
         self._list.currentItemChanged.connect(lambda *_: self._show_buttons())
-        self._ways = ResolutionQuery(desk, self)
+        self._ways = ResolutionQuery(desk.orders, desk.state, self)
         self._give_ways = [self._button(lambda k=k: self._give_way(k)) for k in (0, 1)]
         self._asides = [self._button(lambda k=k: self._send_aside(k)) for k in (0, 1)]
         self._stops = [self._button(lambda k=k: self._stop(k)) for k in (0, 1)]
@@ -146,7 +144,7 @@ class ConflictPanel(QWidget):
         self._over.timeout.connect(self._drop_over)
         self._lay_out()
         self._ways.changed.connect(self._show_buttons)
-        desk.roads.conflicts_changed.connect(self._show)
+        desk.state.conflicts_changed.connect(self._show)
         self._show()
 
     @property
@@ -188,7 +186,7 @@ class ConflictPanel(QWidget):
         return button
 
     def _show(self) -> None:
-        roads = self._desk.roads.conflicts
+        roads = self._desk.state.conflicts
         self._conflicts = {}
         for one in roads.conflicts:
             # Of two between the same robots the sooner one, which comes first.

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import getpass
-from collections.abc import Callable
 
 from qgis.core import QgsSettings
 from qgis.PyQt.QtCore import QObject, Qt, pyqtSignal
@@ -24,15 +23,18 @@ from qgis.PyQt.QtWidgets import (
 )
 
 from ...robot_bridge.core.messages import SiteReport
-from ..gateway_client.link import DEFAULT_URL, ConnectionPhase, ConnectionStatus, OperatorCredentials
+from ..gateway_client.connection_status import (
+    DEFAULT_URL,
+    ConnectionPhase,
+    ConnectionStatus,
+    OperatorCredentials,
+)
 from ..settings.connections import Connections, GatewayConnection, TokenStore
 from ..settings.connections_widget import ConnectionDialog, ConnectionsDialog
 from ..ui.actions import ICONS
 from ..ui.dialogs import file_field
 from ..ui.language import tr
 from ..ui.steady_widgets import ScrollingText, SteadyButton
-
-# --- The operator's token and the CA file, for gateways that have accounts and TLS ---
 
 CA_KEY = "fleet_supervisor/ca_file"
 NONE_KEPT = tr("fleet_op_…, as it was printed when the account was made")
@@ -127,8 +129,6 @@ class AccessFields(QWidget):
         grid.addWidget(self._ca, 1, 1, 1, 2)
 
 
-# --- The menu beside the button that connects: the connections that are kept, and what can be done with them
-
 NONE_CHOSEN = tr("Connections that are kept under a name")
 
 
@@ -137,12 +137,10 @@ class ConnectionMenu(QObject):
 
     chosen = pyqtSignal(object)
 
-    def __init__(
-        self, connections: Connections, as_it_stands: Callable[[], GatewayConnection], parent: QWidget
-    ):
-        super().__init__(parent)
-        self._connections, self._as_it_stands = connections, as_it_stands
-        self._window, self._marked, self._is_held = parent, "", False
+    def __init__(self, connections: Connections, panel: ConnectionPanel):
+        super().__init__(panel)
+        self._connections = connections
+        self._panel, self._marked, self._is_held = panel, "", False
         self._more: list[QAction] = []
         self.button = QToolButton()
         self.button.setObjectName("fleet_connections_button")
@@ -191,17 +189,15 @@ class ConnectionMenu(QObject):
         keep.triggered.connect(self._keep)
         manage = self.menu.addAction(tr("&Manage connections…"))
         manage.setObjectName("fleet_manage_connections")
-        manage.triggered.connect(lambda: ConnectionsDialog(self._window.window()).open())
+        manage.triggered.connect(lambda: ConnectionsDialog(self._panel.window()).open())
         self.menu.addSeparator()
         self.menu.addActions(self._more)
 
     def _keep(self) -> None:
-        dialog = ConnectionDialog(self._as_it_stands(), self._connections, self._window.window())
+        dialog = ConnectionDialog(self._panel.connection(), self._connections, self._panel.window())
         dialog.kept.connect(self.chosen)
         dialog.open()
 
-
-# --- Where the operator says which gateway and who, and sees how the link stands ---
 
 URL_KEY = "fleet_supervisor/url"
 OPERATOR_KEY = "fleet_supervisor/operator"
@@ -239,7 +235,7 @@ class ConnectionPanel(QWidget):
         self._operator = QLineEdit(settings.value(OPERATOR_KEY, "") or _user())
         self._operator.setObjectName("fleet_operator")
         self._operator.setToolTip(tr("Who you are: it stands beside every command in every log"))
-        self.menu = ConnectionMenu(self._connections, self._as_it_stands, self)
+        self.menu = ConnectionMenu(self._connections, self)
         self.menu.chosen.connect(self.use)
         self._access = AccessFields()
         self._more = _more_button()
@@ -286,7 +282,7 @@ class ConnectionPanel(QWidget):
         settings = QgsSettings()
         settings.setValue(URL_KEY, self.url())
         settings.setValue(OPERATOR_KEY, self.operator())
-        self._connections.last = self._chosen.name if self._chosen is not None else ""
+        self._connections.set_last(self._chosen.name if self._chosen is not None else "")
         self._access.remember(self.url(), self.operator())
 
     def show_link(self, link: ConnectionStatus, site: SiteReport | None, now: float) -> None:
@@ -328,8 +324,8 @@ class ConnectionPanel(QWidget):
         which = [self.url(), *([] if site is None else [site.name, site.crs])]
         return "\n".join([*which, *([link.reason] if link.reason else [])])
 
-    def _as_it_stands(self) -> GatewayConnection:
-        """What the fields say, as a connection that has no name yet."""
+    def connection(self) -> GatewayConnection:
+        """Return what the fields say, as a connection that has no name yet."""
         return GatewayConnection("", self.url(), self.operator(), self._access.ca_file())
 
     def _url_changed(self) -> None:

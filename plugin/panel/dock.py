@@ -32,8 +32,6 @@ from .queue import QueueEdits, QueuePanel
 from .robot_details import RobotDetails
 from .robot_table import RobotPanel, RobotTableView
 
-# --- How the parts of the fleet panel share its height, so that what comes and goes moves no button ---
-
 GAP = 4
 """Pixels between two parts."""
 SHARE = 0.45
@@ -123,8 +121,6 @@ class SharingSplitter(QSplitter):
         self._share = (self.sizes()[0] - self._least()) / max(1, self._free())
 
 
-# --- The fleet panel: link, robots, what to do with them, and what was done ---
-
 STOP_STYLE = (
     "QPushButton { background: #C62828; color: white; font-weight: bold; border: 1px solid #8E0000;"
     " border-radius: 4px; padding: 7px; }"
@@ -170,8 +166,8 @@ class FleetDock(QgsDockWidget):
         self._lay_out(actions)
         self.setToggleVisibilityAction(actions.panel)
         self.conflict_panel.counted.connect(self._count_conflicts)
-        desk.pulled.connect(self._show_link)
-        desk.link_changed.connect(self._show_link)
+        desk.state.updated.connect(self._show_link)
+        desk.state.link_changed.connect(self._show_link)
         self._show_link()
 
     def _lay_out(self, actions: Actions) -> None:
@@ -215,7 +211,9 @@ class FleetDock(QgsDockWidget):
         self.tabs.show_colour(self.conflict_panel, for_letters(DOUBTFUL) if number else None)
 
     def _show_link(self) -> None:
-        self.connection_panel.show_link(self._desk.link, self._desk.site, self._desk.clock())
+        self.connection_panel.show_link(
+            self._desk.state.link, self._desk.state.site, self._desk.clock.steady()
+        )
 
 
 def _tools(actions: Actions) -> QGridLayout:

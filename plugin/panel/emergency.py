@@ -8,13 +8,11 @@ from qgis.PyQt.QtWidgets import QAction, QApplication, QFrame, QHBoxLayout, QToo
 
 from ...robot_bridge.core.messages import EmergencyReport
 from ..control.fleet_controller import FleetController
-from ..gateway_client.link import ConnectionPhase
+from ..gateway_client.connection_status import ConnectionPhase
 from ..ui.dialogs import QuestionDialog
 from ..ui.language import first_of, tr, tr_count
 from ..ui.steady_widgets import ScrollingText
 from ..ui.times import time_of_day
-
-# --- The key of the emergency stop over dialogs that block their window, QGIS's own among them ---
 
 
 class EmergencyKey(QObject):
@@ -34,8 +32,6 @@ class EmergencyKey(QObject):
         if dialog is not None and self._action not in dialog.actions():
             dialog.addAction(self._action)
 
-
-# --- The red banner of an emergency stop: asked for, in force, and who has stopped ---
 
 STYLE = (
     "QFrame#fleet_emergency_banner { background: #B00020; border: 2px solid #FFC400; border-radius: 4px; }"
@@ -75,7 +71,7 @@ class EmergencyBanner(QFrame):
         columns.addWidget(self._clear, 0, Qt.AlignmentFlag.AlignVCenter)
         self.hide()
         desk.emergency_changed.connect(self.refresh)
-        desk.link_changed.connect(self.refresh)
+        desk.state.link_changed.connect(self.refresh)
         self.refresh()
 
     def text(self) -> str:
@@ -84,11 +80,11 @@ class EmergencyBanner(QFrame):
 
     def refresh(self) -> None:
         """Show how things stand."""
-        report = self._desk.emergency
+        report = self._desk.state.emergency
         in_force = report is not None and report.in_force
         asked = self._desk.orders.awaits_stop
         self._clear.setEnabled(in_force)
-        connected = self._desk.link.phase is ConnectionPhase.CONNECTED
+        connected = self._desk.state.link.phase is ConnectionPhase.CONNECTED
         text = in_words(report, asked, connected)
         self._text.setText(text)
         if self.isHidden() is (in_force or asked):
@@ -155,8 +151,6 @@ def _counts(report: EmergencyReport) -> list[str]:
         )
     return lines
 
-
-# --- Asks whether an emergency stop is really to be cleared ---
 
 LONGEST_REASON = 500
 

@@ -26,8 +26,6 @@ from ..ui.steady_widgets import ScrollingText
 from .command_sources import CoordinatesDialog, command_from_layer
 from .queue import QueueEdits
 
-# --- What is drawn on the map and would be sent, with the buttons that change it, send it or take it away
-
 NOTHING = tr("Select a robot, choose Cone target or Draw route, and click on the map.")
 
 LINES = 3
@@ -58,8 +56,8 @@ class PendingCommandPanel(QWidget):
         desk.sending.waiting_changed.connect(self._show)
         desk.remarked.connect(self._remarked)
         desk.orders.kept.connect(self._follow)
-        desk.commands_changed.connect(self._take_steps)
-        desk.site_changed.connect(lambda: self._remarked(""))
+        desk.state.commands_changed.connect(self._take_steps)
+        desk.state.site_changed.connect(lambda: self._remarked(""))
 
     def _lay_out(self, actions: Actions) -> None:
         # The arrows are known from every program; with words they made the panel too broad.
@@ -93,7 +91,7 @@ class PendingCommandPanel(QWidget):
 
     def _follow(self, command: str, words: str) -> None:
         """Say how a command stands, from now on at each of its steps until something else happens."""
-        known = self._desk.book.get(command)
+        known = self._desk.state.commands.get(command)
         stands = COMMAND_STATES[CommandState.QUEUED] if known is None else command_state_in_words(known)
         # First of all: what follows may be longer than the lines that are seen.
         self._show_remark(f"{stands[0].upper()}{stands[1:]}. {words}.", (command, words))
@@ -191,8 +189,6 @@ def _in_words(draft: PendingCommand) -> str:
     return tr("{in_words}.{warnings} Enter or Send sends it.", in_words=draft.in_words(), warnings=warnings)
 
 
-# --- Asks why something is to be sent in spite of what the checks found ---
-
 LONGEST_WHY = 300
 """characters."""
 LONGEST = 1000
@@ -232,9 +228,6 @@ class OverrideDialog(QuestionDialog):
         found = self._found[: LONGEST - len(why) - 1]
         text = "".join(c if c.isprintable() else " " for c in f"{found} {why}")
         self.confirmed.emit(text)
-
-
-# --- What can be done with the draft by buttons, and where it can come from besides clicks ---
 
 
 class PendingCommandActions(QObject):
@@ -354,10 +347,10 @@ class PendingCommandActions(QObject):
         self._try(lambda: self._show(((x, y),)))
 
     def _send_maps(self) -> None:
-        if not self._desk.selection:
+        if not self._desk.selection.robots:
             raise NotSentError(tr("No robot is selected, so none was sent the map. Select it first."))
-        for robot in self._desk.selection:
-            self._desk.ask(SendMap(robot), tr("Map for {robot}", robot=robot))
+        for robot in self._desk.selection.robots:
+            self._desk.orders.ask(SendMap(robot), tr("Map for {robot}", robot=robot))
 
     def _draft(self) -> PendingCommand:
         draft = self._desk.drafts.draft
@@ -380,7 +373,7 @@ class PendingCommandActions(QObject):
     def _show(self, points: tuple[tuple[float, float], ...]) -> None:
         """Move the map where none of ``points`` is on it."""
         canvas = self._desk.canvas
-        places = self._desk.placement().to_map(np.array(points))
+        places = self._desk.site_to_canvas.transform().to_map(np.array(points))
         # Of a rotated map the extent also has corners that are not on the screen.
         seen, rule = canvas.mapSettings().visiblePolygon(), Qt.FillRule.OddEvenFill
         if not any(seen.containsPoint(QPointF(x, y), rule) for x, y in places.tolist()):

@@ -37,7 +37,7 @@ from ...robot_bridge.core.messages import (
 from ..control.fleet_controller import FleetController
 from ..control.messages import QueueStand, Topic, draft_topic, queue_topic
 from ..control.pending_command import PendingCommand
-from ..gateway_client.buffers import RequestResult
+from ..gateway_client.requests import RequestResult
 from ..gateway_client.state_texts import (
     last_ended_in_words,
     queue_in_words,
@@ -50,8 +50,6 @@ from ..ui.glyphs import WRONG, WRONG_STYLE, for_letters
 from ..ui.language import tr
 from ..ui.steady_widgets import ElidedText, SteadyButton
 from ..ui.tables import RowModel, ZoomMenu, shrink_view
-
-# --- What the operator changes in the robots' queues, from the press of a button to the gateway's answer
 
 QueueRequest = AddTasks | MoveTask | RemoveTask | MakeCurrent | PauseQueue | PauseRobot | ResumeQueue
 
@@ -72,8 +70,8 @@ class QueueEdits(QObject):
         self._desk = desk
         self._asked: dict[str, str] = {}
         self._conflicts: dict[str, str] = {}
-        desk.answered.connect(self._answered)
-        desk.site_changed.connect(self._clear)
+        desk.orders.answered.connect(self._answered)
+        desk.state.site_changed.connect(self._clear)
 
     def is_asked(self, robot: str) -> bool:
         """Tell whether the gateway has not answered yet what was asked of this queue."""
@@ -136,10 +134,10 @@ class QueueEdits(QObject):
         return self._change(ResumeQueue(robot, self._revision(robot)), words, self._state(robot))
 
     def _revision(self, robot: str) -> int:
-        return self._desk.queues.revision(robot)
+        return self._desk.state.queues.revision(robot)
 
     def _state(self, robot: str) -> Topic:
-        queue = self._desk.queues.get(robot)
+        queue = self._desk.state.queues.get(robot)
         return queue_topic(QueueStand(robot, state="" if queue is None else queue.state.value))
 
     def _waiting(self, robot: str, task: str) -> Topic:
@@ -149,7 +147,7 @@ class QueueEdits(QObject):
         self, request: QueueRequest, words: str, *topics: Topic, draft: PendingCommand | None = None
     ) -> str | None:
         try:
-            key = self._desk.ask(request, words, *topics, draft=draft)
+            key = self._desk.orders.ask(request, words, *topics, draft=draft)
         except FleetError as error:
             about = () if draft is None else (draft_topic(draft.place),)
             self._desk.report_failure(str(error), *error.topics, *about)
@@ -173,9 +171,6 @@ class QueueEdits(QObject):
         self.changed.emit()
 
 
-# --- Robots that stand for a while and then go on: the actions *Pause robot* and *Continue* ---
-
-
 class PauseActions(QObject):
     """Wires both actions to the selected robots.
 
@@ -190,17 +185,17 @@ class PauseActions(QObject):
         self._go_on = actions.go_on
         actions.pause.triggered.connect(self._pause)
         actions.go_on.triggered.connect(self._continue)
-        desk.selection_changed.connect(self._enable)
-        desk.queues_changed.connect(self._enable)
-        desk.site_changed.connect(self._enable)
+        desk.selection.changed.connect(self._enable)
+        desk.state.queues_changed.connect(self._enable)
+        desk.state.site_changed.connect(self._enable)
         self._enable()
 
     def _pause(self) -> None:
-        if not self._desk.selection:
+        if not self._desk.selection.robots:
             self._desk.complained.emit(
                 tr("No robot is selected, so none was paused. Select it in the table or on the map.")
             )
-        for robot in self._desk.selection:
+        for robot in self._desk.selection.robots:
             self._edits.pause_robot(robot)
         self._desk.sending.withdraw()
 
@@ -209,14 +204,12 @@ class PauseActions(QObject):
             self._edits.go_on(queue)
 
     def _paused(self) -> list[QueueReport]:
-        queues = (self._desk.queues.get(robot) for robot in self._desk.selection)
+        queues = (self._desk.state.queues.get(robot) for robot in self._desk.selection.robots)
         return [queue for queue in queues if queue is not None and queue.state is QueueState.PAUSED]
 
     def _enable(self, *_: object) -> None:
         self._go_on.setEnabled(bool(self._paused()))
 
-
-# --- The tasks of one queue in their order, to be dragged into another ---
 
 COLUMNS = ("", tr("Task"), tr("State"))
 MIME = "application/x-fleet-task"
@@ -370,9 +363,6 @@ class TaskList(QTreeView):
         self.tasks.want_at(task, min(max(0, rows[key]), count))
 
 
-# --- The queue of the selected robot: what it is to do one after the other ---
-
-
 class QueuePanel(QWidget):
     """Shows one queue and asks for its changes; nothing is moved here before the gateway says so.
 
@@ -430,20 +420,20 @@ class QueuePanel(QWidget):
         tasks.remove_wanted.connect(lambda task: self._ask(self._edits.remove, task))
         tasks.first_wanted.connect(lambda task: self._ask(self._edits.make_current, task))
         tasks.selectionModel().selectionChanged.connect(self._show_buttons)
-        ZoomMenu(tasks, lambda index: self._go(index.row()))
+        ZoomMenu(tasks).wanted.connect(lambda index: self._go(index.row()))
         self._up.clicked.connect(lambda: self._step(-1))
         self._down.clicked.connect(lambda: self._step(2))
         self._remove.clicked.connect(lambda: self._chosen(self._edits.remove))
         self._first.clicked.connect(lambda: self._chosen(self._edits.make_current))
         self._hold.clicked.connect(self._hold_or_resume)
-        self._desk.queues_changed.connect(self._show)
+        self._desk.state.queues_changed.connect(self._show)
         self._edits.changed.connect(self._show)
-        self._desk.selection_changed.connect(self._show)
+        self._desk.selection.changed.connect(self._show)
 
     def _show(self, *_: object) -> None:
         queue = self._queue()
         self._head.setText(self._in_words(queue))
-        conflict = self._edits.conflict(self._desk.selected or "")
+        conflict = self._edits.conflict(self._desk.selection.last or "")
         self._conflict.setText(conflict)
         self._foot.setCurrentWidget(self._conflict if conflict else self._last)
         self._last.setText(last_ended_in_words(queue) if queue else "")
@@ -465,25 +455,25 @@ class QueuePanel(QWidget):
             else tr("Send the robot no further task; what it is doing it finishes (Pause robot stops it)")
         )
         # To hold is never in the way of anything: it waits for no answer.
-        self._hold.setEnabled(self._desk.selected is not None and (waits or not paused))
+        self._hold.setEnabled(self._desk.selection.last is not None and (waits or not paused))
 
     def _queue(self) -> QueueReport | None:
-        robot = self._desk.selected
-        return self._desk.queues.get(robot) if robot is not None else None
+        robot = self._desk.selection.last
+        return self._desk.state.queues.get(robot) if robot is not None else None
 
     def _is_free(self) -> bool:
         """Tell whether what is shown is what the gateway has: nothing asked for is without an answer."""
-        return not self._edits.is_asked(self._desk.selected or "")
+        return not self._edits.is_asked(self._desk.selection.last or "")
 
     def _in_words(self, queue: QueueReport | None) -> str:
         if queue is not None:
             return queue_in_words(queue)
-        if self._desk.selected is not None:
+        if self._desk.selection.last is not None:
             return tr(
                 "{selected} has no queue. Add a target or a route with Add to queue.",
-                selected=self._desk.selected,
+                selected=self._desk.selection.last,
             )
-        queues = list(self._desk.queues)
+        queues = list(self._desk.state.queues)
         paused = sum(one.state is QueueState.PAUSED for one in queues)
         if not queues:
             return tr("Select a robot to see its queue. None has one yet.")
@@ -509,12 +499,12 @@ class QueuePanel(QWidget):
         self._ask(self._edits.move, task, before)
 
     def _ask(self, edit: Callable[..., object], *how: str | None) -> None:
-        robot = self._desk.selected
+        robot = self._desk.selection.last
         if robot is not None and self._is_free():
             edit(robot, *how)
 
     def _hold_or_resume(self) -> None:
-        queue, robot = self._queue(), self._desk.selected
+        queue, robot = self._queue(), self._desk.selection.last
         if robot is not None:
             resumes = queue is not None and queue.state is QueueState.PAUSED
             (self._edits.resume if resumes else self._edits.pause)(robot)
@@ -522,7 +512,7 @@ class QueuePanel(QWidget):
     def _go(self, row: int) -> None:
         task = self.list.tasks.tasks[row]
         try:
-            ((x, y),) = self._desk.placement().to_map(np.array([(task.x, task.y)]))
+            ((x, y),) = self._desk.site_to_canvas.transform().to_map(np.array([(task.x, task.y)]))
         except FleetError as error:
             self._desk.complained.emit(str(error))
             return

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import base64
 import binascii
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from typing import Any
 
 from qgis.core import QgsApplication, QgsTask
@@ -32,8 +32,9 @@ from ...robot_bridge.core.messages import (
     SendImage,
 )
 from ..control.fleet_controller import FleetController
-from ..gateway_client.buffers import RequestResult
+from ..control.request_tracker import RequestTracker
 from ..gateway_client.command_cache import PathDeviations, asked_at, command_in_words, state_word
+from ..gateway_client.requests import RequestResult
 from ..gateway_client.robot_states import RobotView
 from ..gateway_client.state_texts import COMMAND_STATES, ROBOT_STATES, queue_in_words, task_in_words
 from ..gateway_client.state_texts import task_state_in_words as task_state
@@ -43,10 +44,8 @@ from ..ui.language import tr
 from ..ui.steady_widgets import ElidedText
 from ..ui.tables import shrink_view
 from ..ui.times import date_and_time, heard_in_words, time_of_day
-from .alarms.board import alarm_state_in_words
+from .alarms.board import AlarmBoard, alarm_state_in_words
 from .alarms.rules import Alarm
-
-# --- What is known of one robot, as sections of names and values ---
 
 Row = tuple[str, str]
 TIMES = ("device_time", "fix_time")
@@ -128,8 +127,6 @@ def _value(name: str, value: Any) -> str:
     return f"{value}{unit}"
 
 
-# --- The last image that a robot sent: asked for when somebody looks, decoded beside the window ---
-
 LOOKED_THROUGH = 200
 """Observations among which the newest image is looked for."""
 LARGEST_SIDE = 1024
@@ -141,16 +138,16 @@ class LastImage(QObject):
 
     changed = pyqtSignal()
 
-    def __init__(self, desk: FleetController, parent: QObject | None = None):
+    def __init__(self, requests: RequestTracker, parent: QObject | None = None):
         super().__init__(parent)
-        self._desk = desk
+        self._requests = requests
         self._robot = ""
         self._key = ""
         self._seen: dict = {}
         self._task: DecodeTask | None = None
         self.image: QImage | None = None
         self.text = ""
-        desk.answered.connect(self._answered)
+        requests.answered.connect(self._answered)
 
     def ask(self, robot: str) -> None:
         """Look for the newest image of ``robot``."""
@@ -168,7 +165,7 @@ class LastImage(QObject):
 
     def _ask(self, request: GetObservations | GetImage, text: str) -> None:
         try:
-            self._key = self._desk.inquire(request)
+            self._key = self._requests.inquire(request)
         except FleetError as error:
             self._say(str(error), self.image)
             return
@@ -255,8 +252,6 @@ def _image_of(content: bytes) -> QImage | None:
     return None if image.isNull() else image
 
 
-# --- All that is known of the selected robot: a list in sections, and its last image ---
-
 NOW, ALARMS, RECEIVED, QUEUE, COMMANDS = SECTIONS = (
     tr("Now"),
     tr("Alarms"),
@@ -286,8 +281,7 @@ class RobotDetails(QWidget):
         self._positions, self._deviations = positions, deviations
         self._turn = desk.beat.turn()
         self._asked_for = ""
-        self.alarms_of: Callable[[str], list[Alarm]] = lambda robot: []
-        """Returns a robot's alarms."""
+        self._alarms: AlarmBoard | None = None
         self._title = ElidedText("fleet_details_title")
         font = QFont(self._title.font())
         font.setBold(True)
@@ -296,17 +290,21 @@ class RobotDetails(QWidget):
         self._sections = {name: _section(self._tree, name) for name in SECTIONS}
         self._picture = _Picture()
         self._about = ElidedText("fleet_image_text")
-        self._image = LastImage(desk, self)
+        self._image = LastImage(desk.orders, self)
         self._lay_out()
         self._image.changed.connect(self._show_image)
-        desk.selection_changed.connect(self.refresh)
-        desk.pulled.connect(self._pulled)
+        desk.selection.changed.connect(self.refresh)
+        desk.state.updated.connect(self._pulled)
         self.refresh()
+
+    def show_alarms_of(self, board: AlarmBoard | None) -> None:
+        """Show each robot's alarms on ``board`` from now on, None for none."""
+        self._alarms = board
 
     def refresh(self) -> None:
         """Show what is known of the robot that was selected last."""
-        robot = self._desk.selected
-        view = None if robot is None else self._desk.picture.view(robot, self._desk.clock())
+        robot = self._desk.selection.last
+        view = None if robot is None else self._desk.state.robots.view(robot, self._desk.clock.steady())
         if robot is None or view is None:
             self._title.setText(tr("Select a robot in the table or on the map"))
             self._asked_for = ""
@@ -314,10 +312,10 @@ class RobotDetails(QWidget):
             self._fill({})
             return
         several = tr("{robot}, selected last of several", robot=robot)
-        self._title.setText(robot if len(self._desk.selection) == 1 else several)
+        self._title.setText(robot if len(self._desk.selection.robots) == 1 else several)
         if self.isVisible() and self._asked_for != robot:
             self.ask()
-        book = self._desk.book
+        book = self._desk.state.commands
         at = (view.report.x, view.report.y) if view.has_pose else None
         off = self._deviations.of(robot, at)
         position = self._position(at)
@@ -330,22 +328,22 @@ class RobotDetails(QWidget):
                     position,
                     self._positions.name,
                 ),
-                ALARMS: alarm_rows(self.alarms_of(robot)),
+                ALARMS: alarm_rows([] if self._alarms is None else self._alarms.of(robot)),
                 RECEIVED: received_rows(view.told),
-                QUEUE: queue_rows(self._desk.queues.get(robot)),
+                QUEUE: queue_rows(self._desk.state.queues.get(robot)),
                 COMMANDS: command_rows(book.of(robot, MOST)),
             }
         )
 
     def ask(self) -> None:
         """Ask the gateway for the robot's last image, and for what was asked of it before this desk came."""
-        robot = self._desk.selected
+        robot = self._desk.selection.last
         if robot is None:
             return
         self._asked_for = robot
         self._image.ask(robot)
         try:
-            self._desk.inquire(GetCommands(robot, HISTORY))
+            self._desk.orders.inquire(GetCommands(robot, HISTORY))
         except FleetError as error:
             self._about.setText(str(error))
 
@@ -381,7 +379,7 @@ class RobotDetails(QWidget):
         if at is None:
             return ""
         try:
-            return self._positions.place_in_words(*at, self._desk.placement())
+            return self._positions.place_in_words(*at, self._desk.site_to_canvas.transform())
         except MapTransformError as error:
             return str(error)
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 from enum import Enum
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 import numpy.typing as npt
@@ -28,8 +28,6 @@ from ..ui.glyphs import STATE_COLOURS, for_letters, state_icon
 from ..ui.language import tr
 from ..ui.tables import TO_THE_RIGHT
 from ..ui.times import age_in_words, heard_in_words
-
-# --- The columns of the robot table: what stands in them, and what they are sorted by ---
 
 
 @dataclass(frozen=True)
@@ -125,8 +123,6 @@ def number_in_words(title: str, value: float) -> str:
         return f"{value:.2f} m" if value < 10 else f"{value:.1f} m"
     return age_in_words(value)
 
-
-# --- All robots at one moment, as the table shows, sorts and filters them: columns, not objects ---
 
 Floats = npt.NDArray[np.float64]
 Rows = npt.NDArray[np.intp]
@@ -296,7 +292,6 @@ def fleet_rows(
     return FleetRows(picture, book, deviations, robots.names, robots.state, robots.xy, numbers, paused)
 
 
-# --- The robots as a table model that sorts and filters by itself, on columns ---
 # Qt's own proxy asks for every cell of ten thousand robots whenever one has changed; this one asks numpy.
 
 ANSWERED_ROLES = frozenset(
@@ -311,26 +306,45 @@ ANSWERED_ROLES = frozenset(
 """The item roles that this model answers; a view asks for as many others of each cell that it paints."""
 
 
+class PositionTexts(Protocol):
+    """The view of the robots, which knows in which CRS positions are shown."""
+
+    def place_in_words(self, x: float, y: float) -> str:
+        """Return the text of a position, given in metres in the site frame; empty where it is not known."""
+
+
 class RobotModel(QAbstractTableModel):
     """One row for each robot that is listed. ``rows`` are looked at afresh by :meth:`show`."""
 
     def __init__(
-        self, picture: RobotStates, book: CommandCache, queues: QueueCache, parent: QObject | None = None
+        self,
+        robots: RobotStates,
+        commands: CommandCache,
+        queues: QueueCache,
+        view: PositionTexts,
+        parent: QObject | None = None,
     ):
         super().__init__(parent)
-        self.deviations = PathDeviations(book)
+        self.deviations = PathDeviations(commands)
         self._queues = queues
-        self._fleet: FleetRows = fleet_rows(picture, book, queues, self.deviations, 0.0)
-        self._arrangement = picture.arrangement
+        self._view = view
+        self._fleet: FleetRows = fleet_rows(robots, commands, queues, self.deviations, 0.0)
+        self._arrangement = robots.arrangement
         self._order: Rows = np.empty(0, dtype=np.intp)
         self._row_at: Rows = np.empty(0, dtype=np.intp)
         self._sorted_by = (TITLES.index("Robot"), Qt.SortOrder.AscendingOrder)
         self.which = RobotChoice.ALL
         self.text = ""
         self.troubled: set[str] = set()
-        self.place_in_words = lambda x, y: f"{x:.2f}, {y:.2f}" if np.isfinite(x) else ""
-        """Takes metres in the site frame and returns the text of a position."""
         self._icons = {state: state_icon(state) for state in STATES}
+
+    def set_filter(self, text: str, which: RobotChoice) -> None:
+        """Have only those robots listed, from the next renewal on, that ``text`` and ``which`` mean."""
+        self.text, self.which = text, which
+
+    def set_troubled(self, robots: set[str]) -> None:
+        """Note which robots have alarms."""
+        self.troubled = robots
 
     def rowCount(self, parent: QModelIndex | None = None) -> int:
         return 0 if parent is not None and parent.isValid() else len(self._order)
@@ -446,7 +460,7 @@ class RobotModel(QAbstractTableModel):
         if title == "Link":
             return short_link(fleet.told(row))
         if title == TITLES[POSITION]:
-            return self.place_in_words(*fleet.xy[row].tolist())
+            return self._view.place_in_words(*fleet.xy[row].tolist())
         value = fleet.off(row) if title == "Off" else float(fleet.numbers[title][row])
         return number_in_words(title, value)
 

@@ -36,8 +36,6 @@ from ..ui.steady_widgets import ElidedText
 from ..ui.tables import ZoomMenu, fit_headers, shrink_view
 from .robot_model import COLUMNS, TASK, TITLES, RobotChoice, RobotModel
 
-# --- The table of robots ---
-
 MANY = 500
 """With more robots the table is renewed half as often, with ten times as many four times as seldom."""
 HIDDEN_KEY = "fleet_supervisor/robot_table/hidden"
@@ -71,19 +69,18 @@ class RobotTableView(QTableView):
         self._is_fitting = self._is_fitted_by_hand = False
         self._fitted: tuple[int, int] = (0, 0)
         self.positions = PositionCrs(desk.project, self)
-        self._model = RobotModel(desk.picture, desk.book, desk.queues, self)
-        self._model.place_in_words = self._place
+        self._model = RobotModel(desk.state.robots, desk.state.commands, desk.state.queues, self, self)
         self.setModel(self._model)
         self._model.modelReset.connect(self._reset)
         self._set_up()
         self.selectionModel().selectionChanged.connect(self._selected_here)
-        ZoomMenu(self, lambda index: self.zoom_wanted.emit(self._name(index)))
+        ZoomMenu(self).wanted.connect(lambda index: self.zoom_wanted.emit(self._name(index)))
         self.positions.changed.connect(self.refresh)
-        desk.selection_changed.connect(self._selected_elsewhere)
-        desk.pulled.connect(self._pulled)
+        desk.selection.changed.connect(self._selected_elsewhere)
+        desk.state.updated.connect(self._pulled)
         # The robots known so far may be gone, or be others by the same names.
-        desk.site_changed.connect(self.refresh)
-        desk.robots_removed.connect(self._removed)
+        desk.state.site_changed.connect(self.refresh)
+        desk.state.robots_removed.connect(self._removed)
 
     @property
     def robots(self) -> RobotModel:
@@ -94,7 +91,7 @@ class RobotTableView(QTableView):
         """Show what the desk knows at this moment."""
         # Rows that come and go with a filter take their selection with them; the desk's stays.
         self._marking = True
-        self._model.show(self._desk.clock())
+        self._model.show(self._desk.clock.steady())
         self._marking = False
         self._fit_names()
         if self._is_reset:
@@ -115,7 +112,7 @@ class RobotTableView(QTableView):
 
     def _fit_names(self) -> None:
         """Give the names the room that they take, whatever the other columns have left, until a hand does."""
-        picture = self._desk.picture
+        picture = self._desk.state.robots
         known = picture.arrangement, len(picture)
         if self._is_fitted_by_hand or known == self._fitted:
             return
@@ -170,7 +167,7 @@ class RobotTableView(QTableView):
         return self.horizontalHeader().sizeHint().height() + rows + beside + OF_THEMES
 
     def _pulled(self) -> None:
-        count = len(self._desk.picture)
+        count = len(self._desk.state.robots)
         half_seconds = 1 if count <= MANY else 2 if count <= 10 * MANY else 4
         if self._turn.has_come(half_seconds) or count != self._model.count():
             self.refresh()
@@ -178,9 +175,10 @@ class RobotTableView(QTableView):
     def _name(self, index: QModelIndex) -> str:
         return self._model.name_at(index.row())
 
-    def _place(self, x: float, y: float) -> str:
+    def place_in_words(self, x: float, y: float) -> str:
+        """Return the text of a position, given in metres in the site frame."""
         try:
-            return self.positions.place_in_words(x, y, self._desk.placement())
+            return self.positions.place_in_words(x, y, self._desk.site_to_canvas.transform())
         except MapTransformError:
             return tr("no such place")
 
@@ -193,11 +191,11 @@ class RobotTableView(QTableView):
         current = self.currentIndex()
         last = self._name(current) if current.isValid() else ""
         names.sort(key=lambda name: name == last)
-        self._desk.select_all(names)
+        self._desk.selection.select_all(names)
 
     def _selected_elsewhere(self) -> None:
         self._mark()
-        rows = self._model.rows_of(self._desk.selection)
+        rows = self._model.rows_of(self._desk.selection.robots)
         if len(rows) == 1:
             self.scrollTo(self._model.index(rows[0], 0))
 
@@ -205,7 +203,7 @@ class RobotTableView(QTableView):
         self._is_reset = True
 
     def _mark(self) -> None:
-        rows = self._model.rows_of(self._desk.selection)
+        rows = self._model.rows_of(self._desk.selection.robots)
         if set(rows) == {i.row() for i in self.selectionModel().selectedRows()}:
             return
         wanted = QItemSelection()
@@ -220,8 +218,6 @@ class RobotTableView(QTableView):
         self.selectionModel().select(wanted, flags.ClearAndSelect | flags.Rows)
         self._marking = False
 
-
-# --- The table of robots, and what narrows it: a search, which robots are listed, and which columns ---
 
 WGS84 = "EPSG:4326"
 AROUND_SEARCH = 40
@@ -256,7 +252,7 @@ class RobotPanel(QWidget):
 
     def mark_troubled(self, robots: set[str]) -> None:
         """Say which robots have alarms."""
-        self.table.robots.troubled = robots
+        self.table.robots.set_troubled(robots)
 
     def _columns_button(self) -> QToolButton:
         button = QToolButton()
@@ -278,8 +274,8 @@ class RobotPanel(QWidget):
         head.addWidget(self._columns)
 
     def _narrow(self, *_what: object) -> None:
-        self.table.robots.text = self._search.text()
-        self.table.robots.which = list(RobotChoice)[self._which.currentIndex()]
+        which = list(RobotChoice)[self._which.currentIndex()]
+        self.table.robots.set_filter(self._search.text(), which)
         self.table.refresh()
 
     def _show_count(self) -> None:

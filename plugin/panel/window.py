@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from qgis.core import QgsProject
 from qgis.gui import QgisInterface, QgsMapTool
 from qgis.PyQt.QtCore import QObject, Qt
@@ -10,12 +12,12 @@ from qgis.PyQt.QtWidgets import QAction, QMainWindow, QMenu, QToolBar
 from ..control.fleet_controller import FleetController
 from ..control.messages import OUTAGE, Level, MessageBar, request_topic
 from ..control.roads import RoutePreferencesDialog
-from ..gateway_client.link import ConnectionPhase
+from ..gateway_client.connection_status import ConnectionPhase
 from ..layers.road_surfaces import SurfaceStore
-from ..map.layers import RoadLayers, StandingCones
 from ..map.live_view import LiveView
-from ..map.overlay.screen import FollowMode
+from ..map.overlay.scene import FollowMode
 from ..map.overlay.task_painter import QueueMarks
+from ..map.reported_layers import RoadLayers, StandingCones
 from ..map.site_project import ProjectMatch
 from ..map.tools.closure_tool import ClosureTool
 from ..map.tools.road_route_tool import RoadRouteTool
@@ -23,7 +25,7 @@ from ..map.tools.route_tool import RouteTool
 from ..map.tools.select_tool import SelectTool
 from ..map.tools.target_tools import ConeTool, StartTool
 from ..ui.actions import Actions
-from ..ui.errors import FleetError
+from ..ui.errors import FleetError, Part, remove_all
 from ..ui.language import tr
 from .alarms.alarm_bar import AlarmBar
 from .alarms.alarm_panel import AlarmPanel
@@ -33,8 +35,6 @@ from .dock import FleetDock
 from .emergency import ClearDialog, EmergencyKey
 from .pending_command_panel import PendingCommandActions
 from .queue import PauseActions, QueueEdits
-
-# --- Puts the desk into the QGIS window, and takes it out again without a trace ---
 
 MENU = "Fleet Supervisor"
 CONNECTING = request_topic("hello", "")
@@ -52,15 +52,17 @@ class FleetWindow(QObject):
         canvas = iface.mapCanvas()
         self.desk = FleetController(canvas, QgsProject.instance(), self)
         self.actions = Actions(self)
-        self._key = EmergencyKey(self.actions.emergency, self)
-        self.notices = MessageBar(iface.messageBar(), self)
-        self._project_match = ProjectMatch(self.desk, self)
-        self.view = LiveView(self.desk, self)
+        self._parts: list[Part] = []
+        """What :meth:`remove` takes out, the last one first."""
+        self.notices = self._add(MessageBar(iface.messageBar(), self))
+        self._key = self._add(EmergencyKey(self.actions.emergency, self))
+        self._project_match = self._add(ProjectMatch(self.desk.state, self.desk.project, self))
+        self.view = self._add(LiveView(self.desk, self))
         self.queue_edits = QueueEdits(self.desk, self)
-        self.queue_marks = QueueMarks(self.desk)
+        self.queue_marks = self._add(QueueMarks(self.desk))
         self.dock = FleetDock(self.desk, self.actions, self.queue_edits, iface.mainWindow())
-        self.road_layers = RoadLayers(self.desk, self)
-        self.standing_cones = StandingCones(self.desk, self)
+        self.road_layers = self._add(RoadLayers(self.desk.state, self.desk.project, self))
+        self.standing_cones = self._add(StandingCones(self.desk.state, self.desk.project, self))
         self.toolbar: QToolBar = iface.addToolBar("Fleet Supervisor")
         self.toolbar.setObjectName("fleet_toolbar")
         self._road_route = RoadRouteTool(self.desk)
@@ -75,8 +77,8 @@ class FleetWindow(QObject):
         self._draft_menu = QMenu(tr("Targets and routes"), iface.mainWindow())
         self._draft_menu.setObjectName("fleet_draft_menu")
         self._draft_menu.setIcon(self.actions.cone.icon())
-        self.draft_commands = PendingCommandActions(
-            self.desk, self.queue_edits, self.actions, iface.mainWindow()
+        self.draft_commands = self._add(
+            PendingCommandActions(self.desk, self.queue_edits, self.actions, iface.mainWindow())
         )
         self.robot_pauses = PauseActions(self.desk, self.queue_edits, self.actions, self)
         self._wire_actions()
@@ -89,14 +91,13 @@ class FleetWindow(QObject):
             self._put_away(tool)
             tool.deleteLater()
         self._tools.clear()
-        self.draft_commands.remove()
-        self.queue_marks.remove()
-        self.road_layers.remove()
-        self.standing_cones.remove()
-        self.view.remove()
-        self._project_match.remove()
-        self._key.remove()
-        self.notices.withdraw()
+        try:
+            remove_all(self._parts)
+        finally:
+            self._leave()
+
+    def _leave(self) -> None:
+        """Take toolbar, panel and menu entries out of the window."""
         for action in self.menu_entries():
             self._iface.removePluginMenu(MENU, action)
         self._draft_menu.deleteLater()
@@ -107,6 +108,10 @@ class FleetWindow(QObject):
         self.dock.deleteLater()
         self.deleteLater()
 
+    def _add(self, part: Any) -> Any:
+        self._parts.append(part)
+        return part
+
     def menu_entries(self) -> list[QAction]:
         """Return what stands in the plugin's menu itself; one entry opens the menu of drafts."""
         drafts = self.actions.for_drafts
@@ -115,7 +120,7 @@ class FleetWindow(QObject):
 
     def go_to(self, robot: str) -> None:
         """Select a robot alone and show where it is."""
-        self.desk.select(robot)
+        self.desk.selection.select(robot)
         self.view.zoom_to(robot)
 
     def _place(self) -> None:
@@ -154,7 +159,7 @@ class FleetWindow(QObject):
         self.notices.closed.connect(desk.messages.forget)
         self._project_match.differs.connect(self.notices.error)
         self._project_match.over.connect(self.notices.take_down)
-        desk.link_changed.connect(self._show_link)
+        desk.state.link_changed.connect(self._show_link)
 
     def _follow(self, whom: FollowMode, on: bool) -> None:
         if on:
@@ -189,7 +194,7 @@ class FleetWindow(QObject):
             self.notices.warning(str(error))
 
     def _show_link(self) -> None:
-        link = self.desk.link
+        link = self.desk.state.link
         wanted = link.phase not in (ConnectionPhase.CLOSED, ConnectionPhase.FAILED)
         self.actions.connect.setChecked(wanted)
         self.actions.connect.setText(tr("Disconnect") if wanted else tr("Connect"))
@@ -212,7 +217,7 @@ class FleetWindow(QObject):
         dialog.open()
 
     def _ask_to_clear(self) -> None:
-        report = self.desk.emergency
+        report = self.desk.state.emergency
         if report is None or not report.in_force:
             self.desk.complained.emit(tr("No emergency stop is in force."))
         else:
@@ -221,21 +226,20 @@ class FleetWindow(QObject):
             dialog.open()
 
 
-# --- The alarms in the QGIS window: watched, listed in the Fleet panel, counted in the message bar ---
-
-
 class WindowAlarms(QObject):
     """Puts the alarms beside the other lists of the Fleet panel. :meth:`remove` undoes the constructor."""
 
     def __init__(self, iface: QgisInterface, window: FleetWindow, surfaces: SurfaceStore):
         super().__init__(window)
         self._window = window
-        self.watch = AlarmWatch(window.desk, surfaces, self)
+        self.watch = AlarmWatch(
+            window.desk.state, window.desk.site_to_canvas, window.desk.beat, surfaces, self
+        )
         self.panel = AlarmPanel(self.watch)
         self.bar = AlarmBar(iface.messageBar(), self.watch, self)
         self._tabs = window.dock.tabs
         self._tabs.add_page(self.panel, tr("Alarms"), counts=True)
-        window.dock.details.alarms_of = self.watch.board.of
+        window.dock.details.show_alarms_of(self.watch.board)
         self.watch.changed.connect(self._changed)
         self.panel.robots_wanted.connect(self._go)
         self.panel.counted.connect(self._count)
@@ -246,7 +250,7 @@ class WindowAlarms(QObject):
         self.bar.remove()
         self.watch.remove()
         self.panel.remove()
-        self._window.dock.details.alarms_of = lambda robot: []
+        self._window.dock.details.show_alarms_of(None)
         self._tabs.removeTab(self._tabs.indexOf(self.panel))
         self.panel.deleteLater()
         self.deleteLater()
@@ -261,7 +265,7 @@ class WindowAlarms(QObject):
         self._tabs.show_colour(self.panel, alarm_colour(True) if new else None)
 
     def _go(self, robots: list[str]) -> None:
-        self._window.desk.select_all(robots)
+        self._window.desk.selection.select_all(robots)
         self._window.view.zoom_to(*robots)
 
     def _show(self) -> None:

@@ -225,11 +225,13 @@ class AsPlacedPage(QWidget):
     def _chosen(self) -> list[PlacementReport]:
         what = self.which.currentData()
         if what == THIS_PLAN:
-            return select_placed_cones(self._desk.placements, plan=self._plan or "")
-        return select_placed_cones(self._desk.placements, layout=None if what == EVERYTHING else what[1])
+            return select_placed_cones(self._desk.state.placed_cones, plan=self._plan or "")
+        return select_placed_cones(
+            self._desk.state.placed_cones, layout=None if what == EVERYTHING else what[1]
+        )
 
     def _fill_choices(self) -> None:
-        layouts = sorted({one.layout for one in self._desk.placements if one.layout})
+        layouts = sorted({one.layout for one in self._desk.state.placed_cones if one.layout})
         wanted = [(tr("the plan that is driven"), THIS_PLAN), (tr("everything"), EVERYTHING)]
         wanted += [(tr("layout {name}", name=name), ("layout", name)) for name in layouts]
         if [self.which.itemData(k) for k in range(self.which.count())] == [data for _, data in wanted]:

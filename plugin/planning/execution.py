@@ -1,373 +1,467 @@
-"""The plan that robots drive: sent, and planned anew for what is left when something goes wrong."""
+"""Cone plans that the gateway drives: submitted, steered by requests, and followed by its reports."""
 
 from __future__ import annotations
 
-import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Sequence
+from contextlib import suppress
+from dataclasses import dataclass, replace
+from typing import Any
 
-import numpy as np
 from qgis.PyQt.QtCore import QObject, pyqtSignal
 
-from ...robot_bridge.core.assignment.plan_changes import replan
-from ...robot_bridge.core.assignment.progress import (
-    PlanProblem,
-    PlanProgress,
-    SentStop,
-    current_cones,
-    current_stops,
-    situation_of,
-    tasks_of,
+from ...robot_bridge.core.assignment.plan import ConePlan, document_of
+from ...robot_bridge.core.messages import (
+    ClearPlan,
+    ConfirmReplan,
+    DiscardReplan,
+    GetPlacements,
+    GetPlans,
+    GetQueue,
+    MessageError,
+    PausePlan,
+    PlanCone,
+    PlanProblemKind,
+    PlanReport,
+    PlanState,
+    QueueState,
+    Replan,
+    ResumePlan,
+    SubmitPlan,
+    TaskState,
 )
-from ...robot_bridge.core.assignment.solver import Objective
-from ...robot_bridge.core.messages import MessageError, QueueTask
-from ..control.fleet_controller import FleetController
-from ..control.messages import PLAN_ASKED, PLAN_SENT
+from ..control.fleet_controller import STOPPED_BY, FleetController
+from ..control.messages import PLAN_SENT, Level, Topic, plan_topic
 from ..control.pending_command import in_brief
-from ..ui.errors import FleetError
+from ..gateway_client.connection_status import ConnectionPhase
+from ..gateway_client.report_caches import MOST_ASKED, KnownPlan
+from ..gateway_client.requests import RequestResult
+from ..ui.errors import NotSentError
 from ..ui.language import first_of, tr
 from .plan_editor import PlanEditor, PlanningError
-from .plan_settings import have_position
 from .plan_views import after_sending
-from .progress import PlanMonitor, problem_in_words
-from .proposal import ClosureCheck, PlanProposal
-from .queue_steps import (
-    QueueRequests,
-    QueueStep,
-    RefusedStep,
-    continuing_steps,
-    first_steps,
-    has_failed,
-    holding_steps,
-    later_steps,
-    paused_at,
-)
+from .progress import problem_in_words
+from .proposal import PlanProposal
 
-_REPLANNING_S = 2.0
+REPLANNING_S = 2.0
 """How long a new plan for what is left may take at most: robots stand meanwhile."""
-_LONGEST_REASON = 200
-"""Characters of the reason that a pause is given."""
+GATEWAY = "gateway"
+"""Who does what nobody asked for."""
+
+
+@dataclass(frozen=True)
+class RefusedPlan:
+    """What the gateway does with an override alone: the request, in words, and all that speaks against it.
+
+    ``plan`` is what it is about, as the operator saw it.
+    """
+
+    request: SubmitPlan | ConfirmReplan
+    words: str
+    found: tuple[str, ...]
+    plan: ConePlan | None
+
+
+@dataclass(frozen=True)
+class _Asked:
+    request: Any
+    words: str
+    plan: ConePlan | None
+    done: Callable[[dict[str, Any]], None]
 
 
 class PlanExecution(QObject):
-    """Sends the draft when told to, and new plans for what is left of it. Robots are never sent by it
-    unasked, unless ``settings.by_itself`` says so."""
+    """Submits the draft when told to, shows one of the plans that the gateway drives, and steers that.
+
+    Nothing is kept of what robots are to do: that is the gateway's. One request waits for its answer at a
+    time; a pause waits for none.
+    """
 
     changed = pyqtSignal()
-    """Something new is known of the plan that is driven."""
+    """Something new is known of the plan that is shown, or another one is."""
     remarked = pyqtSignal(str)
 
     def __init__(self, desk: FleetController, drafts: PlanEditor, parent: QObject | None = None):
         super().__init__(parent)
         self._desk = desk
         self._drafts = drafts
-        self.offer: PlanProposal | None = None
-        """A new plan for what is left, that nobody confirmed yet."""
-        self.sending: QueueRequests | None = None
-        self.held: dict[str, float | None] = {}
-        """Robots that wait for the new plan, with the time since which their queues are paused for that."""
-        self._followed = PlanMonitor(desk, self)
-        self._followed.changed.connect(self.changed)
-        self._followed.troubled.connect(self._plan_rest_by_itself)
-        self._look_at_offer = ClosureCheck(self)
-        desk.roads.closures_changed.connect(self._take_closures)
+        self.shown: str | None = None
+        """The name of the plan that is shown, None for the draft."""
+        self._refusal: RefusedPlan | None = None
+        self._asked: dict[str, _Asked] = {}
+        self._wants_draft = False
+        """Whether the operator chose not to be shown what others submit."""
+        self._cleared_here: set[str] = set()
+        self._fetched: tuple[str, int] | None = None
+        """Of which plan the documents were asked for on this link, and at which revision."""
+        self._submitted_here: PlanProposal | None = None
+        """What this desk submitted last: it is shown until the gateway has sent it back."""
+        self._went: tuple[str, Sequence[str]] | None = None
+        """What was asked after robots were let go on, by its key, and these robots."""
+        self._told: dict[str, PlanReport] = {}
+        desk.state.plans_changed.connect(self._take_plans)
+        desk.state.queues_changed.connect(self._take_queues)
+        desk.orders.answered.connect(self._answered)
+        desk.state.link_changed.connect(self._link_changed)
+        drafts.changed.connect(self._submitted_before)
 
     @property
-    def driven(self) -> PlanProposal | None:
-        """The plan that robots drive, None while none is followed."""
-        return self._followed.draft
+    def known(self) -> KnownPlan | None:
+        """The plan that is shown, as the gateway reported it last; None while the draft is shown."""
+        return self._desk.state.plans.get(self.shown)
 
     @property
-    def progress(self) -> PlanProgress | None:
-        """How far the robots are, None while no plan is followed."""
-        return self._followed.progress
+    def shown_plan(self) -> ConePlan | None:
+        """What is to be looked at: a new plan of what is left, the plan that is driven, or the draft."""
+        known = self.known
+        if known is None:
+            return None if self._drafts.draft is None else self._drafts.draft.plan
+        if known.report.state is PlanState.PROPOSED and known.proposal is not None:
+            return known.proposal
+        own = self._submitted_here
+        if known.document is None and own is not None and own.name == known.plan:
+            return own.plan
+        return known.document
 
     @property
-    def trouble(self) -> PlanProblem:
-        """What keeps the plan from going on as it is."""
-        return self._followed.trouble
+    def choice(self) -> list[KnownPlan]:
+        """The plans that can be shown: those that are driven, newest first, and the one that is shown."""
+        found, known = self._desk.state.plans.open(), self.known
+        return found if known is None or known.is_open else [known, *found]
 
     @property
-    def paused(self) -> dict[str, float | None]:
-        """Robots that stand still with work to do because somebody paused their queues, and since when.
+    def asking(self) -> bool:
+        """Whether something was asked of the gateway that it has not answered yet; pauses do not count."""
+        return any(not isinstance(one.request, PausePlan) for one in self._asked.values())
 
-        Not those that are held for a new plan, nor those that are away or whose cone failed: it takes a new
-        plan to let these go on.
+    @property
+    def busy(self) -> bool:
+        """Whether something is asked for or planned."""
+        return self.asking or self._drafts.busy
+
+    @property
+    def refusal(self) -> RefusedPlan | None:
+        """What the gateway does with an override alone, while that is not decided."""
+        refusal = self._refusal
+        return None if refusal is None or refusal.plan is not self.shown_plan else refusal
+
+    @property
+    def paused(self) -> list[str]:
+        """Robots of a plan that is driven that stand still with work to do: somebody paused their queues.
+
+        Not those that are away or whose cone failed: it takes a new plan to let these go on.
         """
-        if self.driven is None or self.held:
-            return {}
-        away = self.trouble.away
-        ours = [one.robot.id for one in self.driven.plan.robots if not one.lost and one.robot.id not in away]
-        return {
-            robot: moment
-            for robot, moment in paused_at(self._desk, ours).items()
-            if self._desk.queues.get(robot).tasks and not has_failed(self._desk, robot)
-        }
+        known = self.known
+        if known is None or known.report.state is not PlanState.DRIVEN:
+            return []
+        away = {one.robot for one in known.report.problems if one.kind is PlanProblemKind.AWAY}
+        queues = [self._desk.state.queues.get(robot) for robot in known.report.robots if robot not in away]
+        return [
+            one.robot
+            for one in queues
+            if one is not None and one.state is QueueState.PAUSED and one.tasks
+            and not any(task.state is TaskState.FAILED for task in one.tasks)
+        ]  # fmt: skip
+
+    @property
+    def is_without_plans(self) -> bool:
+        """Whether the gateway is too old to drive plans."""
+        return self._desk.state.plans.is_driving is False
 
     def pauses_in_words(self) -> list[str]:
-        """Return a text for each reason why robots are :attr:`paused`."""
-        reports = [self._desk.queues.get(robot) for robot in self.paused]
-        robots: dict[str, list[str]] = {}
-        for one in reports:
-            robots.setdefault(one.reason or one.by or "", []).append(one.robot)
+        """Return a text for each reason why robots of the plan stand still."""
+        known = self.known
+        if known is None:
+            return []
+        report, robots = known.report, {}
+        if report.state is PlanState.PAUSED:
+            robots[": ".join(text for text in (report.by, report.reason) if text)] = report.robots
+        for robot in self.paused:
+            queue = self._desk.state.queues.get(robot)
+            robots.setdefault(queue.reason or queue.by or "", []).append(robot)
         return [
             tr("Paused: {robots} ({why})", robots=", ".join(first_of(names)), why=why)
             for why, names in robots.items()
         ]
 
-    @property
-    def busy(self) -> bool:
-        """Whether something is being sent or planned."""
-        return self.sending is not None or self._drafts.busy
+    # --- what the operator asks for ---
 
-    @property
-    def refusal(self) -> RefusedStep | None:
-        """What the gateway sends with an override alone, while that is not decided."""
-        return None if self.sending is None else self.sending.refusal
+    def choose(self, name: str | None) -> None:
+        """Show a plan that the gateway drives, None for the draft."""
+        self.shown, self._wants_draft = name, name is None
+        self._fetch()
+        self.changed.emit()
+
+    def make_room(self) -> None:
+        """Show the draft, which is made next; raises PlanningError while a plan that is driven is shown."""
+        known = self.known
+        if known is not None and known.is_open:
+            raise PlanningError(
+                tr(
+                    "A plan is being driven. Plan what is left, choose New plan to plan for other robots, or "
+                    "press Clear: nobody follows it then, and robots go on with their queues."
+                )
+            )
+        if known is not None:
+            self.choose(None)
 
     def send(self) -> None:
-        """Send the draft to the robots' queues.
+        """Submit the draft.
 
         :raises FleetError: when it cannot be sent; nothing was sent then.
         """
         draft = self._drafts.draft
-        if draft is None or self.busy:
+        if draft is None or self.known is not None or self.busy:
             raise PlanningError(tr("There is no plan to send. Make one with Preview or Solve first."))
-        self._check_no_emergency()
-        tasks = _tasks(draft)
-        self.offer, self.held = None, {}
-        self._followed.begin(draft, tasks)
-        self._start(first_steps(self._desk, tasks), self._sent)
-        self._look_at_what_is_sent()
+        if self.is_without_plans:
+            raise PlanningError(no_plans_here())
+        self._ask(self._submission(draft), tr("Sending the cone plan"), draft.plan, self._submitted)
 
-    def override(self, refusal: RefusedStep, why: str) -> None:
-        """Send what was refused all the same, and then the rest of the plan.
-
-        :raises PlanningError: when that is decided by now, or an emergency stop is in force.
-        """
-        if refusal is not self.refusal:
+    def override(self, refusal: RefusedPlan, why: str) -> None:
+        """Ask for what was refused all the same, as text ``why`` says; PlanningError when that is over."""
+        if refusal is not self.refusal or self.asking:
             raise PlanningError(
                 tr("Nothing was overridden: what was refused is no longer being sent. Look at the plan.")
             )
-        self._check_no_emergency()
-        self._desk.messages.end(PLAN_SENT)
-        self.sending.override(why)
-        self.changed.emit()
+        done = self._submitted if isinstance(refusal.request, SubmitPlan) else self._went_on
+        self._ask(replace(refusal.request, override=why), refusal.words, refusal.plan, done)
 
-    def leave(self) -> None:
-        """Send no more of the plan than robots have by now; raises PlanningError if nothing is refused."""
-        if self.refusal is None:
-            raise PlanningError(tr("Nothing of the plan waits to be overridden."))
-        self._desk.messages.end(PLAN_SENT)
-        self.sending.leave()
-
-    def plan_rest(self, *, try_again: bool = False) -> None:
-        """Hold the robots and plan what is left; :meth:`confirm` sends it, :meth:`discard` lets them go on.
-
-        :raises PlanningError: when no plan is driven, or nobody is left to drive.
-        """
-        if self.driven is None or self.busy:
-            raise PlanningError(tr("No plan is being driven, or something is still being sent."))
-        self._check_no_emergency()
-        robots = self.driven.plan.robots
-        staying = [one.robot.id for one in robots if not one.lost and one.robot.id not in self.trouble.away]
-        if not staying:
-            raise PlanningError(tr("No robot is left to take over: connect one, and plan anew."))
-        trouble = self._followed.see_to()
-        paused = {robot for robot in paused_at(self._desk, staying) if not has_failed(self._desk, robot)}
-        ours = [robot for robot in staying if robot not in paused]
-
-        def held(done: bool) -> None:
-            self.held = paused_at(self._desk, ours)
-            if done:
-                self._plan_rest(trouble, try_again)
-
-        self._start(holding_steps(ours, _reason(trouble)), held)
-
-    def confirm(self) -> None:
-        """Send the new plan for what is left; raises PlanningError when there is none."""
-        offer, progress = self.offer, self.progress
-        if offer is None or progress is None or self.busy:
-            raise PlanningError(tr("There is no new plan to confirm."))
-        self._check_no_emergency()
-        given_up = offer.plan.done - progress.done - current_cones(progress)
-        if given_up:
-            raise PlanningError(
-                tr(
-                    "Given up since this plan was made: {cones}. Plan what is left again.",
-                    cones=", ".join(first_of(sorted(given_up))),
-                )
-            )
-        tasks = _tasks(offer, current_stops(progress))
-        away = [one.robot.id for one in offer.plan.robots if one.lost]
-        held, self.held, self.offer = self.held, {}, None
-        self._followed.go_on(offer, tasks)
-        self._start(later_steps(self._desk, tasks, away, held, tr("its robot is lost")), self._sent)
-        self._look_at_what_is_sent()
-
-    def discard(self) -> None:
-        """Forget the new plan; robots that were held go on as before."""
-        held, self.offer, self.held = self.held, None, {}
-        self._drafts.cancel()
-        self._start(continuing_steps(self._desk, held), lambda done: None)
+    def pause(self) -> None:
+        """Have the plan's robots sent nothing more; raises PlanningError when none is driven."""
+        self._ask(PausePlan(self._open().plan), tr("Pause of the cone plan"))
 
     def resume(self) -> None:
-        """Let the robots go on that are :attr:`paused`.
+        """Let the plan's robots go on; raises PlanningError when none is driven."""
+        report = self._open().report
+        request = ResumePlan(report.plan, report.revision)
+        self._ask(request, tr("Going on with the cone plan"), done=self._went_on)
 
-        :raises PlanningError: when there are none, or an emergency stop is in force.
-        """
-        paused = self.paused
-        if not paused or self.busy:
-            raise PlanningError(tr("No queue of the plan is paused, or something is still being sent."))
-        self._check_no_emergency()
-        self._start(continuing_steps(self._desk, paused), lambda done: None)
+    def plan_rest(self, *, try_again: bool = False) -> None:
+        """Have the robots held and what is left planned; raises PlanningError when no plan is driven."""
+        report = self._open().report
+        self._ask(Replan(report.plan, report.revision, try_again), tr("Plan of what is left"))
+
+    def confirm(self) -> None:
+        """Have the new plan for what is left driven; raises PlanningError when it is not there to be seen."""
+        known = self._open()
+        if known.proposal is None or not known.is_whole:
+            raise PlanningError(tr("There is no new plan to confirm."))
+        request = ConfirmReplan(known.plan, known.report.revision)
+        self._ask(request, tr("The new cone plan"), known.proposal, self._went_on)
+
+    def discard(self) -> None:
+        """Give up the new plan, or its making; robots that were held go on as before."""
+        report = self._open().report
+        self._ask(DiscardReplan(report.plan, report.revision), tr("Going on as before"))
 
     def clear(self) -> None:
-        """Watch no plan any more, and send no more of it; robots go on with what is in their queues."""
-        self._desk.messages.end(PLAN_SENT)
-        if self.sending is not None:
-            self.sending.give_up()
-            self._forget_sending()
-        self.offer, self.held = None, {}
-        self._followed.clear()
-        self.changed.emit()
-
-    def shut_down(self) -> None:
-        """Look at nothing any more."""
-        self._look_at_offer.stop()
-        self._followed.shut_down()
-
-    # --- what is left of it ---
-
-    def _plan_rest(self, trouble: PlanProblem, try_again: bool) -> None:
-        driven, progress = self.driven, self.progress
-        robots = self._desk.picture.arrays(self._desk.clock())
-        places = {
-            robots.names[row]: tuple(robots.xy[row].tolist()) for row in np.flatnonzero(have_position(robots))
-        }
-        drive = {one.robot.id for one in driven.plan.robots if not one.lost} - set(trouble.away)
-        placed = [(one.x, one.y) for one in progress.placed.values() if one.collected_at is None]
-        driven.ways.closures = self._desk.roads.closures
-        driven.ways.cones = np.array([*driven.ways.cones, *placed], dtype=float).reshape(-1, 2)
-        driven.ways.standing = {name: place for name, place in places.items() if name not in drive}
-        now = situation_of(driven.plan, progress, places, trouble, time.time(), try_again=try_again)
-        wanted = Objective(
-            driven.plan.objective, time_limit_s=min(self._drafts.settings.seconds, _REPLANNING_S)
-        )
-        self._drafts.run(
-            tr("Plan of what is left"),
-            driven,
-            lambda task: replan(
-                driven.plan, lambda job: driven.ways.travel_of(job, task.goes_on), now, wanted, task.told
-            ),
-            self._offer,
-        )
-
-    def _offer(self, offer: PlanProposal) -> None:
-        self.offer = offer
-        self.changed.emit()
-        if self._drafts.settings.by_itself and not offer.meetings and not offer.closed:
-            why = problem_in_words(self._followed.seen_to)
-            self.remarked.emit(tr("A new plan is sent by itself, as you switched on: {why}", why=why))
-            # What made the plan is still telling of it.
-            self._drafts.changed.connect(self._confirm_once)
-
-    def _confirm_once(self) -> None:
-        self._drafts.changed.disconnect(self._confirm_once)
-        if self.offer is not None:
-            self._try(self.confirm)
-
-    def _plan_rest_by_itself(self) -> None:
-        if self._drafts.settings.by_itself and self.offer is None and not self.busy:
-            # Tried once: what cannot be planned is told once, and is the operator's from then on.
-            self._followed.see_to()
-            self._try(self.plan_rest)
-
-    def _look_at_what_is_sent(self) -> None:
-        """Find out which ways lead along closed roads: that may not be known yet of roads closed just now."""
-        if self._desk.roads.closures:
-            self._followed.look_at_closures()
-
-    def _take_closures(self) -> None:
-        """Find out anew which ways of the new plan lead along closed roads."""
-        offer = self.offer
-        if offer is None:
+        """Have the plan that is shown followed no more, or show no longer what ended; drop the draft."""
+        known = self.known
+        if known is not None and known.is_open:
+            self._cleared_here.add(known.plan)
+            self._ask(ClearPlan(known.plan), tr("Clearing the cone plan"))
             return
+        self._show_nothing(wants_draft=True)
 
-        def found(drafts: list[PlanProposal]) -> None:
-            if self.offer is offer:
-                self.offer = drafts[0]
-                self.changed.emit()
+    def forget(self) -> None:
+        """Forget what is shown, plan or draft: it is another site's."""
+        self._told.clear()
+        self._show_nothing(wants_draft=False)
 
-        self._look_at_offer.begin([offer], self._desk.roads.closures, found)
-
-    # --- how it is sent ---
-
-    def _check_no_emergency(self) -> None:
-        stop = self._desk.emergency
-        if stop is not None and stop.in_force:
-            raise PlanningError(tr("An emergency stop is in force. It has to be cleared first."))
-
-    def _start(self, steps: list[QueueStep], then: Callable[[bool], None]) -> None:
-        self.sending = sending = QueueRequests(self._desk, steps, self)
+    def _show_nothing(self, *, wants_draft: bool) -> None:
         self._desk.messages.end(PLAN_SENT)
-
-        def ended(done: bool, why: str) -> None:
-            self._forget_sending()
-            if not done:
-                self._fail(tr("The cone plan was not sent as a whole. {why}", why=why))
-            then(done)
-            self.changed.emit()
-
-        sending.ended.connect(ended)
-        sending.refused.connect(self._refused)
-        self.changed.emit()
-        sending.start()
-
-    def _refused(self) -> None:
-        # One text that says where it is decided, in place of the one that every refusal brings.
-        self._desk.messages.withdraw(self.refusal.told)
-        self._fail(_in_words(self.refusal))
+        self.shown, self._refusal, self._wants_draft = None, None, wants_draft
+        self._drafts.set_proposal(None)
         self.changed.emit()
 
-    def _forget_sending(self) -> None:
-        sending, self.sending = self.sending, None
-        sending.deleteLater()
+    def _open(self) -> KnownPlan:
+        known = self.known
+        if known is None or not known.is_open:
+            raise PlanningError(tr("No plan is being driven, or something is still being sent."))
+        return known
 
-    def _sent(self, done: bool) -> None:
-        if done:
-            self.remarked.emit(tr("The cone plan is in the robots' queues."))
-            for text in after_sending(self._desk, self.driven.plan):
-                self._fail(text)
-        self._followed.look_at_queues()
-
-    def _try(self, action: Callable[[], None]) -> None:
+    def _submission(self, draft: PlanProposal) -> SubmitPlan:
+        settings, ground = self._drafts.settings, draft.ways.settings
+        driving = [one.robot.id for one in draft.plan.robots if one.stops]
         try:
-            action()
-        except FleetError as error:
-            self._desk.report_failure(str(error), PLAN_ASKED)
+            return SubmitPlan(
+                draft.name,
+                document_of(draft.plan),
+                [
+                    PlanCone(target, one.cone, one.layout, one.placement, one.theta)
+                    for target, one in draft.facts.items()
+                ],
+                {robot: self._desk.state.queues.revision(robot) for robot in driving},
+                [(x, y) for x, y in draft.ways.cones.tolist()],
+                on_roads=ground.on_roads,
+                direct_m=ground.direct_m,
+                clearance_m=ground.clearance_m,
+                apart_m=ground.apart_m,
+                seconds=min(settings.seconds, REPLANNING_S),
+                by_itself=settings.by_itself,
+            )
+        except MessageError as error:
+            raise PlanningError(tr("The plan cannot be sent: {error}", error=error)) from error
+
+    def _ask(
+        self,
+        request: Any,
+        words: str,
+        plan: ConePlan | None = None,
+        done: Callable[[dict[str, Any]], None] = lambda result: None,
+    ) -> None:
+        if self.asking and not isinstance(request, PausePlan):
+            raise PlanningError(tr("No plan is being driven, or something is still being sent."))
+        key = self._desk.orders.ask(request, words, PLAN_SENT)
+        # Only now: what could not be asked leaves what was refused to be overridden.
+        self._desk.messages.end(PLAN_SENT)
+        self._refusal = None
+        self._asked[key] = _Asked(request, words, plan, done)
+        self.changed.emit()
+
+    def _answered(self, answer: RequestResult) -> None:
+        asked = self._asked.pop(answer.order.key, None)
+        if asked is None:
+            self._tell_who_stays(answer.order.key)
+            return
+        if answer.error is None:
+            asked.done(answer.result or {})
+        elif answer.overridable:
+            found = tuple(f"{text}." for text in answer.overridable)
+            self._refusal = RefusedPlan(asked.request, asked.words, found, asked.plan)
+            # One text that says where it is decided, in place of the one that every refusal brings.
+            self._desk.messages.withdraw(f"{asked.words}: {answer.error}")
+            self._fail(_in_words(self._refusal))
+        if isinstance(asked.request, ClearPlan):
+            self._cleared_here.discard(asked.request.plan)
+        self.changed.emit()
+
+    def _submitted(self, result: dict[str, Any]) -> None:
+        self.remarked.emit(tr("The cone plan is in the robots' queues."))
+
+    def _went_on(self, result: dict[str, Any]) -> None:
+        """Ask how the queues are: what is told of them may come after the answer of what let them go on."""
+        known = self._desk.state.plans.get(result.get("plan"))
+        if known is None:
+            return
+        with suppress(NotSentError):
+            self._went = (self._desk.orders.inquire(GetQueue()), known.report.robots)
+
+    def _tell_who_stays(self, key: str) -> None:
+        if self._went is not None and key == self._went[0]:
+            robots, self._went = self._went[1], None
+            for text in after_sending(self._desk, robots):
+                self._fail(text)
 
     def _fail(self, text: str) -> None:
         self._desk.report_failure(text, PLAN_SENT)
 
+    # --- what the gateway reports ---
 
-def _in_words(refusal: RefusedStep) -> str:
+    def _link_changed(self) -> None:
+        if self._desk.state.link.phase is ConnectionPhase.CONNECTED:
+            self._fetched = None
+            self._fetch()
+
+    def _take_queues(self, robots: Sequence[str]) -> None:
+        known = self.known
+        if known is not None and not set(robots).isdisjoint(known.report.robots):
+            # They may have been paused, or go on.
+            self.changed.emit()
+
+    def _take_plans(self, names: Sequence[str]) -> None:
+        for name in names:
+            self._notice(name)
+        self._submitted_before()
+        known = self.known
+        if known is not None and known.report.state is PlanState.CLEARED:
+            self._leave_cleared(known.report)
+        elif known is None:
+            self._show_newest()
+        self._fetch()
+        self.changed.emit()
+
+    def _submitted_before(self) -> None:
+        """Show in place of the draft what the gateway has of it, be it that its answer was lost."""
+        draft = self._drafts.draft
+        if draft is not None and self._desk.state.plans.get(draft.name) is not None:
+            self.shown, self._wants_draft, self._refusal = draft.name, False, None
+            self._submitted_here = draft
+            self._fetch()
+            self._drafts.drop(draft)
+
+    def _show_newest(self) -> None:
+        self.shown = None
+        newest = next(iter(self._desk.state.plans.open()), None)
+        if newest is not None and self._drafts.draft is None and not (self._drafts.busy or self._wants_draft):
+            self.shown = newest.plan
+
+    def _leave_cleared(self, report: PlanReport) -> None:
+        self.shown, self._wants_draft = None, True
+        if report.plan not in self._cleared_here:
+            text = tr(
+                "{by} cleared the cone plan: nobody follows it any more, and robots go on with their queues.",
+                by=report.by,
+            )
+            self._desk.messages.post(text, Level.WARNING, PLAN_SENT)
+
+    def _fetch(self) -> None:
+        """Ask for the documents of the plan that is shown, where they are not those of its last report."""
+        known = self.known
+        if known is None or known.is_whole or self._fetched == (known.plan, known.report.revision):
+            return
+        is_another = self._fetched is None or self._fetched[0] != known.plan
+        try:
+            self._desk.orders.inquire(GetPlans(known.plan, documents=True))
+            if is_another:
+                self._desk.orders.inquire(GetPlacements(plan=known.plan, limit=MOST_ASKED))
+        except NotSentError:
+            # It is asked for once the link is back.
+            return
+        self._fetched = (known.plan, known.report.revision)
+
+    # --- what is told of plans, whichever is shown ---
+
+    def _notice(self, name: str) -> None:
+        known, before = self._desk.state.plans.get(name), self._told.pop(name, None)
+        trouble, by_itself = plan_topic(name, "trouble"), plan_topic(name, "unasked")
+        if known is None or not known.is_open:
+            self._desk.messages.end(trouble, by_itself)
+            return
+        report = self._told[name] = known.report
+        if before is None or before.problems != report.problems:
+            self._desk.messages.end(trouble)
+            if report.problems:
+                why = problem_in_words(report.problems)
+                text = tr("The cone plan cannot go on as it is: {why}. Plan what is left.", why=why)
+                self._desk.report_failure(text, trouble)
+        if before is not None and before.revision != report.revision:
+            self._desk.messages.end(by_itself)
+            if report.by == GATEWAY and report.reason and STOPPED_BY not in report.reason:
+                self._notice_gateway(before.state, report, by_itself)
+
+    def _notice_gateway(self, before: PlanState, report: PlanReport, topic: Topic) -> None:
+        """Tell what the gateway did with a plan by itself."""
+        why = report.reason
+        if report.state is PlanState.PAUSED:
+            self._desk.report_failure(tr("The cone plan is paused: {why}.", why=why), topic)
+        elif report.state is PlanState.DRIVEN and not report.problems:
+            self.remarked.emit(tr("A new plan was sent by itself, as was switched on: {why}", why=why))
+        elif report.state is before:
+            self._desk.report_failure(tr("No new cone plan was sent by itself: {why}.", why=why), topic)
+
+
+def no_plans_here() -> str:
+    """Return what is said where the gateway knows no cone plans."""
     return tr(
-        "The cone plan is not sent any further. {words}: {found} Override… in the panel Cone plan sends it "
-        "all the same, where your role may.",
-        words=refusal.words,
-        found=in_brief(refusal.found),
+        "The gateway is older than this plugin and drives no cone plans: plans are made and looked at here, "
+        "and nothing of them is sent. Update the gateway, or give robots their cones with Add to queue."
     )
 
 
-def _reason(trouble: PlanProblem) -> str:
-    """Return why robots are held, for their queues."""
-    if not trouble:
-        return tr("plan of what is left")
-    return tr("plan of what is left: {in_words}", in_words=problem_in_words(trouble))[:_LONGEST_REASON]
-
-
-def _tasks(draft: PlanProposal, now: Mapping[str, SentStop] | None = None) -> dict[str, list[QueueTask]]:
-    try:
-        return tasks_of(draft.plan, draft.name, draft.facts, under_way=now)
-    except MessageError as error:
-        raise PlanningError(tr("The plan cannot be sent: {error}", error=error)) from error
+def _in_words(refusal: RefusedPlan) -> str:
+    return tr(
+        "The cone plan was not sent. {words}: {found} Override… in the panel Cone plan sends it all the "
+        "same, where your role may.",
+        words=refusal.words,
+        found=in_brief(refusal.found),
+    )

@@ -380,7 +380,7 @@ class RobotsForm(QTableView):
 
     def show_robots(self, desk: FleetController, settings: PlanSettings) -> None:
         """Show the robots that ``desk`` knows at this moment, with their settings."""
-        robots, rows = desk.picture.arrays(desk.clock()), desk.picture.by_name()
+        robots, rows = desk.state.robots.arrays(desk.clock.steady()), desk.state.robots.by_name()
         there = available_robots(robots).tolist()
         count = self._model.rowCount()
         self._model.show_robots([robots.names[row] for row in rows], [there[row] for row in rows], settings)

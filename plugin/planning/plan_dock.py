@@ -10,6 +10,7 @@ from qgis.gui import QgisInterface
 from qgis.PyQt.QtCore import pyqtSignal
 from qgis.PyQt.QtWidgets import (
     QCheckBox,
+    QComboBox,
     QGridLayout,
     QHBoxLayout,
     QMessageBox,
@@ -20,7 +21,13 @@ from qgis.PyQt.QtWidgets import (
     QWidget,
 )
 
-from ...robot_bridge.core.messages import CollectLayout, GetPlacements
+from ...robot_bridge.core.messages import (
+    CollectLayout,
+    GetPlacements,
+    PlanProblemKind,
+    PlanReport,
+    PlanState,
+)
 from ..control.fleet_controller import FleetController
 from ..control.messages import PLAN_ASKED, Level
 from ..control.pending_command import in_brief
@@ -33,12 +40,20 @@ from ..ui.glyphs import WRONG_STYLE
 from ..ui.language import first_of, tr, tr_count
 from ..ui.steady_widgets import ScrollingText
 from .as_placed import AsPlacedPage
-from .execution import PlanExecution
+from .execution import PlanExecution, no_plans_here
 from .forms import RobotsForm, SettingsForm
 from .plan_editor import CollectionPlanner, PlanEditor
 from .plan_settings import PlanSettings, keep_settings, read_settings
-from .plan_views import PlanLayers, PlanTree, before_sending, method_text, plan_summary, stop_rows
-from .progress import problem_in_words
+from .plan_views import (
+    PlanLayers,
+    PlanTree,
+    before_sending,
+    method_text,
+    plan_summary,
+    plan_title,
+    stop_rows,
+)
+from .progress import ReportedProgress, problem_in_words
 from .proposal import closed_in_words, meeting_in_words
 
 # --- What the operator does with a plan: send it, and agree to a new one for what is left ---
@@ -49,7 +64,7 @@ class ExecutionBar(QWidget):
 
     send_wanted = pyqtSignal()
     override_wanted = pyqtSignal()
-    leave_wanted = pyqtSignal()
+    pause_wanted = pyqtSignal()
     rest_wanted = pyqtSignal(bool)
     confirm_wanted = pyqtSignal()
     discard_wanted = pyqtSignal()
@@ -69,18 +84,23 @@ class ExecutionBar(QWidget):
 
     def _make_sending_buttons(self) -> None:
         self.send = push_button("fleet_plan_send", tr("Send…"), pressed=self.send_wanted.emit)
-        self.clear = push_button("fleet_plan_clear", tr("Clear"), pressed=self.clear_wanted.emit)
+        self.clear = push_button(
+            "fleet_plan_clear",
+            tr("Clear"),
+            tr("Follow the plan no more, at no desk; robots go on with their queues"),
+            self.clear_wanted.emit,
+        )
         self.override = push_button(
             "fleet_plan_override",
             tr("Override…"),
-            tr("Send the plan on in spite of what was found; asks why"),
+            tr("Send the plan in spite of what was found; asks why"),
             self.override_wanted.emit,
         )
-        self.leave = push_button(
-            "fleet_plan_leave",
-            tr("Send no more"),
-            tr("Leave it at what was sent: robots that have their cones by now go on with them"),
-            self.leave_wanted.emit,
+        self.pause = push_button(
+            "fleet_plan_pause",
+            tr("Pause the plan"),
+            tr("Send the plan's robots no further task; what they are doing they finish"),
+            self.pause_wanted.emit,
         )
 
     def _make_new_plan_buttons(self) -> None:
@@ -125,7 +145,7 @@ class ExecutionBar(QWidget):
         # Each has a place of its own: no button comes to be where another one was pressed.
         places = (
             (self.send, self.clear),
-            (self.override, self.leave),
+            (self.override, self.pause),
             (self.confirm, self.discard),
             (self.rest, self.resume),
         )
@@ -140,59 +160,98 @@ class ExecutionBar(QWidget):
     def refresh(self) -> None:
         """Show how things stand now."""
         drafts, driven = self._drafts, self._driven
-        idle = not driven.busy
-        is_refused = driven.refusal is not None
-        for button in (self.override, self.leave):
-            button.setEnabled(is_refused)
-        can_send = idle and not is_refused and drafts.draft is not None and driven.driven is None
-        self.send.setEnabled(can_send)
-        shown = driven.offer or driven.driven or drafts.draft
-        self.clear.setEnabled(idle and not is_refused and shown is not None and not driven.held)
-        watching = driven.driven is not None and not driven.progress.is_finished(driven.driven.plan)
-        self.rest.setEnabled(idle and watching and driven.offer is None)
-        self.again.setEnabled(watching and bool(driven.trouble.failed))
-        self.confirm.setEnabled(idle and driven.offer is not None)
-        self.discard.setEnabled(bool(driven.held) and driven.sending is None)
-        self.resume.setEnabled(idle and watching and driven.offer is None and bool(driven.paused))
-        told = self._in_words()
+        known = driven.known
+        report = None if known is None else known.report
+        self._enable_for_draft() if report is None else self._enable_for(report)
+        self.override.setEnabled(not driven.asking and driven.refusal is not None)
+        self.by_itself.blockSignals(True)
+        self.by_itself.setChecked(drafts.settings.by_itself if report is None else report.by_itself)
+        self.by_itself.blockSignals(False)
+        self.by_itself.setEnabled(report is None)
+        told, shown = self._in_words(report), driven.shown_plan
         self.text.setText(told)
         self.text.setToolTip("\n".join([told, *([] if shown is None else [method_text(shown)])]))
-        self.trouble.setText(self._wrong())
+        self.trouble.setText(self._wrong(report))
         self.trouble.set_text_style(WRONG_STYLE if self.trouble.text() else "")
 
-    def _in_words(self) -> str:
-        drafts, driven = self._drafts, self._driven
-        if driven.refusal is not None:
-            return tr("Not sent as a whole yet")
-        if driven.sending is not None:
-            return tr("Being sent …")
-        if driven.offer is not None:
-            return tr("New plan, not sent yet: {summary}", summary=plan_summary(driven.offer))
-        if driven.driven is not None and driven.progress is not None:
-            done, all_of_them = len(driven.progress.done), len(driven.driven.plan.targets)
-            if driven.progress.is_finished(driven.driven.plan):
-                return tr_count(all_of_them, "Done: {done} of 1 cone", "Done: {done} of %n cones", done=done)
-            under_way = tr_count(
-                all_of_them, "Under way: {done} of 1 cone", "Under way: {done} of %n cones", done=done
-            )
-            return ". ".join([under_way, *driven.pauses_in_words()])
-        if drafts.draft is not None:
-            return tr("Not sent yet: {summary}", summary=plan_summary(drafts.draft))
-        return tr("No plan. Choose cones and robots, then Preview or Solve.")
+    def _enable_for_draft(self) -> None:
+        can = not self._driven.busy and self._drafts.draft is not None
+        for button in (self.send, self.clear):
+            button.setEnabled(can)
+        for button in (self.pause, self.rest, self.again, self.confirm, self.discard, self.resume):
+            button.setEnabled(False)
 
-    def _wrong(self) -> str:
+    def _enable_for(self, report: PlanReport) -> None:
+        driven, state = self._driven, report.state
+        idle = not driven.asking
+        has_rest = state in (PlanState.REPLANNING, PlanState.PROPOSED)
+        goes_on = state in (PlanState.DRIVEN, PlanState.PAUSED)
+        self.send.setEnabled(False)
+        self.clear.setEnabled(idle and not has_rest)
+        self.pause.setEnabled(goes_on or has_rest)
+        self.rest.setEnabled(idle and goes_on)
+        failed = any(one.kind is PlanProblemKind.FAILED for one in report.problems)
+        self.again.setEnabled(goes_on and failed)
+        is_seen = driven.known.proposal is not None and driven.known.is_whole
+        self.confirm.setEnabled(idle and state is PlanState.PROPOSED and is_seen)
+        self.discard.setEnabled(idle and has_rest)
+        self.resume.setEnabled(idle and goes_on and bool(state is PlanState.PAUSED or driven.paused))
+
+    def _in_words(self, report: PlanReport | None) -> str:
         driven = self._driven
+        if driven.asking:
+            return tr("Being sent …")
+        if report is None:
+            draft = self._drafts.draft
+            if draft is None:
+                return tr("No plan. Choose cones and robots, then Preview or Solve.")
+            return tr("Not sent yet: {summary}", summary=plan_summary(draft.plan))
+        if report.state is PlanState.REPLANNING:
+            return tr("What is left is being planned …")
+        if report.state is PlanState.PROPOSED and driven.known.proposal is not None:
+            return tr("New plan, not sent yet: {summary}", summary=plan_summary(driven.known.proposal))
+        count, done = report.cones, report.done
+        if report.state is PlanState.FINISHED:
+            return tr_count(count, "Done: {done} of 1 cone", "Done: {done} of %n cones", done=done)
+        under_way = tr_count(count, "Under way: {done} of 1 cone", "Under way: {done} of %n cones", done=done)
+        return ". ".join([under_way, *driven.pauses_in_words()])
+
+    def _wrong(self, report: PlanReport | None) -> str:
+        driven, draft = self._driven, self._drafts.draft
         if driven.refusal is not None:
             hint = tr(" Override… sends it all the same, where your role may.")
             return f"{driven.refusal.words}: {in_brief(driven.refusal.found)}{hint}"
-        shown = driven.offer or driven.driven or self._drafts.draft
-        near = shown.meetings if shown is not None and (driven.driven is None or driven.offer) else ()
-        parts = first_of([meeting_in_words(meeting) for meeting in near])
-        if shown is not None and (driven.driven is None or driven.offer):
-            parts = [*first_of([closed_in_words(one) for one in shown.closed]), *parts]
-        if driven.trouble and driven.offer is None:
-            parts.insert(0, problem_in_words(driven.trouble))
-        return "; ".join(parts)
+        if report is None:
+            if driven.is_without_plans:
+                return no_plans_here()
+            closed, meetings = ((), ()) if draft is None else (draft.closed, draft.meetings)
+            return "; ".join(
+                [
+                    *first_of([closed_in_words(one) for one in closed]),
+                    *first_of([meeting_in_words(one) for one in meetings]),
+                ]
+            )
+        if report.state is PlanState.PROPOSED:
+            return "; ".join(_against(report))
+        return problem_in_words(report.problems)
+
+
+def _against(report: PlanReport) -> list[str]:
+    """Return what speaks against the new plan of what is left."""
+    texts = []
+    if report.closed:
+        texts.append(
+            tr_count(report.closed, "1 way leads along a closed road", "%n ways lead along closed roads")
+        )
+    if report.meetings:
+        texts.append(
+            tr_count(
+                report.meetings,
+                "robots come too near to one another at 1 place",
+                "robots come too near to one another at %n places",
+            )
+        )
+    return texts
 
 
 # --- The panel of cone plans: made, looked at, changed, sent, watched; and the as-placed report ---
@@ -213,6 +272,10 @@ class PlanDock(ActionDock):
         self.robots = RobotsForm()
         self.tree = PlanTree()
         self.bar = ExecutionBar(self.drafts, self.driven)
+        self.which = QComboBox()
+        self.which.setObjectName("fleet_plan_which")
+        self.which.setToolTip(tr("A new plan, or one that the gateway drives, whoever submitted it"))
+        self.which.setSizeAdjustPolicy(QComboBox.SizeAdjustPolicy.AdjustToMinimumContentsLengthWithIcon)
         self.placed = AsPlacedPage(desk)
         self.preview = push_button("fleet_plan_preview", tr("Preview"), tr("A quick plan, to look at"))
         self.solve = push_button(
@@ -222,7 +285,7 @@ class PlanDock(ActionDock):
         self.progress = QProgressBar()
         self._turn = desk.beat.turn()
         self.question: QMessageBox | None = None
-        self._generation = desk.picture.generation
+        self._generation = desk.state.robots.generation
         self._lay_out()
         self._wire()
         self._refresh()
@@ -230,7 +293,6 @@ class PlanDock(ActionDock):
     def remove(self) -> None:
         """Stop what is being planned and take the layers out of the project."""
         self.drafts.shut_down()
-        self.driven.shut_down()
         self._desk.project.readProject.disconnect(self._read_settings)
         self.form.remove()
         self.layers.remove()
@@ -239,22 +301,21 @@ class PlanDock(ActionDock):
 
     def make(self, *, preview: bool) -> None:
         """Plan the chosen cones, unless a plan is being driven."""
-        driven, progress = self.driven.driven, self.driven.progress
-        if driven is not None and progress is not None and not progress.is_finished(driven.plan):
-            self._desk.complained.emit(
-                tr(
-                    "A plan is being driven. Plan what is left, or press Clear to watch it no more; robots "
-                    "go on with their queues then."
-                )
-            )
-            return
         self._desk.messages.end(PLAN_ASKED)
+        if not self._make_room():
+            return
         try:
             self.drafts.make(preview=preview)
         except FleetError as error:
             self._refuse(str(error))
-        else:
-            self.driven.clear()
+
+    def _make_room(self) -> bool:
+        try:
+            self.driven.make_room()
+        except FleetError as error:
+            self._desk.messages.post(str(error), Level.WARNING, PLAN_ASKED)
+            return False
+        return True
 
     def ask_to_send(self) -> None:
         """Say what will happen, and send when the operator agrees."""
@@ -275,28 +336,31 @@ class PlanDock(ActionDock):
         refusal = self.driven.refusal
         if refusal is None:
             return
-        then = tr("The plan is sent on at once, and robots set off.")
+        then = tr("The plan is sent at once, and robots set off.")
         dialog = OverrideDialog(refusal.words, refusal.found, then, self, is_safe=True)
         dialog.confirmed.connect(lambda why: self._try(lambda: self.driven.override(refusal, why)))
         dialog.open()
 
     def collect(self, layout: str | None) -> None:
-        """Plan who collects what stands of a layout, or all that stands."""
-        self._try(lambda: self.collecting.ask(CollectLayout(layout)))
+        """Plan who collects what stands of a layout, or all that stands, unless a plan is being driven."""
+        if self._make_room():
+            self._try(lambda: self.collecting.ask(CollectLayout(layout)))
 
     # --- what it shows ---
 
     def _refresh(self) -> None:
         driven = self.driven
-        shown = driven.offer or driven.driven or self.drafts.draft
-        progress = driven.progress if driven.driven is not None else None
+        known, shown = driven.known, driven.shown_plan
+        progress = None if known is None else ReportedProgress(known.report, self._desk.state.placed_cones)
         rows = {} if shown is None else stop_rows(shown, progress)
         began_at = None if progress is None else progress.began_at
-        self.tree.show_plan(shown, rows, began_at, editable=driven.driven is None and not driven.busy)
+        self.tree.show_plan(shown, rows, began_at, editable=known is None and not driven.busy)
         self.layers.show(shown, rows)
+        self._show_choice()
         self.bar.refresh()
-        expected = len(driven.driven.plan.targets) if driven.driven is not None else None
-        self.placed.show_plan(progress.name if progress is not None else None, expected)
+        self.placed.show_plan(None, None) if known is None else self.placed.show_plan(
+            known.plan, known.report.cones
+        )
         for button in (self.preview, self.solve):
             button.setEnabled(not driven.busy)
         self.cancel.setEnabled(self.drafts.busy)
@@ -304,8 +368,23 @@ class PlanDock(ActionDock):
             self.progress.reset()
         self.progress.setEnabled(self.drafts.busy)
 
+    def _show_choice(self) -> None:
+        """List the plans that can be shown, with the one that is."""
+        entries = [(tr("New plan"), None)]
+        entries += [(plan_title(one.report), one.plan) for one in self.driven.choice]
+        box = self.which
+        if entries != [(box.itemText(k), box.itemData(k)) for k in range(box.count())]:
+            box.clear()
+            for text, name in entries:
+                box.addItem(text, name)
+        known = self.driven.known
+        box.setCurrentIndex([name for _, name in entries].index(None if known is None else known.plan))
+        box.setEnabled(len(entries) > 1 and not self.driven.asking)
+
     def _placements_changed(self) -> None:
-        if self._desk.placements and self.isVisible():
+        if self.driven.known is not None:
+            self._refresh()
+        if self._desk.state.placed_cones and self.isVisible():
             self.placed.show_placed()
 
     def _show_placed_layer(self) -> None:
@@ -329,33 +408,29 @@ class PlanDock(ActionDock):
 
     def _keep(self, settings: PlanSettings) -> None:
         if settings != self.drafts.settings:
-            self.drafts.settings = settings
+            self.drafts.plan_with(settings)
             keep_settings(self._desk.project, settings)
 
     def _read_settings(self, *_: object) -> None:
-        self.drafts.settings = read_settings(self._desk.project)
+        self.drafts.plan_with(read_settings(self._desk.project))
         self.form.show_settings(self.drafts.settings)
-        self.bar.by_itself.setChecked(False)
+        self.bar.refresh()
 
     def _set_by_itself(self, on: bool) -> None:
-        self.drafts.settings = replace(self.drafts.settings, by_itself=on)
+        self.drafts.plan_with(replace(self.drafts.settings, by_itself=on))
 
     def _site_changed(self) -> None:
         """Drop what belongs to other robots; a site that was published anew keeps its plan."""
-        if self._generation != self._desk.picture.generation:
-            self._generation = self._desk.picture.generation
-            self._clear()
-
-    def _clear(self) -> None:
-        self._desk.messages.end(PLAN_ASKED)
-        self.driven.clear()
-        self.drafts.set_proposal(None)
+        if self._generation != self._desk.state.robots.generation:
+            self._generation = self._desk.state.robots.generation
+            self._desk.messages.end(PLAN_ASKED)
+            self.driven.forget()
 
     def _ask_for_placements(self) -> None:
-        self._try(lambda: self._desk.ask(GetPlacements(limit=MOST_ASKED), tr("Placed cones")))
+        self._try(lambda: self._desk.orders.ask(GetPlacements(limit=MOST_ASKED), tr("Placed cones")))
 
     def _go_to(self, x: float, y: float) -> None:
-        ((east, north),) = self._desk.placement().to_map([(x, y)]).tolist()
+        ((east, north),) = self._desk.site_to_canvas.transform().to_map([(x, y)]).tolist()
         self._desk.canvas.setCenter(QgsPointXY(east, north))
         self._desk.canvas.refresh()
 
@@ -384,7 +459,10 @@ class PlanDock(ActionDock):
         for button in (self.preview, self.solve, self.cancel):
             buttons.addWidget(button)
         rows.addLayout(buttons)
-        rows.addWidget(self.progress)
+        line = QHBoxLayout()
+        line.addWidget(self.which, 2)
+        line.addWidget(self.progress, 1)
+        rows.addLayout(line)
         rows.addWidget(self.tree, 1)
         rows.addWidget(self.bar)
         self.tabs = QTabWidget()
@@ -413,9 +491,10 @@ class PlanDock(ActionDock):
         self.tree.place_wanted.connect(self._go_to)
         self.placed.place_wanted.connect(self._go_to)
         bar.send_wanted.connect(self.ask_to_send)
-        bar.clear_wanted.connect(self._clear)
+        bar.clear_wanted.connect(lambda: self._try(self.driven.clear))
         bar.override_wanted.connect(self.ask_to_override)
-        bar.leave_wanted.connect(lambda: self._try(self.driven.leave))
+        bar.pause_wanted.connect(lambda: self._try(self.driven.pause))
+        self.which.activated.connect(lambda index: self.driven.choose(self.which.itemData(index)))
         bar.rest_wanted.connect(lambda again: self._try(lambda: self.driven.plan_rest(try_again=again)))
         bar.confirm_wanted.connect(lambda: self._try(self.driven.confirm))
         bar.discard_wanted.connect(lambda: self._try(self.driven.discard))
@@ -430,10 +509,10 @@ class PlanDock(ActionDock):
         self.placed.collect_wanted.connect(self.collect)
         self.placed.shown.connect(self._show_placed_layer)
         self.placed.layer_wanted.connect(self.layers.placed.finish)
-        desk.placements_changed.connect(self._placements_changed)
-        desk.pulled.connect(self._pulled)
+        desk.state.placed_cones_changed.connect(self._placements_changed)
+        desk.state.updated.connect(self._pulled)
         self.visibilityChanged.connect(self._shown)
-        desk.site_changed.connect(self._site_changed)
+        desk.state.site_changed.connect(self._site_changed)
         desk.project.readProject.connect(self._read_settings)
 
 

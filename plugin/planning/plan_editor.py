@@ -21,7 +21,7 @@ from ...robot_bridge.core.errors import AssignmentError, MissingStoreError
 from ...robot_bridge.core.messages import ClosureReport, CollectLayout, MessageError, QueueTask, TaskKind
 from ...robot_bridge.core.sites.frame import SiteFrame
 from ..control.fleet_controller import FleetController
-from ..gateway_client.buffers import RequestResult
+from ..gateway_client.requests import RequestResult
 from ..ui.errors import FleetError, MapTransformError
 from ..ui.language import tr
 from .plan_settings import (
@@ -57,6 +57,10 @@ class PlanEditor(QObject):
         self.task: PlanTask | None = None
         self._look, self._look_at_made = ClosureCheck(self), ClosureCheck(self)
         desk.roads.closures_changed.connect(self.look_at_closures)
+
+    def plan_with(self, settings: PlanSettings) -> None:
+        """Make plans by ``settings`` from now on."""
+        self.settings = settings
 
     @property
     def busy(self) -> bool:
@@ -97,6 +101,12 @@ class PlanEditor(QObject):
         self.cancel()
         self.draft = draft
         self.changed.emit()
+
+    def drop(self, draft: PlanProposal) -> None:
+        """Show ``draft`` no longer, if it is the plan; what is being made goes on."""
+        if self.draft is draft:
+            self.draft = None
+            self.changed.emit()
 
     def run(
         self,
@@ -226,12 +236,12 @@ class PlanEditor(QObject):
             self.changed.emit()
 
     def _frame(self) -> SiteFrame:
-        if self._desk.site is None:
+        if self._desk.state.site is None:
             raise MapTransformError(tr("The site is not known yet. Connect to a gateway first."))
-        return self._desk.placement().frame
+        return self._desk.site_to_canvas.transform().frame
 
     def _robots(self) -> tuple[PlanRobot, ...]:
-        robots = self._desk.picture.arrays(self._desk.clock())
+        robots = self._desk.state.robots.arrays(self._desk.clock.steady())
         used = participating_robots(robots, self.settings)
         if not used.any():
             raise PlanningError(
@@ -239,7 +249,7 @@ class PlanEditor(QObject):
             )
         return tuple(
             self.settings.of_robot(robots.names[row]).robot(robots.names[row], *robots.xy[row].tolist())
-            for row in self._desk.picture.by_name()
+            for row in self._desk.state.robots.by_name()
             if used[row]
         )
 
@@ -247,14 +257,14 @@ class PlanEditor(QObject):
         """Return where cones stand that the plan does not collect, (n, 2)."""
         cones = [
             (one.x, one.y)
-            for one in self._desk.placements
+            for one in self._desk.state.placed_cones
             if one.collected_at is None and one.placement not in collected
         ]
         return np.array(cones, dtype=float).reshape(-1, 2)
 
     def _standing_robots(self) -> dict[str, tuple[float, float]]:
         """Return where robots are that do not take part."""
-        robots = self._desk.picture.arrays(self._desk.clock())
+        robots = self._desk.state.robots.arrays(self._desk.clock.steady())
         stand = have_position(robots) & ~participating_robots(robots, self.settings)
         return {robots.names[row]: tuple(robots.xy[row].tolist()) for row in np.flatnonzero(stand)}
 
@@ -271,11 +281,11 @@ class CollectionPlanner(QObject):
         super().__init__(parent)
         self._desk, self._drafts = desk, drafts
         self._key: str | None = None
-        desk.answered.connect(self._answered)
+        desk.orders.answered.connect(self._answered)
 
     def ask(self, request: CollectLayout) -> None:
         """Ask what is to be collected; raises NotSentError when that cannot be asked."""
-        self._key = self._desk.ask(request, tr("What is to be collected"))
+        self._key = self._desk.orders.ask(request, tr("What is to be collected"))
 
     def _answered(self, answer: RequestResult) -> None:
         if answer.order.key != self._key:

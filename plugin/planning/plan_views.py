@@ -27,8 +27,14 @@ from qgis.PyQt.QtWidgets import QAbstractItemView, QMenu, QTreeWidget, QTreeWidg
 from ...robot_bridge.core.assignment.job import STRAIGHT, PlanRobot
 from ...robot_bridge.core.assignment.plan import ConePlan, PlanStop, RobotPlan
 from ...robot_bridge.core.assignment.plan_changes import trips_of
-from ...robot_bridge.core.assignment.progress import PlanProgress
-from ...robot_bridge.core.messages import PlacementReport, QueueReport, QueueState, RobotState, TaskState
+from ...robot_bridge.core.messages import (
+    PlacementReport,
+    PlanReport,
+    QueueReport,
+    QueueState,
+    RobotState,
+    TaskState,
+)
 from ...robot_bridge.core.sites.frame import SiteFrame
 from ..cone_texts import RESULT_QUALITY
 from ..control.fleet_controller import FleetController
@@ -38,7 +44,9 @@ from ..layers.site_transform import frame_of
 from ..ui.glyphs import WRONG, for_letters
 from ..ui.language import first_of, tr, tr_count
 from ..ui.tables import fit_headers
+from ..ui.times import time_of_day
 from .as_placed import PLACED, utc_in_words
+from .progress import ReportedProgress
 from .proposal import PlanProposal, closed_in_words, meeting_in_words
 
 # --- A plan in words and numbers: what table, map and message say of it ---
@@ -85,11 +93,11 @@ def colour_of(plan: ConePlan, robot: str) -> str:
     return COLOURS[names.index(robot) % len(COLOURS)]
 
 
-def stop_rows(draft: PlanProposal, progress: PlanProgress | None) -> dict[str, list[PlanStopRow]]:
+def stop_rows(plan: ConePlan, progress: ReportedProgress | None) -> dict[str, list[PlanStopRow]]:
     """Return the stops of each robot, those behind it first."""
     began = None if progress is None else progress.began_at
     rows: dict[str, list[PlanStopRow]] = {}
-    for one in draft.plan.robots:
+    for one in plan.robots:
         behind = [(0, stop) for stop in one.done]
         to_come = [(trip.number, stop) for trip in one.trips for stop in trip.stops]
         rows[one.robot.id] = [
@@ -99,9 +107,18 @@ def stop_rows(draft: PlanProposal, progress: PlanProgress | None) -> dict[str, l
     return rows
 
 
-def plan_summary(draft: PlanProposal) -> str:
+def plan_title(report: PlanReport) -> str:
+    """Return by whom and when a plan was submitted, and for which robots."""
+    return tr(
+        "{by}, {time}: {robots}",
+        by=report.submitted_by,
+        time=time_of_day(report.submitted_at),
+        robots=", ".join(first_of(report.robots)),
+    )
+
+
+def plan_summary(plan: ConePlan) -> str:
     """Return how good a plan is and what it leaves out."""
-    plan = draft.plan
     cones = sum(stop.is_target for _, stop in plan.all_stops())
     robots = sum(bool(one.stops) for one in plan.robots)
     text = tr(
@@ -110,7 +127,7 @@ def plan_summary(draft: PlanProposal) -> str:
         robots=tr_count(robots, "1 robot", "%n robots"),
         metres=plan.metres,
         span=_span(plan.end_s),
-        method=RESULT_QUALITY[plan.method],
+        method=RESULT_QUALITY.get(plan.method, plan.method),
         travel=tr("straight lines") if plan.travel == STRAIGHT else tr("the roads"),
     )
     out = plan.left_out
@@ -125,9 +142,9 @@ def plan_summary(draft: PlanProposal) -> str:
     )
 
 
-def method_text(draft: PlanProposal) -> str:
+def method_text(plan: ConePlan) -> str:
     """Return by which parts a plan was made, for those who want to know."""
-    return tr("Found by: {method}. Ways along: {travel}.", method=draft.plan.method, travel=draft.plan.travel)
+    return tr("Found by: {method}. Ways along: {travel}.", method=plan.method, travel=plan.travel)
 
 
 def time_text(seconds: float, began_at: float | None) -> str:
@@ -167,17 +184,16 @@ def position_at_end(plan: ConePlan, target: str, robot: str) -> tuple[str, int, 
 
 
 def _row(
-    robot: str, number: int, trip: int, stop: PlanStop, began: float | None, progress: PlanProgress | None
+    robot: str, number: int, trip: int, stop: PlanStop, began: float | None, progress: ReportedProgress | None
 ) -> PlanStopRow:
     row = PlanStopRow(robot, number, trip, stop, time_text(stop.arrival_s, began))
     if progress is None or not stop.is_target:
         return row
-    placed = progress.placed.get(stop.id)
     return replace(
         row,
         state=progress.state_of(stop.id),
         why=progress.remark_on(stop.id),
-        deviation=None if placed is None else placed.deviation,
+        deviation=progress.deviation_of(stop.id),
     )
 
 
@@ -199,7 +215,7 @@ LISTED = 5
 def before_sending(desk: FleetController, draft: PlanProposal) -> str:
     """Return what sending will do, and what speaks against it."""
     driving = [one for one in draft.plan.robots if one.stops and not one.lost]
-    lines = [plan_summary(draft) + ".", ""]
+    lines = [plan_summary(draft.plan) + ".", ""]
     lines += first_of([f"{one.robot.id}: {_cones(one)}" for one in driving], LISTED)
     doubts = [doubt for one in driving for doubt in _doubts(desk, one.robot)]
     closed = [closed_in_words(one) for one in draft.closed]
@@ -210,12 +226,12 @@ def before_sending(desk: FleetController, draft: PlanProposal) -> str:
     return "\n".join([*lines, "", tr("The robots set off at once.")])
 
 
-def after_sending(desk: FleetController, plan: ConePlan) -> list[str]:
-    """Return which robots do not set off, since somebody holds them."""
+def after_sending(desk: FleetController, robots: Sequence[str]) -> list[str]:
+    """Return which of a plan's robots do not set off, since somebody holds them."""
     texts = []
-    for one in plan.robots:
-        report = desk.queues.get(one.robot.id)
-        if one.stops and not one.lost and report is not None and report.state is QueueState.PAUSED:
+    for robot in robots:
+        report = desk.state.queues.get(robot)
+        if report is not None and report.tasks and report.state is QueueState.PAUSED:
             texts.append(
                 tr(
                     "The queue of {robot} stays paused ({reason}): its cones wait until it is resumed.",
@@ -231,13 +247,13 @@ def _cones(one: RobotPlan) -> str:
 
 
 def _doubts(desk: FleetController, robot: PlanRobot) -> list[str]:
-    queue = desk.queues.get(robot.id)
+    queue = desk.state.queues.get(robot.id)
     return [*_doubts_of_place(desk, robot), *(_doubts_of_queue(queue) if queue is not None else ())]
 
 
 def _doubts_of_place(desk: FleetController, robot: PlanRobot) -> Iterator[str]:
     """Yield whether the robot is elsewhere than where the plan begins, or away."""
-    view = desk.picture.view(robot.id, desk.clock())
+    view = desk.state.robots.view(robot.id, desk.clock.steady())
     if view is None or not view.has_pose:
         yield tr("it is not known where {id} is", id=robot.id)
         return
@@ -308,7 +324,7 @@ class PlanTree(QTreeWidget):
 
     def show_plan(
         self,
-        draft: PlanProposal | None,
+        plan: ConePlan | None,
         rows: Mapping[str, Sequence[PlanStopRow]],
         began_at: float | None = None,
         *,
@@ -316,14 +332,16 @@ class PlanTree(QTreeWidget):
     ) -> None:
         """Show a plan by the rows of each robot; it was begun at ``began_at``, if it is driven."""
         self._editable = editable
-        if draft is None:
+        if plan is None:
             self._plan = None
             self.clear()
             return
-        if draft.plan is not self._plan:
-            self._plan = draft.plan
-            self._build(draft, rows)
-        for k, one in enumerate(draft.plan.robots):
+        if plan is not self._plan:
+            # The gateway tells a plan once more with each of its revisions.
+            is_same, self._plan = plan == self._plan, plan
+            if not is_same:
+                self._build(plan, rows)
+        for k, one in enumerate(plan.robots):
             top = self.topLevelItem(k)
             top.setText(1, time_text(one.end_s, began_at) if one.stops or one.done else "")
             top.setText(2, _robot_in_words(rows[one.robot.id], one.lost))
@@ -399,13 +417,13 @@ class PlanTree(QTreeWidget):
         if place is not None:
             self.place_wanted.emit(*place)
 
-    def _build(self, draft: PlanProposal, rows: Mapping[str, Sequence[PlanStopRow]]) -> None:
+    def _build(self, plan: ConePlan, rows: Mapping[str, Sequence[PlanStopRow]]) -> None:
         chosen = self._target()
         self.clear()
-        for one in draft.plan.robots:
+        for one in plan.robots:
             top = QTreeWidgetItem([one.robot.id])
             top.setData(0, _NAME, one.robot.id)
-            top.setIcon(0, _swatch(colour_of(draft.plan, one.robot.id)))
+            top.setIcon(0, _swatch(colour_of(plan, one.robot.id)))
             top.setFlags(top.flags() & ~Qt.ItemFlag.ItemIsDragEnabled)
             self.addTopLevelItem(top)
             for row in rows[one.robot.id]:
@@ -483,23 +501,23 @@ class PlanLayers:
         )
         self.placed = RowLayer(project, PLACED, tr("Cones as placed"), "Point", PLACED_FIELDS, _style_placed)
 
-    def show(self, draft: PlanProposal | None, rows: Mapping[str, Sequence[PlanStopRow]]) -> None:
+    def show(self, plan: ConePlan | None, rows: Mapping[str, Sequence[PlanStopRow]]) -> None:
         """Show a plan by the rows of each robot; nothing for none."""
         stops, ways = [], []
-        for robot, theirs in (rows if draft is not None else {}).items():
-            colour = colour_of(draft.plan, robot)
+        for robot, theirs in (rows if plan is not None else {}).items():
+            colour = colour_of(plan, robot)
             for row in theirs:
                 stop = row.stop
                 stops.append(([(stop.x, stop.y)], _stop_values(row, colour)))
                 if row.state is not TaskState.DONE:
                     values = [robot, row.number, stop.id, round(stop.metres, 2), row.arrives, colour]
                     ways.append((stop.path, values))
-        self.ways.show(ways, self._desk.site)
-        self.stops.show(stops, self._desk.site)
+        self.ways.show(ways, self._desk.state.site)
+        self.stops.show(stops, self._desk.state.site)
 
     def show_placed(self, placements: list[PlacementReport]) -> None:
         """Show where cones were put down."""
-        site = self._desk.site
+        site = self._desk.state.site
         if site is not None:
             frame = frame_of(site)
             self.placed.show(_placed_rows(placements, frame), site)

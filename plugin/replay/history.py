@@ -20,16 +20,14 @@ from ...robot_bridge.core.messages import (
     GetTrajectory,
     RobotState,
 )
-from ..control.fleet_controller import FleetController
-from ..gateway_client.buffers import RequestResult
+from ..control.request_tracker import RequestTracker
 from ..gateway_client.command_cache import UNDER_WAY, CommandCache, asked_at, command_in_words, state_word
+from ..gateway_client.requests import RequestResult
 from ..gateway_client.robot_states import RobotArrays
 from ..gateway_client.robot_table import STATES as HISTORY_STATES
 from ..ui.errors import FleetError
 from ..ui.language import tr
 from ..ui.scheduling import CooperativeTask, Steps
-
-# --- Commands as they were at a moment, and as marks on a time line ---
 
 AT_ONCE = 100
 """Commands that are looked through in one step of a slice."""
@@ -180,9 +178,6 @@ def _ended_at(report: CommandReport) -> float:
     return next((step.at for step in report.steps if step.state not in UNDER_WAY), np.inf)
 
 
-# --- Keeps the commands of the desk in the order in which a replay asks for them ---
-
-
 class CommandSorter(QObject):
     """Looks through a book beside what else the window does, and again when there was news meanwhile."""
 
@@ -219,8 +214,6 @@ class CommandSorter(QObject):
             self.renew()
         self.done.emit(before)
 
-
-# --- Stored positions, and where every robot was at a moment; no I/O, no Qt ---
 
 SILENT_AFTER = 15.0
 """Seconds between stored positions after which a robot counts as silent: while it is heard of, a gateway
@@ -359,8 +352,6 @@ def _arrays(names: list[str], pose: Numbers, age: Numbers, silent: npt.NDArray[n
     )
 
 
-# --- Fetches a stretch of stored positions from the gateway, page by page ---
-
 PAGE = 1000
 """Positions taken in at once: a few milliseconds of the window's time."""
 MOST = 1_000_000
@@ -376,16 +367,16 @@ class HistoryDownload(QObject):
     ended = pyqtSignal(str)
     """All is there (an empty text), or not all, and why."""
 
-    def __init__(self, desk: FleetController, parent: QObject | None = None):
+    def __init__(self, requests: RequestTracker, parent: QObject | None = None):
         super().__init__(parent)
-        self._desk = desk
+        self._requests = requests
         self._key = ""
         self._wanted: GetTrajectory | None = None
         self._task: SortHistoryTask | None = None
         self.history = History()
         self.reached = 0.0
         """The time of the newest position that is there."""
-        desk.answered.connect(self._answered)
+        requests.answered.connect(self._answered)
 
     @property
     def is_busy(self) -> bool:
@@ -398,8 +389,8 @@ class HistoryDownload(QObject):
         :raises NotSentError: when it cannot be asked for; what was there stays.
         """
         wanted = GetTrajectory(robots=robots, since=since, until=until, limit=PAGE)
-        self._desk.inquire(GetCommands(limit=COMMANDS))
-        self._key = self._desk.inquire(wanted)
+        self._requests.inquire(GetCommands(limit=COMMANDS))
+        self._key = self._requests.inquire(wanted)
         self._wanted = wanted
         self._drop_task()
         self.history, self.reached = History(), since
@@ -446,7 +437,7 @@ class HistoryDownload(QObject):
         wanted = self._wanted
         try:
             request = GetTrajectory(wanted.robots, wanted.since, wanted.until, after=after, limit=PAGE)
-            self._key = self._desk.inquire(request)
+            self._key = self._requests.inquire(request)
         except FleetError as error:
             self._end(tr("The rest of the time was not fetched: {error}", error=error))
             return

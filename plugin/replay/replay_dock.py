@@ -18,8 +18,6 @@ from .history import NO_MARKS, CommandSorter, HistoryDownload, PastCommands
 from .replay_map import ReplayLayer, ReplayMap
 from .time_controls import SPEEDS, ReplayClock, TimeLine, TimeRangeForm
 
-# --- The panel of the replay: a time is loaded, played and looked at, while the live map goes on ---
-
 BANNER = "background: #7B1FA2; color: white; font-weight: bold; padding: 0px 6px;"
 
 PLAY, PAUSE = "/temporal_navigation/forward.svg", "/temporal_navigation/pause.svg"
@@ -35,8 +33,8 @@ class ReplayDock(ActionDock):
         self._told = ""
         self._showing = CooperativeTask(self, ONE_STEP)
         """Shows a history that has just come."""
-        self._past = CommandSorter(desk.book, self)
-        self.fetching = HistoryDownload(desk, self)
+        self._past = CommandSorter(desk.state.commands, self)
+        self.fetching = HistoryDownload(desk.orders, self)
         self.clockwork = ReplayClock(desk.canvas, self)
         self.layer = ReplayLayer(desk.project, self)
         self.form = TimeRangeForm()
@@ -76,13 +74,13 @@ class ReplayDock(ActionDock):
         """Fetch the time in the form and begin to show it."""
         since, until = self.form.stretch()
         self._desk.messages.end(REPLAY)
-        if self._desk.site is None:
+        if self._desk.state.site is None:
             self._complain(tr("There is nothing to replay yet. Connect to a gateway first."))
             return
         if until <= since:
             self._complain(tr("The replay's time ends before it begins. Correct one of the two."))
             return
-        robots = list(self._desk.selection) if self.form.selected.isChecked() else []
+        robots = list(self._desk.selection.robots) if self.form.selected.isChecked() else []
         if self.form.selected.isChecked() and not robots:
             text = tr("No robot is selected to be replayed. Select one, or replay all.")
             self._complain(text, SELECTION)
@@ -96,7 +94,7 @@ class ReplayDock(ActionDock):
         self._showing.stop()
         self._past.renew()
         self.layer.clear()
-        self.map.begin(self._desk.site)
+        self.map.begin(self._desk.state.site)
         self.line.show_time(since, until)
         self.clockwork.show(since, until)
         self.form.show_busy(True)
@@ -115,11 +113,11 @@ class ReplayDock(ActionDock):
         self.clockwork.playing_changed.connect(self._show_playing)
         self.play.clicked.connect(self._play_or_hold)
         self.speed.currentIndexChanged.connect(lambda k: self.clockwork.set_speed(SPEEDS[k]))
-        self._desk.commands_changed.connect(self._commands_changed)
+        self._desk.state.commands_changed.connect(self._commands_changed)
         self._past.done.connect(self._show_commands)
-        self._desk.site_changed.connect(self._site_changed)
+        self._desk.state.site_changed.connect(self._site_changed)
         self._robots: list[str] = []
-        self._generation = self._desk.picture.generation
+        self._generation = self._desk.state.robots.generation
 
     def _play_or_hold(self, *_: object) -> None:
         self.clockwork.play(not self.clockwork.is_playing)
@@ -159,8 +157,8 @@ class ReplayDock(ActionDock):
             yield (number + 1) / len(parts)
 
     def _show_lines(self) -> None:
-        if self._desk.site is not None:
-            self.layer.show(self.fetching.history, self._desk.site)
+        if self._desk.state.site is not None:
+            self.layer.show(self.fetching.history, self._desk.state.site)
 
     def _show_all(self) -> None:
         try:
@@ -178,7 +176,9 @@ class ReplayDock(ActionDock):
             # It is shown when all of it is there.
             return
         try:
-            self.map.show_moment(self.fetching.history, self._past.commands, moment, self._desk.selection)
+            self.map.show_moment(
+                self.fetching.history, self._past.commands, moment, self._desk.selection.robots
+            )
         except FleetError as error:
             self.clockwork.play(False)
             self._complain(str(error))
@@ -198,11 +198,11 @@ class ReplayDock(ActionDock):
         self.line.show_marks(self._past.commands.marks(since, until, self._robots))
 
     def _site_changed(self) -> None:
-        if self._desk.picture.generation == self._generation:
+        if self._desk.state.robots.generation == self._generation:
             return
         # Another site's history has no place here, nor another gateway's of the same site: other robots may
         # bear the same names.
-        self._generation = self._desk.picture.generation
+        self._generation = self._desk.state.robots.generation
         self.fetching.forget()
         self._showing.stop()
         self._past.forget()
@@ -246,9 +246,6 @@ class ReplayDock(ActionDock):
         self.map.setMinimumHeight(100)
         self.setWidget(body)
         self.setFocusProxy(self.form.last)
-
-
-# --- The menu entry that shows the replay ---
 
 
 class ReplayAction(DockAction):

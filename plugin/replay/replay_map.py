@@ -36,16 +36,13 @@ from ..layers.live_layers import (
 from ..layers.site_transform import SiteToMapTransform, frame_of
 from ..map.live_view import FRAME_MS
 from ..map.overlay.fleet_overlay import FleetOverlay
-from ..map.overlay.scene import SceneTransformer, SiteScene, TaskPaths
-from ..map.overlay.screen import show_places
+from ..map.overlay.scene import SceneTransformer, SiteScene, TaskPaths, show_places
 from ..map.overlay.trails import Trails
 from ..ui.errors import MapTransformError
 from ..ui.language import tr
 from ..ui.scheduling import CooperativeTask, Steps
 from .history import SILENT_AFTER, History, PastCommands
 from .time_controls import local_time
-
-# --- A map of its own beside the live one: the same layers, and the robots as they were ---
 
 OWN_LAYER = "replay"
 """The kind of the live layer that is shown here; the others show what is now."""
@@ -170,8 +167,6 @@ class ReplayMap(QgsMapCanvas):
             self._placement = SiteToMapTransform(self._site, *way)
         return self._placement
 
-
-# --- What robots drove as a line layer with times: QGIS's temporal controller plays it ---
 
 STYLE = Path(__file__).parents[2] / "resources" / "styles" / "trajectories.qml"
 FIELDS = (

@@ -15,12 +15,11 @@ from qgis.PyQt.QtWidgets import QCheckBox, QComboBox, QDateTimeEdit, QGridLayout
 
 from ...robot_bridge.core.messages import CommandState
 from ..map.overlay.primitives import flat, lines
+from ..ui.glyphs import painting
 from ..ui.language import tr
 from ..ui.steady_widgets import SteadyPushButton
 from ..ui.times import date_and_time
 from .history import NO_MARKS, TimelineMark, TimelineMarks
-
-# --- The time that is replayed, by QGIS's temporal controller ---
 
 FRAMES_A_SECOND = 5.0
 LOOK_MS = 200
@@ -137,8 +136,6 @@ def local_time(at: float) -> QDateTime:
     return QDateTime.fromMSecsSinceEpoch(round(at * 1000))
 
 
-# --- Which time is to be replayed, and of whom ---
-
 LAST = {
     tr("the last 5 minutes"): 300,
     tr("the last 15 minutes"): 900,
@@ -218,8 +215,6 @@ def _time(name: str) -> QDateTimeEdit:
     return box
 
 
-# --- The time that is replayed as a line: what was commanded when, and which moment is shown ---
-
 EDGE = 9.0
 """Pixels left and right of the line."""
 NEAR = 6.0
@@ -296,7 +291,10 @@ class TimeLine(QWidget):
         return np.unique(np.rint(self.pixel(self.marks.of(state))))
 
     def paintEvent(self, event: QPaintEvent) -> None:
-        painter = QPainter(self)
+        with painting(self) as painter:
+            self._paint(painter)
+
+    def _paint(self, painter: QPainter) -> None:
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         middle = self.height() / 2
         painter.setPen(QPen(self.palette().mid().color(), 3.0))

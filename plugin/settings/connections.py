@@ -11,11 +11,9 @@ from urllib.parse import quote, unquote
 from qgis.core import QgsApplication, QgsAuthMethodConfig, QgsSettings
 
 from ...robot_bridge.core.json_decoder import decode_json
-from ..gateway_client.link import check_address
+from ..gateway_client.connection_status import check_address
 from ..ui.errors import FleetError
 from ..ui.language import tr
-
-# --- Where the operator's tokens are kept: encrypted, in the authentication manager of QGIS, or nowhere
 
 TITLE = "Fleet Supervisor"
 METHOD = "Basic"
@@ -155,8 +153,6 @@ def _token(config: QgsAuthMethodConfig) -> str:
     )
 
 
-# --- A gateway under a name, as operators keep it; and several of them as a file, to be handed on ---
-
 FORMAT = "fleet-supervisor-connections"
 VERSION = 1
 _LARGEST = 200_000
@@ -254,8 +250,6 @@ def _connection(row: Any, number: int, source: str) -> GatewayConnection:
         ) from error
 
 
-# --- The connections that QGIS keeps, and which one was used last ---
-
 GROUP = "fleet_supervisor/connections"
 LAST = "fleet_supervisor/last_connection"
 _KEYS = ("url", "operator", "ca_file", "auth")
@@ -288,7 +282,7 @@ class Connections:
             was_last = self.last == instead_of
             self.remove(instead_of)
             if was_last:
-                self.last = connection.name
+                self.set_last(connection.name)
         for key in _KEYS:
             QgsSettings().setValue(f"{_group(connection.name)}/{key}", getattr(connection, key))
 
@@ -296,15 +290,15 @@ class Connections:
         """Keep the connection ``name`` no longer; its token stays with QGIS's authentication."""
         QgsSettings().remove(_group(name))
         if self.last == name:
-            self.last = ""
+            self.set_last("")
 
     @property
     def last(self) -> str:
         """The name of the connection that was used last, empty for one without a name."""
         return str(QgsSettings().value(LAST, "") or "")
 
-    @last.setter
-    def last(self, name: str) -> None:
+    def set_last(self, name: str) -> None:
+        """Note the connection that was used last by its name, empty for one without."""
         QgsSettings().setValue(LAST, name)
 
 

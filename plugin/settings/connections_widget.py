@@ -26,7 +26,12 @@ from qgis.PyQt.QtWidgets import (
 
 from ...robot_bridge.core.files import replacement
 from ..gateway_client.connection import ConnectionThread
-from ..gateway_client.link import DEFAULT_URL, ConnectionPhase, ConnectionStatus, OperatorCredentials
+from ..gateway_client.connection_status import (
+    DEFAULT_URL,
+    ConnectionPhase,
+    ConnectionStatus,
+    OperatorCredentials,
+)
 from ..help import CONNECTIONS, show_help
 from ..ui.dialogs import file_field, file_to_read, file_to_write
 from ..ui.errors import FleetError
@@ -41,8 +46,6 @@ from .connections import (
     connections_text,
 )
 from .preferences import export_path, exports_folder
-
-# --- A line beneath fields that says what became of what was asked ---
 
 GOOD, BAD = "✔", "✘"
 
@@ -65,8 +68,6 @@ class ResultLabel(QLabel):
         """Show that it is under way."""
         self.setText(text)
 
-
-# --- Tries a connection: greets the gateway, says what became of it, and hangs up ---
 
 LOOK_EVERY_MS = 50
 
@@ -122,9 +123,6 @@ class ConnectionTest(QObject):
                 return True, tr("{site} ({crs}) answers, as {who}.", who=link.who, **site)
             return True, tr("{site} ({crs}) answers.", **site)
         return None
-
-
-# --- One connection: its name, where the gateway is, and what the operator brings to it ---
 
 
 class ConnectionDialog(QDialog):
@@ -255,8 +253,6 @@ def _line(name: str, text: str, hint: str) -> QLineEdit:
     line.setToolTip(hint)
     return line
 
-
-# --- The connections that are kept: new, edit, remove, test, import, export ---
 
 FILTER = tr("Connections (*.json)")
 TITLES = (tr("Name"), tr("Gateway"), tr("Operator"))
@@ -432,9 +428,6 @@ class ConnectionsWidget(QWidget):
         button.setAutoDefault(False)
         button.clicked.connect(lambda _=False: action())
         return button
-
-
-# --- The window that the connections are managed in, where QGIS's options are not open ---
 
 
 class ConnectionsDialog(QDialog):

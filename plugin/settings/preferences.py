@@ -13,8 +13,6 @@ from qgis.PyQt.QtWidgets import QComboBox, QDoubleSpinBox, QFormLayout, QLabel, 
 from ..ui.dialogs import file_field
 from ..ui.language import tr
 
-# --- What the operator set on the plugin's page of QGIS's options ---
-
 GROUP = "fleet_supervisor/preferences"
 
 RANGES = {"positions_rate": (1.0, 20.0), "layer_seconds": (1.0, 60.0), "robot_size": (0.5, 3.0)}
@@ -72,8 +70,6 @@ def export_path(name: str) -> str:
     """Return where a file called ``name`` is written to unless the user chooses another place."""
     return str(Path(exports_folder()) / name)
 
-
-# --- What the map shows, how often, and where files go, as fields ---
 
 SPINS = (
     ("robot_size", tr("&Size of robots on the map"), " ×", 0.1, 1, tr("1 is as they come")),

@@ -23,15 +23,14 @@ from qgis.PyQt.QtWidgets import (
 )
 
 from ..control.messages import MessageLabel
-from ..gateway_client.link import ConnectionPhase, OperatorCredentials
+from ..gateway_client.connection_status import ConnectionPhase, OperatorCredentials
 from ..panel.window import FleetWindow
 from ..settings.connections import GatewayConnection
 from ..ui.dialogs import push_button
 from ..ui.errors import FleetError
+from ..ui.glyphs import painting
 from ..ui.language import tr
 from .practice_fleet import PracticeFleet
-
-# --- What the tour says, and at what it points ---
 
 PROJECT = "project"
 FLEET = "fleet"
@@ -136,8 +135,6 @@ STEPS = (
 )
 
 
-# --- A frame around the widget that the tour speaks of ---
-
 LOOK_MS = 50
 """How often it looks whether its widget has moved: docks are dragged and tabs are changed."""
 MARGIN = 4
@@ -171,10 +168,10 @@ class Spotlight(QWidget):
 
     def paintEvent(self, event: QPaintEvent) -> None:
         if not self.framed.isNull():
-            painter = QPainter(self)
-            painter.setRenderHint(QPainter.RenderHint.Antialiasing)
-            painter.setPen(QPen(COLOUR, 3))
-            painter.drawRoundedRect(self.framed, 5, 5)
+            with painting(self) as painter:
+                painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+                painter.setPen(QPen(COLOUR, 3))
+                painter.drawRoundedRect(self.framed, 5, 5)
 
     def _forget(self) -> None:
         self._target = None
@@ -190,8 +187,6 @@ class Spotlight(QWidget):
             self.framed = framed
             self.update()
 
-
-# --- The panel that leads through the tour: it lies in the window and lets everything else be used ---
 
 WIDTH = 400
 FROM_LEFT, FROM_TOP = 12, 48
@@ -333,8 +328,6 @@ def _button(name: str, text: str, pressed: Callable[[], object]) -> QPushButton:
     return button
 
 
-# --- The tour's place in the window: its menu entry, its offer at the first start, and what its buttons do
-
 OFFERED = "fleet_supervisor/tour_offered"
 PROJECT_FILE = Path(__file__).parents[2] / "resources" / "sample_site" / "sample_site.qgz"
 ICON = Path(__file__).parents[2] / "resources" / "icons" / "fleet.svg"
@@ -360,7 +353,7 @@ class TourAction(QObject):
         self.action.setObjectName("fleet_tour_action")
         self.action.triggered.connect(self.start)
         iface.addPluginToMenu(menu, self.action)
-        window.desk.link_changed.connect(self._show_practice)
+        window.desk.state.link_changed.connect(self._show_practice)
         self._offer_once()
 
     def start(self) -> None:
@@ -393,7 +386,7 @@ class TourAction(QObject):
 
     def remove(self) -> None:
         """Take every part out of the window."""
-        self._window.desk.link_changed.disconnect(self._show_practice)
+        self._window.desk.state.link_changed.disconnect(self._show_practice)
         self.end()
         self._take_offer_away()
         self._iface.removePluginMenu(self._menu, self.action)
@@ -432,7 +425,7 @@ class TourAction(QObject):
     def _start_fleet(self) -> None:
         if self._practising():
             self._tell(tr("The practice fleet runs, and the desk is connected to it."))
-        elif self._window.desk.link.phase in OPEN:
+        elif self._window.desk.state.link.phase in OPEN:
             self._tell(
                 tr(
                     "The desk is connected to another gateway. Disconnect first: the tour moves no real "
@@ -457,12 +450,12 @@ class TourAction(QObject):
 
     def _practising(self) -> bool:
         url = self._window.dock.connection_panel.url()
-        return bool(self.fleet.url) and url == self.fleet.url and self._window.desk.link.phase in OPEN
+        return bool(self.fleet.url) and url == self.fleet.url and self._window.desk.state.link.phase in OPEN
 
     def _show_practice(self) -> None:
         if self.panel is not None:
             self.panel.set_practice(
-                self._practising() and self._window.desk.link.phase is ConnectionPhase.CONNECTED
+                self._practising() and self._window.desk.state.link.phase is ConnectionPhase.CONNECTED
             )
 
     def _tell(self, text: str) -> None:

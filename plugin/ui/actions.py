@@ -13,8 +13,6 @@ from qgis.PyQt.QtWidgets import QAction, QDockWidget, QMainWindow, QMenu, QShort
 
 from .language import tr
 
-# --- The desk's actions: one for each thing that the operator can do, for toolbar, menu and dock alike
-
 ICONS = Path(__file__).parents[2] / "resources" / "icons"
 EMERGENCY_KEYS = ("F10", "Pause")
 """Either is enough; QGIS uses neither. Qt reads their names in English only: they are not translated."""
@@ -244,8 +242,6 @@ class Actions(QObject):
         return action
 
 
-# --- A menu entry that shows a panel ---
-
 AREA = Qt.DockWidgetArea.LeftDockWidgetArea
 BROWSER = "Browser"
 """QGIS's name for its panel of files and services."""
@@ -330,9 +326,6 @@ class DockAction:
         self.action.deleteLater()
 
 
-# --- The plugin's own menu, which QGIS makes for its first entry and leaves behind after its last ---
-
-
 class PluginMenu:
     """The menu ``title`` of ``window``. :meth:`remove` is for when every entry has been taken out."""
 
@@ -344,9 +337,6 @@ class PluginMenu:
         for menu in self._window.findChildren(QMenu):
             if menu.title() == self._title and menu.isEmpty():
                 menu.deleteLater()
-
-
-# --- Underlined letters in the plugin's menu, in whatever language it is ---
 
 
 class MenuLetters(QObject):
@@ -422,8 +412,6 @@ def _give_letter(number: int, places: list[dict[str, int]], taken: dict[str, int
                 return True
     return False
 
-
-# --- Keys for what the desk can do, in QGIS's own list of keyboard shortcuts, where the user can change them
 
 KEYS = {
     "fleet_panel": "F9",

@@ -24,8 +24,6 @@ from qgis.PyQt.QtWidgets import (
 
 from .language import tr
 
-# --- A button with all that it needs from its beginning ---
-
 
 def push_button(
     name: str, text: str, tip: str = "", pressed: Callable[[], object] | None = None
@@ -38,9 +36,6 @@ def push_button(
         # The signal says whether the button is checked, which nobody asks.
         button.clicked.connect(lambda _=False: pressed())
     return button
-
-
-# --- Text that is never lower than its lines ---
 
 
 class WrappingLabel(QLabel):
@@ -71,8 +66,6 @@ class WrappingLabel(QLabel):
         self.setMinimumHeight(0)
         self.setMinimumHeight(max(self._least, self.heightForWidth(self.width())))
 
-
-# --- A dialog that asks before something is done; it does nothing by itself ---
 
 DIALOG_WIDTH = 460
 
@@ -185,9 +178,6 @@ def _button(name: str, text: str) -> QPushButton:
     return button
 
 
-# --- A question before something is done that cannot be taken back: Enter and Escape leave all as it is
-
-
 def confirm(
     parent: QWidget, name: str, text: str, yes: tuple[str, str], no: str, then: Callable[[], object]
 ) -> QMessageBox:
@@ -206,9 +196,6 @@ def confirm(
     box.setEscapeButton(keep)
     confirm.clicked.connect(lambda: then())
     return box
-
-
-# --- Lets a panel be lower than what is in it: a window must never grow beyond the screen ---
 
 
 class ShrinkableScrollArea(QScrollArea):
@@ -239,7 +226,6 @@ class ShrinkableScrollArea(QScrollArea):
         return super().eventFilter(watched, event)
 
 
-# --- Asks for a file in a dialog of Qt's own: no key of QGIS works in one of the operating system's ---
 # The emergency stop is one of those keys. Dialogs that QGIS opens itself may still be the operating
 # system's.
 

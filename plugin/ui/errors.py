@@ -1,8 +1,33 @@
-"""What can go wrong in the plugin; every message names what, where and what to do."""
+"""What can go wrong in the plugin; every message names what, where and what to do.
+
+And parts that are removed whatever one of them raises.
+"""
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, Protocol
+
+
+class Part(Protocol):
+    """What undoes its constructor."""
+
+    def remove(self) -> None:
+        """Take out of QGIS all that the constructor has put there."""
+
+
+def remove_all(parts: list[Part]) -> None:
+    """Remove ``parts``, the last one first, and empty the list.
+
+    :raises Exception: the first that one of them raised, when all the others are removed.
+    """
+    errors = []
+    while parts:
+        try:
+            parts.pop().remove()
+        except Exception as error:
+            errors.append(error)
+    if errors:
+        raise errors[0]
 
 
 class FleetError(Exception):

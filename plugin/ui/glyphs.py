@@ -2,13 +2,25 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
+
 from qgis.PyQt.QtCore import QPointF, QRectF, Qt
-from qgis.PyQt.QtGui import QBrush, QColor, QIcon, QPainter, QPainterPath, QPalette, QPen, QPixmap, QPolygonF
+from qgis.PyQt.QtGui import (
+    QBrush,
+    QColor,
+    QIcon,
+    QPaintDevice,
+    QPainter,
+    QPainterPath,
+    QPalette,
+    QPen,
+    QPixmap,
+    QPolygonF,
+)
 from qgis.PyQt.QtWidgets import QApplication
 
 from ...robot_bridge.core.messages import CommandState, RobotState
-
-# --- The desk's colours: of Okabe and Ito's palette, told apart by colour-blind people as well ---
 
 STATE_COLOURS = {
     RobotState.FRESH: QColor("#0072B2"),
@@ -59,7 +71,17 @@ def for_letters(colour: QColor) -> QColor:
     return QColor(STALE_LETTERS) if colour == STATE_COLOURS[RobotState.STALE] else colour
 
 
-# --- The pen that everything on the map is drawn with ---
+@contextmanager
+def painting(device: QPaintDevice) -> Iterator[QPainter]:
+    """Give a painter on ``device`` that is ended whatever is raised meanwhile.
+
+    Kept by a traceback, a painter that is not ended outlives its device, and Qt ends the program for that.
+    """
+    painter = QPainter(device)
+    try:
+        yield painter
+    finally:
+        painter.end()
 
 
 def pen(colour: QColor, width: float, strength: float = 1.0) -> QPen:
@@ -68,8 +90,6 @@ def pen(colour: QColor, width: float, strength: float = 1.0) -> QPen:
     shade.setAlphaF(colour.alphaF() * strength)
     return QPen(shade, width, Qt.PenStyle.SolidLine, Qt.PenCapStyle.RoundCap, Qt.PenJoinStyle.RoundJoin)
 
-
-# --- The drawings of robots and cones, in logical pixels around (0, 0) ---
 
 CELL = 32
 """Width and height of the square that a robot's drawing fits in at any heading."""
@@ -81,13 +101,12 @@ def state_icon(state: RobotState) -> QIcon:
     """Return the drawing of a robot in ``state``, pointing up, for tables and legends."""
     pixmap = QPixmap(64, 64)
     pixmap.fill(QColor(0, 0, 0, 0))
-    painter = QPainter(pixmap)
-    painter.setRenderHint(QPainter.RenderHint.Antialiasing)
-    painter.translate(32, 32)
-    painter.scale(ICON_SCALE, ICON_SCALE)
-    painter.rotate(-90)
-    draw_robot(painter, state, True)
-    painter.end()
+    with painting(pixmap) as painter:
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        painter.translate(32, 32)
+        painter.scale(ICON_SCALE, ICON_SCALE)
+        painter.rotate(-90)
+        draw_robot(painter, state, True)
     return QIcon(pixmap)
 
 

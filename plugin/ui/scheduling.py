@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable, Generator
 from typing import Any, TypeVar
 
 from qgis.PyQt.QtCore import QObject, QTimer
 
+from ...robot_bridge.core.clock import Clock
 from .errors import FleetError
 
-# --- Long work of the window's thread, done in slices between which the window paints and answers the mouse
+# Long work of the window's thread is done in slices between which the window paints and answers the mouse.
 # QGIS's own tasks are no help where a click waits for the result: in QGIS 3.22 they wait until the map is
 # drawn, and what they call of QGIS keeps Python to itself as long as it takes.
 
@@ -41,10 +41,10 @@ class CooperativeTask(QObject):
         self,
         parent: QObject | None = None,
         seconds: float | None = None,
-        clock: Callable[[], float] = time.perf_counter,
+        clock: Clock | None = None,
     ):
         super().__init__(parent)
-        self._clock = clock
+        self._clock = Clock() if clock is None else clock
         self._seconds = seconds
         self._work: Steps[Any] | None = None
         self._goes_on: Callable[[], None] = _nothing
@@ -134,13 +134,13 @@ class CooperativeTask(QObject):
     def _slice(self) -> tuple[bool, Any]:
         work = self._work
         assert work is not None
-        until = self._clock() + (SLICE_SECONDS if self._seconds is None else self._seconds)
+        until = self._clock.steady() + (SLICE_SECONDS if self._seconds is None else self._seconds)
         try:
             while True:
                 self.share = next(work)
                 if self._work is not work:
                     return False, None
-                if self._clock() >= until:
+                if self._clock.steady() >= until:
                     break
         except StopIteration as end:
             is_wanted = self._work is work
@@ -174,8 +174,6 @@ def scaled_progress(work: Steps[T], before: int, parts: int) -> Steps[T]:
         yield (before + share) / parts
 
 
-# --- The desk's beat, and the turns in which the parts of the window look at the robots ---
-
 PULL_EVERY_MS = 50
 PULLS_IN_HALF_A_SECOND = 500 // PULL_EVERY_MS
 _STRIDE = 3
@@ -192,6 +190,10 @@ class UpdateScheduler:
     def __init__(self) -> None:
         self.pulls = 0
         self._turns = 0
+
+    def advance(self) -> None:
+        """Count an update."""
+        self.pulls += 1
 
     def turn(self) -> UpdateSlot:
         """Return a turn in which nobody else comes, as far as there are enough pulls."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from qgis.PyQt.QtCore import QEvent, QSize, Qt
-from qgis.PyQt.QtGui import QColor, QMouseEvent, QPainter, QPaintEvent, QPalette, QResizeEvent
+from qgis.PyQt.QtGui import QColor, QMouseEvent, QPaintEvent, QPalette, QResizeEvent
 from qgis.PyQt.QtWidgets import (
     QFrame,
     QLabel,
@@ -19,6 +19,8 @@ from qgis.PyQt.QtWidgets import (
     QToolButton,
     QWidget,
 )
+
+from .glyphs import painting
 
 NARROWEST = 60
 """Pixels of width that a text asks for; it takes what there is."""
@@ -127,16 +129,16 @@ class ElidedText(QLabel):
         room = self.contentsRect()
         line = " ".join(self.text().splitlines())
         shown = self.fontMetrics().elidedText(line, Qt.TextElideMode.ElideRight, room.width())
-        painter = QPainter(self)
-        self.style().drawItemText(
-            painter,
-            room,
-            int(self.alignment()),
-            self.palette(),
-            self.isEnabled(),
-            shown,
-            self.foregroundRole(),
-        )
+        with painting(self) as painter:
+            self.style().drawItemText(
+                painter,
+                room,
+                int(self.alignment()),
+                self.palette(),
+                self.isEnabled(),
+                shown,
+                self.foregroundRole(),
+            )
 
 
 def _width(widget: QWidget, text: str) -> int:

@@ -9,15 +9,13 @@ from datetime import datetime
 from pathlib import Path
 from typing import Any
 
-from qgis.PyQt.QtCore import QAbstractTableModel, QEvent, QModelIndex, QObject, Qt
+from qgis.PyQt.QtCore import QAbstractTableModel, QEvent, QModelIndex, QObject, Qt, pyqtSignal
 from qgis.PyQt.QtWidgets import QAbstractItemView, QHeaderView, QStyle, QTableView, QTreeView
 
 from ...robot_bridge.core.files import replacement
 from .errors import FleetError
 from .language import tr
 from .times import short_time
-
-# --- A table with one row for each thing that it is given ---
 
 
 class RowModel(QAbstractTableModel):
@@ -66,9 +64,6 @@ class TextModel(RowModel):
         return None
 
 
-# --- What a model hands out for its cells: numbers, also where Qt 6 has enums for them ---
-
-
 def number_of(value: object) -> int:
     """Return the number of a Qt enum's member or flags, which are numbers themselves on Qt 5."""
     return int(getattr(value, "value", value))  # type: ignore[call-overload]
@@ -78,8 +73,6 @@ TO_THE_RIGHT = number_of(Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCe
 CHECKED = number_of(Qt.CheckState.Checked)
 UNCHECKED = number_of(Qt.CheckState.Unchecked)
 
-
-# --- Tables that have to fit into a narrow and low panel ---
 
 LOWEST = 44
 """Pixels that a table keeps on a low screen: its head and a row or two."""
@@ -94,8 +87,6 @@ def shrink_view(view: QAbstractItemView) -> None:
     for header in view.findChildren(QHeaderView):
         header.setFont(font)
 
-
-# --- Columns that are as wide as their heads need in the language of QGIS ---
 
 EDGES = 4
 """Pixels beside a head's words."""
@@ -128,8 +119,6 @@ def _fit(header: QHeaderView, column: int) -> None:
     header.resizeSection(column, max(header.sectionSize(column), wanted))
 
 
-# --- A column of times that is as wide as its widest time ---
-
 TODAY = "00:00:00"
 
 
@@ -149,20 +138,19 @@ class TimeColumn:
             self._view.setColumnWidth(0, self._view.fontMetrics().horizontalAdvance(widest) + self._beside)
 
 
-# --- Lists of things that have a place on the map ---
-
 ENTER = (Qt.Key.Key_Return, Qt.Key.Key_Enter)
 ALONE = (Qt.KeyboardModifier.NoModifier, Qt.KeyboardModifier.KeypadModifier)
 
 
 class ZoomMenu(QObject):
-    """Calls ``go`` with a row of ``view`` at a double click on it, and at Enter with the selected one."""
+    """Tells of a row of ``view`` at a double click on it, and at Enter of the selected one."""
 
-    def __init__(self, view: QAbstractItemView, go: Callable[[QModelIndex], object]):
+    wanted = pyqtSignal(QModelIndex)
+
+    def __init__(self, view: QAbstractItemView):
         super().__init__(view)
         self._view = view
-        self._go = go
-        view.doubleClicked.connect(go)
+        view.doubleClicked.connect(self.wanted)
         view.installEventFilter(self)
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:
@@ -175,11 +163,9 @@ class ZoomMenu(QObject):
             # What is renewed all the time may have selected rows and no current one.
             index = next(iter(selection.selectedRows()), QModelIndex())
         if index.isValid():
-            self._go(index)
+            self.wanted.emit(index)
         return True
 
-
-# --- Tables of the desk as CSV files ---
 
 _FORMULA = ("=", "+", "-", "@", "\t", "\r")
 

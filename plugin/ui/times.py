@@ -6,8 +6,6 @@ import time
 
 from .language import tr
 
-# --- Times as the operator's clock shows them ---
-
 
 def time_of_day(at: float | None, now: float | None = None) -> str:
     """Return a time, seconds since 1970, as in ``12:03:04``; nothing for none.
@@ -40,9 +38,6 @@ def _formatted(at: float | None, now: float | None, on_another_day: str) -> str:
     then = time.localtime(at)
     is_today = then[:3] == time.localtime(now)[:3]
     return time.strftime("%H:%M:%S" if is_today else on_another_day, then)
-
-
-# --- How long ago anything was heard of a robot, in words ---
 
 
 def age_in_words(seconds: float) -> str:

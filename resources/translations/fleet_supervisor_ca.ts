@@ -1108,16 +1108,6 @@
         </message>
         <message>
             <location filename="../../plugin/control/fleet_controller.py" />
-            <source>Another site is served now: {site}, no longer {before}. Open its project.</source>
-            <translation>Ara se serveix un altre recinte: {site}, ja no {before}. Obriu-ne el projecte.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/fleet_controller.py" />
-            <source>EMERGENCY STOP is NOT sent yet: the link is down. It is sent as soon as that is back; use the robots' own emergency stops now.</source>
-            <translation>La PARADA D'EMERGÈNCIA encara NO s'ha enviat: l'enllaç està tallat. S'envia quan torni; feu servir ara les parades d'emergència dels mateixos robots.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/fleet_controller.py" />
             <source>No robot is selected, so none was aborted. Select it in the table or on the map.</source>
             <translation>No hi ha cap robot seleccionat, així que no se n'ha avortat cap. Seleccioneu-lo a la taula o al mapa.</translation>
         </message>
@@ -1128,23 +1118,8 @@
         </message>
         <message>
             <location filename="../../plugin/control/fleet_controller.py" />
-            <source>The gateway has another database than before: its robots and commands are others, and those of before are not shown any more.</source>
-            <translation>La passarel·la té una altra base de dades que abans: els seus robots i ordres són uns altres, i els d'abans ja no es mostren.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/fleet_controller.py" />
             <source>The operator's name is empty. Write who you are: it stands in every log.</source>
             <translation>El nom de l'operador és buit. Escriviu qui sou: és a tots els registres.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/fleet_controller.py" />
-            <source>The site is not known yet. Connect to a gateway first.</source>
-            <translation>El recinte encara no es coneix. Connecteu abans a una passarel·la.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/fleet_controller.py" />
-            <source>the desk is not connected to a gateway. Connect first; to stop a robot now use the robot's own emergency stop.</source>
-            <translation>la consola no està connectada a cap passarel·la. Connecteu abans; per aturar ara un robot feu servir la seva parada d'emergència.</translation>
         </message>
         <message>
             <location filename="../../plugin/control/fleet_controller.py" />
@@ -1230,6 +1205,11 @@
             <location filename="../../plugin/control/messages.py" />
             <source>Link {link} is down: {reason}. Nothing reaches {robots}.</source>
             <translation>L'enllaç {link} està caigut: {reason}. Res no arriba a {robots}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/control/messages.py" />
+            <source>Link {link}: {reason}.</source>
+            <translation>Enllaç {link}: {reason}.</translation>
         </message>
         <message>
             <location filename="../../plugin/control/messages.py" />
@@ -1348,6 +1328,16 @@
             <location filename="../../plugin/control/request_tracker.py" />
             <source>EMERGENCY STOP</source>
             <translation>PARADA D'EMERGÈNCIA</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/control/request_tracker.py" />
+            <source>EMERGENCY STOP is NOT sent yet: the link is down. It is sent as soon as that is back; use the robots' own emergency stops now.</source>
+            <translation>La PARADA D'EMERGÈNCIA encara NO s'ha enviat: l'enllaç està tallat. S'envia quan torni; feu servir ara les parades d'emergència dels mateixos robots.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/control/request_tracker.py" />
+            <source>the desk is not connected to a gateway. Connect first; to stop a robot now use the robot's own emergency stop.</source>
+            <translation>la consola no està connectada a cap passarel·la. Connecteu abans; per aturar ara un robot feu servir la seva parada d'emergència.</translation>
         </message>
         <message>
             <location filename="../../plugin/control/request_tracker.py" />
@@ -1753,194 +1743,204 @@
             <translation>El que respon a {url} obre un WebSocket però no ha contestat la salutació de la consola en {answer_within:g} s. Comproveu que l'URL porta a una passarel·la de Fleet Supervisor.</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>No secure link to {place}: {reason}. If the gateway has no TLS, write ws:// instead of wss://.</source>
             <translation>No hi ha enllaç segur amb {place}: {reason}. Si la passarel·la no té TLS, escriviu ws:// en lloc de wss://.</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>Nothing listens at {place}. Start the gateway (robot-bridge serve --site ...) or correct the URL.</source>
             <translation>No escolta res a {place}. Arrenqueu la passarel·la (robot-bridge serve --site ...) o corregiu l'URL.</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>Over {url} everybody on the way could read the token. Write wss:// instead of ws://; a gateway that other computers can reach has TLS.</source>
             <translation>Per {url} tothom pel camí podria llegir el testimoni. Escriviu wss:// en lloc de ws://; una passarel·la accessible des d'altres ordinadors té TLS.</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>The CA file {file} cannot be used: {reason}. Choose the ca.pem that whoever runs the site gave you.</source>
             <translation>El fitxer de CA {file} no es pot fer servir: {reason}. Trieu el ca.pem que us va donar qui porta el recinte.</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>The certificate of {place} cannot be trusted: {reason}.</source>
             <translation>No es pot confiar en el certificat de {place}: {reason}.</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>The certificate of {place} has expired. Whoever runs the site renews it with 'robot-bridge tls renew'; if it was renewed, check this computer's clock.</source>
             <translation>El certificat de {place} ha caducat. Qui porta el recinte el renova amb 'robot-bridge tls renew'; si ja s'ha renovat, comproveu el rellotge d'aquest ordinador.</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>The certificate of {place} holds only later: check this computer's clock.</source>
             <translation>El certificat de {place} només val més tard: comproveu el rellotge d'aquest ordinador.</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>The certificate of {place} is for another name: {reason} Use the name that the gateway's certificate was made for, or have one made for this name.</source>
             <translation>El certificat de {place} és per a un altre nom: {reason} Feu servir el nom per al qual es va fer el certificat de la passarel·la, o feu-ne fer un per a aquest nom.</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>The certificate of {place} is from an authority that this desk does not trust. Choose the site's ca.pem as CA file under Access; whoever runs the site has it.</source>
             <translation>El certificat de {place} és d'una autoritat en què aquesta consola no confia. Trieu el ca.pem del recinte com a fitxer de CA a Accés; el té qui porta el recinte.</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>The gateway at {place} closed the link (code {code}{why}). It is tried again by itself.</source>
             <translation>La passarel·la a {place} ha tancat l'enllaç (codi {code}{why}). Es torna a provar sol.</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>The gateway at {place} ended the link{why}. Ask whoever runs the site for a new token and enter it under Access.</source>
             <translation>La passarel·la a {place} ha acabat l'enllaç{why}. Demaneu un testimoni nou a qui porta el recinte i introduïu-lo a Accés.</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>The gateway at {place} ended your session{why}. Connect brings it back.</source>
             <translation>La passarel·la a {place} ha acabat la vostra sessió{why}. Connecta la recupera.</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>The gateway's URL is empty. {example}</source>
             <translation>L'URL de la passarel·la és buida. {example}</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>The gateway's URL {url} begins with {scheme}; a gateway is reached over ws:// (or wss:// with TLS). {example}</source>
             <translation>L'URL de la passarel·la {url} comença per {scheme}; s'hi arriba per ws:// (o wss:// amb TLS). {example}</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>The gateway's URL {url} cannot be read: {error}. {example}</source>
             <translation>L'URL de la passarel·la {url} no es pot llegir: {error}. {example}</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>The gateway's URL {url} cannot be used. Write it like {default_url}.</source>
             <translation>L'URL de la passarel·la {url} no es pot fer servir. Escriviu-la com {default_url}.</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>The gateway's URL {url} has port 0, where nothing can listen. {example}</source>
             <translation>L'URL de la passarel·la {url} té el port 0, on res pot escoltar. {example}</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>The gateway's URL {url} names no host. {example}</source>
             <translation>L'URL de la passarel·la {url} no anomena cap servidor. {example}</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>The host of {place} is not known to this network. Correct the URL.</source>
             <translation>Aquesta xarxa no coneix el servidor de {place}. Corregiu l'URL.</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>The link to the gateway at {place} broke off. It is tried again by itself; if it does not come back, check the gateway and the network.</source>
             <translation>L'enllaç amb la passarel·la a {place} s'ha trencat. Es torna a provar sol; si no torna, comproveu la passarel·la i la xarxa.</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>The token cannot be right: it is one word. Paste it again, whole and alone.</source>
             <translation>El testimoni no pot ser correcte: és una sola paraula. Enganxeu-lo una altra vegada, sencer i sol.</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>There is no desk at {url} (HTTP 404). A gateway's desk has the path /desk, as in {default_url}; or another program answers there.</source>
             <translation>No hi ha cap consola a {url} (HTTP 404). La d'una passarel·la té el camí /desk, com a {default_url}; o hi respon un altre programa.</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>What answers at {place} does not speak WebSocket. Check host and port, and ws:// or wss://: a gateway prints its URL when it starts.</source>
             <translation>El que respon a {place} no parla WebSocket. Comproveu servidor i port, i ws:// o wss://: una passarel·la escriu la seva URL quan arrenca.</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>Write it like {default_url}.</source>
             <translation>Escriviu-la com {default_url}.</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>it wants a token.</source>
             <translation>vol un testimoni.</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>no reason given.</source>
             <translation>sense dir per què.</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>no scheme</source>
             <translation>cap esquema</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>operator</source>
             <translation>operador</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>supervisor</source>
             <translation>supervisor</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>viewer</source>
             <translation>observador</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>{place} broke off while the secure link was made. If the gateway has no TLS, write ws:// instead of wss://.</source>
             <translation>{place} ha tallat mentre es feia l'enllaç segur. Si la passarel·la no té TLS, escriviu ws:// en lloc de wss://.</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>{place} cannot be reached: {reason}. Check network and URL.</source>
             <translation>No s'arriba a {place}: {reason}. Comproveu la xarxa i l'URL.</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>{place} did not answer in time. Check that the gateway runs, and the network and firewall.</source>
             <translation>{place} no ha respost a temps. Comproveu que la passarel·la funciona, la xarxa i el tallafoc.</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>{url} answered HTTP {status} instead of opening a WebSocket. Check that a gateway runs there and what its log says.</source>
             <translation>{url} ha respost HTTP {status} en lloc d'obrir un WebSocket. Comproveu que hi funciona una passarel·la i què diu el seu registre.</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>{url} is where robots connect; operators connect to {desk}. Write that instead.</source>
             <translation>{url} és on es connecten els robots; els operadors es connecten a {desk}. Escriviu això.</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>{url} refuses this desk: {said}</source>
             <translation>{url} rebutja aquesta consola: {said}</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>{url} refuses this desk: {said} Enter the operator's token under Access.</source>
             <translation>{url} rebutja aquesta consola: {said} Introduïu el testimoni de l'operador a Accés.</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>{url} takes no desk now: {said} It is tried again by itself.</source>
             <translation>{url} ara no admet cap consola: {said} Es torna a provar sol.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/gateway_client/fleet_state.py" />
+            <source>Another site is served now: {site}, no longer {before}. Open its project.</source>
+            <translation>Ara se serveix un altre recinte: {site}, ja no {before}. Obriu-ne el projecte.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/gateway_client/fleet_state.py" />
+            <source>The gateway has another database than before: its robots and commands are others, and those of before are not shown any more.</source>
+            <translation>La passarel·la té una altra base de dades que abans: els seus robots i ordres són uns altres, i els d'abans ja no es mostren.</translation>
         </message>
         <message>
             <location filename="../../plugin/gateway_client/protocol.py" />
@@ -1981,6 +1981,11 @@
             <location filename="../../plugin/gateway_client/protocol.py" />
             <source>What answers at {url} sent something that is not the desk's protocol: {text} ({kind}: {error}). Check that the URL leads to a Fleet Supervisor gateway of this version.</source>
             <translation>El que respon a {url} ha enviat una cosa que no és el protocol de la consola: {text} ({kind}: {error}). Comproveu que l'URL porta a una passarel·la de Fleet Supervisor d'aquesta versió.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/gateway_client/protocol.py" />
+            <source>the gateway takes no message as large as this one of {size} kB. Ask for less at once, or have largest_message_bytes raised in the site's settings.</source>
+            <translation>la passarel·la no accepta cap missatge tan gran com aquest, de {size} kB. Demaneu menys d'una vegada, o feu apujar largest_message_bytes a la configuració del recinte.</translation>
         </message>
         <message>
             <location filename="../../plugin/gateway_client/report_caches.py" />
@@ -2260,41 +2265,6 @@
             <translation>{named}: la unitat és {unit}, i els robots parlen en metres. Trieu un SRC en metres com la zona UTM local{suggestion}.</translation>
         </message>
         <message>
-            <location filename="../../plugin/layers/errors.py" />
-            <source>Layer {layer}, feature {id}: {note}</source>
-            <translation>Capa {layer}, entitat {id}: {note}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/layers/errors.py" />
-            <source>Layer {layer}, {features}: {note}</source>
-            <translation>Capa {layer}, {features}: {note}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/layers/errors.py" />
-            <source>Layer {layer}, {features}; of the first: {note}</source>
-            <translation>Capa {layer}, {features}; de la primera: {note}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/layers/errors.py" />
-            <source>Layer {layer}: warnings of more kinds about {features}</source>
-            <translation>Capa {layer}: avisos de més tipus sobre {features}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/layers/errors.py" />
-            <source>feature {shown}</source>
-            <translation>entitat {shown}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/layers/errors.py" />
-            <source>features {shown}</source>
-            <translation>entitats {shown}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/layers/errors.py" />
-            <source>features {shown} and {more} more</source>
-            <translation>entitats {shown} i {more} més</translation>
-        </message>
-        <message>
             <location filename="../../plugin/layers/geometry.py" />
             <source> at ({x:.2f} {y:.2f})</source>
             <translation> a ({x:.2f} {y:.2f})</translation>
@@ -2429,6 +2399,26 @@
         </message>
         <message>
             <location filename="../../plugin/layers/layer_source.py" />
+            <source>Layer {layer}, feature {id}: {note}</source>
+            <translation>Capa {layer}, entitat {id}: {note}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/layer_source.py" />
+            <source>Layer {layer}, {features}: {note}</source>
+            <translation>Capa {layer}, {features}: {note}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/layer_source.py" />
+            <source>Layer {layer}, {features}; of the first: {note}</source>
+            <translation>Capa {layer}, {features}; de la primera: {note}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/layer_source.py" />
+            <source>Layer {layer}: warnings of more kinds about {features}</source>
+            <translation>Capa {layer}: avisos de més tipus sobre {features}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/layer_source.py" />
             <source>The layer {name} cannot be opened ({source}): repair its data source or leave it out.</source>
             <translation>La capa {name} no es pot obrir ({source}): repareu-ne l'origen de dades o ometeu-la.</translation>
         </message>
@@ -2436,6 +2426,21 @@
             <location filename="../../plugin/layers/layer_source.py" />
             <source>The layer {name} holds {held}, and only lines and polygons are obstacles: leave it out, give it an extent first (for example with Buffer), or the role furniture.</source>
             <translation>La capa {name} conté {held}, i només les línies i els polígons són obstacles: ometeu-la, doneu-li abans extensió (per exemple amb Buffer), o el paper mobiliari.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/layer_source.py" />
+            <source>feature {shown}</source>
+            <translation>entitat {shown}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/layer_source.py" />
+            <source>features {shown}</source>
+            <translation>entitats {shown}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/layer_source.py" />
+            <source>features {shown} and {more} more</source>
+            <translation>entitats {shown} i {more} més</translation>
         </message>
         <message>
             <location filename="../../plugin/layers/layer_source.py" />
@@ -3064,6 +3069,11 @@
         </message>
         <message>
             <location filename="../../plugin/layers/site_transform.py" />
+            <source>The site is not known yet. Connect to a gateway first.</source>
+            <translation>El recinte encara no es coneix. Connecteu abans a una passarel·la.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/site_transform.py" />
             <source>The site {name} is in the CRS {crs}, which this QGIS does not know: its robots cannot be placed on the map. Correct crs in the site's site.toml, or update QGIS.</source>
             <translation>El recinte {name} és en el SRC {crs}, que aquest QGIS no coneix: els seus robots no es poden situar al mapa. Corregiu crs al site.toml del recinte, o actualitzeu QGIS.</translation>
         </message>
@@ -3098,86 +3108,6 @@
             <translation>{state}, últim missatge fa {age:.0f} s</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/layers.py" />
-            <source>Accuracy (m)</source>
-            <translation>Exactitud (m)</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/layers.py" />
-            <source>Age (s)</source>
-            <translation>Antiguitat (s)</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/layers.py" />
-            <source>Battery (0 to 1)</source>
-            <translation>Bateria (0 a 1)</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/layers.py" />
-            <source>Closed roads</source>
-            <translation>Vies tancades</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/layers.py" />
-            <source>Command</source>
-            <translation>Ordre</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/layers.py" />
-            <source>Cones put down</source>
-            <translation>Cons posats</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/layers.py" />
-            <source>Conflicts</source>
-            <translation>Conflictes</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/layers.py" />
-            <source>Heading (°)</source>
-            <translation>Rumb (°)</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/layers.py" />
-            <source>Link</source>
-            <translation>Enllaç</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/layers.py" />
-            <source>Robot</source>
-            <translation>Robot</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/layers.py" />
-            <source>Robots (live)</source>
-            <translation>Robots (en directe)</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/layers.py" />
-            <source>Speed (m/s)</source>
-            <translation>Velocitat (m/s)</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/layers.py" />
-            <source>Status</source>
-            <translation>Situació</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/layers.py" />
-            <source>Theta (rad)</source>
-            <translation>Theta (rad)</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/layers.py" />
-            <source>closed</source>
-            <translation>tancada</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/layers.py" />
-            <source>until</source>
-            <translation>fins a</translation>
-        </message>
-        <message>
             <location filename="../../plugin/map/live_view.py" />
             <source>No robot is selected to be followed. Select one in the table or on the map.</source>
             <translation>No hi ha cap robot seleccionat per seguir. Seleccioneu-ne un a la taula o al mapa.</translation>
@@ -3188,67 +3118,67 @@
             <translation>{robot} encara no ha dit on és; el mapa no hi pot anar.</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/overlay/hover_card.py" />
+            <location filename="../../plugin/map/overlay/fleet_overlay.py" />
             <source>, {remaining:.1f} m to go</source>
             <translation>, falten {remaining:.1f} m</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/overlay/hover_card.py" />
+            <location filename="../../plugin/map/overlay/fleet_overlay.py" />
             <source>accuracy</source>
             <translation>precisió</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/overlay/hover_card.py" />
+            <location filename="../../plugin/map/overlay/fleet_overlay.py" />
             <source>battery</source>
             <translation>bateria</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/overlay/hover_card.py" />
+            <location filename="../../plugin/map/overlay/fleet_overlay.py" />
             <source>heading</source>
             <translation>rumb</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/overlay/hover_card.py" />
+            <location filename="../../plugin/map/overlay/fleet_overlay.py" />
             <source>it says</source>
             <translation>diu</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/overlay/hover_card.py" />
+            <location filename="../../plugin/map/overlay/fleet_overlay.py" />
             <source>last message</source>
             <translation>últim missatge</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/overlay/hover_card.py" />
+            <location filename="../../plugin/map/overlay/fleet_overlay.py" />
             <source>place</source>
             <translation>lloc</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/overlay/hover_card.py" />
+            <location filename="../../plugin/map/overlay/fleet_overlay.py" />
             <source>speed</source>
             <translation>velocitat</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/overlay/hover_card.py" />
+            <location filename="../../plugin/map/overlay/fleet_overlay.py" />
             <source>task</source>
             <translation>tasca</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/overlay/hover_card.py" />
+            <location filename="../../plugin/map/overlay/fleet_overlay.py" />
             <source>{age_in_words} ago, {escape}</source>
             <translation>fa {age_in_words}, {escape}</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/overlay/hover_card.py" />
+            <location filename="../../plugin/map/overlay/fleet_overlay.py" />
             <source>{v:.2f} m/s</source>
             <translation>{v:.2f} m/s</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/overlay/hover_card.py" />
+            <location filename="../../plugin/map/overlay/fleet_overlay.py" />
             <source>{x:.2f}, {y:.2f} m in the site</source>
             <translation>{x:.2f}, {y:.2f} m al recinte</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/overlay/hover_card.py" />
+            <location filename="../../plugin/map/overlay/fleet_overlay.py" />
             <source>± {accuracy:.2f} m</source>
             <translation>± {accuracy:.2f} m</translation>
         </message>
@@ -3278,14 +3208,94 @@
             <translation>· fora de línia</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/overlay/paths_painter.py" />
+            <location filename="../../plugin/map/overlay/task_painter.py" />
             <source>{km:.0f} km</source>
             <translation>{km:.0f} km</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/overlay/paths_painter.py" />
+            <location filename="../../plugin/map/overlay/task_painter.py" />
             <source>{metres:.0f} m</source>
             <translation>{metres:.0f} m</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/reported_layers.py" />
+            <source>Accuracy (m)</source>
+            <translation>Exactitud (m)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/reported_layers.py" />
+            <source>Age (s)</source>
+            <translation>Antiguitat (s)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/reported_layers.py" />
+            <source>Battery (0 to 1)</source>
+            <translation>Bateria (0 a 1)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/reported_layers.py" />
+            <source>Closed roads</source>
+            <translation>Vies tancades</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/reported_layers.py" />
+            <source>Command</source>
+            <translation>Ordre</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/reported_layers.py" />
+            <source>Cones put down</source>
+            <translation>Cons posats</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/reported_layers.py" />
+            <source>Conflicts</source>
+            <translation>Conflictes</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/reported_layers.py" />
+            <source>Heading (°)</source>
+            <translation>Rumb (°)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/reported_layers.py" />
+            <source>Link</source>
+            <translation>Enllaç</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/reported_layers.py" />
+            <source>Robot</source>
+            <translation>Robot</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/reported_layers.py" />
+            <source>Robots (live)</source>
+            <translation>Robots (en directe)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/reported_layers.py" />
+            <source>Speed (m/s)</source>
+            <translation>Velocitat (m/s)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/reported_layers.py" />
+            <source>Status</source>
+            <translation>Situació</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/reported_layers.py" />
+            <source>Theta (rad)</source>
+            <translation>Theta (rad)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/reported_layers.py" />
+            <source>closed</source>
+            <translation>tancada</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/reported_layers.py" />
+            <source>until</source>
+            <translation>fins a</translation>
         </message>
         <message>
             <location filename="../../plugin/map/site_project.py" />
@@ -5321,18 +5331,33 @@
         </message>
         <message>
             <location filename="../../plugin/planning/execution.py" />
-            <source>A new plan is sent by itself, as you switched on: {why}</source>
-            <translation>S'envia sol un pla nou, com vau activar: {why}</translation>
+            <source>A new plan was sent by itself, as was switched on: {why}</source>
+            <translation>S'ha enviat un pla nou tot sol, tal com estava activat: {why}</translation>
         </message>
         <message>
             <location filename="../../plugin/planning/execution.py" />
-            <source>An emergency stop is in force. It has to be cleared first.</source>
-            <translation>Hi ha una parada d'emergència en vigor. Abans s'ha d'aixecar.</translation>
+            <source>A plan is being driven. Plan what is left, choose New plan to plan for other robots, or press Clear: nobody follows it then, and robots go on with their queues.</source>
+            <translation>S'està executant un pla. Planifiqueu el que queda, trieu Pla nou per planificar per a altres robots, o premeu Neteja: llavors ningú no el segueix i els robots continuen amb les seves cues.</translation>
         </message>
         <message>
             <location filename="../../plugin/planning/execution.py" />
-            <source>Given up since this plan was made: {cones}. Plan what is left again.</source>
-            <translation>Abandonats des que es va fer aquest pla: {cones}. Torneu a planificar el que queda.</translation>
+            <source>Clearing the cone plan</source>
+            <translation>Esborrat del pla de cons</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/execution.py" />
+            <source>Going on as before</source>
+            <translation>Continuació com abans</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/execution.py" />
+            <source>Going on with the cone plan</source>
+            <translation>Continuació del pla de cons</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/execution.py" />
+            <source>No new cone plan was sent by itself: {why}.</source>
+            <translation>No s'ha enviat tot sol cap pla de cons nou: {why}.</translation>
         </message>
         <message>
             <location filename="../../plugin/planning/execution.py" />
@@ -5341,23 +5366,13 @@
         </message>
         <message>
             <location filename="../../plugin/planning/execution.py" />
-            <source>No queue of the plan is paused, or something is still being sent.</source>
-            <translation>Cap cua del pla no està en pausa, o encara s'està enviant alguna cosa.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/execution.py" />
-            <source>No robot is left to take over: connect one, and plan anew.</source>
-            <translation>No queda cap robot que se'n faci càrrec: connecteu-ne un i torneu a planificar.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/execution.py" />
-            <source>Nothing of the plan waits to be overridden.</source>
-            <translation>Res del pla no espera ser imposat.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/execution.py" />
             <source>Nothing was overridden: what was refused is no longer being sent. Look at the plan.</source>
             <translation>No s'ha imposat res: el que es va rebutjar ja no s'està enviant. Mireu el pla.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/execution.py" />
+            <source>Pause of the cone plan</source>
+            <translation>Pausa del pla de cons</translation>
         </message>
         <message>
             <location filename="../../plugin/planning/execution.py" />
@@ -5371,18 +5386,38 @@
         </message>
         <message>
             <location filename="../../plugin/planning/execution.py" />
+            <source>Sending the cone plan</source>
+            <translation>Enviament del pla de cons</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/execution.py" />
+            <source>The cone plan cannot go on as it is: {why}. Plan what is left.</source>
+            <translation>El pla de cons no pot seguir com és: {why}. Planifiqueu el que queda.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/execution.py" />
             <source>The cone plan is in the robots' queues.</source>
             <translation>El pla de cons és a les cues dels robots.</translation>
         </message>
         <message>
             <location filename="../../plugin/planning/execution.py" />
-            <source>The cone plan is not sent any further. {words}: {found} Override… in the panel Cone plan sends it all the same, where your role may.</source>
-            <translation>El pla de cons no es continua enviant. {words}: {found} Imposa… al tauler Pla de cons ho envia igualment, on el vostre paper ho permeti.</translation>
+            <source>The cone plan is paused: {why}.</source>
+            <translation>El pla de cons està en pausa: {why}.</translation>
         </message>
         <message>
             <location filename="../../plugin/planning/execution.py" />
-            <source>The cone plan was not sent as a whole. {why}</source>
-            <translation>El pla de cons no s'ha enviat sencer. {why}</translation>
+            <source>The cone plan was not sent. {words}: {found} Override… in the panel Cone plan sends it all the same, where your role may.</source>
+            <translation>El pla de cons no s'ha enviat. {words}: {found} Imposa… al tauler Pla de cons ho envia igualment, on el vostre paper ho permeti.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/execution.py" />
+            <source>The gateway is older than this plugin and drives no cone plans: plans are made and looked at here, and nothing of them is sent. Update the gateway, or give robots their cones with Add to queue.</source>
+            <translation>La passarel·la és més antiga que aquest connector i no executa plans de cons: aquí es fan i es miren plans, i no se n'envia res. Actualitzeu la passarel·la, o doneu els cons als robots amb Afegeix a la cua.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/execution.py" />
+            <source>The new cone plan</source>
+            <translation>El pla de cons nou</translation>
         </message>
         <message>
             <location filename="../../plugin/planning/execution.py" />
@@ -5401,18 +5436,8 @@
         </message>
         <message>
             <location filename="../../plugin/planning/execution.py" />
-            <source>its robot is lost</source>
-            <translation>el seu robot s'ha perdut</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/execution.py" />
-            <source>plan of what is left</source>
-            <translation>pla del que queda</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/execution.py" />
-            <source>plan of what is left: {in_words}</source>
-            <translation>pla del que queda: {in_words}</translation>
+            <source>{by} cleared the cone plan: nobody follows it any more, and robots go on with their queues.</source>
+            <translation>{by} ha esborrat el pla de cons: ja ningú no el segueix, i els robots continuen amb les seves cues.</translation>
         </message>
         <message>
             <location filename="../../plugin/planning/forms.py" />
@@ -5630,6 +5655,14 @@
                 <numerusform>{wrong} de %n cons no haurien de ser allà: {text} Tots són a la capa {layer}.</numerusform>
             </translation>
         </message>
+        <message numerus="yes">
+            <location filename="../../plugin/planning/plan_dock.py" />
+            <source>%n ways lead along closed roads</source>
+            <translation>
+                <numerusform>%n camí passa per vies tancades</numerusform>
+                <numerusform>%n camins passen per vies tancades</numerusform>
+            </translation>
+        </message>
         <message>
             <location filename="../../plugin/planning/plan_dock.py" />
             <source>A good plan, within the time that is given</source>
@@ -5637,8 +5670,8 @@
         </message>
         <message>
             <location filename="../../plugin/planning/plan_dock.py" />
-            <source>A plan is being driven. Plan what is left, or press Clear to watch it no more; robots go on with their queues then.</source>
-            <translation>S'està executant un pla. Planifiqueu el que queda, o premeu Neteja per no seguir-lo més; els robots continuen llavors les seves cues.</translation>
+            <source>A new plan, or one that the gateway drives, whoever submitted it</source>
+            <translation>Un pla nou, o un que executa la passarel·la, sigui qui sigui qui l'ha enviat</translation>
         </message>
         <message>
             <location filename="../../plugin/planning/plan_dock.py" />
@@ -5685,6 +5718,11 @@
         </message>
         <message>
             <location filename="../../plugin/planning/plan_dock.py" />
+            <source>Follow the plan no more, at no desk; robots go on with their queues</source>
+            <translation>Deixa de seguir el pla a totes les consoles; els robots continuen amb les seves cues</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/plan_dock.py" />
             <source>Give up what is being planned</source>
             <translation>Abandona el que s'està planificant</translation>
         </message>
@@ -5700,13 +5738,13 @@
         </message>
         <message>
             <location filename="../../plugin/planning/plan_dock.py" />
-            <source>Leave it at what was sent: robots that have their cones by now go on with them</source>
-            <translation>Ho deixa amb el que s'ha enviat: els robots que ja tenen els seus cons hi continuen</translation>
+            <source>Let them go on</source>
+            <translation>Que continuïn</translation>
         </message>
         <message>
             <location filename="../../plugin/planning/plan_dock.py" />
-            <source>Let them go on</source>
-            <translation>Que continuïn</translation>
+            <source>New plan</source>
+            <translation>Pla nou</translation>
         </message>
         <message>
             <location filename="../../plugin/planning/plan_dock.py" />
@@ -5720,11 +5758,6 @@
         </message>
         <message>
             <location filename="../../plugin/planning/plan_dock.py" />
-            <source>Not sent as a whole yet</source>
-            <translation>Encara no s'ha enviat sencer</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/plan_dock.py" />
             <source>Not sent yet: {summary}</source>
             <translation>Encara no enviat: {summary}</translation>
         </message>
@@ -5732,6 +5765,11 @@
             <location filename="../../plugin/planning/plan_dock.py" />
             <source>Override…</source>
             <translation>Imposa…</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/plan_dock.py" />
+            <source>Pause the plan</source>
+            <translation>Pausa el pla</translation>
         </message>
         <message>
             <location filename="../../plugin/planning/plan_dock.py" />
@@ -5775,18 +5813,18 @@
         </message>
         <message>
             <location filename="../../plugin/planning/plan_dock.py" />
-            <source>Send no more</source>
-            <translation>No enviïs més</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/plan_dock.py" />
             <source>Send the cone plan</source>
             <translation>Envia el pla de cons</translation>
         </message>
         <message>
             <location filename="../../plugin/planning/plan_dock.py" />
-            <source>Send the plan on in spite of what was found; asks why</source>
-            <translation>Continua enviant el pla malgrat el que s'ha trobat; demana per què</translation>
+            <source>Send the plan in spite of what was found; asks why</source>
+            <translation>Envia el pla malgrat el que s'ha trobat; en demana el motiu</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/plan_dock.py" />
+            <source>Send the plan's robots no further task; what they are doing they finish</source>
+            <translation>No s'envia cap més tasca als robots del pla; acaben el que estan fent</translation>
         </message>
         <message>
             <location filename="../../plugin/planning/plan_dock.py" />
@@ -5800,8 +5838,8 @@
         </message>
         <message>
             <location filename="../../plugin/planning/plan_dock.py" />
-            <source>The plan is sent on at once, and robots set off.</source>
-            <translation>El pla es continua enviant de seguida, i els robots es posen en marxa.</translation>
+            <source>The plan is sent at once, and robots set off.</source>
+            <translation>El pla s'envia de seguida, i els robots es posen en marxa.</translation>
         </message>
         <message numerus="yes">
             <location filename="../../plugin/planning/plan_dock.py" />
@@ -5813,8 +5851,21 @@
         </message>
         <message>
             <location filename="../../plugin/planning/plan_dock.py" />
+            <source>What is left is being planned …</source>
+            <translation>S'està planificant el que queda …</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/plan_dock.py" />
             <source>When a robot is lost or a cone fails, plan what is left and send it by itself</source>
             <translation>Quan es perd un robot o falla un con, planifica el que queda i ho envia sol</translation>
+        </message>
+        <message numerus="yes">
+            <location filename="../../plugin/planning/plan_dock.py" />
+            <source>robots come too near to one another at %n places</source>
+            <translation>
+                <numerusform>els robots s'acosten massa entre ells en %n lloc</numerusform>
+                <numerusform>els robots s'acosten massa entre ells en %n llocs</numerusform>
+            </translation>
         </message>
         <message>
             <location filename="../../plugin/planning/plan_dock.py" />
@@ -6039,6 +6090,11 @@
         </message>
         <message>
             <location filename="../../plugin/planning/plan_views.py" />
+            <source>{by}, {time}: {robots}</source>
+            <translation>{by}, {time}: {robots}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/plan_views.py" />
             <source>{cones}, {robots}, {metres:.0f} m, done after {span} ({method}, along {travel})</source>
             <translation>{cones}, {robots}, {metres:.0f} m, fet en {span} ({method}, per {travel})</translation>
         </message>
@@ -6072,18 +6128,13 @@
         </message>
         <message>
             <location filename="../../plugin/planning/progress.py" />
-            <source>Placed cones of the plan</source>
-            <translation>Cons col·locats del pla</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/progress.py" />
-            <source>The cone plan cannot go on as it is: {why}. Plan what is left.</source>
-            <translation>El pla de cons no pot seguir com és: {why}. Planifiqueu el que queda.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/progress.py" />
             <source>cone {cone} failed{why}</source>
             <translation>el con {cone} ha fallat{why}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/progress.py" />
+            <source>the way of {robot} to {stop} leads along a closed road{why}</source>
+            <translation>el camí de {robot} a {stop} passa per una via tancada{why}</translation>
         </message>
         <message>
             <location filename="../../plugin/planning/progress.py" />
@@ -6106,36 +6157,6 @@
             <location filename="../../plugin/planning/proposal.py" />
             <source>{robot} and {other} come within {metres:.1f} m at {x:.0f}, {y:.0f} m after {minutes}:{seconds:02d}</source>
             <translation>{robot} i {other} s'acosten a {metres:.1f} m a {x:.0f}, {y:.0f} m al cap de {minutes}:{seconds:02d}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/queue_steps.py" />
-            <source>holding {robot}</source>
-            <translation>retenir {robot}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/queue_steps.py" />
-            <source>letting {robot} go on</source>
-            <translation>deixar continuar {robot}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/queue_steps.py" />
-            <source>taking over from {lost}</source>
-            <translation>rellevar {lost}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/queue_steps.py" />
-            <source>the queue of {robot}</source>
-            <translation>la cua de {robot}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/queue_steps.py" />
-            <source>{why} Done before: {done}.</source>
-            <translation>{why} Fet abans: {done}.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/queue_steps.py" />
-            <source>{why} Not done therefore: {left}.</source>
-            <translation>{why} Per això no s'ha fet: {left}.</translation>
         </message>
         <message>
             <location filename="../../plugin/planning/travel.py" />
@@ -6988,18 +7009,8 @@
         </message>
         <message>
             <location filename="../../plugin/processing/algorithms/export_road_network.py" />
-            <source>Origin of the site frame (default: as the project has it, else 0,0)</source>
-            <translation>Origen del marc del recinte (per defecte: el del projecte, si no 0,0)</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/export_road_network.py" />
             <source>Robots' name for the site frame</source>
             <translation>Nom del marc del recinte per als robots</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/export_road_network.py" />
-            <source>Rotation of the site frame, counter-clockwise from the CRS's x axis [degrees]</source>
-            <translation>Rotació del marc del recinte, en sentit antihorari des de l'eix x del SRC [graus]</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/algorithms/export_road_network.py" />
@@ -7065,11 +7076,6 @@
             <location filename="../../plugin/processing/algorithms/export_robot_map.py" />
             <source>Label of each feature (default: the layer's name)</source>
             <translation>Etiqueta de cada entitat (per defecte: el nom de la capa)</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/export_robot_map.py" />
-            <source>Obstacle layers (default: those of the project with such a role)</source>
-            <translation>Capes d'obstacles (per defecte: les del projecte amb aquest paper)</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/algorithms/export_robot_map.py" />
@@ -8025,6 +8031,11 @@
         </message>
         <message>
             <location filename="../../plugin/processing/common/export_parameters.py" />
+            <source>Obstacle layers (default: those of the project with such a role)</source>
+            <translation>Capes d'obstacles (per defecte: les del projecte amb aquest paper)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/export_parameters.py" />
             <source>ROUTE holds no line: choose a layer with the route to export along.</source>
             <translation>ROUTE no té cap línia: trieu una capa amb la ruta al llarg de la qual exportar.</translation>
         </message>
@@ -8402,6 +8413,16 @@
             <location filename="../../plugin/processing/common/parameters.py" />
             <source>Map profile: what the layers are, by their names (default: as each layer keeps it)</source>
             <translation>Perfil de mapa: què són les capes, pel seu nom (per defecte: com ho guarda cada capa)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/parameters.py" />
+            <source>Origin of the site frame (default: as the project has it, else 0,0)</source>
+            <translation>Origen del marc del recinte (per defecte: el del projecte, si no 0,0)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/parameters.py" />
+            <source>Rotation of the site frame, counter-clockwise from the CRS's x axis [degrees]</source>
+            <translation>Rotació del marc del recinte, en sentit antihorari des de l'eix x del SRC [graus]</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/common/parameters.py" />

@@ -1108,16 +1108,6 @@
         </message>
         <message>
             <location filename="../../plugin/control/fleet_controller.py" />
-            <source>Another site is served now: {site}, no longer {before}. Open its project.</source>
-            <translation>Ahora se sirve otro recinto: {site}, ya no {before}. Abra su proyecto.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/fleet_controller.py" />
-            <source>EMERGENCY STOP is NOT sent yet: the link is down. It is sent as soon as that is back; use the robots' own emergency stops now.</source>
-            <translation>La PARADA DE EMERGENCIA aún NO se ha enviado: el enlace está caído. Se envía en cuanto vuelva; use ahora las paradas de emergencia de los propios robots.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/fleet_controller.py" />
             <source>No robot is selected, so none was aborted. Select it in the table or on the map.</source>
             <translation>No hay ningún robot seleccionado, así que no se abortó ninguno. Selecciónelo en la tabla o en el mapa.</translation>
         </message>
@@ -1128,23 +1118,8 @@
         </message>
         <message>
             <location filename="../../plugin/control/fleet_controller.py" />
-            <source>The gateway has another database than before: its robots and commands are others, and those of before are not shown any more.</source>
-            <translation>La pasarela tiene otra base de datos que antes: sus robots y órdenes son otros, y los de antes ya no se muestran.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/fleet_controller.py" />
             <source>The operator's name is empty. Write who you are: it stands in every log.</source>
             <translation>El nombre del operador está vacío. Escriba quién es: está en todos los registros.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/fleet_controller.py" />
-            <source>The site is not known yet. Connect to a gateway first.</source>
-            <translation>El recinto aún no se conoce. Conéctese antes a una pasarela.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/fleet_controller.py" />
-            <source>the desk is not connected to a gateway. Connect first; to stop a robot now use the robot's own emergency stop.</source>
-            <translation>la consola no está conectada a ninguna pasarela. Conéctese antes; para detener ahora un robot use su propia parada de emergencia.</translation>
         </message>
         <message>
             <location filename="../../plugin/control/fleet_controller.py" />
@@ -1230,6 +1205,11 @@
             <location filename="../../plugin/control/messages.py" />
             <source>Link {link} is down: {reason}. Nothing reaches {robots}.</source>
             <translation>El enlace {link} está caído: {reason}. Nada llega a {robots}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/control/messages.py" />
+            <source>Link {link}: {reason}.</source>
+            <translation>Enlace {link}: {reason}.</translation>
         </message>
         <message>
             <location filename="../../plugin/control/messages.py" />
@@ -1348,6 +1328,16 @@
             <location filename="../../plugin/control/request_tracker.py" />
             <source>EMERGENCY STOP</source>
             <translation>PARADA DE EMERGENCIA</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/control/request_tracker.py" />
+            <source>EMERGENCY STOP is NOT sent yet: the link is down. It is sent as soon as that is back; use the robots' own emergency stops now.</source>
+            <translation>La PARADA DE EMERGENCIA aún NO se ha enviado: el enlace está caído. Se envía en cuanto vuelva; use ahora las paradas de emergencia de los propios robots.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/control/request_tracker.py" />
+            <source>the desk is not connected to a gateway. Connect first; to stop a robot now use the robot's own emergency stop.</source>
+            <translation>la consola no está conectada a ninguna pasarela. Conéctese antes; para detener ahora un robot use su propia parada de emergencia.</translation>
         </message>
         <message>
             <location filename="../../plugin/control/request_tracker.py" />
@@ -1753,194 +1743,204 @@
             <translation>Lo que responde en {url} abre un WebSocket pero no contestó al saludo de la consola en {answer_within:g} s. Compruebe que la URL lleva a una pasarela de Fleet Supervisor.</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>No secure link to {place}: {reason}. If the gateway has no TLS, write ws:// instead of wss://.</source>
             <translation>No hay enlace seguro con {place}: {reason}. Si la pasarela no tiene TLS, escriba ws:// en lugar de wss://.</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>Nothing listens at {place}. Start the gateway (robot-bridge serve --site ...) or correct the URL.</source>
             <translation>Nada escucha en {place}. Arranque la pasarela (robot-bridge serve --site ...) o corrija la URL.</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>Over {url} everybody on the way could read the token. Write wss:// instead of ws://; a gateway that other computers can reach has TLS.</source>
             <translation>Por {url} cualquiera en el camino podría leer el testigo. Escriba wss:// en lugar de ws://; una pasarela accesible desde otros ordenadores tiene TLS.</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>The CA file {file} cannot be used: {reason}. Choose the ca.pem that whoever runs the site gave you.</source>
             <translation>El archivo de CA {file} no se puede usar: {reason}. Elija el ca.pem que le dio quien lleva el recinto.</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>The certificate of {place} cannot be trusted: {reason}.</source>
             <translation>No se puede confiar en el certificado de {place}: {reason}.</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>The certificate of {place} has expired. Whoever runs the site renews it with 'robot-bridge tls renew'; if it was renewed, check this computer's clock.</source>
             <translation>El certificado de {place} ha caducado. Quien lleva el recinto lo renueva con 'robot-bridge tls renew'; si ya se renovó, compruebe el reloj de este ordenador.</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>The certificate of {place} holds only later: check this computer's clock.</source>
             <translation>El certificado de {place} solo vale más tarde: compruebe el reloj de este ordenador.</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>The certificate of {place} is for another name: {reason} Use the name that the gateway's certificate was made for, or have one made for this name.</source>
             <translation>El certificado de {place} es para otro nombre: {reason} Use el nombre para el que se hizo el certificado de la pasarela, o haga hacer uno para este nombre.</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>The certificate of {place} is from an authority that this desk does not trust. Choose the site's ca.pem as CA file under Access; whoever runs the site has it.</source>
             <translation>El certificado de {place} es de una autoridad en la que esta consola no confía. Elija el ca.pem del recinto como archivo de CA en Acceso; lo tiene quien lleva el recinto.</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>The gateway at {place} closed the link (code {code}{why}). It is tried again by itself.</source>
             <translation>La pasarela en {place} cerró el enlace (código {code}{why}). Se vuelve a intentar solo.</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>The gateway at {place} ended the link{why}. Ask whoever runs the site for a new token and enter it under Access.</source>
             <translation>La pasarela en {place} terminó el enlace{why}. Pida un testigo nuevo a quien lleva el recinto e introdúzcalo en Acceso.</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>The gateway at {place} ended your session{why}. Connect brings it back.</source>
             <translation>La pasarela en {place} terminó su sesión{why}. Conectar la recupera.</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>The gateway's URL is empty. {example}</source>
             <translation>La URL de la pasarela está vacía. {example}</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>The gateway's URL {url} begins with {scheme}; a gateway is reached over ws:// (or wss:// with TLS). {example}</source>
             <translation>La URL de la pasarela {url} empieza por {scheme}; se llega a ella por ws:// (o wss:// con TLS). {example}</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>The gateway's URL {url} cannot be read: {error}. {example}</source>
             <translation>La URL de la pasarela {url} no se puede leer: {error}. {example}</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>The gateway's URL {url} cannot be used. Write it like {default_url}.</source>
             <translation>La URL de la pasarela {url} no se puede usar. Escríbala como {default_url}.</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>The gateway's URL {url} has port 0, where nothing can listen. {example}</source>
             <translation>La URL de la pasarela {url} tiene el puerto 0, donde nada puede escuchar. {example}</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>The gateway's URL {url} names no host. {example}</source>
             <translation>La URL de la pasarela {url} no nombra ningún servidor. {example}</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>The host of {place} is not known to this network. Correct the URL.</source>
             <translation>Esta red no conoce el servidor de {place}. Corrija la URL.</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>The link to the gateway at {place} broke off. It is tried again by itself; if it does not come back, check the gateway and the network.</source>
             <translation>El enlace con la pasarela en {place} se rompió. Se vuelve a intentar solo; si no vuelve, compruebe la pasarela y la red.</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>The token cannot be right: it is one word. Paste it again, whole and alone.</source>
             <translation>El testigo no puede ser correcto: es una sola palabra. Péguelo otra vez, entero y solo.</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>There is no desk at {url} (HTTP 404). A gateway's desk has the path /desk, as in {default_url}; or another program answers there.</source>
             <translation>No hay ninguna consola en {url} (HTTP 404). La de una pasarela tiene la ruta /desk, como en {default_url}; o allí responde otro programa.</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>What answers at {place} does not speak WebSocket. Check host and port, and ws:// or wss://: a gateway prints its URL when it starts.</source>
             <translation>Lo que responde en {place} no habla WebSocket. Compruebe servidor y puerto, y ws:// o wss://: una pasarela escribe su URL al arrancar.</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>Write it like {default_url}.</source>
             <translation>Escríbala como {default_url}.</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>it wants a token.</source>
             <translation>quiere un testigo.</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>no reason given.</source>
             <translation>sin dar motivo.</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>no scheme</source>
             <translation>ningún esquema</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>operator</source>
             <translation>operador</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>supervisor</source>
             <translation>supervisor</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>viewer</source>
             <translation>observador</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>{place} broke off while the secure link was made. If the gateway has no TLS, write ws:// instead of wss://.</source>
             <translation>{place} cortó mientras se hacía el enlace seguro. Si la pasarela no tiene TLS, escriba ws:// en lugar de wss://.</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>{place} cannot be reached: {reason}. Check network and URL.</source>
             <translation>No se llega a {place}: {reason}. Compruebe la red y la URL.</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>{place} did not answer in time. Check that the gateway runs, and the network and firewall.</source>
             <translation>{place} no respondió a tiempo. Compruebe que la pasarela funciona, la red y el cortafuegos.</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>{url} answered HTTP {status} instead of opening a WebSocket. Check that a gateway runs there and what its log says.</source>
             <translation>{url} respondió HTTP {status} en lugar de abrir un WebSocket. Compruebe que allí funciona una pasarela y qué dice su registro.</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>{url} is where robots connect; operators connect to {desk}. Write that instead.</source>
             <translation>{url} es donde se conectan los robots; los operadores se conectan a {desk}. Escriba eso.</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>{url} refuses this desk: {said}</source>
             <translation>{url} rechaza esta consola: {said}</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>{url} refuses this desk: {said} Enter the operator's token under Access.</source>
             <translation>{url} rechaza esta consola: {said} Introduzca el testigo del operador en Acceso.</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>{url} takes no desk now: {said} It is tried again by itself.</source>
             <translation>{url} no admite ahora ninguna consola: {said} Se vuelve a intentar solo.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/gateway_client/fleet_state.py" />
+            <source>Another site is served now: {site}, no longer {before}. Open its project.</source>
+            <translation>Ahora se sirve otro recinto: {site}, ya no {before}. Abra su proyecto.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/gateway_client/fleet_state.py" />
+            <source>The gateway has another database than before: its robots and commands are others, and those of before are not shown any more.</source>
+            <translation>La pasarela tiene otra base de datos que antes: sus robots y órdenes son otros, y los de antes ya no se muestran.</translation>
         </message>
         <message>
             <location filename="../../plugin/gateway_client/protocol.py" />
@@ -1981,6 +1981,11 @@
             <location filename="../../plugin/gateway_client/protocol.py" />
             <source>What answers at {url} sent something that is not the desk's protocol: {text} ({kind}: {error}). Check that the URL leads to a Fleet Supervisor gateway of this version.</source>
             <translation>Lo que responde en {url} envió algo que no es el protocolo de la consola: {text} ({kind}: {error}). Compruebe que la URL lleva a una pasarela de Fleet Supervisor de esta versión.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/gateway_client/protocol.py" />
+            <source>the gateway takes no message as large as this one of {size} kB. Ask for less at once, or have largest_message_bytes raised in the site's settings.</source>
+            <translation>la pasarela no acepta ningún mensaje tan grande como este, de {size} kB. Pida menos de una vez, o haga subir largest_message_bytes en la configuración del recinto.</translation>
         </message>
         <message>
             <location filename="../../plugin/gateway_client/report_caches.py" />
@@ -2260,41 +2265,6 @@
             <translation>{named}: su unidad es {unit}, y los robots hablan en metros. Elija un SRC en metros como la zona UTM local{suggestion}.</translation>
         </message>
         <message>
-            <location filename="../../plugin/layers/errors.py" />
-            <source>Layer {layer}, feature {id}: {note}</source>
-            <translation>Capa {layer}, objeto espacial {id}: {note}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/layers/errors.py" />
-            <source>Layer {layer}, {features}: {note}</source>
-            <translation>Capa {layer}, {features}: {note}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/layers/errors.py" />
-            <source>Layer {layer}, {features}; of the first: {note}</source>
-            <translation>Capa {layer}, {features}; del primero: {note}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/layers/errors.py" />
-            <source>Layer {layer}: warnings of more kinds about {features}</source>
-            <translation>Capa {layer}: avisos de más tipos sobre {features}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/layers/errors.py" />
-            <source>feature {shown}</source>
-            <translation>objeto espacial {shown}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/layers/errors.py" />
-            <source>features {shown}</source>
-            <translation>objetos espaciales {shown}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/layers/errors.py" />
-            <source>features {shown} and {more} more</source>
-            <translation>objetos espaciales {shown} y {more} más</translation>
-        </message>
-        <message>
             <location filename="../../plugin/layers/geometry.py" />
             <source> at ({x:.2f} {y:.2f})</source>
             <translation> en ({x:.2f} {y:.2f})</translation>
@@ -2429,6 +2399,26 @@
         </message>
         <message>
             <location filename="../../plugin/layers/layer_source.py" />
+            <source>Layer {layer}, feature {id}: {note}</source>
+            <translation>Capa {layer}, objeto espacial {id}: {note}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/layer_source.py" />
+            <source>Layer {layer}, {features}: {note}</source>
+            <translation>Capa {layer}, {features}: {note}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/layer_source.py" />
+            <source>Layer {layer}, {features}; of the first: {note}</source>
+            <translation>Capa {layer}, {features}; del primero: {note}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/layer_source.py" />
+            <source>Layer {layer}: warnings of more kinds about {features}</source>
+            <translation>Capa {layer}: avisos de más tipos sobre {features}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/layer_source.py" />
             <source>The layer {name} cannot be opened ({source}): repair its data source or leave it out.</source>
             <translation>La capa {name} no se puede abrir ({source}): repare su origen de datos u omítala.</translation>
         </message>
@@ -2436,6 +2426,21 @@
             <location filename="../../plugin/layers/layer_source.py" />
             <source>The layer {name} holds {held}, and only lines and polygons are obstacles: leave it out, give it an extent first (for example with Buffer), or the role furniture.</source>
             <translation>La capa {name} contiene {held}, y solo las líneas y los polígonos son obstáculos: omítala, déle antes extensión (por ejemplo con Buffer), o el papel mobiliario.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/layer_source.py" />
+            <source>feature {shown}</source>
+            <translation>objeto espacial {shown}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/layer_source.py" />
+            <source>features {shown}</source>
+            <translation>objetos espaciales {shown}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/layer_source.py" />
+            <source>features {shown} and {more} more</source>
+            <translation>objetos espaciales {shown} y {more} más</translation>
         </message>
         <message>
             <location filename="../../plugin/layers/layer_source.py" />
@@ -3064,6 +3069,11 @@
         </message>
         <message>
             <location filename="../../plugin/layers/site_transform.py" />
+            <source>The site is not known yet. Connect to a gateway first.</source>
+            <translation>El recinto aún no se conoce. Conéctese antes a una pasarela.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/site_transform.py" />
             <source>The site {name} is in the CRS {crs}, which this QGIS does not know: its robots cannot be placed on the map. Correct crs in the site's site.toml, or update QGIS.</source>
             <translation>El recinto {name} está en el SRC {crs}, que este QGIS no conoce: sus robots no se pueden situar en el mapa. Corrija crs en el site.toml del recinto, o actualice QGIS.</translation>
         </message>
@@ -3098,86 +3108,6 @@
             <translation>{state}, último mensaje hace {age:.0f} s</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/layers.py" />
-            <source>Accuracy (m)</source>
-            <translation>Exactitud (m)</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/layers.py" />
-            <source>Age (s)</source>
-            <translation>Antigüedad (s)</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/layers.py" />
-            <source>Battery (0 to 1)</source>
-            <translation>Batería (0 a 1)</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/layers.py" />
-            <source>Closed roads</source>
-            <translation>Vías cerradas</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/layers.py" />
-            <source>Command</source>
-            <translation>Orden</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/layers.py" />
-            <source>Cones put down</source>
-            <translation>Conos puestos</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/layers.py" />
-            <source>Conflicts</source>
-            <translation>Conflictos</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/layers.py" />
-            <source>Heading (°)</source>
-            <translation>Rumbo (°)</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/layers.py" />
-            <source>Link</source>
-            <translation>Enlace</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/layers.py" />
-            <source>Robot</source>
-            <translation>Robot</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/layers.py" />
-            <source>Robots (live)</source>
-            <translation>Robots (en vivo)</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/layers.py" />
-            <source>Speed (m/s)</source>
-            <translation>Velocidad (m/s)</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/layers.py" />
-            <source>Status</source>
-            <translation>Situación</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/layers.py" />
-            <source>Theta (rad)</source>
-            <translation>Theta (rad)</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/layers.py" />
-            <source>closed</source>
-            <translation>cerrada</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/layers.py" />
-            <source>until</source>
-            <translation>hasta</translation>
-        </message>
-        <message>
             <location filename="../../plugin/map/live_view.py" />
             <source>No robot is selected to be followed. Select one in the table or on the map.</source>
             <translation>No hay ningún robot seleccionado para seguir. Seleccione uno en la tabla o en el mapa.</translation>
@@ -3188,67 +3118,67 @@
             <translation>{robot} aún no ha dicho dónde está; el mapa no puede ir allí.</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/overlay/hover_card.py" />
+            <location filename="../../plugin/map/overlay/fleet_overlay.py" />
             <source>, {remaining:.1f} m to go</source>
             <translation>, faltan {remaining:.1f} m</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/overlay/hover_card.py" />
+            <location filename="../../plugin/map/overlay/fleet_overlay.py" />
             <source>accuracy</source>
             <translation>precisión</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/overlay/hover_card.py" />
+            <location filename="../../plugin/map/overlay/fleet_overlay.py" />
             <source>battery</source>
             <translation>batería</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/overlay/hover_card.py" />
+            <location filename="../../plugin/map/overlay/fleet_overlay.py" />
             <source>heading</source>
             <translation>rumbo</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/overlay/hover_card.py" />
+            <location filename="../../plugin/map/overlay/fleet_overlay.py" />
             <source>it says</source>
             <translation>dice</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/overlay/hover_card.py" />
+            <location filename="../../plugin/map/overlay/fleet_overlay.py" />
             <source>last message</source>
             <translation>último mensaje</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/overlay/hover_card.py" />
+            <location filename="../../plugin/map/overlay/fleet_overlay.py" />
             <source>place</source>
             <translation>lugar</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/overlay/hover_card.py" />
+            <location filename="../../plugin/map/overlay/fleet_overlay.py" />
             <source>speed</source>
             <translation>velocidad</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/overlay/hover_card.py" />
+            <location filename="../../plugin/map/overlay/fleet_overlay.py" />
             <source>task</source>
             <translation>tarea</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/overlay/hover_card.py" />
+            <location filename="../../plugin/map/overlay/fleet_overlay.py" />
             <source>{age_in_words} ago, {escape}</source>
             <translation>hace {age_in_words}, {escape}</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/overlay/hover_card.py" />
+            <location filename="../../plugin/map/overlay/fleet_overlay.py" />
             <source>{v:.2f} m/s</source>
             <translation>{v:.2f} m/s</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/overlay/hover_card.py" />
+            <location filename="../../plugin/map/overlay/fleet_overlay.py" />
             <source>{x:.2f}, {y:.2f} m in the site</source>
             <translation>{x:.2f}, {y:.2f} m en el recinto</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/overlay/hover_card.py" />
+            <location filename="../../plugin/map/overlay/fleet_overlay.py" />
             <source>± {accuracy:.2f} m</source>
             <translation>± {accuracy:.2f} m</translation>
         </message>
@@ -3278,14 +3208,94 @@
             <translation>· sin conexión</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/overlay/paths_painter.py" />
+            <location filename="../../plugin/map/overlay/task_painter.py" />
             <source>{km:.0f} km</source>
             <translation>{km:.0f} km</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/overlay/paths_painter.py" />
+            <location filename="../../plugin/map/overlay/task_painter.py" />
             <source>{metres:.0f} m</source>
             <translation>{metres:.0f} m</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/reported_layers.py" />
+            <source>Accuracy (m)</source>
+            <translation>Exactitud (m)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/reported_layers.py" />
+            <source>Age (s)</source>
+            <translation>Antigüedad (s)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/reported_layers.py" />
+            <source>Battery (0 to 1)</source>
+            <translation>Batería (0 a 1)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/reported_layers.py" />
+            <source>Closed roads</source>
+            <translation>Vías cerradas</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/reported_layers.py" />
+            <source>Command</source>
+            <translation>Orden</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/reported_layers.py" />
+            <source>Cones put down</source>
+            <translation>Conos puestos</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/reported_layers.py" />
+            <source>Conflicts</source>
+            <translation>Conflictos</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/reported_layers.py" />
+            <source>Heading (°)</source>
+            <translation>Rumbo (°)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/reported_layers.py" />
+            <source>Link</source>
+            <translation>Enlace</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/reported_layers.py" />
+            <source>Robot</source>
+            <translation>Robot</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/reported_layers.py" />
+            <source>Robots (live)</source>
+            <translation>Robots (en vivo)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/reported_layers.py" />
+            <source>Speed (m/s)</source>
+            <translation>Velocidad (m/s)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/reported_layers.py" />
+            <source>Status</source>
+            <translation>Situación</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/reported_layers.py" />
+            <source>Theta (rad)</source>
+            <translation>Theta (rad)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/reported_layers.py" />
+            <source>closed</source>
+            <translation>cerrada</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/reported_layers.py" />
+            <source>until</source>
+            <translation>hasta</translation>
         </message>
         <message>
             <location filename="../../plugin/map/site_project.py" />
@@ -5321,18 +5331,33 @@
         </message>
         <message>
             <location filename="../../plugin/planning/execution.py" />
-            <source>A new plan is sent by itself, as you switched on: {why}</source>
-            <translation>Se envía solo un plan nuevo, como activó: {why}</translation>
+            <source>A new plan was sent by itself, as was switched on: {why}</source>
+            <translation>Se ha enviado un plan nuevo por sí solo, como estaba activado: {why}</translation>
         </message>
         <message>
             <location filename="../../plugin/planning/execution.py" />
-            <source>An emergency stop is in force. It has to be cleared first.</source>
-            <translation>Hay una parada de emergencia en vigor. Antes hay que levantarla.</translation>
+            <source>A plan is being driven. Plan what is left, choose New plan to plan for other robots, or press Clear: nobody follows it then, and robots go on with their queues.</source>
+            <translation>Se está ejecutando un plan. Planifique lo que queda, elija Plan nuevo para planificar para otros robots, o pulse Limpiar: entonces nadie lo sigue y los robots continúan con sus colas.</translation>
         </message>
         <message>
             <location filename="../../plugin/planning/execution.py" />
-            <source>Given up since this plan was made: {cones}. Plan what is left again.</source>
-            <translation>Abandonados desde que se hizo este plan: {cones}. Vuelva a planificar lo que queda.</translation>
+            <source>Clearing the cone plan</source>
+            <translation>Borrado del plan de conos</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/execution.py" />
+            <source>Going on as before</source>
+            <translation>Continuación como antes</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/execution.py" />
+            <source>Going on with the cone plan</source>
+            <translation>Continuación del plan de conos</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/execution.py" />
+            <source>No new cone plan was sent by itself: {why}.</source>
+            <translation>No se ha enviado por sí solo ningún plan de conos nuevo: {why}.</translation>
         </message>
         <message>
             <location filename="../../plugin/planning/execution.py" />
@@ -5341,23 +5366,13 @@
         </message>
         <message>
             <location filename="../../plugin/planning/execution.py" />
-            <source>No queue of the plan is paused, or something is still being sent.</source>
-            <translation>Ninguna cola del plan está en pausa, o aún se está enviando algo.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/execution.py" />
-            <source>No robot is left to take over: connect one, and plan anew.</source>
-            <translation>No queda ningún robot que lo asuma: conecte uno y planifique de nuevo.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/execution.py" />
-            <source>Nothing of the plan waits to be overridden.</source>
-            <translation>Nada del plan espera ser impuesto.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/execution.py" />
             <source>Nothing was overridden: what was refused is no longer being sent. Look at the plan.</source>
             <translation>No se impuso nada: lo que se rechazó ya no se está enviando. Mire el plan.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/execution.py" />
+            <source>Pause of the cone plan</source>
+            <translation>Pausa del plan de conos</translation>
         </message>
         <message>
             <location filename="../../plugin/planning/execution.py" />
@@ -5371,18 +5386,38 @@
         </message>
         <message>
             <location filename="../../plugin/planning/execution.py" />
+            <source>Sending the cone plan</source>
+            <translation>Envío del plan de conos</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/execution.py" />
+            <source>The cone plan cannot go on as it is: {why}. Plan what is left.</source>
+            <translation>El plan de conos no puede seguir como está: {why}. Planifique lo que queda.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/execution.py" />
             <source>The cone plan is in the robots' queues.</source>
             <translation>El plan de conos está en las colas de los robots.</translation>
         </message>
         <message>
             <location filename="../../plugin/planning/execution.py" />
-            <source>The cone plan is not sent any further. {words}: {found} Override… in the panel Cone plan sends it all the same, where your role may.</source>
-            <translation>El plan de conos no se sigue enviando. {words}: {found} Imponer… en el panel Plan de conos lo envía de todos modos, donde su papel lo permita.</translation>
+            <source>The cone plan is paused: {why}.</source>
+            <translation>El plan de conos está en pausa: {why}.</translation>
         </message>
         <message>
             <location filename="../../plugin/planning/execution.py" />
-            <source>The cone plan was not sent as a whole. {why}</source>
-            <translation>El plan de conos no se envió entero. {why}</translation>
+            <source>The cone plan was not sent. {words}: {found} Override… in the panel Cone plan sends it all the same, where your role may.</source>
+            <translation>El plan de conos no se ha enviado. {words}: {found} Imponer… en el panel Plan de conos lo envía de todos modos, donde su papel lo permita.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/execution.py" />
+            <source>The gateway is older than this plugin and drives no cone plans: plans are made and looked at here, and nothing of them is sent. Update the gateway, or give robots their cones with Add to queue.</source>
+            <translation>La pasarela es más antigua que este complemento y no ejecuta planes de conos: aquí se hacen y se miran planes, y no se envía nada de ellos. Actualice la pasarela, o dé los conos a los robots con Añadir a la cola.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/execution.py" />
+            <source>The new cone plan</source>
+            <translation>El plan de conos nuevo</translation>
         </message>
         <message>
             <location filename="../../plugin/planning/execution.py" />
@@ -5401,18 +5436,8 @@
         </message>
         <message>
             <location filename="../../plugin/planning/execution.py" />
-            <source>its robot is lost</source>
-            <translation>su robot se ha perdido</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/execution.py" />
-            <source>plan of what is left</source>
-            <translation>plan de lo que queda</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/execution.py" />
-            <source>plan of what is left: {in_words}</source>
-            <translation>plan de lo que queda: {in_words}</translation>
+            <source>{by} cleared the cone plan: nobody follows it any more, and robots go on with their queues.</source>
+            <translation>{by} ha borrado el plan de conos: ya nadie lo sigue, y los robots continúan con sus colas.</translation>
         </message>
         <message>
             <location filename="../../plugin/planning/forms.py" />
@@ -5630,6 +5655,14 @@
                 <numerusform>{wrong} de %n conos no deberían estar ahí: {text} Todos están en la capa {layer}.</numerusform>
             </translation>
         </message>
+        <message numerus="yes">
+            <location filename="../../plugin/planning/plan_dock.py" />
+            <source>%n ways lead along closed roads</source>
+            <translation>
+                <numerusform>%n camino pasa por vías cerradas</numerusform>
+                <numerusform>%n caminos pasan por vías cerradas</numerusform>
+            </translation>
+        </message>
         <message>
             <location filename="../../plugin/planning/plan_dock.py" />
             <source>A good plan, within the time that is given</source>
@@ -5637,8 +5670,8 @@
         </message>
         <message>
             <location filename="../../plugin/planning/plan_dock.py" />
-            <source>A plan is being driven. Plan what is left, or press Clear to watch it no more; robots go on with their queues then.</source>
-            <translation>Se está ejecutando un plan. Planifique lo que queda, o pulse Limpiar para no seguirlo más; los robots continúan entonces sus colas.</translation>
+            <source>A new plan, or one that the gateway drives, whoever submitted it</source>
+            <translation>Un plan nuevo, o uno que ejecuta la pasarela, lo haya enviado quien sea</translation>
         </message>
         <message>
             <location filename="../../plugin/planning/plan_dock.py" />
@@ -5685,6 +5718,11 @@
         </message>
         <message>
             <location filename="../../plugin/planning/plan_dock.py" />
+            <source>Follow the plan no more, at no desk; robots go on with their queues</source>
+            <translation>Deja de seguir el plan en todas las consolas; los robots continúan con sus colas</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/plan_dock.py" />
             <source>Give up what is being planned</source>
             <translation>Abandonar lo que se está planificando</translation>
         </message>
@@ -5700,13 +5738,13 @@
         </message>
         <message>
             <location filename="../../plugin/planning/plan_dock.py" />
-            <source>Leave it at what was sent: robots that have their cones by now go on with them</source>
-            <translation>Dejarlo en lo enviado: los robots que ya tienen sus conos siguen con ellos</translation>
+            <source>Let them go on</source>
+            <translation>Que continúen</translation>
         </message>
         <message>
             <location filename="../../plugin/planning/plan_dock.py" />
-            <source>Let them go on</source>
-            <translation>Que continúen</translation>
+            <source>New plan</source>
+            <translation>Plan nuevo</translation>
         </message>
         <message>
             <location filename="../../plugin/planning/plan_dock.py" />
@@ -5720,11 +5758,6 @@
         </message>
         <message>
             <location filename="../../plugin/planning/plan_dock.py" />
-            <source>Not sent as a whole yet</source>
-            <translation>Aún no se ha enviado entero</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/plan_dock.py" />
             <source>Not sent yet: {summary}</source>
             <translation>Aún no enviado: {summary}</translation>
         </message>
@@ -5732,6 +5765,11 @@
             <location filename="../../plugin/planning/plan_dock.py" />
             <source>Override…</source>
             <translation>Imponer…</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/plan_dock.py" />
+            <source>Pause the plan</source>
+            <translation>Pausar el plan</translation>
         </message>
         <message>
             <location filename="../../plugin/planning/plan_dock.py" />
@@ -5775,18 +5813,18 @@
         </message>
         <message>
             <location filename="../../plugin/planning/plan_dock.py" />
-            <source>Send no more</source>
-            <translation>No enviar más</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/plan_dock.py" />
             <source>Send the cone plan</source>
             <translation>Enviar el plan de conos</translation>
         </message>
         <message>
             <location filename="../../plugin/planning/plan_dock.py" />
-            <source>Send the plan on in spite of what was found; asks why</source>
-            <translation>Seguir enviando el plan a pesar de lo hallado; pregunta por qué</translation>
+            <source>Send the plan in spite of what was found; asks why</source>
+            <translation>Envía el plan a pesar de lo encontrado; pregunta el motivo</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/plan_dock.py" />
+            <source>Send the plan's robots no further task; what they are doing they finish</source>
+            <translation>No se envía ninguna tarea más a los robots del plan; terminan lo que están haciendo</translation>
         </message>
         <message>
             <location filename="../../plugin/planning/plan_dock.py" />
@@ -5800,8 +5838,8 @@
         </message>
         <message>
             <location filename="../../plugin/planning/plan_dock.py" />
-            <source>The plan is sent on at once, and robots set off.</source>
-            <translation>El plan se sigue enviando enseguida y los robots se ponen en marcha.</translation>
+            <source>The plan is sent at once, and robots set off.</source>
+            <translation>El plan se envía enseguida, y los robots se ponen en marcha.</translation>
         </message>
         <message numerus="yes">
             <location filename="../../plugin/planning/plan_dock.py" />
@@ -5813,8 +5851,21 @@
         </message>
         <message>
             <location filename="../../plugin/planning/plan_dock.py" />
+            <source>What is left is being planned …</source>
+            <translation>Se está planificando lo que queda …</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/plan_dock.py" />
             <source>When a robot is lost or a cone fails, plan what is left and send it by itself</source>
             <translation>Cuando se pierde un robot o falla un cono, planifica lo que queda y lo envía solo</translation>
+        </message>
+        <message numerus="yes">
+            <location filename="../../plugin/planning/plan_dock.py" />
+            <source>robots come too near to one another at %n places</source>
+            <translation>
+                <numerusform>los robots se acercan demasiado entre sí en %n lugar</numerusform>
+                <numerusform>los robots se acercan demasiado entre sí en %n lugares</numerusform>
+            </translation>
         </message>
         <message>
             <location filename="../../plugin/planning/plan_dock.py" />
@@ -6039,6 +6090,11 @@
         </message>
         <message>
             <location filename="../../plugin/planning/plan_views.py" />
+            <source>{by}, {time}: {robots}</source>
+            <translation>{by}, {time}: {robots}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/plan_views.py" />
             <source>{cones}, {robots}, {metres:.0f} m, done after {span} ({method}, along {travel})</source>
             <translation>{cones}, {robots}, {metres:.0f} m, hecho en {span} ({method}, por {travel})</translation>
         </message>
@@ -6072,18 +6128,13 @@
         </message>
         <message>
             <location filename="../../plugin/planning/progress.py" />
-            <source>Placed cones of the plan</source>
-            <translation>Conos colocados del plan</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/progress.py" />
-            <source>The cone plan cannot go on as it is: {why}. Plan what is left.</source>
-            <translation>El plan de conos no puede seguir como está: {why}. Planifique lo que queda.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/progress.py" />
             <source>cone {cone} failed{why}</source>
             <translation>el cono {cone} falló{why}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/progress.py" />
+            <source>the way of {robot} to {stop} leads along a closed road{why}</source>
+            <translation>el camino de {robot} a {stop} pasa por una vía cerrada{why}</translation>
         </message>
         <message>
             <location filename="../../plugin/planning/progress.py" />
@@ -6106,36 +6157,6 @@
             <location filename="../../plugin/planning/proposal.py" />
             <source>{robot} and {other} come within {metres:.1f} m at {x:.0f}, {y:.0f} m after {minutes}:{seconds:02d}</source>
             <translation>{robot} y {other} se acercan a {metres:.1f} m en {x:.0f}, {y:.0f} m al cabo de {minutes}:{seconds:02d}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/queue_steps.py" />
-            <source>holding {robot}</source>
-            <translation>retener a {robot}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/queue_steps.py" />
-            <source>letting {robot} go on</source>
-            <translation>dejar continuar a {robot}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/queue_steps.py" />
-            <source>taking over from {lost}</source>
-            <translation>relevar a {lost}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/queue_steps.py" />
-            <source>the queue of {robot}</source>
-            <translation>la cola de {robot}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/queue_steps.py" />
-            <source>{why} Done before: {done}.</source>
-            <translation>{why} Hecho antes: {done}.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/queue_steps.py" />
-            <source>{why} Not done therefore: {left}.</source>
-            <translation>{why} Por eso no se hizo: {left}.</translation>
         </message>
         <message>
             <location filename="../../plugin/planning/travel.py" />
@@ -6988,18 +7009,8 @@
         </message>
         <message>
             <location filename="../../plugin/processing/algorithms/export_road_network.py" />
-            <source>Origin of the site frame (default: as the project has it, else 0,0)</source>
-            <translation>Origen del marco del recinto (por defecto: el del proyecto, si no 0,0)</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/export_road_network.py" />
             <source>Robots' name for the site frame</source>
             <translation>Nombre del marco del recinto para los robots</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/export_road_network.py" />
-            <source>Rotation of the site frame, counter-clockwise from the CRS's x axis [degrees]</source>
-            <translation>Rotación del marco del recinto, en sentido antihorario desde el eje x del SRC [grados]</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/algorithms/export_road_network.py" />
@@ -7065,11 +7076,6 @@
             <location filename="../../plugin/processing/algorithms/export_robot_map.py" />
             <source>Label of each feature (default: the layer's name)</source>
             <translation>Etiqueta de cada objeto (por defecto: el nombre de la capa)</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/export_robot_map.py" />
-            <source>Obstacle layers (default: those of the project with such a role)</source>
-            <translation>Capas de obstáculos (por defecto: las del proyecto con ese papel)</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/algorithms/export_robot_map.py" />
@@ -8025,6 +8031,11 @@
         </message>
         <message>
             <location filename="../../plugin/processing/common/export_parameters.py" />
+            <source>Obstacle layers (default: those of the project with such a role)</source>
+            <translation>Capas de obstáculos (por defecto: las del proyecto con ese papel)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/export_parameters.py" />
             <source>ROUTE holds no line: choose a layer with the route to export along.</source>
             <translation>ROUTE no tiene ninguna línea: elija una capa con la ruta a lo largo de la cual exportar.</translation>
         </message>
@@ -8402,6 +8413,16 @@
             <location filename="../../plugin/processing/common/parameters.py" />
             <source>Map profile: what the layers are, by their names (default: as each layer keeps it)</source>
             <translation>Perfil de mapa: qué son las capas, por su nombre (por defecto: como lo guarda cada capa)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/parameters.py" />
+            <source>Origin of the site frame (default: as the project has it, else 0,0)</source>
+            <translation>Origen del marco del recinto (por defecto: el del proyecto, si no 0,0)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/parameters.py" />
+            <source>Rotation of the site frame, counter-clockwise from the CRS's x axis [degrees]</source>
+            <translation>Rotación del marco del recinto, en sentido antihorario desde el eje x del SRC [grados]</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/common/parameters.py" />

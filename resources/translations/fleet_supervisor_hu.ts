@@ -1102,16 +1102,6 @@
         </message>
         <message>
             <location filename="../../plugin/control/fleet_controller.py" />
-            <source>Another site is served now: {site}, no longer {before}. Open its project.</source>
-            <translation>Most másik telephely van kiszolgálva: {site}, már nem {before}. Nyissa meg annak projektjét.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/fleet_controller.py" />
-            <source>EMERGENCY STOP is NOT sent yet: the link is down. It is sent as soon as that is back; use the robots' own emergency stops now.</source>
-            <translation>A VÉSZLEÁLLÍTÁS MÉG NINCS elküldve: a kapcsolat megszakadt. Elmegy, amint visszatér; most használja a robotok saját vészleállítóit.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/fleet_controller.py" />
             <source>No robot is selected, so none was aborted. Select it in the table or on the map.</source>
             <translation>Nincs kijelölt robot, így egyik sem lett megszakítva. Jelölje ki a táblázatban vagy a térképen.</translation>
         </message>
@@ -1122,23 +1112,8 @@
         </message>
         <message>
             <location filename="../../plugin/control/fleet_controller.py" />
-            <source>The gateway has another database than before: its robots and commands are others, and those of before are not shown any more.</source>
-            <translation>Az átjárónak más adatbázisa van, mint előbb: robotjai és parancsai mások, a korábbiak már nem látszanak.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/fleet_controller.py" />
             <source>The operator's name is empty. Write who you are: it stands in every log.</source>
             <translation>A kezelő neve üres. Írja be, ki Ön: minden naplóban ott áll.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/fleet_controller.py" />
-            <source>The site is not known yet. Connect to a gateway first.</source>
-            <translation>A telephely még nem ismert. Előbb kapcsolódjon egy átjáróhoz.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/fleet_controller.py" />
-            <source>the desk is not connected to a gateway. Connect first; to stop a robot now use the robot's own emergency stop.</source>
-            <translation>a kezelőpult nincs átjáróhoz kapcsolva. Előbb kapcsolódjon; robotot most a saját vészleállítójával állíthat meg.</translation>
         </message>
         <message>
             <location filename="../../plugin/control/fleet_controller.py" />
@@ -1224,6 +1199,11 @@
             <location filename="../../plugin/control/messages.py" />
             <source>Link {link} is down: {reason}. Nothing reaches {robots}.</source>
             <translation>A(z) {link} kapcsolat nem működik: {reason}. Semmi sem éri el ezeket: {robots}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/control/messages.py" />
+            <source>Link {link}: {reason}.</source>
+            <translation>{link} kapcsolat: {reason}.</translation>
         </message>
         <message>
             <location filename="../../plugin/control/messages.py" />
@@ -1341,6 +1321,16 @@
             <location filename="../../plugin/control/request_tracker.py" />
             <source>EMERGENCY STOP</source>
             <translation>VÉSZLEÁLLÍTÁS</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/control/request_tracker.py" />
+            <source>EMERGENCY STOP is NOT sent yet: the link is down. It is sent as soon as that is back; use the robots' own emergency stops now.</source>
+            <translation>A VÉSZLEÁLLÍTÁS MÉG NINCS elküldve: a kapcsolat megszakadt. Elmegy, amint visszatér; most használja a robotok saját vészleállítóit.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/control/request_tracker.py" />
+            <source>the desk is not connected to a gateway. Connect first; to stop a robot now use the robot's own emergency stop.</source>
+            <translation>a kezelőpult nincs átjáróhoz kapcsolva. Előbb kapcsolódjon; robotot most a saját vészleállítójával állíthat meg.</translation>
         </message>
         <message>
             <location filename="../../plugin/control/request_tracker.py" />
@@ -1745,194 +1735,204 @@
             <translation>Ami a(z) {url} címen válaszol, nyit WebSocketet, de {answer_within:g} s alatt nem felelt a kezelőpult üdvözlésére. Ellenőrizze, hogy az URL Fleet Supervisor-átjáróra mutat-e.</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>No secure link to {place}: {reason}. If the gateway has no TLS, write ws:// instead of wss://.</source>
             <translation>Nincs biztonságos kapcsolat ezzel: {place}: {reason}. Ha az átjárónak nincs TLS-e, írjon wss:// helyett ws://-t.</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>Nothing listens at {place}. Start the gateway (robot-bridge serve --site ...) or correct the URL.</source>
             <translation>Semmi sem figyel itt: {place}. Indítsa el az átjárót (robot-bridge serve --site ...), vagy javítsa ki az URL-t.</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>Over {url} everybody on the way could read the token. Write wss:// instead of ws://; a gateway that other computers can reach has TLS.</source>
             <translation>A(z) {url} címen útközben bárki elolvashatná a tokent. Írjon ws:// helyett wss://-t; a más gépekről elérhető átjárónak van TLS-e.</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>The CA file {file} cannot be used: {reason}. Choose the ca.pem that whoever runs the site gave you.</source>
             <translation>A(z) {file} CA-fájl nem használható: {reason}. Válassza azt a ca.pem fájlt, amelyet a telephely üzemeltetője adott.</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>The certificate of {place} cannot be trusted: {reason}.</source>
             <translation>{place} tanúsítványában nem lehet megbízni: {reason}.</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>The certificate of {place} has expired. Whoever runs the site renews it with 'robot-bridge tls renew'; if it was renewed, check this computer's clock.</source>
             <translation>{place} tanúsítványa lejárt. A telephely üzemeltetője a 'robot-bridge tls renew' paranccsal megújítja; ha már megújították, ellenőrizze ennek a számítógépnek az óráját.</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>The certificate of {place} holds only later: check this computer's clock.</source>
             <translation>{place} tanúsítványa csak később lesz érvényes: ellenőrizze ennek a számítógépnek az óráját.</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>The certificate of {place} is for another name: {reason} Use the name that the gateway's certificate was made for, or have one made for this name.</source>
             <translation>{place} tanúsítványa más névre szól: {reason} Használja azt a nevet, amelyre az átjáró tanúsítványa készült, vagy készíttessen egyet erre a névre.</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>The certificate of {place} is from an authority that this desk does not trust. Choose the site's ca.pem as CA file under Access; whoever runs the site has it.</source>
             <translation>{place} tanúsítványa olyan kiállítótól van, amelyben ez a kezelőpult nem bízik. Válassza a telephely ca.pem fájlját CA-fájlnak a Hozzáférés alatt; a telephely üzemeltetőjénél van.</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>The gateway at {place} closed the link (code {code}{why}). It is tried again by itself.</source>
             <translation>A(z) {place} átjáró bontotta a kapcsolatot (kód: {code}{why}). Magától újrapróbálkozik.</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>The gateway at {place} ended the link{why}. Ask whoever runs the site for a new token and enter it under Access.</source>
             <translation>A(z) {place} átjáró véget vetett a kapcsolatnak{why}. Kérjen új tokent a telephely üzemeltetőjétől, és adja meg a Hozzáférés alatt.</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>The gateway at {place} ended your session{why}. Connect brings it back.</source>
             <translation>A(z) {place} átjáró véget vetett a munkamenetének{why}. A Kapcsolódás visszahozza.</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>The gateway's URL is empty. {example}</source>
             <translation>Az átjáró URL-je üres. {example}</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>The gateway's URL {url} begins with {scheme}; a gateway is reached over ws:// (or wss:// with TLS). {example}</source>
             <translation>Az átjáró URL-je, {url}, így kezdődik: {scheme}; az átjáró ws:// (vagy TLS-sel wss://) útján érhető el. {example}</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>The gateway's URL {url} cannot be read: {error}. {example}</source>
             <translation>Az átjáró URL-je, {url}, nem olvasható: {error}. {example}</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>The gateway's URL {url} cannot be used. Write it like {default_url}.</source>
             <translation>Az átjáró URL-je, {url}, nem használható. Írja így: {default_url}.</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>The gateway's URL {url} has port 0, where nothing can listen. {example}</source>
             <translation>Az átjáró URL-jében, {url}, 0 a port, ahol semmi sem figyelhet. {example}</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>The gateway's URL {url} names no host. {example}</source>
             <translation>Az átjáró URL-je, {url}, nem nevez meg gépet. {example}</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>The host of {place} is not known to this network. Correct the URL.</source>
             <translation>{place} gépét ez a hálózat nem ismeri. Javítsa ki az URL-t.</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>The link to the gateway at {place} broke off. It is tried again by itself; if it does not come back, check the gateway and the network.</source>
             <translation>A kapcsolat a(z) {place} átjáróval megszakadt. Magától újrapróbálkozik; ha nem tér vissza, ellenőrizze az átjárót és a hálózatot.</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>The token cannot be right: it is one word. Paste it again, whole and alone.</source>
             <translation>A token nem lehet jó: az egyetlen szó. Illessze be újra, egészben és magában.</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>There is no desk at {url} (HTTP 404). A gateway's desk has the path /desk, as in {default_url}; or another program answers there.</source>
             <translation>A(z) {url} címen nincs kezelőpult (HTTP 404). Az átjáróé a /desk útvonalon van, mint itt: {default_url}; vagy más program válaszol ott.</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>What answers at {place} does not speak WebSocket. Check host and port, and ws:// or wss://: a gateway prints its URL when it starts.</source>
             <translation>Ami itt válaszol: {place}, nem beszél WebSocketet. Ellenőrizze a gépet és a portot, és hogy ws:// vagy wss:// kell-e: az átjáró induláskor kiírja az URL-jét.</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>Write it like {default_url}.</source>
             <translation>Írja így: {default_url}.</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>it wants a token.</source>
             <translation>tokent kér.</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>no reason given.</source>
             <translation>nem mondott okot.</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>no scheme</source>
             <translation>nincs séma</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>operator</source>
             <translation>kezelő</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>supervisor</source>
             <translation>felügyelő</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>viewer</source>
             <translation>megfigyelő</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>{place} broke off while the secure link was made. If the gateway has no TLS, write ws:// instead of wss://.</source>
             <translation>{place} megszakította a biztonságos kapcsolat felépítését. Ha az átjárónak nincs TLS-e, írjon wss:// helyett ws://-t.</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>{place} cannot be reached: {reason}. Check network and URL.</source>
             <translation>{place} nem érhető el: {reason}. Ellenőrizze a hálózatot és az URL-t.</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>{place} did not answer in time. Check that the gateway runs, and the network and firewall.</source>
             <translation>{place} nem válaszolt időben. Ellenőrizze, hogy fut-e az átjáró, valamint a hálózatot és a tűzfalat.</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>{url} answered HTTP {status} instead of opening a WebSocket. Check that a gateway runs there and what its log says.</source>
             <translation>{url} HTTP {status} választ adott WebSocket nyitása helyett. Ellenőrizze, hogy ott átjáró fut-e, és mit mond a naplója.</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>{url} is where robots connect; operators connect to {desk}. Write that instead.</source>
             <translation>A(z) {url} címen a robotok kapcsolódnak; a kezelők ide: {desk}. Ezt írja helyette.</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>{url} refuses this desk: {said}</source>
             <translation>{url} elutasítja ezt a kezelőpultot: {said}</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>{url} refuses this desk: {said} Enter the operator's token under Access.</source>
             <translation>{url} elutasítja ezt a kezelőpultot: {said} Adja meg a kezelő tokenjét a Hozzáférés alatt.</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/link.py" />
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>{url} takes no desk now: {said} It is tried again by itself.</source>
             <translation>{url} most nem fogad kezelőpultot: {said} Magától újrapróbálkozik.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/gateway_client/fleet_state.py" />
+            <source>Another site is served now: {site}, no longer {before}. Open its project.</source>
+            <translation>Most másik telephely van kiszolgálva: {site}, már nem {before}. Nyissa meg annak projektjét.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/gateway_client/fleet_state.py" />
+            <source>The gateway has another database than before: its robots and commands are others, and those of before are not shown any more.</source>
+            <translation>Az átjárónak más adatbázisa van, mint előbb: robotjai és parancsai mások, a korábbiak már nem látszanak.</translation>
         </message>
         <message>
             <location filename="../../plugin/gateway_client/protocol.py" />
@@ -1973,6 +1973,11 @@
             <location filename="../../plugin/gateway_client/protocol.py" />
             <source>What answers at {url} sent something that is not the desk's protocol: {text} ({kind}: {error}). Check that the URL leads to a Fleet Supervisor gateway of this version.</source>
             <translation>Ami a(z) {url} címen válaszol, olyasmit küldött, ami nem a kezelőpult protokollja: {text} ({kind}: {error}). Ellenőrizze, hogy az URL ugyanilyen verziójú Fleet Supervisor-átjáróra mutat-e.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/gateway_client/protocol.py" />
+            <source>the gateway takes no message as large as this one of {size} kB. Ask for less at once, or have largest_message_bytes raised in the site's settings.</source>
+            <translation>az átjáró nem fogad ekkora, {size} kB-os üzenetet. Kérjen egyszerre kevesebbet, vagy emeltesse meg a largest_message_bytes értékét a telephely beállításaiban.</translation>
         </message>
         <message>
             <location filename="../../plugin/gateway_client/report_caches.py" />
@@ -2251,41 +2256,6 @@
             <translation>{named}: egysége {unit}, és a robotok métert használnak. Válasszon méteres vetületet, például a helyi UTM-zónát{suggestion}.</translation>
         </message>
         <message>
-            <location filename="../../plugin/layers/errors.py" />
-            <source>Layer {layer}, feature {id}: {note}</source>
-            <translation>{layer} réteg, {id}. elem: {note}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/layers/errors.py" />
-            <source>Layer {layer}, {features}: {note}</source>
-            <translation>{layer} réteg, {features}: {note}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/layers/errors.py" />
-            <source>Layer {layer}, {features}; of the first: {note}</source>
-            <translation>{layer} réteg, {features}; az elsőé: {note}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/layers/errors.py" />
-            <source>Layer {layer}: warnings of more kinds about {features}</source>
-            <translation>{layer} réteg: további fajta figyelmeztetések: {features}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/layers/errors.py" />
-            <source>feature {shown}</source>
-            <translation>{shown}. elem</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/layers/errors.py" />
-            <source>features {shown}</source>
-            <translation>{shown}. elem</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/layers/errors.py" />
-            <source>features {shown} and {more} more</source>
-            <translation>{shown}. elem és még {more}</translation>
-        </message>
-        <message>
             <location filename="../../plugin/layers/geometry.py" />
             <source> at ({x:.2f} {y:.2f})</source>
             <translation> itt: ({x:.2f} {y:.2f})</translation>
@@ -2419,6 +2389,26 @@
         </message>
         <message>
             <location filename="../../plugin/layers/layer_source.py" />
+            <source>Layer {layer}, feature {id}: {note}</source>
+            <translation>{layer} réteg, {id}. elem: {note}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/layer_source.py" />
+            <source>Layer {layer}, {features}: {note}</source>
+            <translation>{layer} réteg, {features}: {note}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/layer_source.py" />
+            <source>Layer {layer}, {features}; of the first: {note}</source>
+            <translation>{layer} réteg, {features}; az elsőé: {note}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/layer_source.py" />
+            <source>Layer {layer}: warnings of more kinds about {features}</source>
+            <translation>{layer} réteg: további fajta figyelmeztetések: {features}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/layer_source.py" />
             <source>The layer {name} cannot be opened ({source}): repair its data source or leave it out.</source>
             <translation>A(z) {name} réteg nem nyitható meg ({source}): javítsa ki az adatforrását, vagy hagyja ki.</translation>
         </message>
@@ -2426,6 +2416,21 @@
             <location filename="../../plugin/layers/layer_source.py" />
             <source>The layer {name} holds {held}, and only lines and polygons are obstacles: leave it out, give it an extent first (for example with Buffer), or the role furniture.</source>
             <translation>A(z) {name} réteg tartalma: {held}, és csak vonalak és poligonok akadályok: hagyja ki, adjon neki előbb kiterjedést (például Övezettel), vagy a berendezés szerepet.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/layer_source.py" />
+            <source>feature {shown}</source>
+            <translation>{shown}. elem</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/layer_source.py" />
+            <source>features {shown}</source>
+            <translation>{shown}. elem</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/layer_source.py" />
+            <source>features {shown} and {more} more</source>
+            <translation>{shown}. elem és még {more}</translation>
         </message>
         <message>
             <location filename="../../plugin/layers/layer_source.py" />
@@ -3044,6 +3049,11 @@
         </message>
         <message>
             <location filename="../../plugin/layers/site_transform.py" />
+            <source>The site is not known yet. Connect to a gateway first.</source>
+            <translation>A telephely még nem ismert. Előbb kapcsolódjon egy átjáróhoz.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/site_transform.py" />
             <source>The site {name} is in the CRS {crs}, which this QGIS does not know: its robots cannot be placed on the map. Correct crs in the site's site.toml, or update QGIS.</source>
             <translation>A(z) {name} telephely vetülete {crs}, amelyet ez a QGIS nem ismer: robotjai nem helyezhetők a térképre. Javítsa ki a crs értékét a telephely site.toml fájljában, vagy frissítse a QGIS-t.</translation>
         </message>
@@ -3078,86 +3088,6 @@
             <translation>{state}, utolsó hír {age:.0f} s óta</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/layers.py" />
-            <source>Accuracy (m)</source>
-            <translation>Pontosság (m)</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/layers.py" />
-            <source>Age (s)</source>
-            <translation>Kor (s)</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/layers.py" />
-            <source>Battery (0 to 1)</source>
-            <translation>Akku (0–1)</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/layers.py" />
-            <source>Closed roads</source>
-            <translation>Lezárt utak</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/layers.py" />
-            <source>Command</source>
-            <translation>Parancs</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/layers.py" />
-            <source>Cones put down</source>
-            <translation>Lerakott bóják</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/layers.py" />
-            <source>Conflicts</source>
-            <translation>Ütközések</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/layers.py" />
-            <source>Heading (°)</source>
-            <translation>Irány (°)</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/layers.py" />
-            <source>Link</source>
-            <translation>Kapcs.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/layers.py" />
-            <source>Robot</source>
-            <translation>Robot</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/layers.py" />
-            <source>Robots (live)</source>
-            <translation>Robotok (élő)</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/layers.py" />
-            <source>Speed (m/s)</source>
-            <translation>Sebesség (m/s)</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/layers.py" />
-            <source>Status</source>
-            <translation>Állapotszöveg</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/layers.py" />
-            <source>Theta (rad)</source>
-            <translation>Théta (rad)</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/layers.py" />
-            <source>closed</source>
-            <translation>lezárva</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/layers.py" />
-            <source>until</source>
-            <translation>eddig:</translation>
-        </message>
-        <message>
             <location filename="../../plugin/map/live_view.py" />
             <source>No robot is selected to be followed. Select one in the table or on the map.</source>
             <translation>Nincs követendő kijelölt robot. Jelöljön ki egyet a táblázatban vagy a térképen.</translation>
@@ -3168,67 +3098,67 @@
             <translation>{robot} még nem mondta meg, hol van; a térkép nem tud odamenni.</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/overlay/hover_card.py" />
+            <location filename="../../plugin/map/overlay/fleet_overlay.py" />
             <source>, {remaining:.1f} m to go</source>
             <translation>, még {remaining:.1f} m</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/overlay/hover_card.py" />
+            <location filename="../../plugin/map/overlay/fleet_overlay.py" />
             <source>accuracy</source>
             <translation>pontosság</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/overlay/hover_card.py" />
+            <location filename="../../plugin/map/overlay/fleet_overlay.py" />
             <source>battery</source>
             <translation>akkumulátor</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/overlay/hover_card.py" />
+            <location filename="../../plugin/map/overlay/fleet_overlay.py" />
             <source>heading</source>
             <translation>irány</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/overlay/hover_card.py" />
+            <location filename="../../plugin/map/overlay/fleet_overlay.py" />
             <source>it says</source>
             <translation>ezt mondja</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/overlay/hover_card.py" />
+            <location filename="../../plugin/map/overlay/fleet_overlay.py" />
             <source>last message</source>
             <translation>utolsó üzenet</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/overlay/hover_card.py" />
+            <location filename="../../plugin/map/overlay/fleet_overlay.py" />
             <source>place</source>
             <translation>hely</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/overlay/hover_card.py" />
+            <location filename="../../plugin/map/overlay/fleet_overlay.py" />
             <source>speed</source>
             <translation>sebesség</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/overlay/hover_card.py" />
+            <location filename="../../plugin/map/overlay/fleet_overlay.py" />
             <source>task</source>
             <translation>feladat</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/overlay/hover_card.py" />
+            <location filename="../../plugin/map/overlay/fleet_overlay.py" />
             <source>{age_in_words} ago, {escape}</source>
             <translation>{age_in_words}, {escape}</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/overlay/hover_card.py" />
+            <location filename="../../plugin/map/overlay/fleet_overlay.py" />
             <source>{v:.2f} m/s</source>
             <translation>{v:.2f} m/s</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/overlay/hover_card.py" />
+            <location filename="../../plugin/map/overlay/fleet_overlay.py" />
             <source>{x:.2f}, {y:.2f} m in the site</source>
             <translation>{x:.2f}, {y:.2f} m a telephelyen</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/overlay/hover_card.py" />
+            <location filename="../../plugin/map/overlay/fleet_overlay.py" />
             <source>± {accuracy:.2f} m</source>
             <translation>± {accuracy:.2f} m</translation>
         </message>
@@ -3258,14 +3188,94 @@
             <translation>· offline</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/overlay/paths_painter.py" />
+            <location filename="../../plugin/map/overlay/task_painter.py" />
             <source>{km:.0f} km</source>
             <translation>{km:.0f} km</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/overlay/paths_painter.py" />
+            <location filename="../../plugin/map/overlay/task_painter.py" />
             <source>{metres:.0f} m</source>
             <translation>{metres:.0f} m</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/reported_layers.py" />
+            <source>Accuracy (m)</source>
+            <translation>Pontosság (m)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/reported_layers.py" />
+            <source>Age (s)</source>
+            <translation>Kor (s)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/reported_layers.py" />
+            <source>Battery (0 to 1)</source>
+            <translation>Akku (0–1)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/reported_layers.py" />
+            <source>Closed roads</source>
+            <translation>Lezárt utak</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/reported_layers.py" />
+            <source>Command</source>
+            <translation>Parancs</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/reported_layers.py" />
+            <source>Cones put down</source>
+            <translation>Lerakott bóják</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/reported_layers.py" />
+            <source>Conflicts</source>
+            <translation>Ütközések</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/reported_layers.py" />
+            <source>Heading (°)</source>
+            <translation>Irány (°)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/reported_layers.py" />
+            <source>Link</source>
+            <translation>Kapcs.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/reported_layers.py" />
+            <source>Robot</source>
+            <translation>Robot</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/reported_layers.py" />
+            <source>Robots (live)</source>
+            <translation>Robotok (élő)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/reported_layers.py" />
+            <source>Speed (m/s)</source>
+            <translation>Sebesség (m/s)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/reported_layers.py" />
+            <source>Status</source>
+            <translation>Állapotszöveg</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/reported_layers.py" />
+            <source>Theta (rad)</source>
+            <translation>Théta (rad)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/reported_layers.py" />
+            <source>closed</source>
+            <translation>lezárva</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/reported_layers.py" />
+            <source>until</source>
+            <translation>eddig:</translation>
         </message>
         <message>
             <location filename="../../plugin/map/site_project.py" />
@@ -5290,18 +5300,33 @@
         </message>
         <message>
             <location filename="../../plugin/planning/execution.py" />
-            <source>A new plan is sent by itself, as you switched on: {why}</source>
-            <translation>Új terv megy ki magától, ahogy bekapcsolta: {why}</translation>
+            <source>A new plan was sent by itself, as was switched on: {why}</source>
+            <translation>Új terv ment ki magától, ahogy be volt kapcsolva: {why}</translation>
         </message>
         <message>
             <location filename="../../plugin/planning/execution.py" />
-            <source>An emergency stop is in force. It has to be cleared first.</source>
-            <translation>Vészleállítás van érvényben. Előbb fel kell oldani.</translation>
+            <source>A plan is being driven. Plan what is left, choose New plan to plan for other robots, or press Clear: nobody follows it then, and robots go on with their queues.</source>
+            <translation>Egy terv végrehajtás alatt van. Tervezze meg a maradékot, más robotoknak az Új terv választásával tervezzen, vagy nyomja meg a Törlést: akkor senki sem követi, és a robotok folytatják várólistáikat.</translation>
         </message>
         <message>
             <location filename="../../plugin/planning/execution.py" />
-            <source>Given up since this plan was made: {cones}. Plan what is left again.</source>
-            <translation>A terv elkészülte óta feladva: {cones}. Tervezze újra, ami hátravan.</translation>
+            <source>Clearing the cone plan</source>
+            <translation>A bójaterv törlése</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/execution.py" />
+            <source>Going on as before</source>
+            <translation>Folytatás a régi szerint</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/execution.py" />
+            <source>Going on with the cone plan</source>
+            <translation>A bójaterv folytatása</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/execution.py" />
+            <source>No new cone plan was sent by itself: {why}.</source>
+            <translation>Nem ment ki magától új bójaterv: {why}.</translation>
         </message>
         <message>
             <location filename="../../plugin/planning/execution.py" />
@@ -5310,23 +5335,13 @@
         </message>
         <message>
             <location filename="../../plugin/planning/execution.py" />
-            <source>No queue of the plan is paused, or something is still being sent.</source>
-            <translation>A terv egyik várólistája sem szünetel, vagy még küldés folyik.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/execution.py" />
-            <source>No robot is left to take over: connect one, and plan anew.</source>
-            <translation>Nem maradt robot, amely átvenné: kapcsoljon be egyet, és tervezzen újra.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/execution.py" />
-            <source>Nothing of the plan waits to be overridden.</source>
-            <translation>A tervből semmi sem vár felülbírálásra.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/execution.py" />
             <source>Nothing was overridden: what was refused is no longer being sent. Look at the plan.</source>
             <translation>Semmi sem lett felülbírálva: amit az átjáró visszautasított, azt már nem küldi senki. Nézze meg a tervet.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/execution.py" />
+            <source>Pause of the cone plan</source>
+            <translation>A bójaterv szüneteltetése</translation>
         </message>
         <message>
             <location filename="../../plugin/planning/execution.py" />
@@ -5340,18 +5355,38 @@
         </message>
         <message>
             <location filename="../../plugin/planning/execution.py" />
+            <source>Sending the cone plan</source>
+            <translation>A bójaterv elküldése</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/execution.py" />
+            <source>The cone plan cannot go on as it is: {why}. Plan what is left.</source>
+            <translation>A bójaterv így nem folytatható: {why}. Tervezze meg a maradékot.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/execution.py" />
             <source>The cone plan is in the robots' queues.</source>
             <translation>A bójaterv a robotok várólistáin van.</translation>
         </message>
         <message>
             <location filename="../../plugin/planning/execution.py" />
-            <source>The cone plan is not sent any further. {words}: {found} Override… in the panel Cone plan sends it all the same, where your role may.</source>
-            <translation>A bójaterv küldése megállt. {words}: {found} A Bójaterv panelen a Felülbírálás… mégis elküldi, ha a szerepe engedi.</translation>
+            <source>The cone plan is paused: {why}.</source>
+            <translation>A bójaterv szünetel: {why}.</translation>
         </message>
         <message>
             <location filename="../../plugin/planning/execution.py" />
-            <source>The cone plan was not sent as a whole. {why}</source>
-            <translation>A bójaterv nem ment el egészben. {why}</translation>
+            <source>The cone plan was not sent. {words}: {found} Override… in the panel Cone plan sends it all the same, where your role may.</source>
+            <translation>A bójaterv nem ment el. {words}: {found} A Bójaterv panelen a Felülbírálás… mégis elküldi, ha a szerepe engedi.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/execution.py" />
+            <source>The gateway is older than this plugin and drives no cone plans: plans are made and looked at here, and nothing of them is sent. Update the gateway, or give robots their cones with Add to queue.</source>
+            <translation>Az átjáró régebbi, mint ez a bővítmény, és nem hajt végre bójaterveket: terveket itt lehet készíteni és megnézni, de semmi sem megy ki belőlük. Frissítse az átjárót, vagy a Várólistára gombbal adjon bójákat a robotoknak.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/execution.py" />
+            <source>The new cone plan</source>
+            <translation>Az új bójaterv</translation>
         </message>
         <message>
             <location filename="../../plugin/planning/execution.py" />
@@ -5370,18 +5405,8 @@
         </message>
         <message>
             <location filename="../../plugin/planning/execution.py" />
-            <source>its robot is lost</source>
-            <translation>a robotja elveszett</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/execution.py" />
-            <source>plan of what is left</source>
-            <translation>a maradék terve</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/execution.py" />
-            <source>plan of what is left: {in_words}</source>
-            <translation>a maradék terve: {in_words}</translation>
+            <source>{by} cleared the cone plan: nobody follows it any more, and robots go on with their queues.</source>
+            <translation>{by} törölte a bójatervet: senki sem követi már, és a robotok folytatják várólistáikat.</translation>
         </message>
         <message>
             <location filename="../../plugin/planning/forms.py" />
@@ -5597,6 +5622,13 @@
                 <numerusform>%n bójából {wrong} nem állhat ott: {text} Mind a(z) {layer} rétegben van.</numerusform>
             </translation>
         </message>
+        <message numerus="yes">
+            <location filename="../../plugin/planning/plan_dock.py" />
+            <source>%n ways lead along closed roads</source>
+            <translation>
+                <numerusform>%n út vezet lezárt utakon</numerusform>
+            </translation>
+        </message>
         <message>
             <location filename="../../plugin/planning/plan_dock.py" />
             <source>A good plan, within the time that is given</source>
@@ -5604,8 +5636,8 @@
         </message>
         <message>
             <location filename="../../plugin/planning/plan_dock.py" />
-            <source>A plan is being driven. Plan what is left, or press Clear to watch it no more; robots go on with their queues then.</source>
-            <translation>Egy terv végrehajtás alatt van. Tervezze meg a maradékot, vagy a Törléssel ne figyelje tovább; a robotok akkor folytatják várólistáikat.</translation>
+            <source>A new plan, or one that the gateway drives, whoever submitted it</source>
+            <translation>Új terv, vagy egy, amelyet az átjáró hajt végre, bárki küldte is</translation>
         </message>
         <message>
             <location filename="../../plugin/planning/plan_dock.py" />
@@ -5651,6 +5683,11 @@
         </message>
         <message>
             <location filename="../../plugin/planning/plan_dock.py" />
+            <source>Follow the plan no more, at no desk; robots go on with their queues</source>
+            <translation>A tervet egyik kezelőpult sem követi tovább; a robotok folytatják várólistáikat</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/plan_dock.py" />
             <source>Give up what is being planned</source>
             <translation>A folyó tervezés feladása</translation>
         </message>
@@ -5666,13 +5703,13 @@
         </message>
         <message>
             <location filename="../../plugin/planning/plan_dock.py" />
-            <source>Leave it at what was sent: robots that have their cones by now go on with them</source>
-            <translation>Marad, ami elment: amelyik robot már megkapta a bójáit, az folytatja</translation>
+            <source>Let them go on</source>
+            <translation>Folytassák</translation>
         </message>
         <message>
             <location filename="../../plugin/planning/plan_dock.py" />
-            <source>Let them go on</source>
-            <translation>Folytassák</translation>
+            <source>New plan</source>
+            <translation>Új terv</translation>
         </message>
         <message>
             <location filename="../../plugin/planning/plan_dock.py" />
@@ -5686,11 +5723,6 @@
         </message>
         <message>
             <location filename="../../plugin/planning/plan_dock.py" />
-            <source>Not sent as a whole yet</source>
-            <translation>Még nem ment el egészben</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/plan_dock.py" />
             <source>Not sent yet: {summary}</source>
             <translation>Még nincs elküldve: {summary}</translation>
         </message>
@@ -5698,6 +5730,11 @@
             <location filename="../../plugin/planning/plan_dock.py" />
             <source>Override…</source>
             <translation>Felülbírálás…</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/plan_dock.py" />
+            <source>Pause the plan</source>
+            <translation>Terv szünete</translation>
         </message>
         <message>
             <location filename="../../plugin/planning/plan_dock.py" />
@@ -5741,18 +5778,18 @@
         </message>
         <message>
             <location filename="../../plugin/planning/plan_dock.py" />
-            <source>Send no more</source>
-            <translation>Nem küld többet</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/plan_dock.py" />
             <source>Send the cone plan</source>
             <translation>A bójaterv küldése</translation>
         </message>
         <message>
             <location filename="../../plugin/planning/plan_dock.py" />
-            <source>Send the plan on in spite of what was found; asks why</source>
-            <translation>A terv küldésének folytatása annak ellenére, amit az ellenőrzés talált; megkérdezi, miért</translation>
+            <source>Send the plan in spite of what was found; asks why</source>
+            <translation>A terv elküldése annak ellenére, amit az ellenőrzés talált; megkérdezi, miért</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/plan_dock.py" />
+            <source>Send the plan's robots no further task; what they are doing they finish</source>
+            <translation>A terv robotjai nem kapnak több feladatot; amit végeznek, azt befejezik</translation>
         </message>
         <message>
             <location filename="../../plugin/planning/plan_dock.py" />
@@ -5766,8 +5803,8 @@
         </message>
         <message>
             <location filename="../../plugin/planning/plan_dock.py" />
-            <source>The plan is sent on at once, and robots set off.</source>
-            <translation>A terv küldése azonnal folytatódik, és a robotok elindulnak.</translation>
+            <source>The plan is sent at once, and robots set off.</source>
+            <translation>A terv azonnal elmegy, és a robotok elindulnak.</translation>
         </message>
         <message numerus="yes">
             <location filename="../../plugin/planning/plan_dock.py" />
@@ -5778,8 +5815,20 @@
         </message>
         <message>
             <location filename="../../plugin/planning/plan_dock.py" />
+            <source>What is left is being planned …</source>
+            <translation>A maradék tervezése folyik …</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/plan_dock.py" />
             <source>When a robot is lost or a cone fails, plan what is left and send it by itself</source>
             <translation>Ha egy robot elveszik vagy egy bója nem sikerül, megtervezi a maradékot, és magától elküldi</translation>
+        </message>
+        <message numerus="yes">
+            <location filename="../../plugin/planning/plan_dock.py" />
+            <source>robots come too near to one another at %n places</source>
+            <translation>
+                <numerusform>a robotok %n helyen túl közel kerülnek egymáshoz</numerusform>
+            </translation>
         </message>
         <message>
             <location filename="../../plugin/planning/plan_dock.py" />
@@ -6002,6 +6051,11 @@
         </message>
         <message>
             <location filename="../../plugin/planning/plan_views.py" />
+            <source>{by}, {time}: {robots}</source>
+            <translation>{by}, {time}: {robots}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/plan_views.py" />
             <source>{cones}, {robots}, {metres:.0f} m, done after {span} ({method}, along {travel})</source>
             <translation>{cones}, {robots}, {metres:.0f} m, kész {span} után ({method}, {travel} mentén)</translation>
         </message>
@@ -6034,18 +6088,13 @@
         </message>
         <message>
             <location filename="../../plugin/planning/progress.py" />
-            <source>Placed cones of the plan</source>
-            <translation>A terv kihelyezett bójái</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/progress.py" />
-            <source>The cone plan cannot go on as it is: {why}. Plan what is left.</source>
-            <translation>A bójaterv így nem folytatható: {why}. Tervezze meg a maradékot.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/progress.py" />
             <source>cone {cone} failed{why}</source>
             <translation>{cone} bója sikertelen{why}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/progress.py" />
+            <source>the way of {robot} to {stop} leads along a closed road{why}</source>
+            <translation>{robot} útja ide: {stop}, lezárt úton vezet{why}</translation>
         </message>
         <message>
             <location filename="../../plugin/planning/progress.py" />
@@ -6068,36 +6117,6 @@
             <location filename="../../plugin/planning/proposal.py" />
             <source>{robot} and {other} come within {metres:.1f} m at {x:.0f}, {y:.0f} m after {minutes}:{seconds:02d}</source>
             <translation>{robot} és {other} {metres:.1f} m-re közelítik meg egymást itt: {x:.0f}, {y:.0f} m, {minutes}:{seconds:02d} után</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/queue_steps.py" />
-            <source>holding {robot}</source>
-            <translation>{robot} visszatartása</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/queue_steps.py" />
-            <source>letting {robot} go on</source>
-            <translation>{robot} továbbengedése</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/queue_steps.py" />
-            <source>taking over from {lost}</source>
-            <translation>átvétel ettől: {lost}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/queue_steps.py" />
-            <source>the queue of {robot}</source>
-            <translation>{robot} várólistája</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/queue_steps.py" />
-            <source>{why} Done before: {done}.</source>
-            <translation>{why} Előtte megtörtént: {done}.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/queue_steps.py" />
-            <source>{why} Not done therefore: {left}.</source>
-            <translation>{why} Ezért nem történt meg: {left}.</translation>
         </message>
         <message>
             <location filename="../../plugin/planning/travel.py" />
@@ -6942,18 +6961,8 @@
         </message>
         <message>
             <location filename="../../plugin/processing/algorithms/export_road_network.py" />
-            <source>Origin of the site frame (default: as the project has it, else 0,0)</source>
-            <translation>A telephelyi keret kezdőpontja (alapértelmezés: a projekté, különben 0,0)</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/export_road_network.py" />
             <source>Robots' name for the site frame</source>
             <translation>A telephelyi keret neve a robotoknál</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/export_road_network.py" />
-            <source>Rotation of the site frame, counter-clockwise from the CRS's x axis [degrees]</source>
-            <translation>A telephelyi keret elforgatása, a vetület x tengelyétől pozitív irányban [fok]</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/algorithms/export_road_network.py" />
@@ -7019,11 +7028,6 @@
             <location filename="../../plugin/processing/algorithms/export_robot_map.py" />
             <source>Label of each feature (default: the layer's name)</source>
             <translation>Az egyes elemek címkéje (alapértelmezés: a réteg neve)</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/export_robot_map.py" />
-            <source>Obstacle layers (default: those of the project with such a role)</source>
-            <translation>Akadályrétegek (alapértelmezés: a projekt ilyen szerepű rétegei)</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/algorithms/export_robot_map.py" />
@@ -7970,6 +7974,11 @@
         </message>
         <message>
             <location filename="../../plugin/processing/common/export_parameters.py" />
+            <source>Obstacle layers (default: those of the project with such a role)</source>
+            <translation>Akadályrétegek (alapértelmezés: a projekt ilyen szerepű rétegei)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/export_parameters.py" />
             <source>ROUTE holds no line: choose a layer with the route to export along.</source>
             <translation>A ROUTE-ban nincs vonal: válasszon réteget azzal az útvonallal, amely mentén exportálni kell.</translation>
         </message>
@@ -8347,6 +8356,16 @@
             <location filename="../../plugin/processing/common/parameters.py" />
             <source>Map profile: what the layers are, by their names (default: as each layer keeps it)</source>
             <translation>Térképprofil: mik a rétegek a nevük szerint (alapértelmezés: ahogy az egyes rétegek tárolják)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/parameters.py" />
+            <source>Origin of the site frame (default: as the project has it, else 0,0)</source>
+            <translation>A telephelyi keret kezdőpontja (alapértelmezés: a projekté, különben 0,0)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/parameters.py" />
+            <source>Rotation of the site frame, counter-clockwise from the CRS's x axis [degrees]</source>
+            <translation>A telephelyi keret elforgatása, a vetület x tengelyétől pozitív irányban [fok]</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/common/parameters.py" />

@@ -15,7 +15,7 @@ import numpy as np
 import typer
 
 from ..core.errors import BridgeError, counted, listed_names
-from ..core.files import replacement
+from ..core.files import replacement, write_geopackage_layer
 from ..core.messages import GetPlacements, PlacementReport
 from ..core.messages.records import MOST_PLACEMENTS
 from ..core.sites.frame import SiteFrame, projections
@@ -89,11 +89,8 @@ def _time(seconds: float | None) -> datetime | None:
 
 # --- Placed cones into a file: CSV, or a GeoPackage for GIS ---
 # Layers of the GeoPackage, in the site's CRS: ``placed`` and ``planned`` (points), ``deviations`` (lines
-# from
-# the plan to the cone).
+# from the plan to the cone).
 
-_UTC = 100
-"""GDAL's code for UTC in a field of date and time."""
 _LAYERS: dict[str, tuple[str, Callable[[Row], bytes]]] = {
     "placed": ("Point", lambda row: _point(row["easting"], row["northing"])),
     "planned": ("Point", lambda row: _point(row["planned_easting"], row["planned_northing"])),
@@ -131,28 +128,13 @@ def _text(value: Any) -> Any:
 
 def _write_geopackage(found: Sequence[Row], frame: SiteFrame, file: Path) -> None:
     projections()  # before pyogrio imports pyproj aloud
-    import pyogrio
-
     columns = {name: _column(found, name) for name in NAMES}
-    times = [name for name, values in columns.items() if values.dtype.kind == "M"]
     for layer, (kind, blob) in _LAYERS.items():
         geometry = np.empty(len(found), dtype=object)
         geometry[:] = [blob(row) for row in found]
         try:
-            pyogrio.raw.write(
-                str(file),
-                geometry=geometry,
-                field_data=list(columns.values()),
-                fields=list(columns),
-                layer=layer,
-                driver="GPKG",
-                geometry_type=kind,
-                crs=frame.crs,
-                append=file.exists(),
-                dataset_options={"VERSION": "1.3"},
-                gdal_tz_offsets={name: np.full(len(found), _UTC) for name in times},
-            )
-        except (pyogrio.errors.DataSourceError, pyogrio.errors.DataLayerError) as error:
+            write_geopackage_layer(file, layer, kind, geometry, columns, frame.crs)
+        except OSError as error:
             raise BridgeError(
                 f"{file} cannot be written: {error}; check the folder and free space"
             ) from error

@@ -15,8 +15,9 @@ from typing import TYPE_CHECKING, Annotated, Literal
 import typer
 
 from ..core.errors import BridgeError
-from ..core.logs import LogFormat, LogLevel, notify, set_up_log, watchdog_interval
-from ..gateway.monitoring.tasks import freeze_permanent_objects
+from ..core.logs import LogFormat, LogLevel, set_up_log
+from ..core.systemd import notify, watchdog_interval
+from ..gateway.monitoring.periodic_tasks import freeze_permanent_objects
 from .options import DEFAULT, DatabaseOption, PasswordFileOption, database_address
 
 if TYPE_CHECKING:

@@ -321,7 +321,7 @@ class _Robot:
             AgentSettings(
                 magic=seed, pose=begin, limits=limits, asks_path=True, map_margin=MAP_MARGIN, body=self.body
             ),
-            self._say,
+            self,
         )
         self._begun = self.is_done = False
         self._clearance = np.inf
@@ -377,7 +377,7 @@ class _Robot:
         told = body.pose, body.driven, body.accuracy, body.localiser.lost
         self._rows.append((body.truth, body.odometry, *told, self._timed.seconds, body.localiser.particles))
 
-    def _say(self, request: Request) -> None:
+    def say(self, request: Request) -> None:
         self.link.say(request)
         if isinstance(request, Stopped) and self._begun and self.body.driven > 0:
             self._note()

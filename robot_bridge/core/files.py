@@ -1,15 +1,21 @@
-"""Files written whole or not at all: beside their place, onto the disk, and then into it by one rename."""
+"""Files written whole or not at all, beside their place and into it by one rename; layers of GeoPackages."""
 
 from __future__ import annotations
 
 import os
 import shutil
 import tempfile
-from collections.abc import Iterable, Iterator
-from contextlib import contextmanager, suppress
+import warnings
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import AbstractContextManager, ExitStack, contextmanager, nullcontext, suppress
 from functools import partial
 from pathlib import Path
+from typing import TYPE_CHECKING, Any, TypeVar
 
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+T = TypeVar("T")
 STAGE = ".writing-"
 """What the name of a folder begins with in which files are made; a program that was killed leaves it."""
 
@@ -63,6 +69,7 @@ class StagedFiles:
     def __init__(self, target: Path, prefix: str = STAGE) -> None:
         self.target, self._prefix = target, prefix
         self._stage: Path | None = None
+        self._open = ExitStack()
         self._made: list[Path] = []
         self._changed: list[str] = []
 
@@ -93,6 +100,10 @@ class StagedFiles:
             raise
         return self
 
+    def enter(self, writer: AbstractContextManager[T]) -> T:
+        """Enter ``writer``, which keeps something in :attr:`folder`; it is left before that is removed."""
+        return self._open.enter_context(writer)
+
     def publish(self, names: Iterable[str] | None = None, removed: Iterable[str] = ()) -> None:
         """Take the files ``removed`` away, then put ``names`` into their place, in this order.
 
@@ -122,9 +133,14 @@ class StagedFiles:
         self._changed.append(name)
 
     def __exit__(self, kind: type[BaseException] | None, *_: object) -> None:
-        if kind is not None:
-            self._take_back()
-        self._clear()
+        failed = True
+        try:
+            self._open.close()
+            failed = kind is not None
+        finally:
+            if failed:
+                self._take_back()
+            self._clear()
 
     def _take_back(self) -> None:
         for name in self._changed:
@@ -160,3 +176,53 @@ def _sync_folder(folder: Path) -> None:
             os.fsync(descriptor)
         finally:
             os.close(descriptor)
+
+
+# --- A layer of a GeoPackage, written by pyogrio ---
+
+_UTC = 100
+"""How GDAL says that a time is in UTC."""
+
+
+def write_geopackage_layer(
+    file: Path,
+    name: str,
+    kind: str,
+    geometry: NDArray[Any],
+    columns: Mapping[str, NDArray[Any]],
+    crs: str | None,
+    metadata: Mapping[str, str] | None = None,
+) -> None:
+    """Write the layer ``name`` into ``file``, a GeoPackage, which is made where it is not there yet.
+
+    ``kind`` is the type of ``geometry``, (n,) well-known binary; ``columns`` are (n,), times in UTC. It is
+    version 1.3 of the format, which GDAL 3.6 and older read. Whoever wants the file whole or not at all
+    writes into what :func:`replacement` or :class:`StagedFiles` give.
+
+    :raises OSError: when it cannot be written. :raises ImportError: where pyogrio is not installed.
+    """
+    import numpy as np
+    import pyogrio
+    import pyogrio.raw
+
+    times = [column for column, values in columns.items() if values.dtype.kind == "M"]
+    try:
+        # Metres of a site whose place nobody knows have no CRS.
+        with warnings.catch_warnings(action="ignore") if crs is None else nullcontext():
+            pyogrio.raw.write(
+                str(file),
+                geometry=geometry,
+                field_data=list(columns.values()),
+                fields=list(columns),
+                layer=name,
+                driver="GPKG",
+                geometry_type=kind,
+                crs=crs,
+                append=file.exists(),
+                dataset_options={"VERSION": "1.3"},
+                # Not on the dataset: GDAL writes that into an .aux.xml file beside it on every reading.
+                layer_metadata=None if metadata is None else dict(metadata),
+                gdal_tz_offsets={column: np.full(len(geometry), _UTC) for column in times},
+            )
+    except (pyogrio.errors.DataSourceError, pyogrio.errors.DataLayerError) as error:
+        raise OSError(str(error)) from error

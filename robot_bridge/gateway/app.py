@@ -24,12 +24,13 @@ from ..core.messages import MessageError, Stopping, check_robot_name, to_json
 from ..core.sites.site import Site, check_site, frame_mismatch, read_site
 from ..protocol.asyncapi import served
 from ..protocol.credentials import AccessError
-from .api.http_pages import HEALTH, METRICS, StatusPages
-from .api.operator_server import OperatorSession
+from .api.operator_server import OWN, OperatorSession
 from .api.robot_sql import SqlInterface
 from .api.robot_websockets import WebSocketInterface
+from .api.status_pages import HEALTH, METRICS, StatusPages
 from .auth.accounts import TokenKind, check_link_name
-from .auth.connection import ClientConnection
+from .auth.administration import AccountAdministration
+from .auth.client_connection import ClientConnection
 from .auth.gate import PATHS, AuthGate
 from .auth.port import check_reach, host_fault, is_loopback, listen
 from .auth.tls import ServerFiles, ServerTls
@@ -37,8 +38,10 @@ from .fleet.emergency_persistence import StopJournal, journal_file
 from .fleet.link_supervision import LinkProcesses
 from .fleet.service import Fleet
 from .model.clocks import ClockWatch, check_clock_at_start
+from .model.request_handlers import RequestHandlers
 from .monitoring.metrics import Metrics
-from .monitoring.tasks import GarbageCollection, Work, every, keep_all_going
+from .monitoring.periodic_tasks import GarbageCollection, Work, every, keep_all_going
+from .plans.service import PlanService
 from .retention import Retention
 from .site.site_maps import SiteMaps
 from .site_watch import SiteWatch, stamp_of
@@ -48,6 +51,7 @@ from .storage.repositories.metadata import newest_time
 from .storage.roles.choice import has_accounts
 from .storage.singleton_lock import SingletonLock
 from .traffic.road_planning import RoadPlanner
+from .trajectories.recording import TrajectoryPages
 
 # --- The end of a gateway in good order: every client is told, and none of them holds it up ---
 
@@ -132,19 +136,25 @@ class Gateway:
     """One site, one database, one port with ``/robot``, ``/desk`` and pages about the gateway itself."""
 
     def __init__(
-        self, fleet: Fleet, gate: AuthGate, links: LinkProcesses, tls: ServerTls | None = None
+        self,
+        fleet: Fleet,
+        gate: AuthGate,
+        links: LinkProcesses,
+        handlers: RequestHandlers,
+        tls: ServerTls | None = None,
     ) -> None:
         self._fleet = fleet
+        self._handlers = handlers
         self._links = links
         self._gate = gate
         self._tls = tls
         self._robots = WebSocketInterface(fleet)
         metrics = Metrics(fleet.tally)
-        fleet.database.observe = metrics.database.observe
+        fleet.database.add_observer(metrics.database.observe)
         self._status = StatusPages(fleet, metrics)
         self._clock_watch = ClockWatch()
         self._leavings = GarbageCollection()
-        self.retention = Retention(fleet.database, lambda: fleet.site.settings)
+        self.retention = Retention(fleet.database, fleet.site)
 
     async def serve(self, host: str, port: int) -> Server:
         """Listen for robots and operators; raises BridgeError when that cannot be done there."""
@@ -158,7 +168,6 @@ class Gateway:
             "sql link": SqlInterface(fleet, fleet.database).run,
             "liveness": lambda: every(AGE_INTERVAL, self._age, "liveness", tally),
             "queues": fleet.driving.run,
-            "plans": lambda: every(PLANS_INTERVAL, fleet.plans.watch, "plans", tally),
             "maps": fleet.maps.run,
             "save": lambda: every(SAVE_INTERVAL, fleet.save, "save", tally),
             "prune": lambda: every(PRUNE_INTERVAL, self.retention.prune, "prune", tally),
@@ -242,11 +251,37 @@ class Gateway:
         assert visitor.identity is not None
         kind = visitor.identity.kind
         if kind is TokenKind.OPERATOR:
-            await OperatorSession(self._fleet, visitor, self._gate).run()
+            await OperatorSession(self._fleet, visitor, self._gate, self._handlers).run()
         elif kind is TokenKind.LINK:
             await self._robots.serve_link(visitor, self._gate)
         else:
             await self._robots.serve(visitor, visitor.identity.name)
+
+
+def request_handlers(
+    fleet: Fleet, plans: PlanService, database: Database, sites: SiteWatch
+) -> RequestHandlers:
+    """Return who answers which request of operators; those that concern a connection alone, that does."""
+    handlers = RequestHandlers(
+        fleet.orders,
+        fleet.emergency,
+        fleet.queues,
+        fleet.pauses,
+        plans,
+        fleet.roads,
+        fleet.roads.closures,
+        fleet.roads.traffic,
+        fleet.snapshots,
+        fleet.observations,
+        fleet.maps,
+        fleet.removals,
+        fleet.links,
+        TrajectoryPages(database),
+        AccountAdministration(database),
+        sites,
+    )
+    handlers.check_complete(except_for=OWN)
+    return handlers
 
 
 async def run(settings: GatewaySettings, signals: Signals, started: Callable[[str], None]) -> None:
@@ -281,12 +316,18 @@ async def run(settings: GatewaySettings, signals: Signals, started: Callable[[st
         accounts = gate.book.has_operator(time.time())
         check_reach(settings.host, tls=tls is not None, accounts=accounts)
         maps = SiteMaps(site)
-        planner = await asyncio.to_thread(RoadPlanner, lambda: maps.site)
+        planner = await asyncio.to_thread(RoadPlanner, maps)
+        stack.callback(planner.close)
         fleet = Fleet(maps, database, planner=planner, stops=journal, note=gate.journal.note)
         await fleet.start()
-        stack.push_async_callback(_save_last, fleet, gate)
+        plans = PlanService(
+            fleet.queue_context, fleet.queues, fleet.roads.closures, fleet.emergency, fleet.listeners
+        )
+        await plans.restore()
+        stack.push_async_callback(_save_last, fleet, plans, gate)
         links = LinkProcesses(site.settings.links, folder)
-        gateway = Gateway(fleet, gate, links, tls)
+        watch = SiteWatch(folder, stamp, maps, fleet, signals.reload)
+        gateway = Gateway(fleet, gate, links, request_handlers(fleet, plans, database, watch), tls)
         if doubt is not None:
             log.warning("%s", doubt.text)
             if doubt.may_be_ahead:
@@ -296,8 +337,12 @@ async def run(settings: GatewaySettings, signals: Signals, started: Callable[[st
         stack.push_async_callback(notify_clients, server, fleet)
         address = _address(server, tls is not None)
         started(address)
-        watch = fleet.site_choice = SiteWatch(folder, stamp, maps, fleet, signals.reload)
-        works = {**gateway.works(address), "site": watch.run, "sole gateway": sole.hold}
+        works = {
+            **gateway.works(address),
+            "plans": lambda: every(PLANS_INTERVAL, plans.watch, "plans", fleet.tally),
+            "site": watch.run,
+            "sole gateway": sole.hold,
+        }
         await _until_stopped(keep_all_going(works, fleet.tally), signals.stop)
 
 
@@ -349,13 +394,13 @@ async def _until_stopped(watch: Coroutine[None, None, None], stop: asyncio.Event
     await asyncio.gather(watching, return_exceptions=True)
 
 
-async def _save_last(fleet: Fleet, gate: AuthGate) -> None:
+async def _save_last(fleet: Fleet, plans: PlanService, gate: AuthGate) -> None:
     """Store what waits; a database that does not answer must not keep the gateway from ending."""
     try:
         async with asyncio.timeout(SAVE_WITHIN):
             await fleet.finish_trajectories()
             await gate.close()
-            await fleet.plans.finish()
+            await plans.finish()
     except (StoreError, TimeoutError) as error:
         reason = str(error) or "the database does not answer"
         log.error("%s; the last positions are not stored", reason)

@@ -10,7 +10,7 @@ from typing import NamedTuple
 from sqlalchemy import Connection
 
 from ..core.clock import SYSTEM_CLOCK, Clock
-from ..core.sites.settings import SiteSettings
+from ..core.sites.settings import SettingsSource, SiteSettings
 from .auth import audit
 from .model.clocks import ClockWatch
 from .storage.database import Database
@@ -62,11 +62,11 @@ class Retention:
     def __init__(
         self,
         database: Database,
-        settings: Callable[[], SiteSettings],
+        site: SettingsSource,
         clock: Clock = SYSTEM_CLOCK,
     ) -> None:
         self._database = database
-        self._settings = settings
+        self._site = site
         self._clock = clock
         self._clock_watch = ClockWatch(clock)
         self._doubtful_until = clock.steady()
@@ -79,7 +79,7 @@ class Retention:
         """Delete what the settings do not keep any longer; raises StoreError."""
         if not self._trusts_clock():
             return
-        for kind in kept(self._settings()):
+        for kind in kept(self._site.settings):
             if removed := await self._forget(kind):
                 log.info("deleted %d %s, older than %g days", removed, kind.name, kind.days)
 

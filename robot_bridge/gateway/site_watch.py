@@ -8,11 +8,12 @@ import logging
 from pathlib import Path
 
 from ..core.errors import BridgeError, RefusedError, SiteError
-from ..core.messages import SiteOffer, SiteReport
+from ..core.messages import ChooseSite, GetSites, SiteOffer, SiteReport, Sites
 from ..core.sites.geopackage import GEOPACKAGE_FILE
 from ..core.sites.settings import SETTINGS_FILE, read_settings
 from ..core.sites.site import Site, frame_mismatch, read_site, sibling_sites
 from .fleet.service import Fleet
+from .model.request_handlers import handles
 from .site.site_maps import SiteMaps
 from .storage.repositories import metadata
 from .traffic.road_planning import check_roads
@@ -62,12 +63,15 @@ class SiteWatch:
         async with self._reading:
             await self._look(asked)
 
-    async def offers(self) -> list[SiteOffer]:
+    @handles(GetSites)
+    async def offers(self) -> Sites:
         """Return the sites that lie beside the one that is served, and that one."""
         return await asyncio.to_thread(self._offers)
 
-    async def choose(self, name: str) -> SiteReport:
-        """Serve the site in the folder ``name`` beside this one; raises RefusedError saying why not."""
+    @handles(ChooseSite)
+    async def choose(self, request: ChooseSite) -> SiteReport:
+        """Serve the site in a folder beside this one; raises RefusedError saying why not."""
+        name = request.site
         async with self._reading:
             known = await asyncio.to_thread(sibling_sites, self._folder)
             if name not in known:
@@ -103,8 +107,8 @@ class SiteWatch:
     def _beside(self, name: str) -> Path:
         return self._folder.resolve().parent / name
 
-    def _offers(self) -> list[SiteOffer]:
-        return [self._offer(name) for name in sibling_sites(self._folder)]
+    def _offers(self) -> Sites:
+        return Sites([self._offer(name) for name in sibling_sites(self._folder)])
 
     def _offer(self, name: str) -> SiteOffer:
         served = name == self._folder.resolve().name

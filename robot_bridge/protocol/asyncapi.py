@@ -35,7 +35,6 @@ from .json_schemas import (
     HEADS,
     JSON_SCHEMA,
     NOTIFICATIONS,
-    RESULTS,
     Schema,
     definitions,
     plain_text,
@@ -283,13 +282,14 @@ def _robot_channel(requests: Mapping[str, type], answers: Mapping[str, type]) ->
 
 
 def _desk_channel() -> Schema:
-    answered = {f"{request.method}Result": cls for request, cls in RESULTS.items()}
+    answered = {f"{method}Result": cls.result for method, cls in DESK_REQUESTS.items()}
     messages = {**calls(DESK_REQUESTS), **results(answered), **news(NOTIFICATIONS), **in_columns(HEADS)}
     return channel("/desk", "An operator's connection.", {**messages, "error": error()})
 
 
 def _schemas() -> dict[str, Schema]:
-    tables = (REQUESTS, ANSWERS, DESK_REQUESTS, RESULTS, NOTIFICATIONS, HEADS)
+    results_of = {method: cls.result for method, cls in DESK_REQUESTS.items()}
+    tables = (REQUESTS, ANSWERS, DESK_REQUESTS, results_of, NOTIFICATIONS, HEADS)
     # Some are in two tables, and each is to be described once.
     classes = {cls: None for table in tables for cls in table.values()}
     asked = [cls for op, cls in REQUESTS.items() if op not in ANSWERS] + list(DESK_REQUESTS.values())
@@ -348,7 +348,7 @@ def _desk_operations() -> Schema:
     """Return what the gateway receives of operators, with its result, and what it tells them unasked."""
     asked = {
         f"desk.{method}": operation("receive", "desk", [method], (f"{method}Result", "error"))
-        for method in (request.method for request in RESULTS)
+        for method in DESK_REQUESTS
     }
     told = {
         f"news.{name}": operation("send", "desk", [name, *([f"{name}InColumns"] if name in HEADS else [])])
@@ -371,7 +371,7 @@ def documents() -> dict[str, str]:
     files = {f"robot/{op}.json": schema_of(cls, closed=True) for op, cls in REQUESTS.items()}
     files |= {f"gateway/{op}.json": schema_of(cls) for op, cls in ANSWERS.items()}
     files |= {f"desk/{method}.json": schema_of(cls, closed=True) for method, cls in DESK_REQUESTS.items()}
-    files |= {f"result/{request.method}.json": schema_of(cls) for request, cls in RESULTS.items()}
+    files |= {f"result/{method}.json": schema_of(cls.result) for method, cls in DESK_REQUESTS.items()}
     files |= {f"news/{method}.json": schema_of(cls) for method, cls in NOTIFICATIONS.items()}
     files |= {f"head/{method}.json": schema_of(cls) for method, cls in HEADS.items()}
     files |= link_documents()

@@ -45,6 +45,11 @@ from . import jsonrpc
 log = logging.getLogger(__name__)
 
 
+_BEGIN = ("hello", "subscribe")
+_DESK_REQUESTS = {name: DESK_REQUESTS[name] for name in (*_BEGIN, *sorted(set(DESK_REQUESTS) - set(_BEGIN)))}
+"""What every connection begins with is named first where a method is not known."""
+
+
 class UnknownOperationError(MessageError):
     """An operation code or method that is in no table."""
 
@@ -70,9 +75,9 @@ def decode_command(op: str, params: Any) -> Command:
     return cast("Command", _convert(COMMANDS, "operation", op, params))
 
 
-def decode_desk_request(method: str, params: Any) -> DeskRequest:
+def decode_desk_request(method: str, params: Any) -> DeskRequest[Any]:
     """Return the operator's request ``method`` with its parameters."""
-    return cast("DeskRequest", _convert(DESK_REQUESTS, "method", method, params))
+    return cast("DeskRequest[Any]", _convert(_DESK_REQUESTS, "method", method, params))
 
 
 def _convert(

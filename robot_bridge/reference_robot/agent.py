@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import math
 import random
-from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Protocol
 
 from ..core.errors import RobotMapError
 from ..core.messages import (
@@ -105,20 +105,27 @@ class Awaited:
     theta: float | None
 
 
+class RequestSink(Protocol):
+    """Who carries a robot's requests to the gateway."""
+
+    def say(self, request: Request) -> None:
+        """Send a request."""
+
+
 class Agent:
-    """Takes in answers, lets time pass, and hands out the requests to send through ``say``.
+    """Takes in answers, lets time pass, and hands the requests to send to its ``sink``.
 
     A message that came twice is acknowledged twice and done once. Until the gateway has taken its Ready the
     robot says nothing else: another one may run under its account.
     """
 
-    def __init__(self, settings: AgentSettings, say: Callable[[Request], None]) -> None:
+    def __init__(self, settings: AgentSettings, sink: RequestSink) -> None:
         self._settings = settings
-        self._say = say
+        self._sink = sink
         self._random = random.Random(settings.seed)
         self._body: SimulatedVehicle = settings.body or Body(settings.pose, settings.limits)
         self._driver: Driver | None = None
-        self._sightings = ScriptedObjects(settings.things, settings.image, say)
+        self._sightings = ScriptedObjects(settings.things, settings.image)
         self._done: dict[int, None] = {}
         """The ids of the newest messages that were done, in that order."""
         self._database: str | None = None
@@ -155,7 +162,7 @@ class Agent:
         """Say Ready; done again whenever the link is made anew."""
         self._greet_in = math.inf
         asks, cones = self._settings.asks_path or None, self._settings.path_cones or None
-        self._say(Ready(magic=self._magic, asks_path=asks, path_cones=cones))
+        self._sink.say(Ready(magic=self._magic, asks_path=asks, path_cones=cones))
 
     def receive(self, answer: Answer, id: int | None) -> OpAck | None:
         """Take in message ``id`` of the server; return what to acknowledge it with."""
@@ -168,7 +175,7 @@ class Agent:
             return None
         if isinstance(answer, Abort) and self._admitted:
             # What it has come to the end of has been reached, and is not aborted: said before its OpAck.
-            self._say(self._position())
+            self._sink.say(self._position())
         if id is not None and id in self._done:
             # The gateway has not heard what became of it: it is told once more that all is done, when it is.
             self._moving = True
@@ -200,9 +207,8 @@ class Agent:
             if self._greet_in <= 0:
                 self.greet()
             return
-        self._sightings.observe(self._body.pose)
-        for observed in self._body.observations():
-            self._say(observed)
+        for observed in (*self._sightings.observe(self._body.pose), *self._body.observations()):
+            self._sink.say(observed)
         self._ask_in -= dt
         if self._ask_in <= 0:
             self._ask_path()
@@ -215,7 +221,7 @@ class Agent:
         self._since_pose += dt
         if self._since_pose >= 1 / self._settings.rate - dt / 2:
             self._since_pose = 0.0
-            self._say(self._position())
+            self._sink.say(self._position())
         self._notice_stop()
 
     def _move(self, dt: float) -> None:
@@ -244,12 +250,12 @@ class Agent:
         """Say that the robot stands and does nothing; what it remembers of its task stays."""
         self._driver = None
         if self._admitted:
-            self._say(Stopped())
+            self._sink.say(Stopped())
 
     def alive(self) -> None:
         """Say Alive."""
         if self._admitted:
-            self._say(Alive())
+            self._sink.say(Alive())
 
     def _go_on(self, remembered: RememberedRun) -> None:
         """Be the run of the robot that is remembered, and say once more that all is done when it is."""
@@ -348,19 +354,19 @@ class Agent:
             return
         self._ask_in = ASK_AGAIN
         # The path is to begin where the robot is now.
-        self._say(self._position())
-        self._say(GetPath())
+        self._sink.say(self._position())
+        self._sink.say(GetPath())
 
     def _ask_way_round(self) -> None:
         """Ask for another path where something stays in the way; what it has is driven until one comes."""
         if self._driver is not None and self._settings.asks_path:
             self._ask_round_in = ASK_ROUND
-            self._say(self._position())
-            self._say(GetPath())
+            self._sink.say(self._position())
+            self._sink.say(GetPath())
 
     def _ask_surface(self, goal: tuple[float, float]) -> None:
         if self._settings.asks_surface:
-            self._say(GetSurface([self._body.pose[:2], goal]))
+            self._sink.say(GetSurface([self._body.pose[:2], goal]))
 
     def _take_map(self, answer: SetMap) -> str | None:
         try:
@@ -379,7 +385,7 @@ class Agent:
         if self.map is None:
             if self._map_refused:
                 self._ask_map_in = ASK_AGAIN
-                self._say(GetMap(round(x, 2), round(y, 2), FIRST_AREA))
+                self._sink.say(GetMap(round(x, 2), round(y, 2), FIRST_AREA))
             return
         border = self.map.border
         inside = before_border(self.map, x, y)
@@ -388,7 +394,7 @@ class Agent:
         near = max(NEAR_BORDER * min(width, height), self._settings.map_margin)
         if inside < near and (driven > SAME_MAP or inside < SAME_MAP):
             self._ask_map_in = ASK_AGAIN
-            self._say(GetMap(round(x, 2), round(y, 2), round(max(width, height) ** 2, 2)))
+            self._sink.say(GetMap(round(x, 2), round(y, 2), round(max(width, height) ** 2, 2)))
 
     def _take_place(self, begin: SetPosIni) -> str | None:
         drives = self._driver is not None and self._body.hindrance is None
@@ -424,5 +430,5 @@ class Agent:
         if self._moving and self._driver is None and abs(self._body.v) < STANDING:
             self._moving = False
             self._keep()
-            self._say(self._position())
-            self._say(Stopped())
+            self._sink.say(self._position())
+            self._sink.say(Stopped())

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -263,24 +263,24 @@ class ScriptedObject:
 
 
 class ScriptedObjects:
-    """Says each thing once, as an object and, where there is an ``image``, as an image of it."""
+    """Observes each thing once, as an object and, where there is an ``image``, as an image of it."""
 
-    def __init__(
-        self, things: Sequence[ScriptedObject], image: bytes | None, say: Callable[[Observed], None]
-    ) -> None:
+    def __init__(self, things: Sequence[ScriptedObject], image: bytes | None) -> None:
         self._unseen = list(things)
         self._image = image
-        self._say = say
         self._count = 0
 
-    def observe(self, pose: Pose) -> None:
-        """Say what is seen from ``pose``."""
+    def observe(self, pose: Pose) -> list[Observed]:
+        """Return what is seen from ``pose`` and was not before."""
+        observed: list[Observed] = []
         for thing in [thing for thing in self._unseen if _sees(pose, thing)]:
             self._unseen.remove(thing)
-            self._say(SetObject(thing.x, thing.y, thing.id, source=self._source()))
+            observed.append(SetObject(thing.x, thing.y, thing.id, source=self._source()))
             if self._image is not None:
                 x, y, _ = pose
-                self._say(SendImage(self._image, round(x, 3), round(y, 3), thing.id, source=self._source()))
+                image = SendImage(self._image, round(x, 3), round(y, 3), thing.id, source=self._source())
+                observed.append(image)
+        return observed
 
     def _source(self) -> str:
         self._count += 1

@@ -8,9 +8,9 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Protocol
 
-from ..core.messages import Request, check_robot_name
+from ..core.messages import check_robot_name
 from ..protocol.credentials import ClientCredentials
-from .agent import STEER_EVERY, Agent, AgentSettings
+from .agent import STEER_EVERY, Agent, AgentSettings, RequestSink
 from .body import BodyLimits, Pose, ScriptedObject, SimulatedVehicle
 from .memory import RobotMemory
 from .websocket_link import RobotWebSocketLink
@@ -44,11 +44,8 @@ class ReferenceRobotSettings:
     body: SimulatedVehicle | None = None
 
 
-class RobotLink(Protocol):
+class RobotLink(RequestSink, Protocol):
     """Carries the agent's requests out and the server's answers in."""
-
-    def say(self, request: Request) -> None:
-        """Send a request."""
 
     async def run(self, agent: Agent) -> None:
         """Carry messages until cancelled."""
@@ -74,7 +71,7 @@ async def run(settings: ReferenceRobotSettings, stop: asyncio.Event) -> None:
             map_margin=settings.map_margin,
             body=settings.body,
         ),
-        link.say,
+        link,
     )
     tasks = [
         asyncio.create_task(work) for work in (link.run(agent), _live(agent), _say_alive(agent), stop.wait())

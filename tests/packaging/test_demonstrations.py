@@ -7,13 +7,13 @@ import signal
 import subprocess
 import sys
 import time
-from pathlib import Path
 
 import pytest
 
 from robot_bridge.core.robotmap.binary import decode_text
 from tests.support.fleet import STARTS
 from tests.support.patience import BUSY
+from tests.support.processes import left_running
 
 
 @pytest.fixture
@@ -25,18 +25,6 @@ def environment(tmp_path) -> dict[str, str]:
         "FLEET_DEMO_FOLDER": str(tmp_path / "demo"),
         "FLEET_DESKTOP_FOLDER": str(tmp_path / "desktop"),
     }
-
-
-def left_running(folder: Path) -> set[int]:
-    """Return the processes that inherited an environment that names ``folder``."""
-    found = set()
-    for file in Path("/proc").glob("[0-9]*/environ"):
-        try:
-            if str(folder).encode() in file.read_bytes():
-                found.add(int(file.parent.name))
-        except OSError:
-            continue
-    return found
 
 
 def test_the_demo_does_what_it_says(root, tmp_path, environment):

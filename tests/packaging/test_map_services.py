@@ -33,9 +33,9 @@ from robot_bridge.gateway.storage import revisions
 from robot_bridge.gateway.storage.database import run_once
 from robot_bridge.gateway.storage.map_views import map_views_on, virtual_layers
 from robot_bridge.gateway.storage.schema import robots, trajectories
-from tests.support.databases.database_server import find_program, free_port
+from tests.support.databases.database_server import find_program
 from tests.support.errors import StageError
-from tests.support.processes import Processes
+from tests.support.processes import Processes, free_port
 
 ROOT = Path(__file__).resolve().parents[2]
 PROGRAM = ROOT / "tools" / "serve_maps.py"

@@ -14,7 +14,7 @@ import time
 import pytest
 
 from tests.support.errors import StageError
-from tests.support.processes import Processes
+from tests.support.processes import Processes, is_running
 from tests.support.session import follow
 from tests.support.verdict import Errand, judge
 
@@ -41,14 +41,6 @@ def work():
     {work}
 sys.exit(ended("show", work, "logs: here"))
 """
-
-
-def is_running(pid: int) -> bool:
-    try:
-        os.kill(pid, 0)
-    except ProcessLookupError:
-        return False
-    return True
 
 
 def test_an_exception_ends_every_process(tmp_path):

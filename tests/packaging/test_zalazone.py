@@ -5,13 +5,13 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
-from pathlib import Path
 
 import numpy as np
 import pytest
 
 from robot_bridge.core.sites.frame import SiteFrame
 from tests.support.errors import StageError
+from tests.support.processes import left_running
 from tests.support.robots.ros_peer import ros_python
 from tools.zalazone.places import same_ground, spellings
 from tools.zalazone.recording import Sample, compare
@@ -65,19 +65,6 @@ def test_the_whole_of_it_happens_on_the_real_proving_ground(demo, data, tmp_path
     assert (folder / "steps.txt").read_text(encoding="utf-8") in done.stdout
     assert (folder / "window.png").stat().st_size > 200_000, "an empty window is a small file"
     assert not left_running(folder)
-
-
-def left_running(folder: Path) -> set[int]:
-    """Return the processes that have ``folder`` in their environment or command."""
-    found = set()
-    for process in Path("/proc").glob("[0-9]*"):
-        try:
-            said = (process / "environ").read_bytes() + (process / "cmdline").read_bytes()
-        except OSError:
-            continue
-        if str(folder).encode() in said:
-            found.add(int(process.name))
-    return found
 
 
 def test_an_unknown_part_is_named(demo):

@@ -386,7 +386,7 @@ def at_desk(plugin, gateway, iface):
     window.dock.connection_panel._url.setText(gateway.url)
     window.dock.connection_panel._operator.setText("anna")
     window.actions.connect.trigger()
-    wait_until(lambda: len(window.desk.picture) == 2, what="two robots")
+    wait_until(lambda: len(window.desk.state.robots) == 2, what="two robots")
     # What is known is shown in a piece of its own.
     wait_until(lambda: window.dock.table.model().rowCount() == 2, what="two robots in the table")
     iface.is_settled = lambda: not window.desk.checks.is_under_way

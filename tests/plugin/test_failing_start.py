@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 from fleet_supervisor.plugin.locator import RobotLocator
+from fleet_supervisor.plugin.map.overlay.task_painter import QueueMarks
 from fleet_supervisor.plugin.panel.window import WindowAlarms
 from fleet_supervisor.plugin.plugin import FleetPlugin
 from fleet_supervisor.plugin.tour.tour_panel import TourAction
@@ -33,4 +34,22 @@ def test_what_was_there_before_it_failed_is_taken_out(iface, monkeypatch, part):
     plugin.initGui()
     assert plugin.window is not None
     plugin.unload()
+    assert state_of(iface) == before
+
+
+@pytest.mark.parametrize("part", [RobotLocator, QueueMarks])
+def test_all_the_others_are_taken_out_where_one_part_fails_to_go(iface, monkeypatch, part):
+    go = part.remove
+
+    def fail(self):
+        go(self)
+        raise RuntimeError("it will not go")
+
+    before = state_of(iface)
+    plugin = FleetPlugin(iface)
+    plugin.initGui()
+    monkeypatch.setattr(part, "remove", fail)
+    with pytest.raises(RuntimeError, match="it will not go"):
+        plugin.unload()
+    assert plugin.window is None
     assert state_of(iface) == before

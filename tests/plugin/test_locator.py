@@ -45,7 +45,7 @@ def test_rb_and_a_name_finds_robots_goes_there_and_selects(at_desk, iface, wait,
     assert [result.displayString for result in results] == ["forklift-12"]
     assert ", heard of " in results[0].description
     results[0].filter.triggerResult(results[0])
-    assert at_desk.desk.selection == ("forklift-12",)
+    assert at_desk.desk.selection.robots == ("forklift-12",)
     centre = iface.canvas.center()
     assert (centre.x() - 488000, centre.y() - 5190000) == pytest.approx((150, 120), abs=1)
 
@@ -70,7 +70,7 @@ def test_enter_before_the_list_is_there_goes_by_what_is_typed(
     wait(lambda: QgsExpression("robot_state('r2') IS NOT NULL").evaluate())
     (result,) = found(iface, "rb r1", wait)
     gone_to = []
-    monkeypatch.setattr(result.filter, "_go", gone_to.append)
+    monkeypatch.setattr(result.filter._viewer, "go_to", gone_to.append)
     result.filter.triggerResult(result)
     assert gone_to == goes_to
 
@@ -81,7 +81,7 @@ def test_a_row_that_was_chosen_counts(at_desk, iface, wait):
     wait(lambda: QgsExpression("robot_state('r2') IS NOT NULL").evaluate())
     _, second = found(iface, "rb r", wait)
     second.filter.triggerResult(second)
-    assert at_desk.desk.selection == ("r2",)
+    assert at_desk.desk.selection.robots == ("r2",)
 
 
 def test_rb_alone_lists_every_robot(at_desk, iface, wait):

@@ -77,13 +77,13 @@ def test_settings_that_are_none_count_as_never_set(qgis_app, value):
 
 
 def test_larger_robots_are_painted_larger(at_desk, iface, wait, gateway, make_robot):
-    at_desk.desk.select("r1")
+    at_desk.desk.selection.select("r1")
 
     def blue():
         # Anew: one that was silent for a while is of another colour.
         gateway.show(make_robot("r2", 80, 60))
-        revision = at_desk.desk.picture.revision
-        wait(lambda: at_desk.desk.picture.revision > revision)
+        revision = at_desk.desk.state.robots.revision
+        wait(lambda: at_desk.desk.state.robots.revision > revision)
         at_desk.view.show_now()
         QApplication.processEvents()
         image = iface.canvas.grab().toImage()

@@ -10,7 +10,7 @@ from tests.support.processes import Processes
 from tests.support.qgis import Profile, virtual_screen
 from tests.support.session import follow, start_qgis
 
-TIMES = 6
+TIMES = 4
 
 
 @pytest.fixture(scope="module")

@@ -23,7 +23,7 @@ def connected(iface, gateway, wait):
     plugin.initGui()
     plugin.window.dock.findChild(QLineEdit, "fleet_url").setText(gateway.url)
     plugin.window.actions.connect.trigger()
-    wait(lambda: len(plugin.window.desk.picture) == 1)
+    wait(lambda: len(plugin.window.desk.state.robots) == 1)
     return plugin
 
 
@@ -34,7 +34,7 @@ def test_unloading_leaves_nothing_twice(iface, gateway, make_robot, wait):
     for _ in range(2):
         plugin = connected(iface, gateway, wait)
         window = plugin.window
-        window.desk.select("r1")
+        window.desk.selection.select("r1")
         window.actions.cone.trigger()
         iface.click(60, 50)
         window.desk.abort_all()
@@ -80,7 +80,7 @@ def test_unloading_while_a_gateway_hangs_does_not_hang(iface, gateway, wait):
     plugin.initGui()
     plugin.window.dock.findChild(QLineEdit, "fleet_url").setText(gateway.url)
     plugin.window.actions.connect.trigger()
-    wait(lambda: plugin.window.desk.site is not None)
+    wait(lambda: plugin.window.desk.state.site is not None)
     release = threading.Event()
     gateway._loop.call_soon_threadsafe(release.wait)
     began = time.monotonic()

@@ -1,11 +1,14 @@
-"""Processes that end when the demonstration ends, however it ends."""
+"""Processes that end when what started them ends, however it ends; and ports for them."""
 
 from __future__ import annotations
 
+import contextlib
 import os
+import random
 import re
 import shutil
 import signal
+import socket
 import subprocess
 import sys
 import time
@@ -128,6 +131,38 @@ class Processes:
 def _said(text: str) -> str:
     last = [line for line in text.splitlines() if line.strip()][-5:]
     return "; it said:\n  " + "\n  ".join(last) if last else "; it said nothing"
+
+
+def free_port() -> int:
+    """Return a port on loopback that nobody listens on and no client is given while a server is down."""
+    lowest = int(Path("/proc/sys/net/ipv4/ip_local_port_range").read_text(encoding="ascii").split()[0])
+    for port in random.sample(range(10_000, max(lowest, 20_000)), 100):
+        with socket.socket() as probe, contextlib.suppress(OSError):
+            probe.bind(("127.0.0.1", port))
+            return port
+    raise StageError("100 ports of 127.0.0.1 from 10000 on were all taken")
+
+
+def is_running(pid: int) -> bool:
+    """Whether a process is there and has not ended; one that nobody has waited for yet has."""
+    try:
+        stat = Path(f"/proc/{pid}/stat").read_text(encoding="ascii", errors="replace")
+    except (FileNotFoundError, ProcessLookupError):
+        return False
+    return stat.rpartition(")")[2].split()[0] not in "ZX"
+
+
+def left_running(folder: Path) -> set[int]:
+    """Return the processes that have ``folder`` in their environment or command."""
+    found = set()
+    for process in Path("/proc").glob("[0-9]*"):
+        try:
+            text = (process / "environ").read_bytes() + (process / "cmdline").read_bytes()
+        except OSError:
+            continue
+        if str(folder).encode() in text:
+            found.add(int(process.name))
+    return found
 
 
 def leave_on_signals() -> None:

@@ -76,7 +76,7 @@ def connected(url: str, tokens: dict[str, str]) -> Iterator[tuple[Any, Any]]:
     from qgis.gui import QgsMapCanvas
     from qgis.PyQt.QtWidgets import QWidget
 
-    credentials = part("plugin.gateway_client.link").OperatorCredentials
+    credentials = part("plugin.gateway_client.connection_status").OperatorCredentials
     ben = part("plugin.gateway_client.connection").ConnectionThread()
     desk = part("plugin.control.fleet_controller").FleetController(QgsMapCanvas(), QgsProject.instance())
     try:

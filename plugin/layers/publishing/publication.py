@@ -182,7 +182,7 @@ class NewPublication:
 
         :raises PublicationError: when a layer cannot be written.
         """
-        self._cache = cache = cache_writer(self._staged.folder, settings.frame)
+        self._cache = cache = self._staged.enter(cache_writer(self._staged.folder, settings.frame))
         return write_site_file(self._staged.folder / GEOPACKAGE_FILE, content, settings, cache, feedback)
 
     def replace_earlier(self, settings: SiteSettings, feedback: QgsFeedback) -> bool:
@@ -201,11 +201,6 @@ class NewPublication:
         publish_staged(self._staged)
         return True
 
-    def remove(self) -> None:
-        """Delete what is kept beside the layers while they are written."""
-        if self._cache is not None:
-            self._cache.remove()
-
 
 @contextmanager
 def new_publication(folder: Path) -> Iterator[NewPublication]:
@@ -219,11 +214,7 @@ def new_publication(folder: Path) -> Iterator[NewPublication]:
         for left_by_a_crash in folder.glob(f"{_PARTIAL}*"):
             shutil.rmtree(left_by_a_crash, ignore_errors=True)
         with StagedFiles(folder, _PARTIAL) as staged:
-            publication = NewPublication(staged)
-            try:
-                yield publication
-            finally:
-                publication.remove()
+            yield NewPublication(staged)
     except OSError as error:
         raise unwritable(folder, error.strerror or str(error)) from error
 

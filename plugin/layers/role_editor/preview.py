@@ -14,6 +14,7 @@ from qgis.PyQt.QtWidgets import QSizePolicy, QWidget
 
 from ....robot_bridge.core.robotmap.model import ShapeType
 from ...ui.errors import FleetError
+from ...ui.glyphs import painting
 from ...ui.language import tr, tr_count
 from ..layer_source import ObstacleSource
 from ..obstacle_layers import read_outlines
@@ -153,9 +154,8 @@ def draw_preview(
     order = list(COLOURS)
     drawn.sort(key=lambda one: order.index(one.role))
     placed = _placed([one.segments for one in drawn], size)
-    painter = QPainter(image)
-    painter.setRenderHint(QPainter.RenderHint.Antialiasing)
-    try:
+    with painting(image) as painter:
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         for one, segments in zip(drawn, placed, strict=True):
             painter.setPen(QPen(COLOURS[one.role], 1.2))
             for first in range(0, len(segments), _EVERY):
@@ -163,8 +163,6 @@ def draw_preview(
                     return None
                 painter.drawLines([QLineF(*row) for row in segments[first : first + _EVERY].tolist()])
         _scale_bar(painter, size, _metres_to_pixels([one.segments for one in drawn], size))
-    finally:
-        painter.end()
     return image
 
 
@@ -281,11 +279,10 @@ class PreviewView(QWidget):
         self.update()
 
     def paintEvent(self, event: QPaintEvent) -> None:
-        painter = QPainter(self)
-        painter.fillRect(self.rect(), GROUND)
-        if not self.image.isNull():
-            painter.drawImage(self.rect(), self.image)
-        painter.end()
+        with painting(self) as painter:
+            painter.fillRect(self.rect(), GROUND)
+            if not self.image.isNull():
+                painter.drawImage(self.rect(), self.image)
 
     def resizeEvent(self, event: QResizeEvent) -> None:
         super().resizeEvent(event)

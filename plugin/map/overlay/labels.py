@@ -14,12 +14,9 @@ from ....robot_bridge.core.messages import RobotState
 from ...gateway_client.robot_states import RobotArrays
 from ...gateway_client.robot_table import STATES
 from ...gateway_client.state_texts import ROBOT_STATES
-from ...ui.glyphs import PAPER
+from ...ui.glyphs import PAPER, painting
 from ...ui.language import tr
-from .scene import InView, MapScene
-from .screen import Screen
-
-# --- Short texts as pictures, readable on any ground ---
+from .scene import InView, MapScene, Screen
 
 INK = QColor("#101418")
 MOST = 600
@@ -86,21 +83,18 @@ def _drawn(text: str, ratio: float) -> QPixmap:
     pixmap = QPixmap(math.ceil(width * ratio), math.ceil(height * ratio))
     pixmap.setDevicePixelRatio(ratio)
     pixmap.fill(QColor(0, 0, 0, 0))
-    painter = QPainter(pixmap)
-    painter.setFont(font)
-    painter.setPen(PAPER)
-    written = QStaticText(text)
-    written.setTextFormat(Qt.TextFormat.PlainText)
-    # To stroke the letters' outlines would take six times as long as to write them eight times.
-    for beside in _AROUND:
-        painter.drawStaticText(beside, written)
-    painter.setPen(INK)
-    painter.drawStaticText(_AT, written)
-    painter.end()
+    with painting(pixmap) as painter:
+        painter.setFont(font)
+        painter.setPen(PAPER)
+        written = QStaticText(text)
+        written.setTextFormat(Qt.TextFormat.PlainText)
+        # To stroke the letters' outlines would take six times as long as to write them eight times.
+        for beside in _AROUND:
+            painter.drawStaticText(beside, written)
+        painter.setPen(INK)
+        painter.drawStaticText(_AT, written)
     return pixmap
 
-
-# --- Where on the screen there is room for a text ---
 
 Points = npt.NDArray[np.float64]
 Widths = npt.NDArray[np.float64]
@@ -182,8 +176,6 @@ def _bits(left: int, right: int) -> int:
     """Return a number with a bit for each cell from ``left`` to before ``right``."""
     return (1 << right) - (1 << left)
 
-
-# --- Paints robots' names, as many as there is room for, and what is to be known of those that are silent
 
 Rows = npt.NDArray[np.intp]
 

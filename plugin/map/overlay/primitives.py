@@ -11,9 +11,7 @@ from qgis.PyQt.QtCore import QByteArray, QDataStream, QLineF, QPointF, Qt
 from qgis.PyQt.QtGui import QBrush, QColor, QImage, QPainter, QPainterPath, QPen, QPixmap, QPolygonF
 
 from ....robot_bridge.core.messages import RobotState
-from ...ui.glyphs import CASING, CELL, PAPER, SELECTED, draw_arrow, draw_cone, draw_robot, pen
-
-# --- Lines and rings that can be seen on any ground: a colour on a dark casing ---
+from ...ui.glyphs import CASING, CELL, PAPER, SELECTED, draw_arrow, draw_cone, draw_robot, painting, pen
 
 Points = npt.NDArray[np.float64]
 
@@ -106,8 +104,6 @@ def _legs(pixels: Points) -> list[QLineF]:
     return lines(pixels[:-1], pixels[1:])
 
 
-# --- A drawing that points to all sides: an eighth of them is drawn, the others are its mirror images ---
-
 Cells = npt.NDArray[np.uint32]
 Draw = Callable[[QPainter], None]
 
@@ -137,13 +133,12 @@ def drawn(draw: Draw, side: int, scale: float, degrees: float = 0.0) -> Cells:
     """Return (side, side) pixels with the drawing around their middle, turned clockwise."""
     image = QImage(side, side, FORMAT)
     image.fill(0)
-    painter = QPainter(image)
-    painter.setRenderHint(QPainter.RenderHint.Antialiasing)
-    painter.translate(side / 2, side / 2)
-    painter.scale(scale, scale)
-    painter.rotate(degrees)
-    draw(painter)
-    painter.end()
+    with painting(image) as painter:
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        painter.translate(side / 2, side / 2)
+        painter.scale(scale, scale)
+        painter.rotate(degrees)
+        draw(painter)
     bits = image.constBits()
     bits.setsize(image.sizeInBytes())
     return np.frombuffer(bits, dtype=np.uint32).reshape(side, side).copy()
@@ -156,8 +151,6 @@ def in_a_column(cells: Cells) -> QPixmap:
     # A picture of its own: the image only looks at the array.
     return QPixmap.fromImage(QImage(column.data, side, count * side, side * 4, FORMAT).copy())
 
-
-# --- The pictures that robots, marks and arrows are painted from, a cell for each way that one can look
 
 HEADINGS = 88
 """Directions that robots are drawn in; between them nobody sees a difference."""
@@ -219,8 +212,6 @@ def _mark(mark: int) -> Draw:
 
     return draw
 
-
-# --- Many copies of a few pictures, painted in one call ---
 
 FIELDS = 10
 """x, y, source left, top, width, height, scale x, scale y, rotation, opacity: Qt's PixmapFragment."""

@@ -32,10 +32,7 @@ from .primitives import (
     robot_atlas,
     segments,
 )
-from .scene import InView, MapScene
-from .screen import Screen
-
-# --- Paints robots: what they are, which are selected, how fast they go and how sure their place is ---
+from .scene import InView, MapScene, Screen
 
 Points = npt.NDArray[np.float64]
 Rows = npt.NDArray[np.intp]
@@ -80,6 +77,14 @@ class RobotsPainter:
         """How many times as large as they come robots are drawn."""
         self.arrows = True
         """Whether the robots themselves are painted; their rings always are."""
+
+    def set_magnification(self, times: float) -> None:
+        """Draw robots so many times as large as they come."""
+        self.magnification = times
+
+    def draw_arrows(self, wanted: bool) -> None:
+        """Draw an arrow for each robot, or none."""
+        self.arrows = wanted
 
     def marks(self, ratio: float, size: float = 1.0) -> Sprites:
         """Return the marks of :func:`~.desk.live.atlases.mark_atlas`."""
@@ -194,7 +199,7 @@ def circles(placed: MapScene, view: InView) -> list[tuple[int, Points]]:
     if len(wide) == 0:
         return []
     corners = robots.xy[wide, None, :] + _CIRCLE * robots.accuracy[wide, None, None]
-    on_map = placed.to_map(corners.reshape(-1, 2)).reshape(len(wide), CORNERS, 2)
+    on_map = placed.placement.to_map(corners.reshape(-1, 2)).reshape(len(wide), CORNERS, 2)
     return list(zip(wide.tolist(), on_map, strict=True))
 
 
@@ -243,8 +248,6 @@ def _velocities(
         painter.setPen(flat(stroke))
         painter.drawLines(long_ones)
 
-
-# --- Points, at the border of the map, to the robots beyond it ---
 
 MARGIN = 14.0
 APART = 56.0

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,10 +11,9 @@ import numpy.typing as npt
 from qgis.PyQt.QtCore import QPointF
 from qgis.PyQt.QtGui import QColor, QImage, QPainter
 
+from ...layers.site_transform import SiteToMapTransform
 from ...ui.glyphs import CASING, TRAIL
-from .screen import Screen
-
-# --- Where each robot came from: samples of its way, all robots in one table ---
+from .scene import Screen
 
 Points = npt.NDArray[np.float64]
 
@@ -49,8 +47,9 @@ LENGTHS = (
 class Trails:
     """The last places of every robot in the site frame, with the time when each was seen.
 
-    One row a robot, as in :class:`~.desk.picture.RobotArrays`; a ring of samples for each. Samples taken at
-    the same time stand side by side, as robots that tell of themselves together are sampled together.
+    One row a robot, as in :class:`~.gateway_client.robot_states.RobotArrays`; a ring of samples for each.
+    Samples taken at the same time stand side by side, as robots that tell of themselves together are sampled
+    together.
     """
 
     def __init__(self) -> None:
@@ -150,8 +149,6 @@ class Trails:
         self.generation += 1
 
 
-# --- Trails on one screen, in an image that stays: each pixel knows when a robot was there last ---
-
 Numbers = npt.NDArray[np.float64]
 Pixels = npt.NDArray[np.intp]
 Shades = npt.NDArray[np.uint8]
@@ -169,19 +166,17 @@ NEVER = -1e9
 
 
 class TrailSheet:
-    """The trails as ``screen`` shows them; ``to_map`` takes (n, 2) metres of the site to map coordinates.
+    """The trails as ``screen`` shows them; ``placement`` takes metres of the site to map coordinates.
 
     It is made empty and filled from the newest to the oldest, over as many frames as that takes.
     """
 
-    def __init__(
-        self, trails: Trails, screen: Screen, to_map: Callable[[Points], Points], now: float
-    ) -> None:
+    def __init__(self, trails: Trails, screen: Screen, placement: SiteToMapTransform, now: float) -> None:
         width, height = math.ceil(screen.width * screen.ratio), math.ceil(screen.height * screen.ratio)
         self.screen = screen
         self.filled = False
         self._trails = trails
-        self._to_map = to_map
+        self._placement = placement
         self._epoch = now
         self._times = np.full((height, width), NEVER, dtype=np.float32)
         self._argb = np.zeros((height, width), dtype=np.uint32)
@@ -221,7 +216,7 @@ class TrailSheet:
                 return
             earlier = np.full((len(sample), 2), np.nan)
             places = sample.take(there, axis=0)[:, :2]
-            earlier[there] = self.screen.pixels(self._to_map(places)) * self.screen.ratio
+            earlier[there] = self.screen.pixels(self._placement.to_map(places)) * self.screen.ratio
             later, times = self._later
             self._stamp(earlier, later, times)
             self._later = earlier, sample[:, 2]
@@ -369,9 +364,6 @@ def _shades(colour: QColor, strength: float) -> npt.NDArray[np.uint32]:
     return np.round(alpha * 255).astype(np.uint32) << 24 | red << 16 | green << 8 | blue
 
 
-# --- The trails on the canvas, whichever way the view moves ---
-
-
 class TrailImage:
     """Shows a sheet of trails, moved along with the view, until one for the new view is filled."""
 
@@ -386,19 +378,19 @@ class TrailImage:
         self._view: tuple = ()
         self._made_for: tuple = ()
 
-    def extend(self, xy: Points, screen: Screen, to_map: Callable[[Points], Points], now: float) -> None:
+    def extend(self, xy: Points, screen: Screen, placement: SiteToMapTransform, now: float) -> None:
         """Draw on to (n, 2) ``xy``, where the robots are now in map coordinates, NaN where not known.
 
         ``now`` is on the clock of the trails' samples.
         """
-        view = (self._trails.generation, to_map, screen)
+        view = (self._trails.generation, placement, screen)
         if view[:2] != self._made_for[:2]:
             self.forget()
         # While the view moves a new sheet would be out of date before it is filled.
         at_rest = view == self._view or self._newest is None
         self._view = view
         if view != self._made_for and at_rest:
-            self._newest = TrailSheet(self._trails, screen, to_map, now)
+            self._newest = TrailSheet(self._trails, screen, placement, now)
             self._made_for = view
         self._newest.extend(xy, now)
         if self._newest.filled or self._shown is None:

@@ -110,14 +110,14 @@ class ClosureTool(QgsMapTool):
 
     def _place(self, pixel: QPoint) -> tuple[Point, float]:
         """Return the place of a click in the site frame, and the metres by which it may miss a road."""
-        placement = self._desk.placement()
+        placement = self._desk.site_to_canvas.transform()
         place = placement.to_site(self.toMapCoordinates(pixel))
         beside = self.toMapCoordinates(pixel + QPoint(round(REACH), 0))
         return place, max(math.dist(place, placement.to_site(QgsPointXY(beside))), LEAST_REACH)
 
     def _closed_at(self, place: Point, reach: float) -> ClosureReport | None:
         found, least = None, reach
-        for closure in self._desk.roads.closures:
+        for closure in self._desk.state.closures:
             line = np.array(closure.line)
             off = float(foot_on(line[:-1], line[1:], np.array(place))[1].min())
             if off <= least:

@@ -19,8 +19,6 @@ from ...control.pending_command import PendingCommand, Point
 from ...ui.errors import FleetError
 from ...ui.language import tr
 
-# --- Points moved by the arrow keys ---
-
 FINE_M, COARSE_M = 0.1, 1.0
 """Metres a key press, with Ctrl, and with Ctrl and Shift."""
 _ASIDE = {Qt.Key.Key_Left: (-1, 0), Qt.Key.Key_Right: (1, 0), Qt.Key.Key_Up: (0, -1), Qt.Key.Key_Down: (0, 1)}
@@ -41,7 +39,7 @@ def moved_by_arrow(event: QKeyEvent, desk: FleetController, point: Point) -> Poi
     """
     aside = _ASIDE[event.key()]
     coarse = event.modifiers() & Qt.KeyboardModifier.ShiftModifier
-    placement, screen = desk.placement(), desk.canvas.getCoordinateTransform()
+    placement, screen = desk.site_to_canvas.transform(), desk.canvas.getCoordinateTransform()
     ((x, y),) = placement.to_map(np.array([point]))
     pixel = screen.transform(QgsPointXY(x, y))
     beside = placement.to_site(
@@ -51,8 +49,6 @@ def moved_by_arrow(event: QKeyEvent, desk: FleetController, point: Point) -> Poi
     step = (COARSE_M if coarse else FINE_M) / math.hypot(dx, dy)
     return point[0] + dx * step, point[1] + dy * step
 
-
-# --- What map tools that draw have in common: clicks draw, a right click ends it, Enter sends, Esc cancels
 
 SEND_KEYS = (Qt.Key.Key_Return, Qt.Key.Key_Enter)
 UNDO, REDO = QKeySequence.StandardKey.Undo, QKeySequence.StandardKey.Redo
@@ -81,7 +77,7 @@ class DrawingTool(QgsMapTool):
         self._snapped = QgsSnapIndicator(self.canvas())
         self.canvas().installEventFilter(self)
         self.canvas().setFocus()
-        if self.desk.selected is None:
+        if self.desk.selection.last is None:
             text = tr("Select a robot first, in the table or on the map.")
             self.desk.messages.post(text, Level.WARNING, SELECTION)
 
@@ -124,7 +120,7 @@ class DrawingTool(QgsMapTool):
             self.finish()
         elif event.button() == Qt.MouseButton.LeftButton:
             at = event.snapPoint()
-            self._try(lambda: self._place(lambda: self.desk.placement().to_site(at)))
+            self._try(lambda: self._place(lambda: self.desk.site_to_canvas.transform().to_site(at)))
 
     def keyPressEvent(self, event: QKeyEvent) -> None:
         if event.key() in SEND_KEYS:
@@ -203,10 +199,10 @@ class DrawingTool(QgsMapTool):
         self.clicked(where())
 
     def _pasted(self) -> Point:
-        self.desk.placement()
+        self.desk.site_to_canvas.transform()
         wgs84 = QgsCoordinateReferenceSystem(PASTED_IN)
         context = self.desk.project.transformContext()
-        return read_site_place(QApplication.clipboard().text(), wgs84, self.desk.site, context)
+        return read_site_place(QApplication.clipboard().text(), wgs84, self.desk.state.site, context)
 
     def _try(self, change: Callable[[], object]) -> None:
         try:
@@ -215,7 +211,7 @@ class DrawingTool(QgsMapTool):
             self.desk.complained.emit(str(error))
 
     def _check_robot(self) -> None:
-        if self.desk.selected is None and self.draft is None:
+        if self.desk.selection.last is None and self.draft is None:
             raise FleetError(
                 tr(
                     "No robot is selected, so there is nobody to send there. Select one in the table or on "

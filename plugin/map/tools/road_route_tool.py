@@ -21,8 +21,6 @@ from ...ui.errors import FleetError, MapTransformError, NotSentError
 from ...ui.language import tr
 from .route_tool import RouteTool
 
-# --- The way along the roads to where the mouse is, drawn on the canvas with its length, time and surfaces
-
 ALONG, STRAIGHT = QColor(21, 101, 192, 210), QColor(198, 40, 40, 210)
 CASING = QColor(255, 255, 255, 90)
 """Beneath it: on the asphalt of a photograph the colour alone is lost."""
@@ -51,8 +49,8 @@ class RoutePreview(QObject):
         self._begins: Point | None = None
         """Where the way that is shown begins, of one from where a robot is."""
         desk.preview.shown.connect(self._show)
-        desk.selection_changed.connect(self.hide)
-        desk.pulled.connect(self._follow)
+        desk.selection.changed.connect(self.hide)
+        desk.state.updated.connect(self._follow)
 
     def lead_to(
         self,
@@ -68,7 +66,7 @@ class RoutePreview(QObject):
         if robot is None:
             return
         try:
-            goal = self._desk.placement().to_site(event.mapPoint())
+            goal = self._desk.site_to_canvas.transform().to_site(event.mapPoint())
             self._question = RouteQuestion(robot, start, goal, wishes=wishes)
             self._desk.preview.want(self._question)
         except (NotSentError, MapTransformError):
@@ -112,7 +110,7 @@ class RoutePreview(QObject):
         question = self._question
         if self._band is None or self._begins is None or question is None or question.start is not None:
             return
-        view = self._desk.picture.view(question.robot, self._desk.clock())
+        view = self._desk.state.robots.view(question.robot, self._desk.clock.steady())
         if view is None or not view.has_pose:
             return
         if math.dist((view.told["x"], view.told["y"]), self._begins) > MOVED_M:
@@ -135,7 +133,7 @@ class RoutePreview(QObject):
 
     def _draw(self, route: RouteReport) -> None:
         try:
-            points = self._desk.placement().to_map(np.array(route.points))
+            points = self._desk.site_to_canvas.transform().to_map(np.array(route.points))
         except FleetError:
             return
         self._band = QgsRubberBand(self._desk.canvas, QgsWkbTypes.GeometryType.LineGeometry)
@@ -145,9 +143,6 @@ class RoutePreview(QObject):
         self._band.setLineStyle(Qt.PenStyle.DashLine)
         for number, (x, y) in enumerate(points.tolist(), 1):
             self._band.addPoint(QgsPointXY(x, y), number == len(points))
-
-
-# --- The map tool that leads a route along the roads ---
 
 
 class RoadRouteTool(RouteTool):
@@ -243,7 +238,7 @@ class RoadRouteTool(RouteTool):
         """Return whose the next leg is, and where it begins; None for where the robot is."""
         draft = self.draft
         if draft is None:
-            return self.desk.selected, None
+            return self.desk.selection.last, None
         return draft.robot, draft.points[-1]
 
     def _take(self, question: RouteQuestion, route: RouteReport) -> None:

@@ -18,8 +18,6 @@ from ...ui.errors import FleetError, MapTransformError
 from ...ui.language import tr
 from .drawing_tool import DrawingTool, is_arrow_move, moved_by_arrow
 
-# --- Where on the screen a route can be taken hold of ---
-
 REACH = 9.0
 """Pixels by which the mouse may miss a vertex or a leg."""
 MARK = QColor("#FFE14D")
@@ -66,7 +64,7 @@ class RouteHandles:
         self._marker = None
         if draft is None or vertex is None:
             return
-        ((x, y),) = self._desk.placement().to_map(np.array([draft.points[vertex]]))
+        ((x, y),) = self._desk.site_to_canvas.transform().to_map(np.array([draft.points[vertex]]))
         self._marker = QgsVertexMarker(self._desk.canvas)
         self._marker.setCenter(QgsPointXY(x, y))
         self._marker.setIconType(QgsVertexMarker.IconType.ICON_BOX)
@@ -75,7 +73,7 @@ class RouteHandles:
         self._marker.setColor(MARK)
 
     def _pixels(self, draft: PendingCommand, which: list[int]) -> np.ndarray:
-        placement = self._desk.placement()
+        placement = self._desk.site_to_canvas.transform()
         if self._placed[:2] != (id(draft.points), placement):
             flat = np.fromiter(chain.from_iterable(draft.points), np.float64).reshape(-1, 2)
             self._placed = id(draft.points), placement, draft.points, placement.to_map(flat)
@@ -97,9 +95,6 @@ def middle(draft: PendingCommand, vertex: int) -> tuple[float, float]:
     """Return the middle of the leg that ends in a vertex which is not the first point."""
     (ax, ay), (bx, by) = draft.points[vertex - 1 : vertex + 1]
     return (ax + bx) / 2, (ay + by) / 2
-
-
-# --- A vertex or a leg of a route that is dragged by the mouse; nothing of it is sent ---
 
 
 class RouteDrag:
@@ -140,7 +135,7 @@ class RouteDrag:
         assert self._from is not None
         change = pending_command.inserted if self._puts_in else pending_command.moved
         try:
-            to = self._desk.placement().to_site(event.snapPoint())
+            to = self._desk.site_to_canvas.transform().to_site(event.snapPoint())
             self._shown = change(self._from, self._vertex, to)
         except FleetError as error:
             self._desk.complained.emit(str(error))
@@ -163,8 +158,6 @@ class RouteDrag:
         if moved is not None and self._desk.drafts.draft is moved:
             self._desk.drafts.renew(before)
 
-
-# --- The map tool that draws a route ---
 
 BACKWARD, FORWARD = ("<", ","), (">", ".")
 
@@ -225,7 +218,7 @@ class RouteTool(DrawingTool):
             self.desk.drafts.point_at(None)
             return
         try:
-            self.desk.drafts.point_at(self.desk.placement().to_site(event.mapPoint()))
+            self.desk.drafts.point_at(self.desk.site_to_canvas.transform().to_site(event.mapPoint()))
         except MapTransformError:
             # A place the site frame cannot express has no preview; a click there says why.
             self.desk.drafts.point_at(None)
@@ -275,7 +268,7 @@ class RouteTool(DrawingTool):
         self._is_finished = False
         draft = self.draft
         if draft is None:
-            draft = PendingCommand(self.desk.selected, ROUTE, ())
+            draft = PendingCommand(self.desk.selection.last, ROUTE, ())
         if self.is_for_selected(draft):
             self.set_command(draft.with_leg((point,)))
 
@@ -288,14 +281,14 @@ class RouteTool(DrawingTool):
 
     def is_for_selected(self, draft: PendingCommand) -> bool:
         """Tell whether the draft is for the robot that is selected; say so where it is for another."""
-        if self.desk.selected in (None, draft.robot):
+        if self.desk.selection.last in (None, draft.robot):
             return True
         self.desk.complained.emit(
             tr(
                 "The route on the map is for {robot}, but {selected} is selected. Send it (Enter) or "
                 "cancel it (Esc) first, or select {robot} again.",
                 robot=draft.robot,
-                selected=self.desk.selected,
+                selected=self.desk.selection.last,
             )
         )
         return False

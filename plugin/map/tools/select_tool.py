@@ -53,7 +53,7 @@ class SelectTool(QgsMapTool):
         pressed, held = self._pressed_at, event.modifiers()
         if self._is_drag(event.pos()):
             area = QRect(pressed, event.pos()).normalized()
-            self._desk.select_all(self._combined(self._view.overlay.robots_in(area), held))
+            self._desk.selection.select_all(self._combined(self._view.overlay.robots_in(area), held))
         else:
             self._click(event.pos(), held)
         self._give_up()
@@ -65,7 +65,7 @@ class SelectTool(QgsMapTool):
 
     def keyPressEvent(self, event: QKeyEvent) -> None:
         if event.key() == Qt.Key.Key_Escape:
-            self._desk.select(None)
+            self._desk.selection.select(None)
         else:
             super().keyPressEvent(event)
 
@@ -73,14 +73,14 @@ class SelectTool(QgsMapTool):
         robot = self._view.overlay.robot_at(at.x(), at.y())
         there = [robot] if robot else self._view.overlay.robots_beyond(at.x(), at.y())
         if not held & (SHIFT | CONTROL):
-            self._desk.select_all(there)
+            self._desk.selection.select_all(there)
             return
-        before, struck = dict.fromkeys(self._desk.selection), set(there)
+        before, struck = dict.fromkeys(self._desk.selection.robots), set(there)
         kept = [name for name in before if name not in struck]
-        self._desk.select_all([*kept, *(name for name in there if name not in before)])
+        self._desk.selection.select_all([*kept, *(name for name in there if name not in before)])
 
     def _combined(self, there: list[str], held: Qt.KeyboardModifier) -> list[str]:
-        before = list(self._desk.selection)
+        before = list(self._desk.selection.robots)
         if held & SHIFT and held & CONTROL:
             return [name for name in before if name in set(there)]
         if held & SHIFT:

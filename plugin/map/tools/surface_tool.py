@@ -17,8 +17,6 @@ from ...ui.actions import ICONS
 from ...ui.errors import FleetError
 from ...ui.language import tr
 
-# --- The map tool that tells the road surface: beside the cursor while it moves, in words after a click
-
 
 class SurfaceTool(QgsMapTool):
     """Asks ``store`` for the project's road surfaces. It says in ``notices`` what it found.
@@ -162,9 +160,6 @@ def _told(surface: Surface | None) -> str:
         return tr("No road surface")
     name = f"“{surface.name}”, " if surface.name else ""
     return f"{_named(surface).capitalize()} ({name}{surface.origin})"
-
-
-# --- The menu entry that puts the road surface tool into the operator's hand ---
 
 
 class SurfaceAction:

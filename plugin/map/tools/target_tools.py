@@ -16,8 +16,6 @@ from ...ui.language import tr
 from .drawing_tool import DrawingTool, is_arrow_move, moved_by_arrow
 from .road_route_tool import RoutePreview
 
-# --- The map tool that sets a cone target ---
-
 
 class ConeTool(DrawingTool):
     """A click puts the cone for the selected robot, another click moves it, as do Ctrl and the arrow keys.
@@ -40,7 +38,7 @@ class ConeTool(DrawingTool):
             self._is_direct = False
 
     def hovered(self, event: QgsMapMouseEvent) -> None:
-        self._way.lead_to(event, self.desk.selected, None)
+        self._way.lead_to(event, self.desk.selection.last, None)
 
     def deactivate(self) -> None:
         self._way.clear()
@@ -57,7 +55,7 @@ class ConeTool(DrawingTool):
             )
             return
         self.set_command(
-            PendingCommand(self.desk.selected or other.robot, CONE, (point,), is_direct=self._is_direct)
+            PendingCommand(self.desk.selection.last or other.robot, CONE, (point,), is_direct=self._is_direct)
         )
 
     def key(self, event: QKeyEvent) -> bool:
@@ -76,9 +74,6 @@ class ConeTool(DrawingTool):
             )
         )
         return True
-
-
-# --- The map tool that tells a robot where it stands ---
 
 
 class StartTool(DrawingTool):
@@ -110,7 +105,7 @@ class StartTool(DrawingTool):
 
     def _drawn(self, start: QgsPointXY, end: QgsPointXY) -> None:
         self._check_robot()
-        placement = self.desk.placement()
+        placement = self.desk.site_to_canvas.transform()
         place, ahead = placement.to_site(start), placement.to_site(end)
         self._put(place, math.atan2(ahead[1] - place[1], ahead[0] - place[0]))
 
@@ -123,4 +118,6 @@ class StartTool(DrawingTool):
                     in_words=other.in_words(),
                 )
             )
-        self.set_command(PendingCommand(self.desk.selected or other.robot, START, (place,), theta=theta))
+        self.set_command(
+            PendingCommand(self.desk.selection.last or other.robot, START, (place,), theta=theta)
+        )

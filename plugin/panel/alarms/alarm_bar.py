@@ -24,8 +24,6 @@ from .board import URGENT_KINDS
 from .rules import Alarm, AlarmChange
 from .watch import AlarmWatch
 
-# --- A text and its buttons in QGIS's message bar, which is as narrow as the panels beside the map leave it
-
 BROAD_TEXT = 360
 """Pixels of text beside which its buttons stand; where that leaves less, they stand beneath it."""
 
@@ -62,8 +60,6 @@ class NoticeBody(QWidget):
         if direction != self._parts.direction():
             self._parts.setDirection(direction)
 
-
-# --- Alarms in QGIS's message bar: one item that counts, however many there are ---
 
 NAMED = 2
 """Alarms that are told in words; the others are counted."""

@@ -30,8 +30,6 @@ from .rules import Alarm, AlarmEvent
 from .thresholds_form import ThresholdsDialog
 from .watch import AlarmWatch
 
-# --- The alarms as rows of a table ---
-
 ALARM_COLUMNS = (tr("Since"), tr("Alarm"), tr("State"))
 
 
@@ -81,8 +79,6 @@ def tip(alarm: Alarm) -> str:
         lines.append(tr("acknowledged {time} by {operator}", time=seen, operator=alarm.by))
     return "\n".join(lines)
 
-
-# --- The log of alarms: what began, ended and was acknowledged in this session ---
 
 LOG_COLUMNS = (tr("Time"), tr("What"), tr("Kind"), tr("Robot"), tr("Alarm"), tr("By"))
 CSV_HEAD = ("time", "change", "kind", "robot", "other", "x", "y", "alarm", "by")
@@ -178,9 +174,6 @@ def _csv_row(event: AlarmEvent) -> tuple[object, ...]:
     )
 
 
-# --- The panel of alarms: what is the matter now, seen or not, and what to do about it ---
-
-
 class AlarmPanel(QWidget):
     """A row for each alarm; a double click or Enter goes to the robot."""
 
@@ -232,7 +225,7 @@ class AlarmPanel(QWidget):
         view.setColumnWidth(2, view.fontMetrics().horizontalAdvance(tr("over") + " ×00") + 14)
         view.horizontalHeader().setSectionResizeMode(1, QHeaderView.ResizeMode.Stretch)
         view.horizontalHeader().setHighlightSections(False)
-        ZoomMenu(view, lambda index: self._go(self._model.alarm_at(index.row())))
+        ZoomMenu(view).wanted.connect(lambda index: self._go(self._model.alarm_at(index.row())))
         view.selectionModel().selectionChanged.connect(self._allow)
 
     def _buttons(self) -> QHBoxLayout:

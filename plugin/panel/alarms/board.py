@@ -28,8 +28,6 @@ from .rules import (
     too_close,
 )
 
-# --- Alarms in words ---
-
 ALARM_KINDS = {
     AlarmKind.LOST: tr("lost"),
     AlarmKind.UNSURE: tr("unsure of its place"),
@@ -100,8 +98,6 @@ def alarm_state_in_words(alarm: Alarm) -> str:
     return f"{state} ×{alarm.times}" if alarm.times > 1 else state
 
 
-# --- How pressing an alarm looks ---
-
 URGENT_KINDS = frozenset(
     {
         AlarmKind.LOST,
@@ -130,9 +126,6 @@ def alarm_colour(pressing: bool) -> QColor:
     if pressing:
         return QColor("#FF8A80" if is_dark() else "#B71C1C")
     return QColor("#FFB74D" if is_dark() else "#A15C00")
-
-
-# --- Alarms that the gateway judges: robots in keepouts, at obstacles, in each other's way, near people
 
 
 class ReportedAlarm(NamedTuple):
@@ -236,8 +229,6 @@ def _passing_text(one: ConflictReport) -> str:
         **names,
     )
 
-
-# --- The alarms that there are, and the log of those that there were ---
 
 MOST_EVENTS = 5000
 MOST_ALARMS = 1000

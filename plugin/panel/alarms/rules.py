@@ -15,8 +15,6 @@ from ....robot_bridge.core.messages import RobotState
 from ...control.robot_checks import Ints, close_pairs
 from ...gateway_client.robot_table import STATES
 
-# --- From where on something is an alarm, and from where on no longer ---
-
 
 class AlarmKind(str, Enum):
     """What an alarm is about; the most pressing first."""
@@ -83,8 +81,6 @@ RANGES = {
 NUMBERS = tuple(field.name for field in fields(Thresholds) if field.name != "kinds")
 
 
-# --- The thresholds as QGIS keeps them between sessions ---
-
 GROUP = "fleet_supervisor/alarms"
 
 
@@ -116,8 +112,6 @@ def _number(value: object, name: str) -> float | None:
     least, most = RANGES[name]
     return number if least <= number <= most else None
 
-
-# --- One alarm, and what happened to it ---
 
 Key = tuple[AlarmKind, str, str]
 """Kind, robot, and the other robot or the area where there is one."""
@@ -284,8 +278,6 @@ def too_close(now: AlarmSnapshot, limits: Thresholds) -> tuple[Ints, Ints, Float
     counts = (now.state[one] != OFFLINE) | (now.state[other] != OFFLINE)
     return one[counts], other[counts], apart[counts]
 
-
-# --- What is on and what is off, for each robot and each pair, and what has just changed ---
 
 PAIR_SHIFT = np.int64(32)
 MOST_AT_ONCE = 200

@@ -21,8 +21,6 @@ from ...ui.steady_widgets import ElidedText
 from .board import ALARM_KINDS
 from .rules import RANGES, AlarmKind, Thresholds
 
-# --- What is an alarm, as fields ---
-
 
 @dataclass(frozen=True)
 class Field:
@@ -105,9 +103,6 @@ class ThresholdsForm(QWidget):
         box.toggled.connect(spin.setEnabled)
         self._numbers[field.name] = spin
         return spin
-
-
-# --- What is an alarm: the operator's settings ---
 
 
 class ThresholdsDialog(QDialog):

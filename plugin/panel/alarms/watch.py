@@ -4,24 +4,25 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 
 import numpy as np
 from qgis.core import Qgis, QgsApplication, QgsMessageLog
 from qgis.PyQt.QtCore import QObject, pyqtSignal
 
+from ....robot_bridge.core.clock import Clock
 from ....robot_bridge.core.messages import CommandState
 from ....robot_bridge.core.roads.surface_index import NOWHERE
-from ...control.fleet_controller import FleetController
 from ...control.messages import TITLE
-from ...gateway_client.link import ConnectionPhase
+from ...gateway_client.connection_status import ConnectionPhase
+from ...gateway_client.fleet_state import FleetState
 from ...gateway_client.robot_states import RemovedRobots, RobotArrays
 from ...layers.crs import transform_points_or_nan
 from ...layers.road_surfaces import SurfaceMap, SurfaceStore, SurfaceTask
-from ...layers.site_transform import SiteToMapTransform
+from ...layers.site_transform import SiteToCanvas, SiteToMapTransform
 from ...ui.errors import FleetError, MapTransformError
 from ...ui.language import tr, tr_count
-from ...ui.scheduling import ONE_STEP, CooperativeTask, Steps
+from ...ui.scheduling import ONE_STEP, CooperativeTask, Steps, UpdateScheduler
 from .board import ALARM_KINDS, AlarmBoard, fence_alarms, nearness_alarms, passing_alarms
 from .rules import (
     Alarm,
@@ -36,8 +37,6 @@ from .rules import (
     read_thresholds,
     write_thresholds,
 )
-
-# --- Whether robots are on the road, by the project's layers of road surfaces ---
 
 AROUND = np.array([(np.cos(turn), np.sin(turn)) for turn in np.arange(8) * np.pi / 4])
 """Directions in which the margin is looked for."""
@@ -71,6 +70,10 @@ class RoadGround(QObject):
         rim = (xy[beside, None, :] + AROUND * margin).reshape(-1, 2)
         off[beside] = ~_on_a_surface(rim, placement, surfaces).reshape(-1, len(AROUND)).any(axis=1)
         return off, on
+
+    def report_failure(self, why: str) -> None:
+        """Say why nobody can tell who is on the road."""
+        self.why_not = why
 
     def remove(self) -> None:
         """Let go of what is being read."""
@@ -133,44 +136,41 @@ def _on_a_surface(xy: Floats, placement: SiteToMapTransform, surfaces: SurfaceMa
     return surfaces.index.at_many(transform_points_or_nan(placement.frame.to_crs(xy), way)) != NOWHERE
 
 
-# --- The desk's knowledge at one moment, as the rules look at it ---
-
-
 class SnapshotBuilder:
     """Makes one situation after the other; between two it sees how fast those move who do not say it."""
 
-    def __init__(self, desk: FleetController, ground: RoadGround):
-        self._desk = desk
+    def __init__(self, state: FleetState, site_to_canvas: SiteToCanvas, ground: RoadGround):
+        self._state, self._site_to_canvas = state, site_to_canvas
         self._ground = ground
         self._before: tuple[float, Floats] = (0.0, np.empty((0, 2)))
-        self._arrangement = desk.picture.arrangement
+        self._arrangement = state.robots.arrangement
 
     def at(self, moment: float, limits: Thresholds) -> AlarmSnapshot:
         """Return how things are at ``moment`` of the desk's clock; the site has to be known."""
-        robots = self._desk.picture.arrays(moment)
+        robots = self._state.robots.arrays(moment)
         off, on = self._roads(robots.xy, limits)
-        only_seen = self._desk.picture.only_seen()
+        only_seen = self._state.robots.only_seen()
         return AlarmSnapshot(
             names=robots.names,
             xy=robots.xy,
             v=self._speeds(robots, moment),
-            battery=self._desk.picture.column("battery"),
+            battery=self._state.robots.column("battery"),
             # Nobody drives by the accuracy of what is only seen: a phone's is some metres all day.
             accuracy=np.where(only_seen, np.nan, robots.accuracy),
             state=robots.state,
-            stopped=self._desk.picture.column("stopped") == 1.0,
+            stopped=self._state.robots.column("stopped") == 1.0,
             driving=self._driving(len(robots.names)),
             only_seen=only_seen,
-            bounds=self._desk.site.bounds,
+            bounds=self._state.site.bounds,
             off_road=off,
             on_road=on,
         )
 
     def _speeds(self, robots: RobotArrays, moment: float) -> Floats:
         then, places = self._before
-        if self._arrangement != self._desk.picture.arrangement:
+        if self._arrangement != self._state.robots.arrangement:
             # Where other robots were.
-            self._arrangement, places = self._desk.picture.arrangement, places[:0]
+            self._arrangement, places = self._state.robots.arrangement, places[:0]
         self._before = moment, robots.xy
         seen = np.full(len(robots.v), np.nan)
         if moment > then and 0 < len(places) <= len(robots.xy):
@@ -179,11 +179,11 @@ class SnapshotBuilder:
 
     def _driving(self, count: int) -> Bools:
         driving = np.zeros(count, dtype=bool)
-        if self._desk.emergency is not None and self._desk.emergency.in_force:
+        if self._state.emergency is not None and self._state.emergency.in_force:
             return driving
-        waits = {hold.robot for hold in self._desk.roads.conflicts.waiting}
-        for task in self._desk.book.under_way():
-            row = self._desk.picture.row(task.robot)
+        waits = {hold.robot for hold in self._state.conflicts.waiting}
+        for task in self._state.commands.under_way():
+            row = self._state.robots.row(task.robot)
             if row is not None and task.state is CommandState.ACKNOWLEDGED and task.robot not in waits:
                 driving[row] = True
         return driving
@@ -192,14 +192,12 @@ class SnapshotBuilder:
         if AlarmKind.OFF_ROAD not in limits.kinds:
             return None, None
         try:
-            judged = self._ground.judge(xy, self._desk.placement(), limits.road_margin)
+            judged = self._ground.judge(xy, self._site_to_canvas.transform(), limits.road_margin)
         except MapTransformError as error:
-            self._ground.why_not = str(error)
+            self._ground.report_failure(str(error))
             return None, None
         return (None, None) if judged is None else judged
 
-
-# --- Alarms in QGIS's message log: only some of them, since QGIS keeps each line for as long as it is open
 
 MOST_LINES = 20
 """Alarms that are written within :data:`WITHIN`: a fleet that loses its radio again and again would otherwise
@@ -209,9 +207,9 @@ WITHIN = 600.0
 
 
 class AlarmMessages:
-    """Writes what began. ``clock`` returns seconds that only ever go on."""
+    """Writes what began, by the steady time of ``clock``."""
 
-    def __init__(self, clock: Callable[[], float]):
+    def __init__(self, clock: Clock):
         self._clock = clock
         self._until = -math.inf
         self._left = 0
@@ -222,7 +220,7 @@ class AlarmMessages:
 
         To be called with nothing as well, again and again.
         """
-        if self._clock() >= self._until:
+        if self._clock.steady() >= self._until:
             self._begin_anew()
         for alarm in began[: self._left]:
             _write(alarm.text)
@@ -236,7 +234,7 @@ class AlarmMessages:
     def _begin_anew(self) -> None:
         if self._counted:
             _count(self._counted)
-        self._until, self._left, self._counted = self._clock() + WITHIN, MOST_LINES, 0
+        self._until, self._left, self._counted = self._clock.steady() + WITHIN, MOST_LINES, 0
 
 
 def _count(more: int) -> None:
@@ -253,8 +251,6 @@ def _write(text: str) -> None:
     QgsMessageLog.logMessage(text, TITLE, Qgis.MessageLevel.Warning, False)
 
 
-# --- Looks at the robots again and again, and tells of alarms ---
-
 FENCED = frozenset({AlarmKind.IN_KEEPOUT, AlarmKind.AT_OBSTACLE})
 NEARNESS = frozenset({AlarmKind.NEAR_ROBOT, AlarmKind.COMES_NEAR})
 MANY = 500
@@ -269,39 +265,46 @@ class AlarmWatch(QObject):
     happened = pyqtSignal(list)
     """The AlarmEvents since this was told last; soon after they were."""
 
-    def __init__(self, desk: FleetController, surfaces: SurfaceStore, parent: QObject | None = None):
+    def __init__(
+        self,
+        state: FleetState,
+        site_to_canvas: SiteToCanvas,
+        scheduler: UpdateScheduler,
+        surfaces: SurfaceStore,
+        parent: QObject | None = None,
+    ):
         super().__init__(parent)
-        self._desk = desk
+        self._state = state
         self._ground = RoadGround(surfaces, self)
-        self._situations = SnapshotBuilder(desk, self._ground)
-        self._messages = AlarmMessages(desk.clock)
-        self._turn = desk.beat.turn()
-        self._generation = desk.picture.generation
+        self._situations = SnapshotBuilder(state, site_to_canvas, self._ground)
+        self._messages = AlarmMessages(state.clock)
+        self._turn = scheduler.turn()
+        self._generation = state.robots.generation
         self._told = ""
         self._untold: list[AlarmEvent] = []
         self._unseen: set[Key] = set()
         """Alarms that have begun and that nobody was told of yet."""
         self._telling = CooperativeTask(self, ONE_STEP)
         self.board = AlarmBoard(read_thresholds())
-        desk.pulled.connect(self._pulled)
-        desk.robots_removed.connect(self._drop)
+        state.updated.connect(self._pulled)
+        state.robots_removed.connect(self._drop)
 
     def remove(self) -> None:
         """Look no more."""
-        self._desk.pulled.disconnect(self._pulled)
-        self._desk.robots_removed.disconnect(self._drop)
+        self._state.updated.disconnect(self._pulled)
+        self._state.robots_removed.disconnect(self._drop)
         self._telling.stop()
         self._ground.remove()
 
     def why_not(self) -> str:
         """Return what is not watched and why, empty when everything is."""
-        if self._desk.link.phase is not ConnectionPhase.CONNECTED:
+        if self._state.link.phase is not ConnectionPhase.CONNECTED:
             return tr("Nothing is watched: the desk is not connected.")
         off = [ALARM_KINDS[kind] for kind in AlarmKind if kind not in self.board.limits.kinds]
         texts = [tr("Switched off: {kinds}.", kinds=", ".join(off))] if off else []
-        if (unfenced := self._desk.geofence.why_not()) and FENCED & self.board.limits.kinds:
+        if (unfenced := self._state.geofence.why_not()) and FENCED & self.board.limits.kinds:
             texts.append(unfenced)
-        if (unwatched := self._desk.nearness.why_not()) and NEARNESS & self.board.limits.kinds:
+        if (unwatched := self._state.nearness.why_not()) and NEARNESS & self.board.limits.kinds:
             texts.append(unwatched)
         if self._ground.why_not and AlarmKind.OFF_ROAD in self.board.limits.kinds:
             why = self._ground.why_not.rstrip(".")
@@ -310,8 +313,8 @@ class AlarmWatch(QObject):
 
     def evaluate(self) -> None:
         """Judge what is known now."""
-        if self._desk.link.phase is ConnectionPhase.CONNECTED and self._desk.site is not None:
-            moment = self._desk.clock()
+        if self._state.link.phase is ConnectionPhase.CONNECTED and self._state.site is not None:
+            moment = self._state.clock.steady()
             situation = self._situations.at(moment, self.board.limits)
             self._tell(self.board.evaluate(situation, moment, time.time()))
             self._take_reported(moment)
@@ -319,7 +322,7 @@ class AlarmWatch(QObject):
 
     def acknowledge(self, keys: Iterable[Key]) -> None:
         """Note that the operator has seen these alarms."""
-        link = self._desk.link
+        link = self._state.link
         operator = (link.who if link.phase is ConnectionPhase.CONNECTED else "") or tr("this desk")
         self._tell(self.board.acknowledge(keys, operator, time.time()))
         self._telling.finish()
@@ -335,20 +338,20 @@ class AlarmWatch(QObject):
         self.changed.emit()
 
     def _take_reported(self, moment: float) -> None:
-        reported = fence_alarms(self._desk.geofence.alarms)
-        reported += nearness_alarms(self._desk.nearness.alarms)
-        reported += passing_alarms(self._desk.roads.conflicts, self.board.limits)
+        reported = fence_alarms(self._state.geofence.alarms)
+        reported += nearness_alarms(self._state.nearness.alarms)
+        reported += passing_alarms(self._state.conflicts, self.board.limits)
         events, renewed = self.board.report(reported, moment, time.time())
         self._tell(events)
         if renewed and not events:
             self.changed.emit()
 
     def _pulled(self) -> None:
-        if self._generation != self._desk.picture.generation:
-            self._generation = self._desk.picture.generation
+        if self._generation != self._state.robots.generation:
+            self._generation = self._state.robots.generation
             self.board.clear()
             self.changed.emit()
-        if self._turn.has_come(1 if len(self._desk.picture) <= MANY else 2):
+        if self._turn.has_come(1 if len(self._state.robots) <= MANY else 2):
             self.evaluate()
 
     def _drop(self, gone: RemovedRobots) -> None:

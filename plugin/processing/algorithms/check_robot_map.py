@@ -11,7 +11,6 @@ from qgis.core import (
     QgsProcessingContext,
     QgsProcessingFeedback,
     QgsProcessingOutputNumber,
-    QgsProcessingParameterDefinition,
     QgsProcessingParameterFeatureSink,
     QgsProcessingParameterNumber,
     QgsWkbTypes,
@@ -23,6 +22,7 @@ from ...ui.language import tr, tr_page
 from ..common.algorithm import FleetAlgorithm, Parameters, fields_of, shown_by_processing
 from ..common.map_files import MAP, MapPlace, file_problem, map_parameters, map_place, read_map_file
 from ..common.outputs import fill_sink, lines
+from ..common.parameters import advanced
 
 FINDINGS = "FINDINGS"
 _FIELDS = {"kind": "string", "severity": "string", "obstacle": "int8", "text": "string"}
@@ -72,8 +72,7 @@ class CheckRobotMap(FleetAlgorithm):
         for name, (title, key, least) in _LIMITS.items():
             kind = QgsProcessingParameterNumber.Type.Double
             number = QgsProcessingParameterNumber(name, title, kind, getattr(defaults, key), minValue=least)
-            number.setFlags(number.flags() | QgsProcessingParameterDefinition.Flag.FlagAdvanced)
-            self.addParameter(number)
+            self.addParameter(advanced(number))
         self.addParameter(
             QgsProcessingParameterFeatureSink(
                 FINDINGS, tr("Findings"), QgsProcessing.SourceType.TypeVectorLine

@@ -26,7 +26,7 @@ from ...layers.road_layers import lines_of
 from ...layers.site_transform import SiteGeoreference
 from ...ui.language import tr, tr_page
 from ..common.algorithm import FleetAlgorithm, ParameterError, Parameters, shown_by_processing
-from ..common.cone_layers import STYLES, ConeSetup, add_layers, ground_parameters, site_crs_parameter
+from ..common.cone_layers import STYLES, ConeSetup, add_layers, cone_crs_parameter, ground_parameters
 from ..common.parameters import enum_parameter, point_in
 
 LAYOUT, DIMENSIONS, PREFIX = "LAYOUT", "DIMENSIONS", "PREFIX"
@@ -89,7 +89,7 @@ class ConeLayout(FleetAlgorithm):
             ),
             QgsProcessingParameterString(PREFIX, tr("Ids begin with (default: the layout)"), optional=True),
             *ground_parameters(),
-            site_crs_parameter(),
+            cone_crs_parameter(),
         ):
             self.addParameter(parameter)
         add_layers(self)

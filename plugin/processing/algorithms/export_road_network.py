@@ -16,8 +16,6 @@ from qgis.core import (
     QgsProcessingParameterBoolean,
     QgsProcessingParameterDefinition,
     QgsProcessingParameterFolderDestination,
-    QgsProcessingParameterNumber,
-    QgsProcessingParameterPoint,
     QgsProcessingParameterString,
 )
 
@@ -35,9 +33,9 @@ from ....robot_bridge.core.sites.frame import SiteFrame
 from ...ui.language import tr, tr_count, tr_page
 from ..common.algorithm import FleetAlgorithm, ParameterError, Parameters, shown_by_processing
 from ..common.map_files import MapPlace, PlacedMap
-from ..common.map_parameters import ORIGIN, ROTATION, site_frame
+from ..common.map_parameters import site_frame
 from ..common.outputs import WholeFolder
-from ..common.parameters import enum_parameter
+from ..common.parameters import advanced, enum_parameter, frame_in_crs_parameters
 from ..common.road_sources import (
     WARNING_COUNT,
     KeepoutAreas,
@@ -282,16 +280,8 @@ _WORDS = {NAME: "roads", MAP_ID: "map", VEHICLE_TYPE: "robot"}
 
 def _parameters() -> list[QgsProcessingParameterDefinition]:
     roads, tolerance, *others = road_parameters()
-    advanced: list[QgsProcessingParameterDefinition] = [
-        QgsProcessingParameterPoint(
-            ORIGIN, tr("Origin of the site frame (default: as the project has it, else 0,0)"), optional=True
-        ),
-        QgsProcessingParameterNumber(
-            ROTATION,
-            tr("Rotation of the site frame, counter-clockwise from the CRS's x axis [degrees]"),
-            QgsProcessingParameterNumber.Type.Double,
-            optional=True,
-        ),
+    rare: list[QgsProcessingParameterDefinition] = [
+        *frame_in_crs_parameters(),
         QgsProcessingParameterString(MAP_ID, tr("Robots' name for the site frame"), _WORDS[MAP_ID]),
         QgsProcessingParameterBoolean(
             KEEP_LEFT, tr("Traffic keeps to the left (Lanelet2)"), defaultValue=False
@@ -300,8 +290,6 @@ def _parameters() -> list[QgsProcessingParameterDefinition]:
             VEHICLE_TYPE, tr("Type of vehicle that drives here (LIF)"), _WORDS[VEHICLE_TYPE]
         ),
     ]
-    for parameter in advanced:
-        parameter.setFlags(parameter.flags() | QgsProcessingParameterDefinition.Flag.FlagAdvanced)
     return [
         roads,
         enum_parameter(FORMATS, tr("Formats"), FORMAT_NAMES, ["nav2"], several=True),
@@ -310,7 +298,7 @@ def _parameters() -> list[QgsProcessingParameterDefinition]:
         repair_parameter(),
         tolerance,
         *others,
-        *advanced,
+        *map(advanced, rare),
         QgsProcessingParameterFolderDestination(OUTPUT, tr("Folder")),
     ]
 

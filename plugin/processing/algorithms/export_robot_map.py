@@ -5,14 +5,12 @@ from __future__ import annotations
 from typing import Any
 
 from qgis.core import (
-    QgsProcessing,
     QgsProcessingContext,
     QgsProcessingFeedback,
     QgsProcessingOutputNumber,
     QgsProcessingParameterDefinition,
     QgsProcessingParameterExpression,
     QgsProcessingParameterFileDestination,
-    QgsProcessingParameterMultipleLayers,
     QgsProcessingParameterNumber,
 )
 
@@ -33,6 +31,7 @@ from ..common.export_parameters import (
     SEMANTICS_EXPRESSION,
     obstacle_layers,
     obstacle_outlines,
+    obstacles_parameter,
     read_export_parameters,
 )
 from ..common.map_files import obstacles_in_words
@@ -97,12 +96,7 @@ class ExportRobotMap(FleetAlgorithm):
 
     def initAlgorithm(self, configuration: dict[str, Any] | None = None):
         for parameter in (
-            QgsProcessingParameterMultipleLayers(
-                OBSTACLES,
-                tr("Obstacle layers (default: those of the project with such a role)"),
-                QgsProcessing.SourceType.TypeVectorAnyGeometry,
-                optional=True,
-            ),
+            obstacles_parameter(),
             *window_parameters(),
             *value_parameters(),
             profile_parameter(),

@@ -17,7 +17,6 @@ from qgis.core import (
     QgsProcessingParameterFeatureSink,
     QgsProcessingParameterFeatureSource,
     QgsProcessingParameterFolderDestination,
-    QgsProcessingParameterMultipleLayers,
     QgsProcessingParameterNumber,
     QgsWkbTypes,
 )
@@ -41,6 +40,7 @@ from ..common.export_parameters import (
     area_of,
     obstacle_layers,
     obstacle_outlines,
+    obstacles_parameter,
     read_tile_parameters,
     tiles_problem,
 )
@@ -106,12 +106,7 @@ class ExportRobotMapTiles(FleetAlgorithm):
     def initAlgorithm(self, configuration: dict[str, Any] | None = None):
         kinds = QgsProcessing.SourceType
         for parameter in (
-            QgsProcessingParameterMultipleLayers(
-                OBSTACLES,
-                tr("Obstacle layers (default: those of the project with such a role)"),
-                kinds.TypeVectorAnyGeometry,
-                optional=True,
-            ),
+            obstacles_parameter(),
             QgsProcessingParameterExtent(EXTENT, tr("Extent of a grid (or choose a route)"), optional=True),
             QgsProcessingParameterFeatureSource(
                 ROUTE, tr("Route, instead of a grid"), [kinds.TypeVectorLine], optional=True

@@ -16,7 +16,6 @@ from qgis.core import (
     QgsProcessingFeedback,
     QgsProcessingOutputNumber,
     QgsProcessingOutputString,
-    QgsProcessingParameterDefinition,
     QgsProcessingParameterFeatureSink,
     QgsProcessingParameterPoint,
     QgsWkbTypes,
@@ -29,7 +28,7 @@ from ....robot_bridge.core.roads.routes import Route, Router
 from ...ui.language import tr, tr_count, tr_page
 from ..common.algorithm import FleetAlgorithm, Parameters, fields_of, shown_by_processing
 from ..common.outputs import fill_sink, line
-from ..common.parameters import enum_parameter, point_in
+from ..common.parameters import advanced, enum_parameter, point_in
 from ..common.road_sources import (
     WARNING_COUNT,
     KeepoutAreas,
@@ -159,8 +158,7 @@ class FindRoute(FleetAlgorithm):
     def initAlgorithm(self, configuration: dict[str, Any] | None = None):
         roads, tolerance, *others = road_parameters()
         ways = enum_parameter(BY, tr("Way"), WAYS, SHORTEST)
-        engine = enum_parameter(ENGINE, tr("Engine"), ENGINE_NAMES, AUTOMATIC)
-        engine.setFlags(engine.flags() | QgsProcessingParameterDefinition.Flag.FlagAdvanced)
+        engine = advanced(enum_parameter(ENGINE, tr("Engine"), ENGINE_NAMES, AUTOMATIC))
         for parameter in (
             roads,
             QgsProcessingParameterPoint(START, tr("Start")),

@@ -38,7 +38,7 @@ from ...layers.layer_source import point_rows
 from ...layers.site_transform import SiteGeoreference
 from ...ui.language import tr, tr_page
 from ..common.algorithm import FleetAlgorithm, ParameterError, Parameters, shown_by_processing
-from ..common.cone_layers import STYLES, ConeSetup, add_layers, ground_parameters, site_crs_parameter
+from ..common.cone_layers import STYLES, ConeSetup, add_layers, cone_crs_parameter, ground_parameters
 from ..common.parameters import point_in
 
 FILE, INPUT, ORIGIN, ROTATION, NAME = "FILE", "INPUT", "ORIGIN", "ROTATION", "LAYOUT_NAME"
@@ -110,7 +110,7 @@ class ImportConeLayout(FleetAlgorithm):
                 NAME, tr("Name (default: the layout's, else the file's)"), optional=True
             ),
             *ground_parameters(),
-            site_crs_parameter(),
+            cone_crs_parameter(),
         ):
             self.addParameter(parameter)
         add_layers(self)
@@ -120,12 +120,8 @@ class ImportConeLayout(FleetAlgorithm):
         if len(given) != 1:
             how = tr("Both FILE and INPUT are") if given else tr("Neither FILE nor INPUT is")
             return False, tr("{how} given: give a CSV file, or a layer.", how=how)
-        file = parameters.get(FILE)
-        if isinstance(file, str) and file and Path(file).suffix.lower() not in SUFFIXES:
-            return False, tr(
-                "FILE {file} is none that is read: give one of {kinds}.", file=file, kinds=", ".join(SUFFIXES)
-            )
-        return super().checkParameterValues(parameters, context)
+        problem = _file_problem(parameters)
+        return (False, problem) if problem else super().checkParameterValues(parameters, context)
 
     def prepareAlgorithm(
         self, parameters: Parameters, context: QgsProcessingContext, feedback: QgsProcessingFeedback
@@ -190,6 +186,22 @@ class ImportConeLayout(FleetAlgorithm):
         origin = point_in(self, parameters, ORIGIN, context, self._setup.crs)
         turn = math.radians(self.parameterAsDouble(parameters, ROTATION, context))
         return cones_at_pose(cones, *origin, turn)
+
+
+def _file_problem(parameters: Parameters) -> str:
+    """Return what is wrong with the file before it is opened, or nothing."""
+    file = parameters.get(FILE)
+    if not isinstance(file, (str, Path)) or not str(file):
+        return ""
+    if Path(file).suffix.lower() not in SUFFIXES:
+        return tr(
+            "FILE {file} is none that is read: give one of {kinds}.", file=file, kinds=", ".join(SUFFIXES)
+        )
+    try:
+        Path(file).stat()
+    except OSError as error:
+        return tr("{file} cannot be read: {error}", file=file, error=error.strerror)
+    return ""
 
 
 def _cones_in(file: Path, columns: ConeColumns, name: str) -> list[Cone]:

@@ -47,6 +47,7 @@ from ..common.algorithm import FleetAlgorithm, ParameterError, Parameters, shown
 from ..common.export_parameters import DEFAULT_HEIGHT, default_height
 from ..common.map_parameters import LOCAL, frame_parameters, site_frame
 from ..common.parameters import (
+    advanced,
     check_vectors,
     chosen_crs,
     extent_in,
@@ -495,6 +496,4 @@ def _value_parameters() -> list[QgsProcessingParameterDefinition]:
             REPLACE, tr("Replace the publication of another site"), defaultValue=False
         )
     )
-    for parameter in parameters[2:]:
-        parameter.setFlags(parameter.flags() | QgsProcessingParameterDefinition.Flag.FlagAdvanced)
-    return parameters
+    return [*parameters[:2], *map(advanced, parameters[2:])]

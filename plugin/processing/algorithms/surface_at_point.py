@@ -27,6 +27,7 @@ from qgis.core import (
 )
 
 from ....robot_bridge.core.roads.centrelines import Surface
+from ...layers.layer_source import each_feature
 from ...layers.road_surfaces import SurfaceMap, read_surface_map, surface_sources
 from ...layers.roles import ROAD_SURFACE, layers_with_role
 from ...layers.site_transform import SiteGeoreference
@@ -177,16 +178,14 @@ def _batches(
     points: QgsProcessingFeatureSource, feedback: QgsProcessingFeedback
 ) -> Iterator[list[QgsFeature]]:
     total, done, batch = max(points.featureCount(), 1), 0, []
-    for feature in points.getFeatures():
-        if feedback.isCanceled():
-            return
+    for feature in each_feature(points, feedback):
         batch.append(feature)
         if len(batch) == _AT_ONCE:
             done += len(batch)
             feedback.setProgress(100.0 * done / total)
             yield batch
             batch = []
-    if batch:
+    if batch and not feedback.isCanceled():
         yield batch
 
 

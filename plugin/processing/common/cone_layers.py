@@ -16,7 +16,6 @@ from qgis.core import (
     QgsProcessingFeatureSource,
     QgsProcessingFeedback,
     QgsProcessingOutputNumber,
-    QgsProcessingParameterCrs,
     QgsProcessingParameterDefinition,
     QgsProcessingParameterFeatureSink,
     QgsProcessingParameterMultipleLayers,
@@ -29,14 +28,14 @@ from ....robot_bridge.core.geometry import heading_of
 from ....robot_bridge.core.layouts.layout import Cone, ConeFinding, NamedGeometry, find_misplaced_cones
 from ...layers.geometry import polygons_of, shapes_of
 from ...layers.layer_expressions import FeatureFilter
-from ...layers.layer_source import ObstacleSource, obstacle_sources
+from ...layers.layer_source import FeatureReader, ObstacleSource, obstacle_sources
 from ...layers.road_layers import read_areas
 from ...layers.roles import FURNITURE, ROAD_SURFACE, LayerExpressions, LayerSetup, setup_of
 from ...layers.site_transform import SiteGeoreference
 from ...ui.language import tr, tr_count
 from .algorithm import FleetAlgorithm, ParameterError, Parameters, fields_of
 from .outputs import fill_sink
-from .parameters import SITE_CRS, chosen_crs
+from .parameters import chosen_crs, site_crs_parameter
 
 # --- What cones are checked against: surfaces that are allowed, obstacles, distances ---
 
@@ -145,11 +144,10 @@ def read_obstacles(
     for source in sources:
         placing = site.of_layer(source.name, source.crs)
         counts = FeatureFilter(source.name, source.fields, source.expressions.filter, source.context)
-        for feature in source.features.getFeatures():
-            if feedback.isCanceled():
-                return shapes
-            name, notes = tr("{name}, feature {id}", name=source.name, id=feature.id()), []
-            geometry = placing.of_feature(feature, notes) if counts.keeps(feature, notes) else None
+        for feature, _, geometry, notes in FeatureReader(
+            source.name, source.features, placing, counts, feedback
+        ):
+            name = tr("{name}, feature {id}", name=source.name, id=feature.id())
             if geometry is not None:
                 parts, found = _parts(geometry, name)
                 shapes += parts
@@ -200,10 +198,11 @@ CONE_FIELDS = {
 _FINDINGS = {"kind": "string", "cone": "string", "text": "string"}
 
 
-def site_crs_parameter() -> QgsProcessingParameterDefinition:
+def cone_crs_parameter() -> QgsProcessingParameterDefinition:
     """Return the parameter of the CRS that the cones get."""
-    title = tr("Site CRS, in metres (default: the project's, else the line's or the layer's)")
-    return QgsProcessingParameterCrs(SITE_CRS, title, optional=True)
+    return site_crs_parameter(
+        tr("Site CRS, in metres (default: the project's, else the line's or the layer's)")
+    )
 
 
 def add_layers(algorithm: QgsProcessingAlgorithm) -> None:

@@ -11,11 +11,15 @@ from pathlib import Path
 import numpy as np
 from qgis.core import (
     QgsFeature,
+    QgsFeedback,
+    QgsProcessing,
     QgsProcessingAlgorithm,
     QgsProcessingContext,
     QgsProcessingFeedback,
     QgsProcessingMultiStepFeedback,
     QgsProcessingOutputLayerDefinition,
+    QgsProcessingParameterDefinition,
+    QgsProcessingParameterMultipleLayers,
     QgsProviderRegistry,
     QgsVectorLayer,
 )
@@ -27,8 +31,7 @@ from ....robot_bridge.core.robotmap.outlines import Outlines
 from ....robot_bridge.core.robotmap.shaping import Shaping, shaped
 from ...layers.errors import LayerTypeError
 from ...layers.geometry import shapes_of
-from ...layers.layer_expressions import FeatureFilter
-from ...layers.layer_source import ObstacleSource, obstacle_sources
+from ...layers.layer_source import FeatureReader, ObstacleSource, obstacle_sources
 from ...layers.obstacle_layers import ObstacleReading, check_sources, read_outlines
 from ...layers.roles import OBSTACLE_ROLES, LayerExpressions
 from ...layers.site_transform import SiteGeoreference
@@ -61,7 +64,7 @@ class ObstacleParameters:
     sources: list[ObstacleSource]
     site: SiteGeoreference
     default_height: float
-    shaping: Shaping
+    shaping: Shaping | None
     format: MapFormat
 
     @property
@@ -129,6 +132,16 @@ def read_obstacle_parameters(
         default_height(algorithm, parameters, context),
         shaping,
         read_map_format(algorithm, parameters, context),
+    )
+
+
+def obstacles_parameter() -> QgsProcessingParameterDefinition:
+    """Return the parameter of the layers that are read."""
+    return QgsProcessingParameterMultipleLayers(
+        OBSTACLES,
+        tr("Obstacle layers (default: those of the project with such a role)"),
+        QgsProcessing.SourceType.TypeVectorAnyGeometry,
+        optional=True,
     )
 
 
@@ -205,12 +218,11 @@ def obstacle_outlines(
     :raises LayerReadingError: when a layer cannot be read.
     :raises MissingGeometryError: when a package is missing.
     """
-    reduces = plan.shaping != Shaping()
-    steps = QgsProcessingMultiStepFeedback(2 if reduces else 1, feedback)
+    steps = QgsProcessingMultiStepFeedback(1 if plan.shaping is None else 2, feedback)
     reading = read_outlines(plan.sources, plan.site, area, plan.default_height, steps)
     if not reading.complete:
         return None
-    if not reduces:
+    if plan.shaping is None:
         return reading, reading.outlines()
     steps.setCurrentStep(1)
     outlines = _reduced(reading.outlines(), plan.shaping, Window.from_bounds(*area), steps)
@@ -454,11 +466,11 @@ def _routes(
     placing = site.of_layer(source.sourceName(), source.sourceCrs())
     counted = filter_in(algorithm, parameters, ROUTE, context)
     routes = []
-    for feature in source.getFeatures():
-        if not _tile_counts(feature, source.sourceName(), counted):
-            continue
-        notes: list[str] = []
-        geometry = placing.of_feature(feature, notes)
+    for feature, counts, geometry, notes in FeatureReader(
+        source.sourceName(), source, placing, counted, QgsFeedback()
+    ):
+        if notes and not counts:
+            raise _doubtful(feature, source.sourceName(), notes[0])
         shapes, odd = ([], []) if geometry is None else shapes_of(geometry)
         warnings += [
             tr("Layer {layer}, feature {id}: {note}", layer=source.sourceName(), id=feature.id(), note=note)
@@ -468,16 +480,12 @@ def _routes(
     return routes
 
 
-def _tile_counts(feature: QgsFeature, layer: str, counted: FeatureFilter | None) -> bool:
-    doubts: list[str] = []
-    kept = counted is None or counted.keeps(feature, doubts)
-    if doubts:
-        raise ParameterError(
-            tr(
-                "ROUTE: feature {id} of {layer}: {doubts}. Correct the filter of the layer.",
-                id=feature.id(),
-                layer=layer,
-                doubts=doubts[0],
-            )
+def _doubtful(feature: QgsFeature, layer: str, doubt: str) -> ParameterError:
+    return ParameterError(
+        tr(
+            "ROUTE: feature {id} of {layer}: {doubts}. Correct the filter of the layer.",
+            id=feature.id(),
+            layer=layer,
+            doubts=doubt,
         )
-    return kept
+    )

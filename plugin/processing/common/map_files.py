@@ -18,11 +18,8 @@ from qgis.core import (
     QgsProcessingAlgorithm,
     QgsProcessingContext,
     QgsProcessingFeedback,
-    QgsProcessingParameterCrs,
     QgsProcessingParameterDefinition,
     QgsProcessingParameterFile,
-    QgsProcessingParameterNumber,
-    QgsProcessingParameterPoint,
 )
 
 from ....robot_bridge.core.errors import RobotMapError
@@ -36,8 +33,15 @@ from ...layers.site_transform import SiteGeoreference
 from ...ui.errors import FleetError
 from ...ui.language import tr, tr_count
 from .algorithm import ParameterError, Parameters
-from .map_parameters import ORIGIN, ROTATION
-from .parameters import SITE_CRS, given_crs, point_in
+from .parameters import (
+    ORIGIN,
+    ROTATION,
+    advanced,
+    frame_in_crs_parameters,
+    given_crs,
+    point_in,
+    site_crs_parameter,
+)
 
 # --- How large a map is, in words ---
 
@@ -83,22 +87,16 @@ def layer_crs(crs: QgsCoordinateReferenceSystem) -> QgsCoordinateReferenceSystem
 
 def map_parameters() -> list[QgsProcessingParameterDefinition]:
     """Return the parameters that name the file and say where the map lies if it does not."""
-    place = [
-        QgsProcessingParameterCrs(SITE_CRS, tr("Site CRS (default: as the map says)"), optional=True),
-        QgsProcessingParameterPoint(
-            ORIGIN, tr("Origin of the site frame in it (default: as the map says, else 0,0)"), optional=True
-        ),
-        QgsProcessingParameterNumber(
-            ROTATION,
-            tr("Rotation of the site frame, counter-clockwise [degrees] (default: as the map says, else 0)"),
-            QgsProcessingParameterNumber.Type.Double,
-            optional=True,
-        ),
-    ]
-    for parameter in place:
-        parameter.setFlags(parameter.flags() | QgsProcessingParameterDefinition.Flag.FlagAdvanced)
+    frame = frame_in_crs_parameters(
+        tr("Origin of the site frame in it (default: as the map says, else 0,0)"),
+        tr("Rotation of the site frame, counter-clockwise [degrees] (default: as the map says, else 0)"),
+    )
+    place = [site_crs_parameter(tr("Site CRS (default: as the map says)")), *frame]
     filters = tr("Robot maps (*.txt *.map *.rmap *.bin);;All files (*)")
-    return [QgsProcessingParameterFile(MAP, tr("Robot map, text or binary"), fileFilter=filters), *place]
+    return [
+        QgsProcessingParameterFile(MAP, tr("Robot map, text or binary"), fileFilter=filters),
+        *map(advanced, place),
+    ]
 
 
 def file_problem(parameters: Parameters) -> str:

@@ -12,7 +12,6 @@ from qgis.core import (
     QgsProcessingAlgorithm,
     QgsProcessingContext,
     QgsProcessingParameterBoolean,
-    QgsProcessingParameterCrs,
     QgsProcessingParameterDefinition,
     QgsProcessingParameterExtent,
     QgsProcessingParameterNumber,
@@ -27,12 +26,21 @@ from ....robot_bridge.core.sites.frame import SiteFrame
 from ...layers.crs import crs_name, frame_in_project
 from ...ui.language import tr
 from .algorithm import ParameterError, Parameters
-from .parameters import SITE_CRS, enum_parameter, extent_in, point_in
+from .parameters import (
+    ORIGIN,
+    ROTATION,
+    advanced,
+    enum_parameter,
+    extent_in,
+    frame_in_crs_parameters,
+    point_in,
+    site_crs_parameter,
+)
 
 # --- The window of a robot map, and the frame it lies in, from an algorithm's parameters ---
 
 CENTER, WIDTH, HEIGHT, EXTENT = "CENTER", "WIDTH", "HEIGHT", "EXTENT"
-ORIGIN, ROTATION, LOCAL = "ORIGIN", "ROTATION", "LOCAL"
+LOCAL = "LOCAL"
 PAPERS_SIDE_M = 100.0
 
 _REAL = QgsProcessingParameterNumber.Type.Double
@@ -53,7 +61,11 @@ def window_parameters() -> list[QgsProcessingParameterDefinition]:
 
 def frame_parameters() -> list[QgsProcessingParameterDefinition]:
     """Return the advanced parameters that say which frame the site has."""
-    return [_advanced(parameter) for parameter in _frame_parameters()]
+    title = tr("Site CRS, in metres (default: the project's, else the layers')")
+    local = QgsProcessingParameterBoolean(
+        LOCAL, tr("Layers without a CRS are in metres of the site"), defaultValue=False
+    )
+    return [advanced(one) for one in (site_crs_parameter(title), *frame_in_crs_parameters(), local)]
 
 
 def window_problem(parameters: Parameters) -> str:
@@ -118,31 +130,6 @@ def map_window(
         algorithm.parameterAsDouble(parameters, WIDTH, context),
         algorithm.parameterAsDouble(parameters, HEIGHT, context),
     )
-
-
-def _frame_parameters() -> list[QgsProcessingParameterDefinition]:
-    return [
-        QgsProcessingParameterCrs(
-            SITE_CRS, tr("Site CRS, in metres (default: the project's, else the layers')"), optional=True
-        ),
-        QgsProcessingParameterPoint(
-            ORIGIN, tr("Origin of the site frame (default: as the project has it, else 0,0)"), optional=True
-        ),
-        QgsProcessingParameterNumber(
-            ROTATION,
-            tr("Rotation of the site frame, counter-clockwise from the CRS's x axis [degrees]"),
-            _REAL,
-            optional=True,
-        ),
-        QgsProcessingParameterBoolean(
-            LOCAL, tr("Layers without a CRS are in metres of the site"), defaultValue=False
-        ),
-    ]
-
-
-def _advanced(parameter: QgsProcessingParameterDefinition) -> QgsProcessingParameterDefinition:
-    parameter.setFlags(parameter.flags() | QgsProcessingParameterDefinition.Flag.FlagAdvanced)
-    return parameter
 
 
 def _given(parameters: Parameters, name: str) -> bool:
@@ -295,16 +282,13 @@ def shaping_parameters() -> list[QgsProcessingParameterDefinition]:
     ]
     for parameter, help in described:
         parameter.setHelp(help)
-    parameters = [parameter for parameter, _ in described]
-    for parameter in parameters:
-        parameter.setFlags(parameter.flags() | QgsProcessingParameterDefinition.Flag.FlagAdvanced)
-    return parameters
+    return [advanced(parameter) for parameter, _ in described]
 
 
 def read_shaping(
     algorithm: QgsProcessingAlgorithm, parameters: Parameters, context: QgsProcessingContext
-) -> Shaping:
-    """Return what is asked for.
+) -> Shaping | None:
+    """Return what is asked for, None for nothing.
 
     :raises ParameterError: when a value cannot be used.
     :raises MissingGeometryError: when something asked for needs a package that this Python does not have.
@@ -318,8 +302,11 @@ def read_shaping(
     dissolve, chain = (algorithm.parameterAsBool(parameters, name, context) for name in _FLAGS)
     if dissolve or lengths[TOLERANCE] or lengths[SHORTEST]:
         _check_shapely()
+    plane = _plane(algorithm, parameters, context)
+    if plane is None and not (dissolve or chain or any(lengths.values())):
+        return None
     return Shaping(
-        plane=_plane(algorithm, parameters, context),
+        plane=plane,
         height_step=lengths[HEIGHT_STEP],
         dissolve=dissolve,
         chain=chain,

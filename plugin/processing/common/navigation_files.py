@@ -22,7 +22,7 @@ from qgis.core import (
     QgsWkbTypes,
 )
 from qgis.PyQt.QtCore import QBuffer, QByteArray, QIODevice, Qt
-from qgis.PyQt.QtGui import QImage, QPainter
+from qgis.PyQt.QtGui import QImage
 from qgis.PyQt.QtSvg import QSvgRenderer
 
 from ....robot_bridge.core.robotmap.exporters.geometries import MapShape, obstacle_shapes, segment_shapes
@@ -47,8 +47,10 @@ from ....robot_bridge.core.robotmap.exporters.vector_files import (
 from ....robot_bridge.core.robotmap.model import RobotMap
 from ...layers.geometry import polygons_of, shapes_of
 from ...layers.layer_expressions import FeatureFilter
+from ...layers.layer_source import FeatureReader
 from ...layers.site_transform import LayerToSiteTransform, SiteGeoreference
 from ...ui.errors import FleetError
+from ...ui.glyphs import painting
 from ...ui.language import tr
 from .algorithm import ParameterError
 from .map_files import PlacedMap
@@ -76,15 +78,14 @@ def areas_of(
     placing = site.of_layer(source.sourceName(), source.sourceCrs())
     areas: list[MaskArea] = []
     warnings: list[str] = []
-    for feature in source.getFeatures():
-        if feedback.isCanceled():
-            break
+    for feature, counts, geometry, notes in FeatureReader(
+        source.sourceName(), source, placing, counted, feedback
+    ):
         name = tr("Layer {sourcename}, feature {id}", sourcename=source.sourceName(), id=feature.id())
-        notes: list[str] = []
-        if counted is None or counted.keeps(feature, notes):
+        if counts:
             limit = math.nan if speed is None else speed(feature)
             if speed is None or 0 < limit < math.inf:
-                areas += [MaskArea(rings, name, limit) for rings in _polygons(feature, placing, notes)]
+                areas += [MaskArea(rings, name, limit) for rings in _polygons(geometry, placing, notes)]
             else:
                 notes.append(tr("has no speed above 0 m/s, so it sets no limit; it is left out"))
         warnings += [f"{name}: {note}" for note in notes]
@@ -119,9 +120,10 @@ def speed_by(text: str, source: QgsProcessingFeatureSource, context: QgsExpressi
     return speed
 
 
-def _polygons(feature: QgsFeature, placing: LayerToSiteTransform, notes: list[str]) -> list[list[np.ndarray]]:
-    """Return the rings of each polygon of ``feature`` in the site frame; what is odd goes into ``notes``."""
-    geometry = placing.of_feature(feature, notes)
+def _polygons(
+    geometry: QgsGeometry | None, placing: LayerToSiteTransform, notes: list[str]
+) -> list[list[np.ndarray]]:
+    """Return the rings of each polygon of ``geometry`` in the site frame; what is odd goes into ``notes``."""
     if geometry is None:
         return []
     shapes, odd = shapes_of(geometry)
@@ -148,9 +150,8 @@ def png_of(svg: bytes) -> bytes:
             tr("Qt cannot draw the picture of this map: choose svg and open that in a browser.")
         )
     image.fill(Qt.GlobalColor.white)
-    painter = QPainter(image)
-    renderer.render(painter)
-    painter.end()
+    with painting(image) as painter:
+        renderer.render(painter)
     buffer = QBuffer()
     buffer.open(QIODevice.OpenModeFlag.WriteOnly)
     image.save(buffer, "PNG")

@@ -16,9 +16,12 @@ from qgis.core import (
     QgsProcessingContext,
     QgsProcessingFeatureSourceDefinition,
     QgsProcessingFeedback,
+    QgsProcessingParameterCrs,
     QgsProcessingParameterDefinition,
     QgsProcessingParameterEnum,
     QgsProcessingParameterFile,
+    QgsProcessingParameterNumber,
+    QgsProcessingParameterPoint,
     QgsProcessingUtils,
     QgsProject,
     QgsProviderRegistry,
@@ -57,6 +60,12 @@ def enum_parameter(
     widget = f"{__package__}.choice_widget.ChoiceWidget"
     choice.setMetadata({"widget_wrapper": {"class": widget, "names": dict(names)}})
     return choice
+
+
+def advanced(parameter: QgsProcessingParameterDefinition) -> QgsProcessingParameterDefinition:
+    """Return ``parameter``, which dialogs fold away from now on."""
+    parameter.setFlags(parameter.flags() | QgsProcessingParameterDefinition.Flag.FlagAdvanced)
+    return parameter
 
 
 # --- Points and extents that parameters give, brought into one CRS ---
@@ -152,9 +161,31 @@ def _no_place(name: str, value: Any, crs: QgsCoordinateReferenceSystem) -> Param
     )
 
 
-# --- The CRS of the site, as an algorithm's parameters, its layers and the project say it ---
+# --- Where the site lies: its CRS, as parameters, layers and the project say it, and its frame in that ---
 
-SITE_CRS = "SITE_CRS"
+SITE_CRS, ORIGIN, ROTATION = "SITE_CRS", "ORIGIN", "ROTATION"
+
+
+def site_crs_parameter(title: str) -> QgsProcessingParameterDefinition:
+    """Return the parameter of the CRS; ``title`` says which it is where it is not given."""
+    return QgsProcessingParameterCrs(SITE_CRS, title, optional=True)
+
+
+def frame_in_crs_parameters(origin: str = "", rotation: str = "") -> list[QgsProcessingParameterDefinition]:
+    """Return the parameters of the frame in that CRS; their titles, where these are not the usual ones."""
+    return [
+        QgsProcessingParameterPoint(
+            ORIGIN,
+            origin or tr("Origin of the site frame (default: as the project has it, else 0,0)"),
+            optional=True,
+        ),
+        QgsProcessingParameterNumber(
+            ROTATION,
+            rotation or tr("Rotation of the site frame, counter-clockwise from the CRS's x axis [degrees]"),
+            QgsProcessingParameterNumber.Type.Double,
+            optional=True,
+        ),
+    ]
 
 
 def given_crs(

@@ -27,6 +27,7 @@ from qgis.core import (
     QgsVectorLayerSimpleLabeling,
 )
 
+from ...layers.layer_source import each_feature
 from ...ui.language import tr
 from .algorithm import ParameterError
 from .positions import parse_seconds
@@ -106,14 +107,14 @@ def read_placed_cones(
             )
         )
     cones, odd = [], 0
-    for feature in source.getFeatures():
-        if feedback.isCanceled():
-            return None
+    for feature in each_feature(source, feedback):
         cone = _cone(feature)
         if cone is None:
             odd += 1
         else:
             cones.append(cone)
+    if feedback.isCanceled():
+        return None
     if not cones:
         raise ParameterError(
             tr(

@@ -12,6 +12,7 @@ import numpy.typing as npt
 from qgis.core import QgsFeature, QgsProcessingFeatureSource, QgsProcessingFeedback
 from qgis.PyQt.QtCore import QDateTime, Qt
 
+from ...layers.layer_source import each_feature
 from ...ui.language import tr
 from .algorithm import ParameterError
 
@@ -82,9 +83,6 @@ def drives(positions: PositionArrays, gap: float, *, steps: bool = False) -> Ite
 
 # --- Stored positions, read from the layer that an algorithm is given ---
 
-LOOK_EVERY = 1000
-"""Features between two looks for a cancel."""
-
 
 class PositionSource:
     """Points with a robot's name and a time in two fields, and the speed in a third one if there is one.
@@ -113,18 +111,16 @@ class PositionSource:
         """Return the positions, and how many features were none; None when cancelled."""
         robots: list[str] = []
         rows: list[tuple[float, float, float, float]] = []
-        odd, total = 0, max(self._source.featureCount(), 1)
-        for count, feature in enumerate(self._source.getFeatures()):
-            if count % LOOK_EVERY == 0:
-                if feedback.isCanceled():
-                    return None
-                feedback.setProgress(60.0 * count / total)
+        odd = 0
+        for feature in each_feature(self._source, feedback, 60.0):
             row = self._row(feature)
             if row is None:
                 odd += 1
                 continue
             robots.append(str(feature.attribute(self._robot)))
             rows.append(row)
+        if feedback.isCanceled():
+            return None
         numbers = np.array(rows, dtype=np.float64).reshape(-1, 4)
         return PositionArrays(
             np.array(robots, dtype=np.str_), numbers[:, 0], numbers[:, 1:3], numbers[:, 3]

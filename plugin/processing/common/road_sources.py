@@ -13,7 +13,6 @@ from qgis.core import (
     QgsProcessingFeatureSource,
     QgsProcessingFeedback,
     QgsProcessingParameterBoolean,
-    QgsProcessingParameterCrs,
     QgsProcessingParameterDefinition,
     QgsProcessingParameterExpression,
     QgsProcessingParameterFeatureSource,
@@ -29,7 +28,7 @@ from ....robot_bridge.core.roads.network_checks import RoadFinding, repaired_net
 from ....robot_bridge.core.roads.path_smoothing import Driving
 from ....robot_bridge.core.roads.routes import REACH, Restrictions, Router
 from ...layers.layer_expressions import LayerRules
-from ...layers.layer_source import obstacle_sources
+from ...layers.layer_source import FeatureReader, obstacle_sources
 from ...layers.road_layers import (
     DEFAULT_WIDTH_M,
     RoadAttributes,
@@ -43,7 +42,7 @@ from ...layers.roles import KEEPOUT, LayerExpressions, expressions_of
 from ...layers.site_transform import LayerToSiteTransform, SiteGeoreference
 from ...ui.language import tr, tr_count
 from .algorithm import ParameterError, Parameters
-from .parameters import SITE_CRS, chosen_crs, filter_in, layer_in
+from .parameters import advanced, chosen_crs, filter_in, layer_in, site_crs_parameter
 
 # --- How robots drive and which roads they may use: what routes and assignments ask alike ---
 
@@ -219,11 +218,11 @@ class RoadReading:
 
 def road_parameters() -> list[QgsProcessingParameterDefinition]:
     """Return the parameters that say what the roads are."""
-    advanced: list[QgsProcessingParameterDefinition] = [
+    others: list[QgsProcessingParameterDefinition] = [
         QgsProcessingParameterExpression(name, title, parentLayerParameterName=ROADS, optional=True)
         for name, title in _EXPRESSIONS.items()
     ]
-    advanced += [
+    others += [
         QgsProcessingParameterNumber(
             DEFAULT_WIDTH,
             tr("Width of roads of which it is not known [m]"),
@@ -238,19 +237,15 @@ def road_parameters() -> list[QgsProcessingParameterDefinition]:
             DEFAULT_SPEED,
             minValue=0.01,
         ),
-        QgsProcessingParameterCrs(
-            SITE_CRS, tr("CRS in metres (default: the layer's, or the project's)"), optional=True
-        ),
+        site_crs_parameter(tr("CRS in metres (default: the layer's, or the project's)")),
     ]
-    for parameter in advanced:
-        parameter.setFlags(parameter.flags() | QgsProcessingParameterDefinition.Flag.FlagAdvanced)
     lines = [QgsProcessing.SourceType.TypeVectorLine]
     return [
         QgsProcessingParameterFeatureSource(ROADS, tr("Road centrelines"), lines),
         QgsProcessingParameterNumber(
             TOLERANCE, tr("Ends this near to a road were meant to meet it [m]"), _REAL, 0.5, minValue=0.0
         ),
-        *advanced,
+        *map(advanced, others),
     ]
 
 
@@ -291,6 +286,9 @@ class RoadSource:
                     roads=self._parameters.get(ROADS),
                 )
             )
+        if source.featureCount() == 0:
+            # Said before the CRS is asked for: an empty layer often has none.
+            raise ParameterError(_no_roads(source.sourceName(), 0, []))
         given = self._algorithm, self._parameters, self._context
         crs = chosen_crs(*given, [source.sourceCrs()], layer_first=True)
         site = SiteGeoreference.in_crs(crs, self._context.transformContext())
@@ -312,15 +310,9 @@ class RoadSource:
         known: list[RoadAttributes] = []
         features: list[int] = []
         warnings: list[str] = []
-        total = max(source.featureCount(), 1)
-        for number, feature in enumerate(source.getFeatures()):
-            if feedback.isCanceled():
-                return None
-            feedback.setProgress(50.0 * number / total)
-            notes: list[str] = []
-            counts = self._counted is None or self._counted.keeps(feature, notes)
+        reader = FeatureReader(name, source, placing, self._counted, feedback, 50.0)
+        for feature, _, geometry, notes in reader:
             rules.at(feature)
-            geometry = placing.of_feature(feature, notes) if counts else None
             found = [] if geometry is None else lines_of(geometry, notes)
             if found:
                 known += [road_rules.of(notes)] * len(found)
@@ -330,6 +322,8 @@ class RoadSource:
                 tr("Layer {name}, feature {id}: {note}", name=name, id=feature.id(), note=note)
                 for note in notes
             ]
+        if not reader.complete:
+            return None
         if not lines:
             raise ParameterError(_no_roads(name, source.featureCount(), warnings))
         reading = RoadReading(self._columns(lines, known, name, warnings), features, crs, placing, warnings)

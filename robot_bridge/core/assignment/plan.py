@@ -5,8 +5,8 @@ from __future__ import annotations
 import json
 import math
 from collections import Counter
-from collections.abc import Iterator
-from dataclasses import dataclass, fields
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field, fields
 from itertools import pairwise
 from typing import Any, TypeVar
 
@@ -152,6 +152,23 @@ class ConePlan:
                 yield one, stop
 
 
+@dataclass(frozen=True)
+class PlanSituation:
+    """How things are ``now_s`` seconds after the plan's begin.
+
+    ``done`` are the ids of the cones that are placed or collected, ``lost`` the robots that are no more,
+    ``failed`` why cones are given up, by their ids; a cone that is to be tried again is in neither.
+    ``robots`` holds where robots are, what they carry and what battery they have, by their ids; of others it
+    is what the plan says.
+    """
+
+    now_s: float
+    done: frozenset[str] = frozenset()
+    lost: frozenset[str] = frozenset()
+    failed: Mapping[str, str] = field(default_factory=dict)
+    robots: Mapping[str, PlanRobot] = field(default_factory=dict)
+
+
 # --- Plans as JSON: one document with everything that a desk needs to show, change and send a plan ---
 # Names and units are those of :mod:`.plan`; battery without a limit is ``null``.
 
@@ -190,6 +207,11 @@ def plan_from_json(text: str | bytes) -> ConePlan:
         document = decode_json(text, DOCUMENT)
     except DecodingError as error:
         raise PlanFileError(f"This is no JSON document ({error}): choose the file of a plan.") from error
+    return plan_of_document(document)
+
+
+def plan_of_document(document: Any) -> ConePlan:
+    """Return the plan of the plain values that :func:`document_of` made; raises PlanFileError as above."""
     if not isinstance(document, dict) or document.get("format") != FORMAT:
         raise PlanFileError(f"This is no plan: its format is not {FORMAT!r}. Choose the file of a plan.")
     if document.get("version") != VERSION:
@@ -315,17 +337,18 @@ _NEAR = 0.01
 """Metres and seconds of rounding."""
 
 
-def check_plan(plan: ConePlan) -> list[str]:
+def check_plan(plan: ConePlan, *, led_round: bool = False) -> list[str]:
     """Return what is wrong with ``plan``, nothing where it can be driven as it is.
 
     Checked are: every target once, room, what is aboard, unloading, times, speeds, paths that hang together,
-    batteries, and that no target is begun before all of lower stages are done.
+    batteries, and that no target is begun before all of lower stages are done. Paths that are ``led_round``
+    what stands may be longer than what is counted of them, as those of ClearTravel are.
     """
     faults = list(_served_once(plan))
     for one in plan.robots:
         faults += _load_faults(one, {target.id: target for target in plan.targets})
         faults += _time_faults(one, {target.id: target for target in plan.targets})
-        faults += _path_faults(one)
+        faults += _path_faults(one, led_round)
     return faults + list(_stage_faults(plan))
 
 
@@ -388,7 +411,7 @@ def _time_faults(one: RobotPlan, targets: dict[str, ConeTarget]) -> Iterator[str
         yield f"Robot {robot.id} drives {metres:.1f} m and has battery for {robot.range_m:.1f} m."
 
 
-def _path_faults(one: RobotPlan) -> Iterator[str]:
+def _path_faults(one: RobotPlan, led_round: bool) -> Iterator[str]:
     at = one.robot.x, one.robot.y
     for stop in one.stops:
         where = f"Robot {one.robot.id} at {stop.kind} {stop.id}"
@@ -400,7 +423,7 @@ def _path_faults(one: RobotPlan) -> Iterator[str]:
         at = stop.x, stop.y
         if math.dist(stop.path[-1], at) > _NEAR:
             yield f"{where}: the path does not end there."
-        length = sum(math.dist(a, b) for a, b in pairwise(stop.path))
+        length = 0.0 if led_round else sum(math.dist(a, b) for a, b in pairwise(stop.path))
         if not math.isfinite(stop.metres) or length > stop.metres * 1.001 + _NEAR * len(stop.path):
             yield f"{where}: the path is {length:.2f} m long, and {stop.metres:.2f} m are counted."
         if stop.kind == HOME and math.dist(at, (one.robot.x, one.robot.y)) > _NEAR:

@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Callable, Sequence
+from dataclasses import replace
 from itertools import pairwise
 
 from ..errors import PlanEditError, counted
 from .job import AssignmentJob, ConeTarget, PlanRobot, Travel
-from .plan import ConePlan, LeftOut, PlanStop, RobotPlan
+from .plan import ConePlan, LeftOut, PlanSituation, PlanStop, RobotPlan
+from .pyvrp_search import Progress
 from .schedules import Schedule, ScheduleEvaluator, plan_of
-from .solver import Objective, Progress, assign
+from .solver import Objective, assign
 
 # --- Plans changed by hand: every change gives another plan with its loads, times and paths made anew ---
 
@@ -200,23 +201,6 @@ def _check_ways(job: AssignmentJob, days: ScheduleEvaluator, rows: Sequence[Sche
 
 
 # --- Plans made anew while they are driven: what is done stays, the rest is shared out again ---
-
-
-@dataclass(frozen=True)
-class PlanSituation:
-    """How things are ``now_s`` seconds after the plan's begin.
-
-    ``done`` are the ids of the cones that are placed or collected, ``lost`` the robots that are no more,
-    ``failed`` why cones are given up, by their ids; a cone that is to be tried again is in neither.
-    ``robots`` holds where robots are, what they carry and what battery they have, by their ids; of others it
-    is what the plan says.
-    """
-
-    now_s: float
-    done: frozenset[str] = frozenset()
-    lost: frozenset[str] = frozenset()
-    failed: Mapping[str, str] = field(default_factory=dict)
-    robots: Mapping[str, PlanRobot] = field(default_factory=dict)
 
 
 def replan(

@@ -8,8 +8,7 @@ from dataclasses import dataclass, field, replace
 
 from ..messages import PlacementReport, QueueReport, QueueTask, RobotState, TaskKind, TaskReport, TaskState
 from .job import COLLECT, PLACE, PlanRobot
-from .plan import HOME, STORE, ConePlan, PlanStop, RobotPlan
-from .plan_changes import PlanSituation
+from .plan import HOME, STORE, ConePlan, PlanSituation, PlanStop, RobotPlan
 
 # --- A plan as tasks for the robots' queues ---
 
@@ -176,15 +175,6 @@ class PlanProgress:
         """Return why a cone failed or was given up, nothing for another."""
         found = self._newest(target)
         return (found.reason or "") if found is not None and found.state in _GIVEN_UP else ""
-
-    def remark_on(self, target: str) -> str:
-        """Return what is said of a cone: why it failed, was given up, or is not begun yet."""
-        if target in self.done:
-            return ""
-        found = self._newest(target)
-        if found is None or found.state not in (*_GIVEN_UP, TaskState.WAITING):
-            return ""
-        return found.reason or ""
 
     def is_finished(self, plan: ConePlan) -> bool:
         """Tell whether every cone of ``plan`` is done or left out."""

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from ..errors import MissingSolverError
+from ..errors import AssignmentCancelledError, MissingSolverError
 from .job import Floats
 from .local_search import TripLimits
 from .schedules import BALANCED, Schedule, ScheduleEvaluator, StageObjective, Trip
@@ -53,10 +53,31 @@ def load_pyvrp() -> Any:
     return pyvrp
 
 
-class SearchClock:
-    """Knows how much of ``seconds`` is over, and tells it; ``progress`` may raise to end the work."""
+Progress = Callable[[float], bool]
+"""Is told which share of the work is done, 0 to 1; what it returns says whether to go on."""
 
-    def __init__(self, seconds: float, progress: Callable[[float], None]) -> None:
+
+class SearchProgress:
+    """How far a search is: its shares stand for those from ``begin`` to ``end`` of the whole."""
+
+    def __init__(self, goes_on: Progress, begin: float = 0.0, end: float = 1.0) -> None:
+        self._goes_on, self._begin, self._end = goes_on, begin, end
+
+    def report(self, share: float) -> None:
+        """Tell that ``share`` of the search is over; raises AssignmentCancelledError where it is to end."""
+        if not self._goes_on(self._begin + (self._end - self._begin) * share):
+            raise AssignmentCancelledError("The assignment was cancelled.")
+
+    def part(self, begin: float, end: float) -> SearchProgress:
+        """Return the progress of a part, from ``begin`` to ``end`` of this."""
+        length = self._end - self._begin
+        return SearchProgress(self._goes_on, self._begin + length * begin, self._begin + length * end)
+
+
+class SearchClock:
+    """Knows how much of ``seconds`` is over, and reports it to ``progress``, which may end the work."""
+
+    def __init__(self, seconds: float, progress: SearchProgress) -> None:
         self._seconds = max(seconds, 1e-3)
         self._begun, self._progress = time.perf_counter(), progress
 
@@ -64,7 +85,7 @@ class SearchClock:
     def share(self) -> float:
         """Return the share of the time that is over, and tell it."""
         share = min((time.perf_counter() - self._begun) / self._seconds, 1.0)
-        self._progress(share)
+        self._progress.report(share)
         return share
 
     @property

@@ -9,11 +9,18 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 
-from ..errors import AssignmentCancelledError, JobError, UnservedError, counted, listed_names
+from ..errors import JobError, UnservedError, counted, listed_names
 from .job import AssignmentJob, CancellableTravel, Travel
 from .local_search import TripLimits, improved, saving_pairs, trips_by_savings
 from .plan import ConePlan
-from .pyvrp_search import SearchClock, load_pyvrp, loaded_days_by_pyvrp, trips_by_pyvrp
+from .pyvrp_search import (
+    Progress,
+    SearchClock,
+    SearchProgress,
+    load_pyvrp,
+    loaded_days_by_pyvrp,
+    trips_by_pyvrp,
+)
 from .schedules import (
     BALANCED,
     LEAST_DISTANCE,
@@ -58,7 +65,7 @@ class Effort:
 
     seconds: float
     use_pyvrp: bool
-    progress: Callable[[float], None]
+    progress: SearchProgress
     seed: int = 0
 
 
@@ -74,7 +81,7 @@ def solved_stage(
 
     def over(share: float) -> bool:
         passed = (time.perf_counter() - begun) / max(effort.seconds, 1e-3)
-        effort.progress(min(passed, 1.0))
+        effort.progress.report(min(passed, 1.0))
         return passed >= share
 
     begin = _on_board(days, targets, start)
@@ -106,7 +113,7 @@ def _clock_of_pyvrp(effort: Effort, aim: StageObjective, seconds_left: float) ->
     """Return the clock of what PyVRP does: it leaves time for small changes."""
     begin, end = _FIRST_SHARE, _LAST_SHARE[aim.objective]
     seconds = seconds_left - effort.seconds * (1.0 - end)
-    return SearchClock(seconds, lambda share: effort.progress(begin + (end - begin) * share))
+    return SearchClock(seconds, effort.progress.part(begin, end))
 
 
 def _all_on_board(plan: Sequence[Schedule], start: Sequence[Schedule]) -> bool:
@@ -228,9 +235,6 @@ PREVIEW_KEPT = f"{PYVRP}, which found nothing better than the preview"
 """The method of a plan that PyVRP looked at and could not improve."""
 METHODS = (AUTOMATIC, PYVRP, PREVIEW)
 
-Progress = Callable[[float], bool]
-"""Is told which share of the work is done, 0 to 1; what it returns says whether to go on."""
-
 
 @dataclass(frozen=True)
 class Objective:
@@ -291,12 +295,8 @@ def _solved(
     for stage in job.stages:
         targets = [place for place in _places(job) if job.target(place).stage == stage]
         before, part = done / len(job.targets), len(targets) / len(job.targets)
-
-        def tell(share: float, before: float = before, part: float = part) -> None:
-            if not progress(before + part * share):
-                raise AssignmentCancelledError("The assignment was cancelled.")
-
         aim = StageObjective(wanted.objective, last=stage == job.stages[-1])
+        tell = SearchProgress(progress, before, before + part)
         effort = Effort(wanted.time_limit_s * part, use_pyvrp, tell, wanted.seed)
         answer = solved_stage(days, targets, plan, aim, effort)
         if answer.left:

@@ -1,14 +1,15 @@
 """The messages of the bridge: one definition for every wire.
 
-:mod:`.robots` holds the paper's: what robots ask and what the server answers. :mod:`.operator_requests` holds
-what operators ask and are told. Positions are metres in the site frame, angles radians counter-clockwise from
-its x axis, times seconds since 1970-01-01 UTC. Nothing here is imported but the standard library, so that
-QGIS can load it.
+:mod:`.robots` holds the paper's: what robots ask and what the server answers. The other modules hold what
+operators ask and are told, each a subject; :mod:`.operator_requests` says what each request declares.
+Positions are metres in the site frame, angles radians counter-clockwise from its x axis, times seconds since
+1970-01-01 UTC. Nothing here is imported but the standard library, so that QGIS can load it.
 """
 
 from __future__ import annotations
 
 from .administration import (
+    PROTOCOL_VERSION,
     AddOperator,
     AuditReport,
     ChooseSite,
@@ -17,6 +18,7 @@ from .administration import (
     GetOperators,
     GetSessions,
     GetSites,
+    Hello,
     KeptRobot,
     LinkReport,
     Links,
@@ -28,17 +30,29 @@ from .administration import (
     RemoveRobots,
     RevokeToken,
     RobotsRemoved,
-    Role,
     RotateToken,
     SessionReport,
     SetPlayback,
     SetRole,
     SiteOffer,
+    SiteReport,
     Sites,
     Stopping,
     Suspension,
     Suspensions,
     TokenState,
+)
+from .commands import (
+    AbortAll,
+    AbortTask,
+    CommandReport,
+    CommandState,
+    CommandStep,
+    GetCommands,
+    Send,
+    SendMap,
+    SetPositions,
+    TargetPosition,
 )
 from .json_values import (
     closures_report,
@@ -51,6 +65,7 @@ from .json_values import (
     open_session,
     operators_report,
     placement_report,
+    plan_report,
     queue_report,
     replanned_robot,
     robot_report,
@@ -62,31 +77,7 @@ from .json_values import (
     to_json,
     ways_out_report,
 )
-from .operator_requests import (
-    DESK_REQUESTS,
-    POSITION_ALWAYS,
-    POSITION_FLAGS,
-    POSITION_NUMBERS,
-    POSITION_TEXTS,
-    PROTOCOL_VERSION,
-    AbortAll,
-    CommandReport,
-    CommandState,
-    CommandStep,
-    DeskRequest,
-    GetCommands,
-    GetPositions,
-    Hello,
-    PositionColumns,
-    PositionForm,
-    RobotReport,
-    Send,
-    SendMap,
-    SetPositions,
-    SiteReport,
-    Subscribe,
-    TargetPosition,
-)
+from .operator_requests import DESK_REQUESTS, DeskRequest, Role
 from .plans import (
     ClearPlan,
     ConfirmReplan,
@@ -102,6 +93,17 @@ from .plans import (
     Replan,
     ResumePlan,
     SubmitPlan,
+)
+from .positions import (
+    POSITION_ALWAYS,
+    POSITION_FLAGS,
+    POSITION_NUMBERS,
+    POSITION_TEXTS,
+    GetPositions,
+    PositionColumns,
+    PositionForm,
+    RobotReport,
+    Subscribe,
 )
 from .queues import (
     LONGEST_PATH,
@@ -199,7 +201,6 @@ from .robots import (
 )
 from .safety import (
     Ability,
-    AbortTask,
     ClearEmergencyStop,
     EmergencyReport,
     EmergencyStop,
@@ -414,6 +415,7 @@ __all__ = [
     "operators_report",
     "path_to_end",
     "placement_report",
+    "plan_report",
     "queue_report",
     "refuse_unknown_keys",
     "replanned_robot",

@@ -6,23 +6,70 @@ from dataclasses import dataclass, field
 from enum import Enum
 from typing import ClassVar
 
-from .safety import check_reason
-from .validation import MessageError, check_expires_in, check_finite, check_robot_name
+from .operator_requests import DeskRequest, Role
+from .safety import EmergencyReport, check_reason
+from .validation import LONGEST_OPERATOR, MessageError, check_expires_in, check_finite, check_robot_name
 
-# --- What operators' accounts may do ---
+# --- The connection of an operator: what is served here, and who you are ---
+
+PROTOCOL_VERSION = 1
 
 
-class Role(str, Enum):
-    """What an operator's account may do; each role may do what the one before it may."""
+@dataclass(frozen=True)
+class SiteReport:
+    """The site that a gateway serves: its frame (CRS, origin, rotation in radians) and its bounds.
 
-    VIEWER = "viewer"
-    OPERATOR = "operator"
-    SUPERVISOR = "supervisor"
+    ``bounds`` is x_min, y_min, x_max, y_max in the site frame. ``roads`` says that the gateway finds ways
+    along roads on it.
+    """
 
-    def includes(self, other: Role) -> bool:
-        """Tell whether this role may do what ``other`` may."""
-        order = list(Role)
-        return order.index(self) >= order.index(other)
+    id: str
+    name: str
+    version: int
+    crs: str
+    origin: tuple[float, float]
+    rotation: float
+    bounds: tuple[float, float, float, float]
+    reached_tolerance: float
+    stale_after: float
+    lost_after: float
+    roads: bool = False
+
+
+@dataclass(frozen=True)
+class HelloResult:
+    """The answer to ``hello``: which protocol is spoken here, the site, and who you are to the gateway.
+
+    ``database`` tells the gateway's database from every other: with another one, robots and commands of the
+    same names are others.
+    """
+
+    protocol: int
+    site: SiteReport
+    operator: str
+    role: Role
+    emergency: EmergencyReport
+    database: str = ""
+
+
+@dataclass(frozen=True)
+class Hello(DeskRequest[HelloResult]):
+    """An operator's first message; answered with a SiteReport under ``site`` and the protocol's version.
+
+    ``operator`` is a name on one line, of at most 128 printable characters.
+    """
+
+    method = "hello"
+    least_role = Role.VIEWER
+    operator: str
+    protocol: int = PROTOCOL_VERSION
+
+    def __post_init__(self) -> None:
+        if not (len(self.operator) <= LONGEST_OPERATOR and self.operator.strip().isprintable()):
+            raise MessageError(
+                f"operator has {len(self.operator)} characters and begins {self.operator[:40]!r}; give a "
+                f"name of at most {LONGEST_OPERATOR} printable characters on one line"
+            )
 
 
 # --- What supervisors ask about operators' accounts: who has one, with which role, and how its token stands
@@ -41,17 +88,36 @@ class TokenState(str, Enum):
 
 
 @dataclass(frozen=True)
-class GetOperators:
+class Operators:
+    """Every operator's account, by name."""
+
+    operators: list[OperatorReport]
+
+
+@dataclass(frozen=True)
+class GetOperators(DeskRequest[Operators]):
     """Ask for every operator's account, by name."""
 
-    method: ClassVar[str] = "get_operators"
+    method = "get_operators"
+    least_role = Role.SUPERVISOR
 
 
 @dataclass(frozen=True)
-class AddOperator:
+class NewToken:
+    """A token that was just made. It is kept nowhere, and told in this answer only."""
+
+    operator: str
+    role: Role
+    token: str
+    expires_at: float | None = None
+
+
+@dataclass(frozen=True)
+class AddOperator(DeskRequest[NewToken]):
     """Make an account; answered with its token. That expires after ``expires_in`` seconds, if given."""
 
-    method: ClassVar[str] = "add_operator"
+    method = "add_operator"
+    least_role = Role.SUPERVISOR
     operator: str
     role: Role
     expires_in: float | None = None
@@ -61,32 +127,16 @@ class AddOperator:
 
 
 @dataclass(frozen=True)
-class RotateToken:
+class RotateToken(DeskRequest[NewToken]):
     """Ask for a new token of an operator, in place of every one before, whose connections end."""
 
-    method: ClassVar[str] = "rotate_token"
+    method = "rotate_token"
+    least_role = Role.SUPERVISOR
     operator: str
     expires_in: float | None = None
 
     def __post_init__(self) -> None:
         check_expires_in(self.expires_in, LONGEST_VALIDITY)
-
-
-@dataclass(frozen=True)
-class RevokeToken:
-    """Take an operator's token away; connections that it opened end. The account stays."""
-
-    method: ClassVar[str] = "revoke_token"
-    operator: str
-
-
-@dataclass(frozen=True)
-class SetRole:
-    """Give an operator another role, which holds for open connections too."""
-
-    method: ClassVar[str] = "set_role"
-    operator: str
-    role: Role
 
 
 @dataclass(frozen=True)
@@ -103,20 +153,22 @@ class OperatorReport:
 
 
 @dataclass(frozen=True)
-class NewToken:
-    """A token that was just made. It is kept nowhere, and told in this answer only."""
+class RevokeToken(DeskRequest[OperatorReport]):
+    """Take an operator's token away; connections that it opened end. The account stays."""
 
+    method = "revoke_token"
+    least_role = Role.SUPERVISOR
     operator: str
-    role: Role
-    token: str
-    expires_at: float | None = None
 
 
 @dataclass(frozen=True)
-class Operators:
-    """Every operator's account, by name."""
+class SetRole(DeskRequest[OperatorReport]):
+    """Give an operator another role, which holds for open connections too."""
 
-    operators: list[OperatorReport]
+    method = "set_role"
+    least_role = Role.SUPERVISOR
+    operator: str
+    role: Role
 
 
 # --- What supervisors ask about the other operators: who is connected, and who did what ---
@@ -126,45 +178,23 @@ MOST_ENTRIES = 10_000
 
 
 @dataclass(frozen=True)
-class GetSessions:
+class Sessions:
+    """Operators' connections, newest first."""
+
+    sessions: list[SessionReport]
+
+
+@dataclass(frozen=True)
+class GetSessions(DeskRequest[Sessions]):
     """Ask for the operators' open connections, newest first; with ``ended`` also for those that were."""
 
-    method: ClassVar[str] = "get_sessions"
+    method = "get_sessions"
+    least_role = Role.SUPERVISOR
     ended: bool = False
     limit: int = 200
 
     def __post_init__(self) -> None:
         _check_limit(self.limit)
-
-
-@dataclass(frozen=True)
-class EndSession:
-    """End an operator's connection, by its id or how that begins; the operator is told ``reason``."""
-
-    method: ClassVar[str] = "end_session"
-    session: str
-    reason: str = "ended by a supervisor"
-
-    def __post_init__(self) -> None:
-        if len(self.reason) > LONGEST_REASON:
-            raise MessageError(f"reason has {len(self.reason)} characters; give at most {LONGEST_REASON}")
-
-
-@dataclass(frozen=True)
-class GetAudit:
-    """Ask who did what, newest first: since a time, by one account, before an entry's id."""
-
-    method: ClassVar[str] = "get_audit"
-    since: float | None = None
-    who: str | None = None
-    before: int | None = None
-    limit: int = 200
-
-    def __post_init__(self) -> None:
-        check_finite(since=self.since)
-        _check_limit(self.limit)
-        if self.before is not None and not 0 <= self.before < 2**63:
-            raise MessageError(f"before is {self.before}; give the id of an entry")
 
 
 @dataclass(frozen=True)
@@ -178,6 +208,45 @@ class SessionReport:
     began_at: float
     ended_at: float | None = None
     reason: str | None = None
+
+
+@dataclass(frozen=True)
+class EndSession(DeskRequest[SessionReport]):
+    """End an operator's connection, by its id or how that begins; the operator is told ``reason``."""
+
+    method = "end_session"
+    least_role = Role.SUPERVISOR
+    session: str
+    reason: str = "ended by a supervisor"
+
+    def __post_init__(self) -> None:
+        if len(self.reason) > LONGEST_REASON:
+            raise MessageError(f"reason has {len(self.reason)} characters; give at most {LONGEST_REASON}")
+
+
+@dataclass(frozen=True)
+class Audit:
+    """Who did what, newest first."""
+
+    entries: list[AuditReport]
+
+
+@dataclass(frozen=True)
+class GetAudit(DeskRequest[Audit]):
+    """Ask who did what, newest first: since a time, by one account, before an entry's id."""
+
+    method = "get_audit"
+    least_role = Role.SUPERVISOR
+    since: float | None = None
+    who: str | None = None
+    before: int | None = None
+    limit: int = 200
+
+    def __post_init__(self) -> None:
+        check_finite(since=self.since)
+        _check_limit(self.limit)
+        if self.before is not None and not 0 <= self.before < 2**63:
+            raise MessageError(f"before is {self.before}; give the id of an entry")
 
 
 @dataclass(frozen=True)
@@ -204,17 +273,26 @@ def _check_limit(limit: int) -> None:
 
 
 @dataclass(frozen=True)
-class GetSites:
-    """Ask for the published sites that lie beside the one that is served, and that one."""
+class Sites:
+    """The sites that a gateway may serve, by the names of their folders."""
 
-    method: ClassVar[str] = "get_sites"
+    sites: list[SiteOffer]
 
 
 @dataclass(frozen=True)
-class ChooseSite:
+class GetSites(DeskRequest[Sites]):
+    """Ask for the published sites that lie beside the one that is served, and that one."""
+
+    method = "get_sites"
+    least_role = Role.SUPERVISOR
+
+
+@dataclass(frozen=True)
+class ChooseSite(DeskRequest[SiteReport]):
     """Have another site served from now on: ``site`` is the name of its folder, as in ``get_sites``."""
 
-    method: ClassVar[str] = "choose_site"
+    method = "choose_site"
+    least_role = Role.SUPERVISOR
     site: str
 
 
@@ -233,13 +311,6 @@ class SiteOffer:
     refusal: str | None = None
 
 
-@dataclass(frozen=True)
-class Sites:
-    """The sites that a gateway may serve, by the names of their folders."""
-
-    sites: list[SiteOffer]
-
-
 # --- What supervisors ask of robots that are gone ---
 
 MOST_REMOVED = 10_000
@@ -247,13 +318,22 @@ MOST_REMOVED = 10_000
 
 
 @dataclass(frozen=True)
-class RemoveRobots:
+class RobotsRemoved:
+    """The robots that were removed, by name, and those that were not."""
+
+    removed: list[str]
+    kept: list[KeptRobot] = field(default_factory=list)
+
+
+@dataclass(frozen=True)
+class RemoveRobots(DeskRequest[RobotsRemoved]):
     """Remove ``robots`` that are lost or offline, with their queues and open commands.
 
     Their history stays. One that comes back is told to abort, and is a new robot.
     """
 
-    method: ClassVar[str] = "remove_robots"
+    method = "remove_robots"
+    least_role = Role.SUPERVISOR
     robots: list[str]
     reason: str | None = None
 
@@ -271,14 +351,6 @@ class KeptRobot:
 
     robot: str
     reason: str
-
-
-@dataclass(frozen=True)
-class RobotsRemoved:
-    """The robots that were removed, by name, and those that were not."""
-
-    removed: list[str]
-    kept: list[KeptRobot] = field(default_factory=list)
 
 
 # --- What clients are told about the gateway itself, and about its links ---
@@ -312,10 +384,10 @@ class Suspensions:
 
 @dataclass(frozen=True)
 class LinkReport:
-    """A link, which speaks for many robots; ``up``: it is connected, and its own side is in order.
+    """A link, which speaks for many robots; ``up``: it is connected, and its robots can be reached.
 
     Otherwise ``text`` says what is wrong, and ``robots`` are those that it spoke for: fifty names at most, of
-    ``count`` in all.
+    ``count`` in all. Where it is up ``text`` says what is the matter with some of its robots, if anything is.
     """
 
     link: str
@@ -351,26 +423,6 @@ class Playback:
 
 
 @dataclass(frozen=True)
-class SetPlayback:
-    """Play the recording of ``link`` on otherwise, as :class:`Playback`; with nothing else, only ask how."""
-
-    link: str
-    speed: float | None = None
-    paused: bool | None = None
-    loop: bool | None = None
-    place_s: float | None = None
-    method: ClassVar[str] = "set_playback"
-
-    def __post_init__(self) -> None:
-        check_finite(speed=self.speed, place_s=self.place_s)
-
-    @property
-    def change(self) -> Playback:
-        """What the link is told."""
-        return Playback(self.speed, self.paused, self.loop, self.place_s)
-
-
-@dataclass(frozen=True)
 class PlaybackReport:
     """How a recording is played: the name of its file, and where in its ``length_s`` seconds it is."""
 
@@ -380,3 +432,24 @@ class PlaybackReport:
     loop: bool
     place_s: float
     length_s: float
+
+
+@dataclass(frozen=True)
+class SetPlayback(DeskRequest[PlaybackReport]):
+    """Play the recording of ``link`` on otherwise, as :class:`Playback`; with nothing else, only ask how."""
+
+    method = "set_playback"
+    least_role = Role.OPERATOR
+    link: str
+    speed: float | None = None
+    paused: bool | None = None
+    loop: bool | None = None
+    place_s: float | None = None
+
+    def __post_init__(self) -> None:
+        check_finite(speed=self.speed, place_s=self.place_s)
+
+    @property
+    def change(self) -> Playback:
+        """What the link is told."""
+        return Playback(self.speed, self.paused, self.loop, self.place_s)

@@ -14,15 +14,18 @@ from .administration import (
     NewToken,
     OperatorReport,
     Operators,
-    Role,
     SessionReport,
     SiteOffer,
+    SiteReport,
     Sites,
     Suspension,
     Suspensions,
     TokenState,
 )
-from .operator_requests import CommandReport, CommandState, CommandStep, RobotReport, SiteReport
+from .commands import CommandReport, CommandState, CommandStep
+from .operator_requests import Role
+from .plans import PlanProblemKind, PlanProblemReport, PlanReport, PlanState, PlanStopReport
+from .positions import RobotReport
 from .queues import QueueReport, QueueState, TaskKind, TaskReport, TaskState
 from .records import ObservationReport, ObservationState, PlacementReport
 from .roads import (
@@ -124,6 +127,20 @@ def task_report(values: dict[str, Any]) -> TaskReport:
 def placement_report(values: dict[str, Any]) -> PlacementReport:
     """Return the placed cone that a gateway sent as JSON."""
     return PlacementReport(**known_fields(PlacementReport, values))
+
+
+def plan_report(values: dict[str, Any]) -> PlanReport:
+    """Return the cone plan that a gateway sent as JSON; its documents stay plain values."""
+    stops = [
+        PlanStopReport(**{**known_fields(PlanStopReport, one), "state": TaskState(one["state"])})
+        for one in values.get("stops", [])
+    ]
+    problems = [
+        PlanProblemReport(**{**known_fields(PlanProblemReport, one), "kind": PlanProblemKind(one["kind"])})
+        for one in values.get("problems", [])
+    ]
+    typed = {"state": PlanState(values["state"]), "stops": stops, "problems": problems}
+    return PlanReport(**{**known_fields(PlanReport, values), **typed})
 
 
 def emergency_report(values: dict[str, Any]) -> EmergencyReport:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Any, ClassVar
 
-from .operator_requests import SiteReport
+from .administration import SiteReport
 from .validation import LONGEST_STATUS, MessageError, check_finite, one_line
 
 LINK_PROTOCOL = 1
@@ -88,11 +88,15 @@ class SiteAreas:
 
 @dataclass(frozen=True)
 class LinkStatus:
-    """How a link is: whether its own side is in order, a line about that, and what it has counted."""
+    """How a link is: whether its own side is in order, a line about that, and what it has counted.
+
+    ``reached``: what is not in order concerns some of its robots, and all can be reached.
+    """
 
     ok: bool
     text: str | None = None
     counts: dict[str, float] = field(default_factory=dict)
+    reached: bool | None = None
     method: ClassVar[str] = "status"
 
     def __post_init__(self) -> None:

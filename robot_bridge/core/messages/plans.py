@@ -8,8 +8,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from enum import Enum
-from typing import Any, ClassVar
+from typing import Any
 
+from .operator_requests import DeskRequest, Priority, Role
 from .queues import LONGEST_QUEUE, TaskState
 from .safety import check_override, check_reason
 from .validation import (
@@ -66,7 +67,38 @@ class PlanCone:
 
 
 @dataclass(frozen=True)
-class SubmitPlan:
+class PlanReport:
+    """A plan as it stands: ``done`` of its ``cones`` are placed or collected, ``left_out`` are given up.
+
+    ``reason``, ``by`` and ``at`` say why, by whom and when it came into its state. ``document``, and of the
+    plan of what is left ``proposal``, come when asked for; ``meetings`` counts where robots come too near to
+    one another by that, ``closed`` its ways along closed roads.
+    """
+
+    plan: str
+    revision: int
+    state: PlanState
+    submitted_by: str
+    submitted_at: float
+    by_itself: bool
+    cones: int
+    done: int
+    robots: list[str]
+    stops: list[PlanStopReport] = field(default_factory=list)
+    problems: list[PlanProblemReport] = field(default_factory=list)
+    left_out: list[str] = field(default_factory=list)
+    reason: str | None = None
+    by: str | None = None
+    at: float | None = None
+    ended_at: float | None = None
+    meetings: int | None = None
+    closed: int | None = None
+    document: dict[str, Any] | None = None
+    proposal: dict[str, Any] | None = None
+
+
+@dataclass(frozen=True)
+class SubmitPlan(DeskRequest[PlanReport]):
     """Give the robots of a plan their tasks, all in one step, and let the gateway follow it from then on.
 
     ``plan`` is a name that the operator's side invents; given twice, done once. ``document`` is the plan as
@@ -77,7 +109,9 @@ class SubmitPlan:
     ``override`` says what speaks against it, and why it is asked for all the same, as with ``send``.
     """
 
-    method: ClassVar[str] = "submit_plan"
+    method = "submit_plan"
+    least_role = Role.OPERATOR
+    priority = Priority.MOVE
     plan: str
     document: dict[str, Any]
     cones: list[PlanCone]
@@ -111,10 +145,18 @@ class SubmitPlan:
 
 
 @dataclass(frozen=True)
-class GetPlans:
+class Plans:
+    """Plans, those that are driven first."""
+
+    plans: list[PlanReport]
+
+
+@dataclass(frozen=True)
+class GetPlans(DeskRequest[Plans]):
     """Ask for one plan, or for all that are driven and the newest ``ended`` ones; whole if ``documents``."""
 
-    method: ClassVar[str] = "get_plans"
+    method = "get_plans"
+    least_role = Role.VIEWER
     plan: str | None = None
     documents: bool = False
     ended: int = 10
@@ -127,14 +169,15 @@ class GetPlans:
 
 
 @dataclass(frozen=True)
-class PausePlan:
+class PausePlan(DeskRequest[PlanReport]):
     """Send the plan's robots no further task; what they are doing they finish (``abort`` stops them).
 
     Needs no revision: to hold is never refused.
     """
 
-    method: ClassVar[str] = "pause_plan"
-    stops: ClassVar[bool] = True
+    method = "pause_plan"
+    least_role = Role.OPERATOR
+    stops = True
     plan: str
     reason: str | None = None
 
@@ -144,11 +187,13 @@ class PausePlan:
 
 
 @dataclass(frozen=True)
-class ResumePlan:
+class ResumePlan(DeskRequest[PlanReport]):
     """Let those of the plan's robots go on whose queues are paused; not one whose cone failed, nor a lost
     one: that takes a plan of what is left."""
 
-    method: ClassVar[str] = "resume_plan"
+    method = "resume_plan"
+    least_role = Role.OPERATOR
+    priority = Priority.MOVE
     plan: str
     revision: int
 
@@ -157,13 +202,14 @@ class ResumePlan:
 
 
 @dataclass(frozen=True)
-class Replan:
+class Replan(DeskRequest[PlanReport]):
     """Hold the plan's robots and plan what is left, without those that are lost or offline.
 
     With ``try_again`` cones that failed are tried by somebody again; else they are left out.
     """
 
-    method: ClassVar[str] = "replan"
+    method = "replan"
+    least_role = Role.OPERATOR
     plan: str
     revision: int
     try_again: bool = False
@@ -173,13 +219,15 @@ class Replan:
 
 
 @dataclass(frozen=True)
-class ConfirmReplan:
+class ConfirmReplan(DeskRequest[PlanReport]):
     """Give the robots the proposed plan of what is left, in one step, and let them go on.
 
     ``override`` says what speaks against it, and why it is asked for all the same, as with ``send``.
     """
 
-    method: ClassVar[str] = "confirm_replan"
+    method = "confirm_replan"
+    least_role = Role.OPERATOR
+    priority = Priority.MOVE
     plan: str
     revision: int
     override: str | None = None
@@ -190,10 +238,12 @@ class ConfirmReplan:
 
 
 @dataclass(frozen=True)
-class DiscardReplan:
+class DiscardReplan(DeskRequest[PlanReport]):
     """Give up planning what is left, or the plan of that; robots that were held for it go on as before."""
 
-    method: ClassVar[str] = "discard_replan"
+    method = "discard_replan"
+    least_role = Role.OPERATOR
+    priority = Priority.MOVE
     plan: str
     revision: int
 
@@ -202,10 +252,11 @@ class DiscardReplan:
 
 
 @dataclass(frozen=True)
-class ClearPlan:
+class ClearPlan(DeskRequest[PlanReport]):
     """Follow a plan no more; robots go on with what is in their queues. Asked again it changes nothing."""
 
-    method: ClassVar[str] = "clear_plan"
+    method = "clear_plan"
+    least_role = Role.OPERATOR
     plan: str
 
     def __post_init__(self) -> None:
@@ -215,7 +266,7 @@ class ClearPlan:
 @dataclass(frozen=True)
 class PlanStopReport:
     """A stop of a plan: who makes it as which task, and what became of that; ``id`` is the cone's, the
-    store's, or at ``home`` the robot's."""
+    store's, or at ``home`` the robot's. ``placement`` numbers the placed cone that is collected there."""
 
     task: str
     robot: str
@@ -225,6 +276,7 @@ class PlanStopReport:
     y: float
     state: TaskState
     reason: str | None = None
+    placement: int | None = None
 
 
 class PlanProblemKind(str, Enum):
@@ -243,37 +295,6 @@ class PlanProblemReport:
     robot: str | None = None
     stop: str | None = None
     reason: str | None = None
-
-
-@dataclass(frozen=True)
-class PlanReport:
-    """A plan as it stands: ``done`` of its ``cones`` are placed or collected, ``left_out`` are given up.
-
-    ``reason``, ``by`` and ``at`` say why, by whom and when it came into its state. ``document``, and of the
-    plan of what is left ``proposal``, come when asked for; ``meetings`` counts where robots come too near to
-    one another by that, ``closed`` its ways along closed roads.
-    """
-
-    plan: str
-    revision: int
-    state: PlanState
-    submitted_by: str
-    submitted_at: float
-    by_itself: bool
-    cones: int
-    done: int
-    robots: list[str]
-    stops: list[PlanStopReport] = field(default_factory=list)
-    problems: list[PlanProblemReport] = field(default_factory=list)
-    left_out: list[str] = field(default_factory=list)
-    reason: str | None = None
-    by: str | None = None
-    at: float | None = None
-    ended_at: float | None = None
-    meetings: int | None = None
-    closed: int | None = None
-    document: dict[str, Any] | None = None
-    proposal: dict[str, Any] | None = None
 
 
 def check_label(name: str, text: str) -> None:

@@ -11,6 +11,7 @@ from dataclasses import dataclass, field
 from enum import Enum
 from typing import ClassVar
 
+from .operator_requests import DeskRequest, Priority, Role
 from .safety import RobotState, check_override, check_reason
 from .validation import (
     LONGEST_LABEL,
@@ -155,7 +156,7 @@ class QueueReport:
 
 
 @dataclass(frozen=True)
-class SetQueue:
+class SetQueue(DeskRequest[QueueReport]):
     """Replace what is not yet begun by ``tasks``; what the robot is doing goes on.
 
     Tasks of this queue that are being done, or were done meanwhile, are passed over. A robot without a queue
@@ -163,7 +164,9 @@ class SetQueue:
     with ``send``.
     """
 
-    method: ClassVar[str] = "set_queue"
+    method = "set_queue"
+    least_role = Role.OPERATOR
+    priority = Priority.MOVE
     robot: str
     revision: int
     tasks: list[QueueTask]
@@ -176,13 +179,15 @@ class SetQueue:
 
 
 @dataclass(frozen=True)
-class AddTasks:
+class AddTasks(DeskRequest[QueueReport]):
     """Put tasks into a queue, in front of task ``before``, or at its end.
 
     ``override`` says what speaks against them, and why they are asked for all the same, as with ``send``.
     """
 
-    method: ClassVar[str] = "add_tasks"
+    method = "add_tasks"
+    least_role = Role.OPERATOR
+    priority = Priority.MOVE
     robot: str
     revision: int
     tasks: list[QueueTask]
@@ -196,10 +201,11 @@ class AddTasks:
 
 
 @dataclass(frozen=True)
-class MoveTask:
+class MoveTask(DeskRequest[QueueReport]):
     """Move a task that is not being done in front of task ``before``, or to the end of its queue."""
 
-    method: ClassVar[str] = "move_task"
+    method = "move_task"
+    least_role = Role.OPERATOR
     robot: str
     revision: int
     task: str
@@ -210,10 +216,11 @@ class MoveTask:
 
 
 @dataclass(frozen=True)
-class RemoveTask:
+class RemoveTask(DeskRequest[QueueReport]):
     """Take a task that is not being done out of its queue."""
 
-    method: ClassVar[str] = "remove_task"
+    method = "remove_task"
+    least_role = Role.OPERATOR
     robot: str
     revision: int
     task: str
@@ -225,13 +232,15 @@ class RemoveTask:
 
 
 @dataclass(frozen=True)
-class MakeCurrent:
+class MakeCurrent(DeskRequest[QueueReport]):
     """Let a robot do this task first: at once, in place of what it is doing, which then comes next.
 
     In a queue that is paused the task is put first, and nothing is sent.
     """
 
-    method: ClassVar[str] = "make_current"
+    method = "make_current"
+    least_role = Role.OPERATOR
+    priority = Priority.MOVE
     robot: str
     revision: int
     task: str
@@ -241,14 +250,15 @@ class MakeCurrent:
 
 
 @dataclass(frozen=True)
-class PauseQueue:
+class PauseQueue(DeskRequest[QueueReport]):
     """Send the robot no further task; what it is doing it finishes (``abort`` stops it).
 
     Needs no revision: to hold is never refused.
     """
 
-    method: ClassVar[str] = "pause_queue"
-    stops: ClassVar[bool] = True
+    method = "pause_queue"
+    least_role = Role.OPERATOR
+    stops = True
     robot: str
     reason: str | None = None
 
@@ -258,7 +268,7 @@ class PauseQueue:
 
 
 @dataclass(frozen=True)
-class PauseRobot:
+class PauseRobot(DeskRequest[QueueReport]):
     """Let a robot stand, whatever it is doing, until its queue is resumed; then it goes on from where it is.
 
     It is sent Abort. What it was doing waits at the head of its queue, which is paused: a task of that, or
@@ -266,8 +276,10 @@ class PauseRobot:
     nothing.
     """
 
-    method: ClassVar[str] = "pause_robot"
-    stops: ClassVar[bool] = True
+    method = "pause_robot"
+    least_role = Role.OPERATOR
+    priority = Priority.STOP
+    stops = True
     robot: str
     reason: str | None = None
 
@@ -277,10 +289,12 @@ class PauseRobot:
 
 
 @dataclass(frozen=True)
-class ResumeQueue:
+class ResumeQueue(DeskRequest[QueueReport]):
     """Let a queue that is paused go on, with the task at its head."""
 
-    method: ClassVar[str] = "resume_queue"
+    method = "resume_queue"
+    least_role = Role.OPERATOR
+    priority = Priority.MOVE
     robot: str
     revision: int
 
@@ -289,13 +303,21 @@ class ResumeQueue:
 
 
 @dataclass(frozen=True)
-class GetQueue:
+class Queues:
+    """What robots are to do one after the other, by robot."""
+
+    queues: list[QueueReport]
+
+
+@dataclass(frozen=True)
+class GetQueue(DeskRequest[Queues]):
     """Ask for the queue of one robot, or of every robot that has one; with paths if ``paths``.
 
     ``ended`` is how many of the newest tasks that ended come with each.
     """
 
-    method: ClassVar[str] = "get_queue"
+    method = "get_queue"
+    least_role = Role.VIEWER
     robot: str | None = None
     paths: bool = False
     ended: int = 10
@@ -332,7 +354,7 @@ class Share:
 
 
 @dataclass(frozen=True)
-class TakeOver:
+class TakeOver(DeskRequest[Queues]):
     """Let other robots do what waits in the queue of ``robot``, in one step.
 
     ``shares`` say for each of them what then waits in its queue: its own tasks and those it takes over. All
@@ -341,7 +363,9 @@ class TakeOver:
     against a new path, and why it is asked for all the same, as with ``send``.
     """
 
-    method: ClassVar[str] = "take_over"
+    method = "take_over"
+    least_role = Role.OPERATOR
+    priority = Priority.MOVE_SEVERAL
     robot: str
     revision: int
     shares: list[Share]

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from enum import Enum
 from typing import ClassVar, NamedTuple
 
+from .operator_requests import DeskRequest, Priority, Role
 from .queues import QueueTask
 from .validation import (
     LONGEST_LABEL,
@@ -65,13 +66,21 @@ class ObservationReport:
 
 
 @dataclass(frozen=True)
-class GetObservations:
+class Observations:
+    """What robots saw, newest first."""
+
+    observations: list[ObservationReport]
+
+
+@dataclass(frozen=True)
+class GetObservations(DeskRequest[Observations]):
     """Ask for observations, newest first: at most ``limit`` with an id below ``before``.
 
     Those in one ``state`` or in all, of one robot or of all, of one object (its images too) or of all.
     """
 
-    method: ClassVar[str] = "get_observations"
+    method = "get_observations"
+    least_role = Role.VIEWER
     state: ObservationState | None = None
     robot: str | None = None
     object: str | None = None
@@ -85,10 +94,20 @@ class GetObservations:
 
 
 @dataclass(frozen=True)
-class GetImage:
+class Image:
+    """An image, in base64."""
+
+    media_type: str
+    image: bytes
+
+
+@dataclass(frozen=True)
+class GetImage(DeskRequest[Image]):
     """Ask for the image of an observation; answered with ``media_type`` and ``image`` in base64."""
 
-    method: ClassVar[str] = "get_image"
+    method = "get_image"
+    least_role = Role.VIEWER
+    priority = Priority.SLOW
     observation: int
 
     def __post_init__(self) -> None:
@@ -96,14 +115,15 @@ class GetImage:
 
 
 @dataclass(frozen=True)
-class ReviewObservation:
+class ReviewObservation(DeskRequest[ObservationReport]):
     """Accept an observation, so that its object is on the next maps, or reject it.
 
     ``semantics`` is the object's word on the map, ``height`` and ``radius`` are in metres; what is left out
     is as the robot told. ``revise`` changes a review that was given before.
     """
 
-    method: ClassVar[str] = "review_observation"
+    method = "review_observation"
+    least_role = Role.OPERATOR
     observation: int
     accept: bool
     semantics: str | None = None
@@ -155,14 +175,22 @@ class PlacementReport:
 
 
 @dataclass(frozen=True)
-class GetPlacements:
+class Placements:
+    """Cones that were put down, newest first."""
+
+    placements: list[PlacementReport]
+
+
+@dataclass(frozen=True)
+class GetPlacements(DeskRequest[Placements]):
     """Ask for cones that were put down, newest first: at most ``limit`` with an id below ``before``.
 
     Of one layout, plan, cone, robot or of all; put down from ``since`` up to ``until`` (seconds since 1970);
     with ``collected`` only those that were collected again, or (false) that were not.
     """
 
-    method: ClassVar[str] = "get_placements"
+    method = "get_placements"
+    least_role = Role.VIEWER
     layout: str | None = None
     plan: str | None = None
     cone: str | None = None
@@ -185,22 +213,6 @@ class GetPlacements:
 
 
 @dataclass(frozen=True)
-class CollectLayout:
-    """Ask for the tasks that collect what stands of a layout; nothing is sent to any robot.
-
-    Without ``layout``, of every cone that was put down and not collected. Which robot takes which is the
-    operator's: the tasks go into queues by ``set_queue`` or ``add_tasks``.
-    """
-
-    method: ClassVar[str] = "collect_layout"
-    layout: str | None = None
-    texts: ClassVar[Texts] = {"layout": LONGEST_LABEL}
-
-    def __post_init__(self) -> None:
-        check_texts(self)
-
-
-@dataclass(frozen=True)
 class CollectingTasks:
     """The answer to ``collect_layout``: a task for each cone that stands and is in no queue yet.
 
@@ -212,10 +224,20 @@ class CollectingTasks:
 
 
 @dataclass(frozen=True)
-class Placements:
-    """Cones that were put down, newest first."""
+class CollectLayout(DeskRequest[CollectingTasks]):
+    """Ask for the tasks that collect what stands of a layout; nothing is sent to any robot.
 
-    placements: list[PlacementReport]
+    Without ``layout``, of every cone that was put down and not collected. Which robot takes which is the
+    operator's: the tasks go into queues by ``set_queue`` or ``add_tasks``.
+    """
+
+    method = "collect_layout"
+    least_role = Role.VIEWER
+    layout: str | None = None
+    texts: ClassVar[Texts] = {"layout": LONGEST_LABEL}
+
+    def __post_init__(self) -> None:
+        check_texts(self)
 
 
 # --- What operators ask about where robots have been ---
@@ -246,13 +268,15 @@ class Trajectory:
 
 
 @dataclass(frozen=True)
-class GetTrajectory:
+class GetTrajectory(DeskRequest[Trajectory]):
     """Ask where robots (none named: all) have been, from ``since`` up to ``until``, inside ``bounds``.
 
     ``bounds`` is x_min, y_min, x_max, y_max in the site frame. ``after`` is ``next`` of the page before.
     """
 
-    method: ClassVar[str] = "get_trajectory"
+    method = "get_trajectory"
+    least_role = Role.VIEWER
+    priority = Priority.SLOW
     robots: list[str] = field(default_factory=list)
     since: float | None = None
     until: float | None = None

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import ClassVar, Literal
 
+from .operator_requests import DeskRequest, Priority, Role
 from .safety import check_reason
 from .validation import MessageError, Texts, check_crs, check_finite, check_robot_name, check_texts
 
@@ -17,7 +18,28 @@ LONGEST_CLOSURE = 10 * 366 * 86400.0
 
 
 @dataclass(frozen=True)
-class GetRoute:
+class RouteReport:
+    """A way that a robot can be sent by SetPath: ``points`` are those that it drives.
+
+    ``seconds`` are those of the robot: at ``speed_ms`` of the site's settings or the speed that it shows,
+    whichever is more, and nowhere faster than the road. ``tight`` holds the corners that are tighter than the
+    turning radius of the site's settings; ``note`` says what is not as one would expect, such as that the way
+    is no road but a straight line. ``engine`` is what found it, ``off_goal`` metres from the goal to its
+    road.
+    """
+
+    points: list[tuple[float, float]]
+    metres: float
+    seconds: float
+    surfaces: list[SurfaceMetres] = field(default_factory=list)
+    tight: list[tuple[float, float]] = field(default_factory=list)
+    off_goal: float = 0.0
+    note: str = ""
+    engine: str = ""
+
+
+@dataclass(frozen=True)
+class GetRoute(DeskRequest[RouteReport]):
     """Ask for the way along the roads from where ``robot`` is, or from ``start``, to (``x``, ``y``).
 
     ``surfaces`` names those that may be used (None: all), ``least_width`` metres that a road must have at
@@ -25,7 +47,9 @@ class GetRoute:
     the site frame, or in the CRS ``crs``, such as ``EPSG:4326``: x (longitude, easting) before y.
     """
 
-    method: ClassVar[str] = "get_route"
+    method = "get_route"
+    least_role = Role.VIEWER
+    priority = Priority.SLOW
     x: float
     y: float
     robot: str | None = None
@@ -56,35 +80,23 @@ class SurfaceMetres:
 
 
 @dataclass(frozen=True)
-class RouteReport:
-    """A way that a robot can be sent by SetPath: ``points`` are those that it drives.
+class RoadClosed:
+    """What closing a road led to."""
 
-    ``seconds`` are those of the robot: at ``speed_ms`` of the site's settings or the speed that it shows,
-    whichever is more, and nowhere faster than the road. ``tight`` holds the corners that are tighter than the
-    turning radius of the site's settings; ``note`` says what is not as one would expect, such as that the way
-    is no road but a straight line. ``engine`` is what found it, ``off_goal`` metres from the goal to its
-    road.
-    """
-
-    points: list[tuple[float, float]]
-    metres: float
-    seconds: float
-    surfaces: list[SurfaceMetres] = field(default_factory=list)
-    tight: list[tuple[float, float]] = field(default_factory=list)
-    off_goal: float = 0.0
-    note: str = ""
-    engine: str = ""
+    closure: ClosureReport
+    robots: list[ReplannedRobot] = field(default_factory=list)
 
 
 @dataclass(frozen=True)
-class CloseRoad:
+class CloseRoad(DeskRequest[RoadClosed]):
     """Close the road nearest to (``x``, ``y``), from its one junction to the next, for every robot.
 
     ``closure`` is an id that the operator's side invents: sent twice, done once. The road is open again after
     ``seconds``, if that is given. It must be within ``reach`` metres.
     """
 
-    method: ClassVar[str] = "close_road"
+    method = "close_road"
+    least_role = Role.OPERATOR
     closure: str
     x: float
     y: float
@@ -100,26 +112,6 @@ class CloseRoad:
             raise MessageError(
                 f"seconds is {self.seconds}; give how long, above 0 and up to {LONGEST_CLOSURE:g}, or nothing"
             )
-
-
-@dataclass(frozen=True)
-class OpenRoad:
-    """Open a road again that was closed under the id ``closure``."""
-
-    method: ClassVar[str] = "open_road"
-    closure: str
-    reason: str | None = None
-
-    def __post_init__(self) -> None:
-        check_closure_id(self.closure)
-        check_reason(self.reason)
-
-
-@dataclass(frozen=True)
-class GetClosures:
-    """Ask for the roads that are closed now."""
-
-    method: ClassVar[str] = "get_closures"
 
 
 @dataclass(frozen=True)
@@ -143,6 +135,35 @@ class ClosureReport:
 
 
 @dataclass(frozen=True)
+class OpenRoad(DeskRequest[ClosureReport]):
+    """Open a road again that was closed under the id ``closure``."""
+
+    method = "open_road"
+    least_role = Role.OPERATOR
+    closure: str
+    reason: str | None = None
+
+    def __post_init__(self) -> None:
+        check_closure_id(self.closure)
+        check_reason(self.reason)
+
+
+@dataclass(frozen=True)
+class Closures:
+    """The roads that are closed now, oldest first."""
+
+    closures: list[ClosureReport] = field(default_factory=list)
+
+
+@dataclass(frozen=True)
+class GetClosures(DeskRequest[Closures]):
+    """Ask for the roads that are closed now."""
+
+    method = "get_closures"
+    least_role = Role.VIEWER
+
+
+@dataclass(frozen=True)
 class ReplannedRobot:
     """A robot whose way led along a road that was closed, and what became of it.
 
@@ -158,25 +179,24 @@ class ReplannedRobot:
 
 
 @dataclass(frozen=True)
-class RoadClosed:
-    """What closing a road led to."""
+class Conflicts:
+    """The conflicts of all robots, soonest first, reckoned at the gateway's time ``t``.
 
-    closure: ClosureReport
-    robots: list[ReplannedRobot] = field(default_factory=list)
+    ``waiting`` names the robots that are held until another has passed.
+    """
 
-
-@dataclass(frozen=True)
-class Closures:
-    """The roads that are closed now, oldest first."""
-
-    closures: list[ClosureReport] = field(default_factory=list)
+    t: float
+    conflicts: list[ConflictReport] = field(default_factory=list)
+    waiting: list[HoldReport] = field(default_factory=list)
 
 
 @dataclass(frozen=True)
-class GetConflicts:
+class GetConflicts(DeskRequest[Conflicts]):
     """Ask where the ways of robots come too near to one another, if they are driven as they are now."""
 
-    method: ClassVar[str] = "get_conflicts"
+    method = "get_conflicts"
+    least_role = Role.VIEWER
+    priority = Priority.SLOW
 
 
 @dataclass(frozen=True)
@@ -202,18 +222,6 @@ class ConflictReport:
 
 
 @dataclass(frozen=True)
-class Conflicts:
-    """The conflicts of all robots, soonest first, reckoned at the gateway's time ``t``.
-
-    ``waiting`` names the robots that are held until another has passed.
-    """
-
-    t: float
-    conflicts: list[ConflictReport] = field(default_factory=list)
-    waiting: list[HoldReport] = field(default_factory=list)
-
-
-@dataclass(frozen=True)
 class HoldReport:
     """A robot that waits at (``x``, ``y``) for another to pass; it is sent on at ``until`` or later."""
 
@@ -227,10 +235,22 @@ class HoldReport:
 
 
 @dataclass(frozen=True)
-class GetWaysOut:
+class WaysOut:
+    """What ``robot`` and ``other`` can do, reckoned at the gateway's time ``t``."""
+
+    t: float
+    robot: str
+    other: str
+    ways: list[WayOut] = field(default_factory=list)
+
+
+@dataclass(frozen=True)
+class GetWaysOut(DeskRequest[WaysOut]):
     """Ask what two robots in each other's way can do about it; nothing is done."""
 
-    method: ClassVar[str] = "get_ways_out"
+    method = "get_ways_out"
+    least_role = Role.VIEWER
+    priority = Priority.SLOW
     robot: str
     other: str
 
@@ -257,23 +277,26 @@ class WayOut:
 
 
 @dataclass(frozen=True)
-class WaysOut:
-    """What ``robot`` and ``other`` can do, reckoned at the gateway's time ``t``."""
+class ConflictResolved:
+    """What the robot was told: ``became`` is ``waits`` or ``another way``; ``command`` is what tells it."""
 
-    t: float
     robot: str
-    other: str
-    ways: list[WayOut] = field(default_factory=list)
+    became: Literal["waits", "another way"]
+    text: str
+    command: str
+    delay: float = 0.0
 
 
 @dataclass(frozen=True)
-class ResolveConflict:
+class ResolveConflict(DeskRequest[ConflictResolved]):
     """Ask for a conflict to be resolved by what ``robot`` does; ``other`` goes on as it is.
 
     It waits, takes another way (``route``), or whichever gets it to its end sooner (``either``).
     """
 
-    method: ClassVar[str] = "resolve_conflict"
+    method = "resolve_conflict"
+    least_role = Role.OPERATOR
+    priority = Priority.MOVE_SEVERAL
     robot: str
     other: str
     by: Literal["waiting", "route", "either"] = "either"
@@ -283,17 +306,6 @@ class ResolveConflict:
         check_robot_name(self.other)
         if self.robot == self.other:
             raise MessageError(f"resolve_conflict: robot and other are both {self.robot!r}; give two robots")
-
-
-@dataclass(frozen=True)
-class ConflictResolved:
-    """What the robot was told: ``became`` is ``waits`` or ``another way``; ``command`` is what tells it."""
-
-    robot: str
-    became: Literal["waits", "another way"]
-    text: str
-    command: str
-    delay: float = 0.0
 
 
 def check_closure_id(closure: str) -> None:
@@ -344,13 +356,22 @@ class SetSurface:
 
 
 @dataclass(frozen=True)
-class GetSurfaces:
+class Surfaces:
+    """The surface at each point in turn, None where there is none."""
+
+    surfaces: list[SurfaceAt | None]
+
+
+@dataclass(frozen=True)
+class GetSurfaces(DeskRequest[Surfaces]):
     """Ask which road surface is at each of ``points``, metres in the site frame, or in the CRS ``crs``.
 
     In a CRS such as ``EPSG:4326`` x (longitude, easting) comes before y whatever the CRS.
     """
 
-    method: ClassVar[str] = "get_surface"
+    method = "get_surface"
+    least_role = Role.VIEWER
+    priority = Priority.SLOW
     points: list[tuple[float, float]]
     crs: str | None = None
 
@@ -365,13 +386,6 @@ class SurfaceAt:
     surface: str
     origin: Literal["drawn", "generated"]
     name: str | None = None
-
-
-@dataclass(frozen=True)
-class Surfaces:
-    """The surface at each point in turn, None where there is none."""
-
-    surfaces: list[SurfaceAt | None]
 
 
 def _check(points: Sequence[tuple[float, float]], crs: str | None, most: int) -> None:

@@ -5,9 +5,10 @@ from __future__ import annotations
 import uuid
 from dataclasses import dataclass, field
 from enum import Enum
-from typing import Any, ClassVar, Literal
+from typing import Any, Literal
 
-from .validation import MessageError, check_command_id, check_robot_name, known_fields, one_line
+from .operator_requests import DeskRequest, Priority, Role
+from .validation import MessageError, check_command_id, known_fields, one_line
 
 # --- How far the knowledge of a robot can be trusted ---
 
@@ -56,39 +57,43 @@ def check_override(override: str | None) -> None:
 
 
 @dataclass(frozen=True)
-class AbortTask:
-    """Ask for the end of one command, named by ``aborts``, or of whatever ``robot`` is doing.
+class EmergencyReport:
+    """The emergency stop in force, or the last one that was cleared; without ``stop`` there was none.
 
-    ``command`` is an id that the operator's side invents: sent twice, done once. A command that was
-    superseded or has ended in the meantime is not aborted, nor what came after it: that is refused.
+    Of ``robots`` known robots ``acknowledged`` have said that they stop and ``standing`` were seen to stand
+    since; ``waiting`` names those that have not answered, ``refused`` those that answered that they will not
+    (some fifty at most of either). ``stored`` is false while the database could not be written: the stop
+    holds, and the next gateway on this computer learns of it from a file.
     """
 
-    method: ClassVar[str] = "abort"
-    stops: ClassVar[bool] = True
-    command: str
-    robot: str | None = None
-    aborts: str | None = None
+    in_force: bool = False
+    stop: str | None = None
+    at: float | None = None
+    by: str | None = None
     reason: str | None = None
-
-    def __post_init__(self) -> None:
-        check_command_id(self.command)
-        check_reason(self.reason)
-        if (self.robot is None) == (self.aborts is None):
-            raise MessageError("give one of robot and aborts: whose task is to end, or which command")
-        if self.robot is not None:
-            check_robot_name(self.robot)
+    stored: bool = True
+    robots: int = 0
+    acknowledged: int = 0
+    standing: int = 0
+    waiting: list[str] = field(default_factory=list)
+    refused: list[str] = field(default_factory=list)
+    cleared_at: float | None = None
+    cleared_by: str | None = None
+    clear_reason: str | None = None
 
 
 @dataclass(frozen=True)
-class EmergencyStop:
+class EmergencyStop(DeskRequest[EmergencyReport]):
     """Stop every robot now and let none be sent anywhere until a supervisor clears it.
 
     ``command`` is an id that the operator's side invents: sent twice, done once. A reason that is no line of
     the log is made one, since a stop is not refused for what is said about it.
     """
 
-    method: ClassVar[str] = "emergency_stop"
-    stops: ClassVar[bool] = True
+    method = "emergency_stop"
+    least_role = Role.OPERATOR
+    priority = Priority.STOP
+    stops = True
     command: str
     reason: str | None = None
 
@@ -119,44 +124,20 @@ class EmergencyStop:
 
 
 @dataclass(frozen=True)
-class ClearEmergencyStop:
+class ClearEmergencyStop(DeskRequest[EmergencyReport]):
     """Let robots be sent again. ``stop`` is the stop that the supervisor means, as last told.
 
     With ``stop`` a newer one, which that supervisor has not seen yet, is not cleared by accident.
     """
 
-    method: ClassVar[str] = "clear_emergency_stop"
+    method = "clear_emergency_stop"
+    least_role = Role.SUPERVISOR
+    priority = Priority.MOVE
     reason: str | None = None
     stop: str | None = None
 
     def __post_init__(self) -> None:
         check_reason(self.reason)
-
-
-@dataclass(frozen=True)
-class EmergencyReport:
-    """The emergency stop in force, or the last one that was cleared; without ``stop`` there was none.
-
-    Of ``robots`` known robots ``acknowledged`` have said that they stop and ``standing`` were seen to stand
-    since; ``waiting`` names those that have not answered, ``refused`` those that answered that they will not
-    (some fifty at most of either). ``stored`` is false while the database could not be written: the stop
-    holds, and the next gateway on this computer learns of it from a file.
-    """
-
-    in_force: bool = False
-    stop: str | None = None
-    at: float | None = None
-    by: str | None = None
-    reason: str | None = None
-    stored: bool = True
-    robots: int = 0
-    acknowledged: int = 0
-    standing: int = 0
-    waiting: list[str] = field(default_factory=list)
-    refused: list[str] = field(default_factory=list)
-    cleared_at: float | None = None
-    cleared_by: str | None = None
-    clear_reason: str | None = None
 
 
 # --- What operators are told of robots in keepouts and at obstacles ---

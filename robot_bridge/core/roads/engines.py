@@ -7,7 +7,7 @@ import heapq
 import importlib
 import math
 import threading
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -341,8 +341,13 @@ def engines_for(graph: RouteGraph, name: str = AUTOMATIC) -> EngineFactory:
         ) from error
 
 
-def _fastest(graph: RouteGraph) -> EngineFactory:
-    for _, _, maker in _MAKERS.values():
+def safe_engines(graph: RouteGraph) -> EngineFactory:
+    """Return the maker of the fastest engines here that cannot end the process: all but RoutingKit's."""
+    return _fastest(graph, [name for name in _MAKERS if name != "contraction"])
+
+
+def _fastest(graph: RouteGraph, names: Iterable[str] = tuple(_MAKERS)) -> EngineFactory:
+    for _, _, maker in (_MAKERS[name] for name in names):
         with contextlib.suppress(ImportError):
             return maker(graph)
     raise AssertionError("the plain engine needs nothing")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 import math
 from collections import OrderedDict
 from collections.abc import Callable, Collection, Iterator, Sequence
@@ -197,9 +198,20 @@ class Router:
         return self._nearest
 
     @property
+    def engines(self) -> EngineFactory:
+        """What makes its engines."""
+        return self._engines
+
+    @property
     def engine_name(self) -> str:
         """What finds the ways, as people are told."""
         return self._ready_for(Restrictions()).engine.name
+
+    def copy(self) -> Router:
+        """Return a router on the same network and engines, with the same edges closed, for another thread."""
+        made = copy.copy(self)
+        made._closed, made._ready = self._closed.copy(), OrderedDict()
+        return made
 
     def close(self, edges: Sequence[int]) -> None:
         """Close ``edges`` for every route from now on."""

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from ..errors import LayerError
+from ..files import write_geopackage_layer
 from ..json_decoder import DecodingError, decode_json
 from ..roads.centrelines import DEFAULT_SPEED, DRAWN, Centrelines, centrelines
 from .frame import Points, crs_of, projections
@@ -194,24 +195,14 @@ def write_layers(file: Path, layers: Sequence[Layer], crs: str, stamp: str) -> N
 
     :raises LayerError: when the file cannot be written.
     """
-    pyogrio, shapely = _pyogrio(), _shapely()
+    _pyogrio()
     try:
         for layer in layers:
-            pyogrio.raw.write(
-                str(file),
-                geometry=shapely.to_wkb(layer.geometries),
-                field_data=list(layer.values.values()),
-                fields=list(layer.spec.fields),
-                layer=layer.spec.name,
-                driver="GPKG",
-                geometry_type=layer.spec.declared_geometry(len(layer.geometries) == 0),
-                crs=crs,
-                append=file.exists(),
-                dataset_options={"VERSION": "1.3"},
-                # Not on the dataset: GDAL writes that into an .aux.xml file beside the site on every reading.
-                layer_metadata={STAMP_KEY: stamp},
-            )
-    except (pyogrio.errors.DataSourceError, pyogrio.errors.DataLayerError, OSError) as error:
+            kind = layer.spec.declared_geometry(len(layer.geometries) == 0)
+            geometry = _shapely().to_wkb(layer.geometries)
+            columns = dict(zip(layer.spec.fields, layer.values.values(), strict=True))
+            write_geopackage_layer(file, layer.spec.name, kind, geometry, columns, crs, {STAMP_KEY: stamp})
+    except OSError as error:
         raise LayerError(
             f"{file} cannot be written: {error}. Check the folder's rights and free space."
         ) from error

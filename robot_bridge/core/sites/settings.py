@@ -8,7 +8,7 @@ import re
 from collections.abc import Iterable, Mapping
 from dataclasses import asdict, dataclass, field, fields
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, Protocol
 
 from ..errors import CrsError, SettingsError
 from ..json_decoder import toml_tables
@@ -115,6 +115,14 @@ class SiteSettings:
     def frame(self) -> SiteFrame:
         """The site frame these settings describe."""
         return SiteFrame(self.crs, self.origin, math.radians(self.rotation_deg))
+
+
+class SettingsSource(Protocol):
+    """What knows the settings of a site, which may be others tomorrow."""
+
+    @property
+    def settings(self) -> SiteSettings:
+        """The settings as they are now."""
 
 
 def read_settings(file: Path) -> SiteSettings:

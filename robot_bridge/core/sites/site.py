@@ -319,7 +319,7 @@ def write_site_cache(folder: Path, settings: SiteSettings, text: str, obstacles:
 def cache_writer(partial: Path, frame: SiteFrame) -> CacheWriter:
     """Return what takes the obstacles of a publication that is made in ``partial``; raises OSError.
 
-    It is to be removed, or left as a context manager, before ``partial`` is.
+    It is left, as a context manager, before ``partial`` is removed: see :meth:`.StagedFiles.enter`.
     """
     return CacheWriter(partial / "columns", frame)
 
@@ -382,9 +382,9 @@ def write_site(
 def _write(folder: Path, settings: SiteSettings, layers: Sequence[Layer], obstacles: Outlines) -> None:
     with StagedFiles(folder) as staged:
         write_layers(staged.folder / GEOPACKAGE_FILE, layers, settings.crs, settings.stamp)
-        with cache_writer(staged.folder, settings.frame) as cache:
-            cache.add(obstacles)
-            write_settings_and_cache(staged, settings, cache)
+        cache = staged.enter(cache_writer(staged.folder, settings.frame))
+        cache.add(obstacles)
+        write_settings_and_cache(staged, settings, cache)
         publish_staged(staged)
 
 

@@ -20,16 +20,18 @@ from ...core.messages import (
     Hello,
     MessageError,
     PositionForm,
+    Role,
     Subscribe,
     to_json,
 )
 from ...protocol import jsonrpc
 from ...protocol.codec import decode_desk_request, error_code
-from ..auth.connection import ClientConnection
+from ..auth.client_connection import ClientConnection
 from ..auth.gate import AuthGate
+from ..auth.permissions import check_permission
 from ..fleet.operator_updates import EVERYTHING, Tick
 from ..fleet.service import Fleet
-from .operator_requests import Caller, answer
+from ..model.request_handlers import RequestHandlers
 from .request_scheduler import RequestScheduler, ScheduledRequest
 
 # --- How operators connect: JSON-RPC 2.0 on WebSocket, requests in, positions and commands out ---
@@ -51,8 +53,11 @@ class OperatorSession:
     what waits for it never grows beyond one entry for each robot and command.
     """
 
-    def __init__(self, fleet: Fleet, connection: ClientConnection, gate: AuthGate) -> None:
+    def __init__(
+        self, fleet: Fleet, connection: ClientConnection, gate: AuthGate, handlers: RequestHandlers
+    ) -> None:
         self._fleet = fleet
+        self._handlers = handlers
         self._connection = connection
         self._gate = gate
         assert connection.identity is not None
@@ -150,7 +155,7 @@ class OperatorSession:
             detail="; ".join(str(text) for text in (refusal, asked.get("override"), params) if text),
         )
 
-    async def _do(self, request: DeskRequest) -> dict[str, Any]:
+    async def _do(self, request: DeskRequest[Any]) -> dict[str, Any]:
         self._fleet.tally.desk[request.method] += 1
         if isinstance(request, Hello):
             return self._hello(request)
@@ -158,7 +163,9 @@ class OperatorSession:
             self._start("positions", self._push_positions(1 / request.rate, request.form))
             return {}
         role = self._gate.role(self._connection)
-        return await answer(self._fleet, request, Caller(self._operator, role, self._connection.address))
+        override_role = Role(self._fleet.site.settings.commands.override_role)
+        check_permission(request, self._operator, role, override_role)
+        return await self._handlers.answer(request, self._operator)
 
     def _hello(self, request: Hello) -> dict[str, Any]:
         if request.protocol != PROTOCOL_VERSION:

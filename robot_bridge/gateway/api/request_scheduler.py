@@ -13,53 +13,11 @@ from collections.abc import Callable, Coroutine
 from typing import Any, NamedTuple
 
 from ...core.errors import BusyError, RefusedError
-from ...core.messages import (
-    Abort,
-    AbortAll,
-    AbortTask,
-    AddTasks,
-    ClearEmergencyStop,
-    ConfirmReplan,
-    DeskRequest,
-    DiscardReplan,
-    EmergencyStop,
-    GetConflicts,
-    GetImage,
-    GetRoute,
-    GetSurfaces,
-    GetTrajectory,
-    GetWaysOut,
-    MakeCurrent,
-    PauseRobot,
-    ResolveConflict,
-    ResumePlan,
-    ResumeQueue,
-    Send,
-    SetPositions,
-    SetQueue,
-    SubmitPlan,
-    TakeOver,
-)
+from ...core.messages import Abort, DeskRequest, EmergencyStop, GetRoute, Send
+from ...core.messages.operator_requests import Priority
 from ...protocol import jsonrpc
 
-SLOW = (GetRoute, GetConflicts, GetWaysOut, GetSurfaces, GetTrajectory, GetImage)
-"""Questions that are answered aside: they change nothing, and take long or bring much."""
-STOPPING = (EmergencyStop, AbortTask, AbortAll, PauseRobot)
-MOVING = (
-    Send,
-    SetPositions,
-    SetQueue,
-    AddTasks,
-    MakeCurrent,
-    ResumeQueue,
-    TakeOver,
-    SubmitPlan,
-    ResumePlan,
-    ConfirmReplan,
-    DiscardReplan,
-    ResolveConflict,
-    ClearEmergencyStop,
-)
+MOVING = (Priority.MOVE, Priority.MOVE_SEVERAL)
 MOST_WAITING, MOST_ASIDE, MOST_STOPPING = 256, 64, 1000
 """requests of one operator that wait their turn, that wait aside, and that stop robots, at most."""
 MOST_EMERGENCIES = 50
@@ -72,14 +30,14 @@ class ScheduledRequest(NamedTuple):
     """A request, the call that it came in, and its length in bytes."""
 
     call: jsonrpc.Call
-    request: DeskRequest
+    request: DeskRequest[Any]
     size: int
 
     @property
     def stops(self) -> bool:
         """Tell whether it stops robots."""
         sent_by_hand = isinstance(self.request, Send) and self.request.op == Abort.__name__
-        return sent_by_hand or isinstance(self.request, STOPPING)
+        return sent_by_hand or self.request.priority is Priority.STOP
 
 
 Settle = Callable[[ScheduledRequest, Exception | None], Coroutine[Any, Any, None]]
@@ -99,7 +57,7 @@ class RequestScheduler:
         """See to a request; returns at once, or when one that cannot be taken has been refused."""
         if asked.stops:
             await self._stop(asked)
-        elif isinstance(asked.request, SLOW):
+        elif asked.request.priority is Priority.SLOW:
             await self._ask_aside(asked)
         elif not self._turn.submit(asked, MOST_WAITING):
             await self._settle(asked, _too_many(asked))
@@ -172,10 +130,10 @@ class _Lane:
 
 def _is_overtaken(waiting: ScheduledRequest, stop: ScheduledRequest) -> bool:
     """Tell whether a request would set a robot in motion that ``stop``, which came after it, is to stop."""
-    if not isinstance(waiting.request, MOVING):
+    if waiting.request.priority not in MOVING:
         return False
     one, other = getattr(stop.request, "robot", None), getattr(waiting.request, "robot", None)
-    several = isinstance(waiting.request, (ResolveConflict, TakeOver))
+    several = waiting.request.priority is Priority.MOVE_SEVERAL
     return several or one is None or other is None or one == other
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import logging
-from collections.abc import AsyncIterator, Callable, Coroutine
+from collections.abc import AsyncIterator, Coroutine, Iterator
 from contextlib import AbstractAsyncContextManager, nullcontext
 from typing import Any
 
@@ -29,8 +29,9 @@ from ...protocol.codec import (
     decode_request,
     error_code,
 )
-from ..auth.connection import ClientConnection
+from ..auth.client_connection import ClientConnection
 from ..fleet.outbox import RequestOutcome
+from ..fleet.registration import ConnectionClaims
 from ..fleet.service import Fleet
 from ..storage.database import to_its_end
 from .delivery import Channel, Delivery
@@ -45,20 +46,51 @@ POSITION = jsonrpc.Call("SendPos", None)
 ANEW = "the robot has connected anew"
 
 
+class RobotSessions:
+    """The session by which each robot is connected: the one on which it said Ready last."""
+
+    def __init__(self, claims: ConnectionClaims) -> None:
+        self._claims = claims
+        self._holders: dict[str, RobotSession] = {}
+
+    def __iter__(self) -> Iterator[RobotSession]:
+        return iter(list(self._holders.values()))
+
+    def get(self, robot: str) -> RobotSession | None:
+        """Return the session of a robot, None where it is not connected."""
+        return self._holders.get(robot)
+
+    def admit(self, session: RobotSession) -> None:
+        """Let ``session`` be the connection of its robot, and end the one before."""
+        former = self._holders.get(session.robot)
+        self._holders[session.robot] = session
+        self._claims.claim(session.robot, session)
+        if former is not None and former is not session:
+            former.replace()
+
+    def release(self, session: RobotSession) -> bool:
+        """Note that ``session`` is gone; return whether its robot was connected by it."""
+        held = self._holders.get(session.robot) is session
+        if held:
+            self._claims.free(session.robot, session)
+            del self._holders[session.robot]
+        return held
+
+
 class RobotSession:
-    """One robot on one channel; ``admit`` is called when the robot has said Ready on it."""
+    """One robot on one channel; once it has said Ready there it is admitted to ``sessions``."""
 
     def __init__(
         self,
         fleet: Fleet,
         channel: Channel,
         robot: str,
-        admit: Callable[[RobotSession], None],
+        sessions: RobotSessions,
     ) -> None:
         self.robot = robot
         self._fleet = fleet
         self._channel = channel
-        self._admit = admit
+        self._sessions = sessions
         self._admitted = False
         self._delivery = Delivery(fleet, channel, robot)
         self._closing: asyncio.Task[None] | None = None
@@ -212,7 +244,7 @@ class RobotSession:
         outcome = await self._fleet.receive(self.robot, self._channel.name, request, id)
         if outcome.admitted:
             self._admitted = True
-            self._admit(self)
+            self._sessions.admit(self)
         return outcome
 
     async def _receive_reply(self, reply: jsonrpc.Reply) -> None:
@@ -317,12 +349,12 @@ class RobotConnection:
     """One connection of one robot, from its Start to its end."""
 
     def __init__(
-        self, fleet: Fleet, connection: ClientConnection, robot: str, admit: Callable[[RobotSession], None]
+        self, fleet: Fleet, connection: ClientConnection, robot: str, sessions: RobotSessions
     ) -> None:
         self._fleet = fleet
         self._connection = connection
         self._channel = RobotChannel(connection)
-        self.session = RobotSession(fleet, self._channel, robot, admit)
+        self.session = RobotSession(fleet, self._channel, robot, sessions)
 
     async def run(self) -> bool:
         """Serve the connection to its end; return true if the robot closed it in good order."""
@@ -331,7 +363,7 @@ class RobotConnection:
             await self._connection.send(self._channel.call("Start", greeting))
             if (call_id := self._fleet.emergency.call_id) is not None:
                 self.session.stop_now(call_id)
-            self._connection.short_cut.handler = self._take_at_once
+            self._connection.handle_at_once(self._take_at_once)
             async for frame in self._connection:
                 if not self.session.is_replaced:
                     await self._receive(frame)

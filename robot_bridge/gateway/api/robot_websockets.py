@@ -7,7 +7,7 @@ import contextlib
 import itertools
 import logging
 from collections import Counter
-from collections.abc import AsyncIterator, Callable, Coroutine
+from collections.abc import AsyncIterator, Coroutine
 from typing import Any, TypeVar
 
 import msgspec
@@ -32,12 +32,12 @@ from ...core.sites.site import Site, areas_in_box
 from ...protocol import jsonrpc
 from ...protocol.codec import check_size, error_code
 from ..auth.accounts import speaks_for
-from ..auth.connection import ClientConnection
+from ..auth.client_connection import ClientConnection
 from ..auth.gate import ANY_LINK, AuthGate
 from ..fleet.link_supervision import ConnectedLink
 from ..fleet.service import Fleet
 from ..model.robots import RobotPose
-from .robot_session import RobotConnection, RobotSession, is_answering, send_frame
+from .robot_session import RobotConnection, RobotSession, RobotSessions, is_answering, send_frame
 from .shared_connection import SEPARATOR, LinkedRobotChannel
 
 # --- A link's WebSocket: the messages of many robots over one connection ---
@@ -58,7 +58,7 @@ Message = TypeVar("Message", LinkHello, LinkStatus, GetAreas)
 class LinkConnection:
     """One connection of a link, from its Start to its end, and the robots that it speaks for.
 
-    ``admit`` is called when a robot has said Ready by it, ``let_go`` when it speaks for one no more.
+    Its robots are among ``sessions`` from their Ready until it speaks for them no more.
     """
 
     def __init__(
@@ -66,8 +66,7 @@ class LinkConnection:
         fleet: Fleet,
         connection: ClientConnection,
         gate: AuthGate,
-        admit: Callable[[RobotSession], None],
-        let_go: Callable[[RobotSession], bool],
+        sessions: RobotSessions,
     ) -> None:
         assert connection.identity is not None
         self.name = connection.identity.name or ANY_LINK
@@ -76,8 +75,7 @@ class LinkConnection:
         self._fleet = fleet
         self._connection = connection
         self._gate = gate
-        self._admit = admit
-        self._let_go = let_go
+        self._holders = sessions
         self._places: dict[str, LinkedRobotChannel] = {}
         self._robots = gate.spoken_for(connection)
         self._turn, self._large = asyncio.Lock(), asyncio.Lock()
@@ -146,7 +144,7 @@ class LinkConnection:
         self._robots = robots
         for place in list(self._places.values()):
             if not speaks_for(robots, place.robot):
-                self._let_go(place.session)
+                self._holders.release(place.session)
                 self._begin(place.release(f"link {self.name} may not speak for it any more"))
 
     # --- what its robots share ----------------------------------------------------------------------------
@@ -287,7 +285,7 @@ class LinkConnection:
         limits = self._gate.limits
         if len(self._places) >= limits.robots:
             raise BusyError(f"link {self.name} speaks for {limits.robots} robots; there is room for no more")
-        place = self._places[robot] = LinkedRobotChannel(self._fleet, self, robot, limits, self._admit)
+        place = self._places[robot] = LinkedRobotChannel(self._fleet, self, robot, limits, self._holders)
         return place
 
     async def _take_frame(self, frame: bytes) -> None:
@@ -373,14 +371,14 @@ class WebSocketInterface:
         self._names: Counter[str] = Counter()
         self._sessions: set[RobotSession] = set()
         self._links: set[LinkConnection] = set()
-        self._holders: dict[str, RobotSession] = {}
+        self._holders = RobotSessions(fleet.reception.holds)
         fleet.emergency.reach(self._stop_all)
         fleet.orders.reach(self._abort)
 
     async def serve(self, connection: ClientConnection, robot: str | None) -> None:
         """Serve one connection to its end; without a name the robot is given one."""
         name = robot or self._free_name()
-        own = RobotConnection(self._fleet, connection, name, self._admit)
+        own = RobotConnection(self._fleet, connection, name, self._holders)
         self._names[name] += 1
         self._sessions.add(own.session)
         try:
@@ -388,20 +386,20 @@ class WebSocketInterface:
         finally:
             self._sessions.discard(own.session)
             self._names -= Counter([name])
-            held = self._let_go(own.session)
+            held = self._holders.release(own.session)
         if in_order and held:
             self._fleet.closed(name)
 
     async def serve_link(self, connection: ClientConnection, gate: AuthGate) -> None:
         """Serve a link to its end. Its robots may drive on: they are lost by the ordinary clocks."""
-        link = LinkConnection(self._fleet, connection, gate, self._admit, self._let_go)
+        link = LinkConnection(self._fleet, connection, gate, self._holders)
         self._links.add(link)
         try:
             await link.run()
         finally:
             self._links.discard(link)
             for session in link.sessions():
-                self._let_go(session)
+                self._holders.release(session)
 
     def links(self) -> list[ConnectedLink]:
         """Return the links that are connected now."""
@@ -414,7 +412,7 @@ class WebSocketInterface:
         for link in list(self._links):
             with log_and_continue(log, f"looking after link {link.name}"):
                 link.update()
-        for session in self._holders.values():
+        for session in self._holders:
             session.measure()
 
     def _stop_all(self, call_id: str) -> None:
@@ -431,22 +429,6 @@ class WebSocketInterface:
         if session is not None:
             session.stop_now(call_id, emergency=False)
         return session is not None
-
-    def _admit(self, session: RobotSession) -> None:
-        """Let ``session`` be the connection of its robot, and end the one before."""
-        former = self._holders.get(session.robot)
-        self._holders[session.robot] = session
-        self._fleet.reception.holds.claim(session.robot, session)
-        if former is not None and former is not session:
-            former.replace()
-
-    def _let_go(self, session: RobotSession) -> bool:
-        """Note that ``session`` is gone; return whether its robot was connected by it."""
-        held = self._holders.get(session.robot) is session
-        if held:
-            self._fleet.reception.holds.free(session.robot, session)
-            del self._holders[session.robot]
-        return held
 
     def _free_name(self) -> str:
         taken = {*self._fleet.robots.names(), *self._names}

@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 import logging
 from collections import deque
-from collections.abc import Callable, Coroutine
+from collections.abc import Coroutine
 from contextlib import AbstractAsyncContextManager
 from typing import Any, Protocol
 
@@ -16,9 +16,9 @@ from ...core.messages.json_values import to_json
 from ...core.messages.links import Released
 from ...core.sites.settings_tables import LimitSettings
 from ...protocol import jsonrpc
-from ..auth.connection import RateLimit
+from ..auth.rate_limit import RateLimit
 from ..fleet.service import Fleet
-from .robot_session import RobotSession
+from .robot_session import RobotSession, RobotSessions
 
 log = logging.getLogger(__name__)
 
@@ -67,7 +67,7 @@ class LinkedRobotChannel:
         shared: SharedConnection,
         robot: str,
         limits: LimitSettings,
-        admit: Callable[[RobotSession], None],
+        sessions: RobotSessions,
     ) -> None:
         self.robot = robot
         self._shared = shared
@@ -75,7 +75,7 @@ class LinkedRobotChannel:
         self._messages, self._replies = RateLimit(rate, burst), RateLimit(rate, burst)
         self._waiting: deque[Work] = deque()
         self._working: asyncio.Task[None] | None = None
-        self.session = RobotSession(fleet, self, robot, admit)
+        self.session = RobotSession(fleet, self, robot, sessions)
 
     # --- the channel ----------------------------------------------------------------------------------------
 

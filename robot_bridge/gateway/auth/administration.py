@@ -13,6 +13,7 @@ from ...core.messages import (
     AuditReport,
     EndSession,
     GetAudit,
+    GetOperators,
     GetSessions,
     NewToken,
     OperatorReport,
@@ -22,9 +23,10 @@ from ...core.messages import (
     SessionReport,
     SetRole,
     TokenState,
-    to_json,
 )
+from ...core.messages.administration import Audit, Sessions
 from ...protocol.credentials import AccessError
+from ..model.request_handlers import handles
 from ..storage.database import Database
 from . import accounts, audit
 from .accounts import Grant, Operator
@@ -37,56 +39,79 @@ from .audit import SessionRow
 T = TypeVar("T")
 
 
-async def get_operators(database: Database) -> dict[str, Any]:
-    """Return every account."""
-    now = time.time()
-    found = await database.read(accounts.all_operators)
-    return to_json(Operators([_operator_report(operator, now) for operator in found]))
+class AccountAdministration:
+    """Operators' accounts, sessions and the audit log, as supervisors see and change them."""
 
+    def __init__(self, database: Database) -> None:
+        self._database = database
 
-async def add_operator(database: Database, request: AddOperator) -> dict[str, Any]:
-    """Make an account and return its token; raises AccessError for a name that is taken or cannot be one."""
-    return await _new_token(database, request, accounts.add_operator, request.role)
+    @handles(GetOperators)
+    async def operators(self) -> Operators:
+        """Return every account."""
+        now = time.time()
+        found = await self._database.read(accounts.all_operators)
+        return Operators([_operator_report(operator, now) for operator in found])
 
+    @handles(AddOperator)
+    async def add(self, request: AddOperator) -> NewToken:
+        """Make an account and return its token; raises AccessError for a name that is taken or unfit."""
+        return await self._new_token(request, accounts.add_operator, request.role)
 
-async def rotate_token(database: Database, request: RotateToken) -> dict[str, Any]:
-    """Return a new token in place of those before; raises AccessError for an operator who is not known."""
-    return await _new_token(database, request, accounts.rotate_operator)
+    @handles(RotateToken)
+    async def rotate(self, request: RotateToken) -> NewToken:
+        """Return a new token in place of those before; raises AccessError for an operator not known."""
+        return await self._new_token(request, accounts.rotate_operator)
 
+    @handles(RevokeToken)
+    async def revoke(self, request: RevokeToken) -> OperatorReport:
+        """Take an operator's token away; raises AccessError when unknown, or the last supervisor."""
+        now = time.time()
+        return await self._changed(request.operator, now, accounts.revoke_operator, now)
 
-async def revoke_token(database: Database, request: RevokeToken) -> dict[str, Any]:
-    """Take an operator's token away; raises AccessError when unknown, or the last supervisor."""
-    now = time.time()
-    return await _changed(database, request.operator, now, accounts.revoke_operator, now)
+    @handles(SetRole)
+    async def set_role(self, request: SetRole) -> OperatorReport:
+        """Give an operator another role; raises AccessError when unknown, or the last supervisor."""
+        return await self._changed(request.operator, time.time(), accounts.set_role, request.role)
 
+    @handles(GetSessions)
+    async def sessions(self, request: GetSessions) -> Sessions:
+        """Return the operators' connections."""
+        found = await self._database.run(_listed, request.ended, request.limit)
+        return Sessions([_session_report(session) for session in found])
 
-async def set_role(database: Database, request: SetRole) -> dict[str, Any]:
-    """Give an operator another role; raises AccessError when unknown, or the last supervisor."""
-    return await _changed(database, request.operator, time.time(), accounts.set_role, request.role)
+    @handles(EndSession)
+    async def end_session(self, request: EndSession, operator: str) -> SessionReport:
+        """End a connection and return what was known of it; raises AccessError when it is not open."""
+        now, reason = time.time(), f"{request.reason} ({operator})"
+        return _session_report(await self._database.run(audit.end_session, request.session, now, reason))
 
+    @handles(GetAudit)
+    async def audit_log(self, request: GetAudit) -> Audit:
+        """Return who did what."""
+        found = await self._database.run(_entries, request)
+        return Audit([AuditReport(**vars(entry)) for entry in found])
 
-async def _new_token(
-    database: Database, request: AddOperator | RotateToken, make: Callable[..., str], *arguments: Any
-) -> dict[str, Any]:
-    now = time.time()
-    expires_at = None if request.expires_in is None else now + request.expires_in
+    async def _new_token(
+        self, request: AddOperator | RotateToken, make: Callable[..., str], *arguments: Any
+    ) -> NewToken:
+        now = time.time()
+        expires_at = None if request.expires_in is None else now + request.expires_in
 
-    def make_it(connection: Connection) -> tuple[str, Operator]:
-        token = make(connection, request.operator, *arguments, now, expires_at)
-        return token, accounts.find_operator(connection, request.operator)
+        def make_it(connection: Connection) -> tuple[str, Operator]:
+            token = make(connection, request.operator, *arguments, now, expires_at)
+            return token, accounts.find_operator(connection, request.operator)
 
-    token, operator = await database.run(_with_supervisor, now, make_it)
-    return to_json(NewToken(operator.name, operator.role, token, expires_at))
+        token, operator = await self._database.run(_with_supervisor, now, make_it)
+        return NewToken(operator.name, operator.role, token, expires_at)
 
+    async def _changed(
+        self, name: str, now: float, change: Callable[..., object], *arguments: Any
+    ) -> OperatorReport:
+        def change_it(connection: Connection) -> Operator:
+            change(connection, name, *arguments)
+            return accounts.find_operator(connection, name)
 
-async def _changed(
-    database: Database, name: str, now: float, change: Callable[..., object], *arguments: Any
-) -> dict[str, Any]:
-    def change_it(connection: Connection) -> Operator:
-        change(connection, name, *arguments)
-        return accounts.find_operator(connection, name)
-
-    return to_json(_operator_report(await database.run(_with_supervisor, now, change_it), now))
+        return _operator_report(await self._database.run(_with_supervisor, now, change_it), now)
 
 
 def _with_supervisor(connection: Connection, now: float, work: Callable[[Connection], T]) -> T:
@@ -120,28 +145,6 @@ def _state(token: Grant, now: float) -> TokenState:
     if token.revoked_at is not None:
         return TokenState.REVOKED
     return TokenState.VALID if token.fault(now) is None else TokenState.EXPIRED
-
-
-# --- Answers what supervisors ask about the other operators ---
-
-
-async def get_sessions(database: Database, request: GetSessions) -> dict[str, Any]:
-    """Return the operators' connections."""
-    found = await database.run(_listed, request.ended, request.limit)
-    return {"sessions": [to_json(_session_report(session)) for session in found]}
-
-
-async def end_session(database: Database, request: EndSession, operator: str) -> dict[str, Any]:
-    """End a connection and return what was known of it; raises AccessError when it is not open."""
-    now, reason = time.time(), f"{request.reason} ({operator})"
-    ended = await database.run(audit.end_session, request.session, now, reason)
-    return to_json(_session_report(ended))
-
-
-async def get_audit(database: Database, request: GetAudit) -> dict[str, Any]:
-    """Return who did what."""
-    found = await database.run(_entries, request)
-    return {"entries": [to_json(AuditReport(**vars(entry))) for entry in found]}
 
 
 def _listed(connection: Any, ended: bool, limit: int) -> list[SessionRow]:

@@ -21,7 +21,7 @@ from ...core.logs import log_unforeseen
 from ...core.sites.settings_tables import LimitSettings
 from ...protocol.credentials import AccessError
 from .accounts import chosen_protocol
-from .connection import ClientConnection
+from .client_connection import ClientConnection
 from .gate import AuthGate
 
 # --- How far a gateway may be reached, and what it needs for that ---

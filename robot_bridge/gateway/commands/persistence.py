@@ -5,8 +5,8 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import dataclasses
-from collections.abc import AsyncIterator, Awaitable, Callable, Iterable, Mapping, Sequence
-from typing import Any, NamedTuple, TypeVar
+from collections.abc import AsyncIterator, Callable, Iterable, Mapping, Sequence
+from typing import Any, NamedTuple, Protocol, TypeVar
 
 from sqlalchemy import Connection
 
@@ -247,16 +247,23 @@ class NamedLocks:
             yield
 
 
+class StoredCommands(Protocol):
+    """What is known of what the database holds."""
+
+    async def read_again(self) -> None:
+        """Find out what holds; raises StoreError where it cannot, and is asked again then."""
+
+
 class RobotLocks:
     """Robots by name, each held by one at a time: what concerns one waits only for what concerns the same.
 
-    Once a transaction may have been done or not, ``look_up`` finds out what holds before anything else is
-    done with any robot; it raises StoreError where it cannot, and is asked again then.
+    Once a transaction may have been done or not, ``known`` is brought up to what is stored before anything
+    else is done with any robot.
     """
 
-    def __init__(self, database: Database, look_up: Callable[[], Awaitable[None]]) -> None:
+    def __init__(self, database: Database, known: StoredCommands) -> None:
         self._database = database
-        self._look_up = look_up
+        self._known = known
         self._locks = NamedLocks()
         self._doubts = self._settled = 0
 
@@ -271,7 +278,7 @@ class RobotLocks:
         async with self._locks.of(names):
             if self.are_in_doubt:
                 before = self._doubts
-                await self._look_up()
+                await self._known.read_again()
                 # What came into doubt meanwhile may not have been seen.
                 self._settled = max(self._settled, before)
             yield

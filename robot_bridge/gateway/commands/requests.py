@@ -13,16 +13,20 @@ from ...core.logs import log_and_continue
 from ...core.messages import (
     COMMANDS,
     Abort,
+    AbortAll,
     AbortTask,
     CommandReport,
+    GetCommands,
     MessageError,
     Send,
     SetPath,
-    TargetPosition,
+    SetPositions,
     check_crs,
     to_json,
 )
+from ...core.messages.commands import Commands
 from ...protocol.codec import decode_command
+from ..model.request_handlers import handles
 from ..model.robots import Robots
 from ..site.places import ServedSite, check_places, command_in_site_frame, places_of, targets_in_site_frame
 from ..storage.database import Database
@@ -58,6 +62,7 @@ class CommandRequests:
         """
         self._links.append(link)
 
+    @handles(Send)
     async def send(self, send: Send, operator: str) -> CommandReport:
         """Issue one command; asked again it is answered as it stands, whatever would be refused by now."""
         try:
@@ -71,8 +76,10 @@ class CommandRequests:
         issue = self._issue_aborts if isinstance(order.message, Abort) else self._book.issue
         return (await issue([order]))[0]
 
-    async def set_positions(self, positions: list[TargetPosition], operator: str) -> list[CommandReport]:
+    @handles(SetPositions)
+    async def set_positions(self, request: SetPositions, operator: str) -> Commands:
         """Issue a target for each robot, all of them or none."""
+        positions = request.positions
         names = [position.robot for position in positions]
         twice = sorted({name for name in names if names.count(name) > 1})
         if twice:
@@ -86,8 +93,9 @@ class CommandRequests:
             target = {name: value for name, value in to_json(position).items() if name != "robot"}
             order = await self._order(str(uuid.uuid4()), position.robot, "SetPosEnd", target, operator)
             orders.append(replace(order, fenced=True))
-        return await self._book.issue(orders)
+        return Commands(await self._book.issue(orders))
 
+    @handles(AbortTask)
     async def abort(self, request: AbortTask, operator: str) -> CommandReport:
         """Tell a robot to abort its task, or to abort one command if that still is its task."""
         try:
@@ -97,15 +105,18 @@ class CommandRequests:
         order = replace(order, reason=request.reason, aborts=request.aborts)
         return (await self._issue_aborts([order]))[0]
 
-    async def abort_all(
-        self, operator: str, command: str | None = None, reason: str | None = None
-    ) -> list[CommandReport]:
+    @handles(AbortAll)
+    async def abort_all(self, request: AbortAll, operator: str) -> Commands:
         """Tell every robot to abort its task; asked again with the same ``command`` id it changes nothing."""
-        command = command or str(uuid.uuid4())
+        command = request.command or str(uuid.uuid4())
         ids = {name: uuid.uuid5(uuid.NAMESPACE_OID, f"{command} {name}") for name in self._robots.commanded()}
-        return await self._issue_aborts(
-            [CommandOrder(str(id), name, Abort(), operator, reason) for name, id in ids.items()]
-        )
+        orders = [CommandOrder(str(id), name, Abort(), operator, request.reason) for name, id in ids.items()]
+        return Commands(await self._issue_aborts(orders))
+
+    @handles(GetCommands)
+    async def newest(self, request: GetCommands) -> Commands:
+        """Return the newest commands first, of one robot or of all."""
+        return Commands(await self._database.run(commands.newest, request.robot, request.limit))
 
     async def _issue_aborts(self, orders: list[CommandOrder]) -> list[CommandReport]:
         """Store Aborts; those that are not stored within a second are sent over open connections as well."""

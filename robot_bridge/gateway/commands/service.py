@@ -16,6 +16,7 @@ from ...core.logs import log_and_continue
 from ...core.messages import Answer, CommandReport, CommandState, OpAck, SendPos, SetPath
 from ..model.arrival import PathArrival, arrival_judge
 from ..model.command_states import is_open
+from ..model.events import CommandChanged, EventBus, OutboxChanged
 from ..model.robots import RobotPose, Robots
 from ..storage.database import Database, to_its_end
 from ..storage.repositories import commands
@@ -46,7 +47,7 @@ from .persistence import (
     write_recalls,
     write_steps,
 )
-from .validation import CommandReader, CommandRules, CommandValidator
+from .validation import CommandReader, CommandRules, CommandValidator, WaitingRobots
 
 log = logging.getLogger(__name__)
 
@@ -64,8 +65,8 @@ MOST_LATE = 1000
 class CommandService(CommandReader):
     """Holds the open commands and takes them through their lives.
 
-    Every change is committed before it is shown: ``changed`` is called with each command's new report, and
-    ``outbox_changed`` with the robot for which SA holds something new.
+    Every change is committed before it is shown: published are CommandChanged with each command's new report,
+    and OutboxChanged with the robot for which SA holds something new.
     """
 
     def __init__(
@@ -75,22 +76,24 @@ class CommandService(CommandReader):
         tolerance: float,
         clock: Clock,
         rules: CommandRules,
-        changed: Callable[[CommandReport], None],
-        outbox_changed: Callable[[str], None],
+        waiting: WaitingRobots,
+        events: EventBus,
     ) -> None:
         super().__init__(ActiveCommands())
-        self.drafting = CommandValidator(self._open, robots, rules)
-        self.tolerance = tolerance
-        """metres within which a target counts as reached."""
+        self.drafting = CommandValidator(self._open, robots, rules, waiting)
+        self._tolerance = tolerance
         self._database = database
         self._robots = robots
         self._clock = clock
-        self._changed = changed
-        self._outbox_changed = outbox_changed
-        self._held = RobotLocks(database, self._look_up)
+        self._events = events
+        self._held = RobotLocks(database, self)
         self._turns = NamedLocks()
         self._late: set[tuple[str, int]] = set()
         self._unstored = UnstoredAborts()
+
+    def set_tolerance(self, tolerance: float) -> None:
+        """Let a target count as reached within ``tolerance`` metres from now on."""
+        self._tolerance = tolerance
 
     async def restore(self) -> None:
         """Take up the commands that an earlier gateway left open."""
@@ -277,7 +280,7 @@ class CommandService(CommandReader):
             id = command.report.command
             if command.report.state is CommandState.QUEUED and self._open.get(id) is None:
                 self._apply(command)
-                self._outbox_changed(command.report.robot)
+                self._events.publish(OutboxChanged(command.report.robot))
         return [command.report for command in issued]
 
     async def _lead(self, robot: str, task: str, path: SetPath, write: Callable[[Connection], None]) -> None:
@@ -286,7 +289,7 @@ class CommandService(CommandReader):
             async with self._held.of([robot]):
                 self.drafting.check_way(robot, task, path)
                 await self._held.run(write)
-                self._outbox_changed(robot)
+                self._events.publish(OutboxChanged(robot))
 
     async def _delivered(self, sa_ids: list[int]) -> None:
         # By now some may be further on.
@@ -323,7 +326,7 @@ class CommandService(CommandReader):
             raise
         self._late.discard((robot, sa_id))
         if report is not None:
-            self._changed(report)
+            self._events.publish(CommandChanged(report))
 
     async def _all_done(self, done: Sequence[tuple[ActiveCommand, float | None, SendPos]]) -> None:
         for command, deviation, pose in done:
@@ -359,7 +362,7 @@ class CommandService(CommandReader):
             again = anew.again, anew.ended
             for command in await self._held.run(write_again, robot, welcome, *again, note_run):
                 self._apply(command)
-            self._outbox_changed(robot)
+            self._events.publish(OutboxChanged(robot))
 
     async def _expire(self, ids: list[str]) -> None:
         async with self._held.of({robot for id in ids if (robot := self.robot_of(id))}):
@@ -382,14 +385,14 @@ class CommandService(CommandReader):
     def _answered(self, command: ActiveCommand, ack: OpAck) -> list[ActiveCommand]:
         robot, now = command.report.robot, self._clock.time()
         unseen = self._robots.is_unseen(robot, now)
-        return acknowledge_command(command, ack, self._open.of(robot), now, self.tolerance, unseen=unseen)
+        return acknowledge_command(command, ack, self._open.of(robot), now, self._tolerance, unseen=unseen)
 
     def _restored(self, stored: StoredCommand) -> ActiveCommand:
         seen = self._robots.pose(stored.report.robot)
         command = dataclasses.replace(opened(stored), handed=seen or NOWHERE, out_of_sight=True)
         if stored.report.state is CommandState.ACKNOWLEDGED:
             command.arrival = arrival_judge(
-                command.message, self.tolerance, driven=stored.driven, under_way=True, handed=seen
+                command.message, self._tolerance, driven=stored.driven, under_way=True, handed=seen
             )
         return command
 
@@ -404,10 +407,9 @@ class CommandService(CommandReader):
             self._open.add(command)
         else:
             self._open.remove(command.report.command)
-        with log_and_continue(log, f"telling of command {command.report.command}"):
-            self._changed(command.report)
+        self._events.publish(CommandChanged(command.report))
 
-    async def _look_up(self) -> None:
+    async def read_again(self) -> None:
         """Take over what the database holds, after a transaction that may have been done or not."""
         stored = {s.report.command: s for s in await self._database.run(commands.still_open)}
         here = {command.report.command: command for command in self._open}
@@ -416,4 +418,4 @@ class CommandService(CommandReader):
             known = here.get(found.report.command)
             if known is None or (known.report, known.sa_id) != (found.report, found.sa_id):
                 self._apply(self._restored(found))
-                self._outbox_changed(found.report.robot)
+                self._events.publish(OutboxChanged(found.report.robot))

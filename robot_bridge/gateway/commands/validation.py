@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import dataclasses
 from collections import Counter
-from collections.abc import Awaitable, Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Sequence
+from typing import Protocol, runtime_checkable
 
 from ...core.errors import RefusedError
 from ...core.geometry import Polyline
 from ...core.messages import Ability, Abort, Command, CommandState, SetPath, SetPosEnd
 from ..model.robots import Robots
+from ..site.places import ServedSite, keepout_refusals
+from ..storage.repositories.closures import HoldRow
 from .active_command import (
     NOTHING,
     ActiveCommand,
@@ -109,34 +111,75 @@ _NEEDED: dict[str, Ability] = {"SetPosEnd": "targets", "SetPath": "paths", "SetP
 """What a robot has to be able to do for each message."""
 
 
-@dataclass(frozen=True)
+class CommandRule(Protocol):
+    """What keeps some messages from being sent to any robot."""
+
+    def check(self, message: Command) -> None:
+        """Raise RefusedError for a message that must not be sent now."""
+
+
+@runtime_checkable
+class SlowCommandRule(CommandRule, Protocol):
+    """A rule that has to find out before what takes long."""
+
+    async def consider(self, message: Command) -> None:
+        """Find out what :meth:`check` needs to know about a message."""
+
+
 class CommandRules:
-    """Whether a message may be sent to a robot now.
+    """Whether a message may be sent to a robot now: by the rules that were added, and the site's keepouts."""
 
-    ``check`` raises RefusedError where it must not; ``consider`` is awaited before, for what of that takes
-    long. ``fence`` tells of orders that are fenced why each must not be sent, None where it may.
-    """
+    def __init__(self, site: ServedSite, robots: Robots) -> None:
+        self._site = site
+        self._robots = robots
+        self._rules: list[CommandRule] = []
 
-    check: Callable[[Command], None]
-    consider: Callable[[Command], Awaitable[None]]
-    fence: Callable[[Sequence[CommandOrder]], Awaitable[Sequence[RefusedError | None]]]
+    def add(self, rule: CommandRule) -> None:
+        """Hold every message against ``rule``, too."""
+        self._rules.append(rule)
+
+    def check(self, message: Command) -> None:
+        """Raise RefusedError for a message that must not be sent to any robot now."""
+        for rule in self._rules:
+            rule.check(message)
+
+    async def consider(self, message: Command) -> None:
+        """Find out what takes long about a message."""
+        for rule in self._rules:
+            if isinstance(rule, SlowCommandRule):
+                await rule.consider(message)
+
+    async def check_keepouts(self, orders: Sequence[CommandOrder]) -> Sequence[RefusedError | None]:
+        """Return for each order why it must not be sent, None where it leads into no keepout."""
+        straight_from = [self._robots.straight_from(order.robot, order.message) for order in orders]
+        return await keepout_refusals(self._site, [order.message for order in orders], straight_from)
+
+
+class WaitingRobots(dict[str, HoldRow]):
+    """The robots that wait for another to pass, by name, as they are stored."""
+
+    def waits_for(self, robot: str, task: str) -> str | None:
+        """Return whom a robot is to let pass before a task of its queue goes on, None for nobody."""
+        row = self.get(robot)
+        return None if row is None or row.task != task else row.other
 
 
 class CommandValidator(CommandReader):
     """Holds orders against the rules and what their robots are doing, and says what they end."""
 
-    def __init__(self, open_commands: ActiveCommands, robots: Robots, rules: CommandRules) -> None:
+    def __init__(
+        self, open_commands: ActiveCommands, robots: Robots, rules: CommandRules, waiting: WaitingRobots
+    ) -> None:
         super().__init__(open_commands)
         self._robots = robots
         self._rules = rules
-        self.waits: Callable[[str], bool] = lambda _robot: False
-        """Tells whether a robot waits for another: that ends with whatever else it is told."""
+        self._waiting = waiting
 
     async def consider(self, orders: Sequence[CommandOrder]) -> list[RefusedError | None]:
         """Find out what takes long about orders; return why each must not be sent, None where it may be."""
         for order in orders:
             await self._rules.consider(order.message)
-        refusals = iter(await self._rules.fence([order for order in orders if order.fenced]))
+        refusals = iter(await self._rules.check_keepouts([order for order in orders if order.fenced]))
         return [next(refusals) if order.fenced else None for order in orders]
 
     def draft(self, order: CommandOrder, refusal: RefusedError | None, now: float) -> CommandInsert:
@@ -150,7 +193,8 @@ class CommandValidator(CommandReader):
         mine = self._open.of(order.robot)
         command = dataclasses.replace(create_command(order, now), handed=self._robots.pose(order.robot))
         ended, recalls = superseded(order, mine, now), recalled(order, mine, now)
-        return CommandInsert(order, command, ended, recalls, refusal, self.waits(order.robot))
+        # To wait for another ends with whatever else a robot is told.
+        return CommandInsert(order, command, ended, recalls, refusal, order.robot in self._waiting)
 
     async def consider_way(self, way: Command) -> None:
         """Find out what takes long about a way that a robot is to be told."""

@@ -27,7 +27,8 @@ from ...core.messages import (
 from ...core.messages.validation import LONGEST_OPERATOR, one_line
 from ..commands.active_command import CommandOrder
 from ..commands.service import CommandService
-from ..model.listeners import Listeners
+from ..model.events import Listeners
+from ..model.request_handlers import handles
 from ..model.robots import Robots
 from ..storage.database import Database
 from ..storage.repositories import commands, emergency_stops
@@ -223,6 +224,7 @@ class EmergencyStops:
                 f"{_because(stop.reason)}: no robot is sent anywhere until a supervisor clears it"
             )
 
+    @handles(EmergencyStop)
     async def stop(self, request: EmergencyStop, operator: str) -> EmergencyReport:
         """Stop every robot; asked again under the same id it is the same stop.
 
@@ -239,6 +241,7 @@ class EmergencyStops:
         await asyncio.wait({storing}, timeout=STORED_WITHIN)
         return self.report()
 
+    @handles(ClearEmergencyStop)
     async def clear(self, request: ClearEmergencyStop, supervisor: str) -> EmergencyReport:
         """Let robots be sent again. Raises RefusedError, and StoreError when that cannot be stored."""
         seen = self._stop

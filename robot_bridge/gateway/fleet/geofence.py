@@ -21,7 +21,7 @@ from ...core.sites.fences import FencedAreas, Fences
 from ...core.sites.frame import Points
 from ...core.sites.settings_tables import GeofenceSettings
 from ..commands.requests import CommandRequests
-from ..model.listeners import Listeners
+from ..model.events import Listeners
 from ..model.robots import Robot, Robots
 from ..queues.requests import PauseService
 from ..site.places import ServedSite

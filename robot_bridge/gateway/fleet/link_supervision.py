@@ -30,7 +30,8 @@ from ...core.messages.administration import (
 )
 from ...core.messages.links import LinkStatus
 from ...core.sites.settings_tables import LinkOptions
-from ..model.listeners import Listeners
+from ..model.events import Listeners
+from ..model.request_handlers import handles
 from ..model.robots import Robots
 from ..storage.database import Database
 from ..storage.roles import blocking_sessions
@@ -120,6 +121,7 @@ class LinkWatch:
         if known is not None and known.ask == ask:
             known.ask = None
 
+    @handles(SetPlayback)
     async def set_playback(self, request: SetPlayback) -> PlaybackReport:
         """Have a link play its recording otherwise, and return how it does now; raises RefusedError."""
         known = self._known.get(request.link)
@@ -145,10 +147,11 @@ class LinkWatch:
         found = []
         for name, known in sorted(self._known.items()):
             text = self._fault(known, now)
-            robots = [] if text is None else self._of(name)
-            if text is not None and known.process is None and not robots and now - known.seen_at > GRACE:
+            up = text is None or _reaches(known, now)
+            robots = [] if up else self._of(name)
+            if not up and known.process is None and not robots and now - known.seen_at > GRACE:
                 continue
-            found.append(LinkReport(name, known.kind, text is None, text, robots[:MOST_NAMES], len(robots)))
+            found.append(LinkReport(name, known.kind, up, text, robots[:MOST_NAMES], len(robots)))
         return Links(found)
 
     def numbers(self, name: str) -> dict[tuple[str, ...], float]:
@@ -175,6 +178,11 @@ class LinkWatch:
 
     def _of(self, link: str) -> list[str]:
         return [robot.name for robot in self._robots.changed(-1) if robot.link == link]
+
+
+def _reaches(known: _Known, now: float) -> bool:
+    """Tell whether a link reaches its robots although something is the matter with some of them."""
+    return now - known.seen_at <= GRACE and known.status is not None and bool(known.status.reached)
 
 
 # --- Links that a site names: each is started as a process of its own, and started again when it ends ---

@@ -15,7 +15,7 @@ import numpy as np
 from ...core.clock import Clock
 from ...core.messages import RobotState, SendPos, to_json
 from ...core.messages.safety import Nearness, NearnessAlarm
-from ..model.listeners import Listeners
+from ..model.events import Listeners
 from ..model.robots import Robot, Robots
 from ..site.places import ServedSite
 from ..traffic.conflicts import Movement, OtherMovements

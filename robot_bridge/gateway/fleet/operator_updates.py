@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import asyncio
+import base64
 import dataclasses
 import hashlib
 import json
 import logging
 import math
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from operator import attrgetter
 from typing import Any, NamedTuple, Protocol
 
@@ -20,11 +21,12 @@ import numpy.typing as npt
 from ...core.clock import Clock
 from ...core.errors import RefusedError, UncertainError
 from ...core.images import check_size, media_type_of
-from ...core.logs import log_and_continue
 from ...core.messages import (
     POSITION_ALWAYS,
     POSITION_TEXTS,
+    GetImage,
     GetObservations,
+    GetPositions,
     MessageError,
     ObservationReport,
     ObservationState,
@@ -37,8 +39,12 @@ from ...core.messages import (
     SetObject,
     to_json,
 )
+from ...core.messages.positions import Positions
+from ...core.messages.records import Image, Observations
 from ...core.position_frame import METHOD, packed_frame
 from ...core.sites.settings import SiteSettings
+from ..model.events import EventBus, ObservationChanged
+from ..model.request_handlers import Encoded, handles
 from ..model.robots import Robot, Robots
 from ..site.places import Ground, check_places
 from ..storage.database import Database
@@ -64,29 +70,26 @@ class ObservedSite(Ground, Protocol):
 
 
 class ObservationService:
-    """Every observation of the robots of one site.
-
-    ``changed`` is called with each new and each reviewed one, after it was stored.
-    """
+    """Every observation of the robots of one site; ObservationChanged is published after one was stored."""
 
     def __init__(
         self,
         site: ObservedSite,
         database: Database,
         clock: Clock,
-        changed: Callable[[ObservationReport], None],
+        events: EventBus,
     ) -> None:
         self._site = site
         self._database = database
         self._clock = clock
-        self._changed = changed
+        self._events = events
         self._lock = asyncio.Lock()
         self._undrawn = False
         """whether something may have been accepted, or rejected, that the maps do not show yet."""
         self._unsure: set[tuple[str, str]] = set()
-        """robots and sources of what may have been stored, and ``changed`` was not called."""
+        """robots and sources of what may have been stored, and nobody was told."""
         self._untold: set[int] = set()
-        """what may have been reviewed, and ``changed`` was not called."""
+        """what may have been reviewed, and nobody was told."""
 
     async def restore(self) -> None:
         """Draw on the maps what operators accepted before."""
@@ -134,17 +137,24 @@ class ObservationService:
         """Raise RefusedError for an image of more bytes than the site takes."""
         check_size(size, self._site.settings.observations.largest_image_bytes)
 
-    async def newest(self, wanted: GetObservations) -> list[ObservationReport]:
+    @handles(GetObservations)
+    async def newest(self, wanted: GetObservations) -> Observations:
         """Return observations, newest first."""
-        return await self._database.run(records.newest_observations, wanted)
+        return Observations(await self._database.run(records.newest_observations, wanted))
 
-    async def image(self, id: int) -> tuple[bytes, str]:
-        """Return the image of observation ``id`` and its media type; raises RefusedError without one."""
-        found = await self._database.run(records.image, id)
+    @handles(GetImage)
+    async def image(self, request: GetImage) -> Encoded[Image]:
+        """Return the image of an observation and its media type; raises RefusedError without one."""
+        found = await self._database.run(records.image, request.observation)
         if found is None:
-            raise RefusedError(f"observation {id} has no image; get_observations lists those with media_type")
-        return found
+            raise RefusedError(
+                f"observation {request.observation} has no image; get_observations lists those with "
+                "media_type"
+            )
+        image, media_type = found
+        return Encoded({"media_type": media_type, "image": base64.b64encode(image).decode("ascii")})
 
+    @handles(ReviewObservation)
     async def review(self, review: ReviewObservation, operator: str) -> ObservationReport:
         """Accept or reject an observation; returns when that is stored. The same again changes nothing.
 
@@ -173,8 +183,7 @@ class ObservationService:
 
     def _tell(self, report: ObservationReport | None) -> None:
         if report is not None:
-            with log_and_continue(log, f"telling of observation {report.observation}"):
-                self._changed(report)
+            self._events.publish(ObservationChanged(report))
 
 
 def _new(robot: str, told: Observed, occasion: str, now: float) -> NewObservation:
@@ -402,6 +411,11 @@ class Snapshots:
         if len(self._made) > MOST_RATES:
             del self._made[next(iter(self._made))]
         return made[form, revision]
+
+    @handles(GetPositions)
+    async def now(self) -> Encoded[Positions]:
+        """Return where every robot is now."""
+        return Encoded(positions(self._robots.rows(self._clock.time(), -1, ReportRow), everything=True))
 
     def _make(self, revision: int, form: PositionForm) -> Snapshot:
         return Snapshot(self._encoded(revision, form), self._robots.revision)

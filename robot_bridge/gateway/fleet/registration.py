@@ -12,6 +12,7 @@ from ...core.clock import Clock
 from ...core.errors import RefusedError, StoreError, listed_names
 from ...core.messages import Answer, KeptRobot, OpAck, Ready, RemoveRobots, RobotsRemoved, SetMap, Start
 from ..commands.service import CommandService
+from ..model.request_handlers import handles
 from ..model.robots import AWAY, Robot, Robots
 from ..queues.requests import QueueEditor
 from ..site.places import ServedSite
@@ -204,6 +205,7 @@ class Decommissioning:
         self._saving.begin(known)
         self._leaving = self._book.robots().difference(known)
 
+    @handles(RemoveRobots)
     async def remove(self, request: RemoveRobots, operator: str) -> RobotsRemoved:
         """Remove those of the robots that are lost or offline, with their queues and commands.
 

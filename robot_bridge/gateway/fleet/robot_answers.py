@@ -18,18 +18,21 @@ from ...core.messages import (
     GetSurface,
     Question,
     RobotState,
+    SendMap,
     SetMap,
     SetPath,
     SetPosEnd,
     SetPosIni,
     SetSurface,
 )
+from ...core.messages.operator_requests import Done
 from ...core.roads.centrelines import Surface
 from ...core.robotmap.model import Border, EncodedMap
 from ...protocol.codec import decode_answer
 from ..commands.service import CommandService
 from ..model.command_states import is_open
-from ..model.planner import Planner, remaining_path
+from ..model.remaining_way import Planner, remaining_path
+from ..model.request_handlers import handles
 from ..model.robots import Robots
 from ..site.places import ServedSite
 from ..storage.database import Database
@@ -190,6 +193,23 @@ class MapSender:
         for robot in self._unplaced.intersection(robots):
             self._unplaced.discard(robot)
             self._mailboxes.parts.put_nowait(robot)
+
+    @handles(SendMap)
+    async def send_asked(self, request: SendMap) -> Done:
+        """Return when the map for a robot is stored; it replaces one that still waits for it.
+
+        :raises RefusedError: for a robot that is not known, or is not there.
+        """
+        self._robots.check_known(request.robot)
+        robot = self._robots.get(request.robot)
+        if robot.state is RobotState.OFFLINE:
+            raise RefusedError(
+                f"robot {request.robot!r} is offline; it is sent the map by itself when it connects"
+            )
+        if not robot.can("map"):
+            raise RefusedError(f"robot {request.robot!r} takes no maps, as it said when it connected")
+        await self.send(request.robot)
+        return Done()
 
     async def send(self, robot: str) -> None:
         """Send ``robot`` the map of the whole site, or of what is around it; raises StoreError."""

@@ -17,11 +17,8 @@ from ...core.errors import RefusedError
 from ...core.logs import RepeatedLines
 from ...core.messages import (
     Answer,
-    Command,
-    CommandReport,
     CommandState,
     GetPath,
-    ObservationReport,
     Observed,
     OpAck,
     Question,
@@ -34,23 +31,28 @@ from ...core.messages import (
     to_json,
 )
 from ...core.messages.validation import LONGEST_REFUSAL, one_line
-from ..commands.active_command import CommandOrder
 from ..commands.requests import CommandRequests
 from ..commands.service import CommandService
-from ..commands.validation import CommandRules
-from ..model.listeners import Listeners
-from ..model.planner import Planner, StraightPlanner
+from ..commands.validation import CommandRules, WaitingRobots
+from ..model.events import (
+    CommandChanged,
+    EventBus,
+    Listeners,
+    ObservationChanged,
+    OutboxChanged,
+    QueueChanged,
+    RobotReturned,
+)
 from ..model.position_checks import NO_FIX, GroundTracks, PlaceChecks
+from ..model.remaining_way import Planner, StraightPlanner
 from ..model.robots import Robot, RobotPose, Robots
 from ..monitoring.metrics import Counters
-from ..monitoring.tasks import Steps
-from ..plans.service import PlanService
+from ..monitoring.periodic_tasks import Steps
 from ..queues.registry import QueueContext, QueueRegistry
 from ..queues.requests import PauseService, QueueEditor
 from ..queues.runner import QueueRunner
-from ..site.places import ServedSite, SiteChoice, keepout_refusals
+from ..site.places import ServedSite
 from ..storage.database import Database
-from ..storage.repositories import commands
 from ..storage.repositories import robots as stored_robots
 from ..traffic.road_planning import RoadPlanner
 from ..traffic.service import RoadTraffic
@@ -60,7 +62,7 @@ from .emergency_stop import EmergencyStops
 from .geofence import AuditNote, GeofenceWatch
 from .link_supervision import AccountSuspensions, LinkWatch
 from .nearness import NearnessWatch
-from .operator_updates import ObservationService, ReportRow, Snapshots
+from .operator_updates import ObservationService, Snapshots
 from .outbox import RequestOutcome, RobotOutboxes
 from .registration import Decommissioning, Registration
 from .robot_answers import MapSender, RobotAnswers
@@ -84,53 +86,49 @@ class Fleet:
         note: AuditNote | None = None,
     ) -> None:
         self.site = site
-        self.site_choice: SiteChoice | None = None
-        """the sites that supervisors may choose among, where there is a choice."""
         self._database = database
         self._clock = clock
         self.listeners = Listeners()
         """the operators' sessions, told what happens."""
-        self.robots = Robots(site.report.stale_after, site.report.lost_after)
+        self.events = EventBus()
+        self.robots = Robots(site.report.stale_after, site.report.lost_after, self.events)
         self.links = LinkWatch(self.robots, self.listeners)
         self.snapshots = Snapshots(self.robots, clock)
+        rules, waiting = CommandRules(site, self.robots), WaitingRobots()
         self._book = CommandService(
-            database,
-            self.robots,
-            site.report.reached_tolerance,
-            clock,
-            CommandRules(self._check, self._consider, self._fence),
-            self._command_changed,
-            self._outbox_changed,
+            database, self.robots, site.report.reached_tolerance, clock, rules, waiting, self.events
         )
         self.orders = CommandRequests(site, self.robots, self._book, database)
         self.emergency = EmergencyStops(self._book, database, clock, self.robots, self.listeners, stops)
-        self._queue_book = QueueRegistry(database, self.robots, self.listeners)
+        self._queue_book = QueueRegistry(database, self.robots, self.listeners, self.events)
         planner = planner or StraightPlanner()
-        about_queues = QueueContext(site, self.robots, self._book, self._queue_book, database, clock, planner)
-        self.queues = QueueEditor(about_queues)
-        self.driving = QueueRunner(about_queues)
+        self.queue_context = QueueContext(
+            site, self.robots, self._book, self._queue_book, database, clock, waiting, planner
+        )
+        self.queues = QueueEditor(self.queue_context)
+        self.driving = QueueRunner(self.queue_context)
         self.roads = RoadTraffic(
             site,
             self.robots,
             self._book,
             self.orders,
             self.driving,
+            waiting,
             database,
             clock,
             planner if isinstance(planner, RoadPlanner) else None,
             self.listeners,
         )
-        self.pauses = PauseService(about_queues, self.roads.waiting.row_of)
+        rules.add(self.emergency)
+        rules.add(self.roads.closures)
+        self.pauses = PauseService(self.queue_context)
         self.geofence = GeofenceWatch(
             site, self.robots, self.orders, self.pauses, self.emergency, clock, self.listeners, note
         )
         self.nearness = NearnessWatch(
             self.robots, self.links, self.roads.traffic, site, clock, self.listeners
         )
-        self.plans = PlanService(
-            about_queues, self.queues, self.roads.closures, self.emergency, self.listeners
-        )
-        self.recorder = TrajectoryRecorder(lambda: self.site.settings.trajectories)
+        self.recorder = TrajectoryRecorder(site)
         self._saving = TrajectoryWriter(database, self.robots, self.recorder, clock)
         self.mailboxes = RobotOutboxes(database, self.robots, self._book, self.emergency, self._saving)
         self.maps = MapSender(site, self.robots, self.mailboxes, database)
@@ -154,14 +152,39 @@ class Fleet:
             self.queues,
             database,
         )
-        self.observations = ObservationService(site, database, clock, self._observation_changed)
+        self.observations = ObservationService(site, database, clock, self.events)
         self._answering = RobotAnswers(site, database, self.robots, self._book, planner, self.roads.ways)
         self._tracks = GroundTracks()
-        self._places = PlaceChecks(lambda: site.settings)
+        self._places = PlaceChecks(site)
         self._steps = Steps("save")
         self.suspensions = AccountSuspensions(database, self._book, self.listeners, clock)
         self.tally = Counters()
         self.repeated = RepeatedLines()
+        self._subscribe()
+
+    def _subscribe(self) -> None:
+        """Say who is told of what; each is told in this order, whatever becomes of those before."""
+        subscribe = self.events.subscribe
+        subscribe(OutboxChanged, lambda event: self.mailboxes.changed(event.robot))
+        subscribe(CommandChanged, self._assign)
+        subscribe(CommandChanged, lambda event: self.emergency.note_step(event.report))
+        subscribe(CommandChanged, lambda event: self.driving.note_step(event.report))
+        subscribe(CommandChanged, lambda event: self.roads.note_step(event.report))
+        subscribe(CommandChanged, self._announce_command)
+        subscribe(QueueChanged, lambda event: self.driving.schedule(event.robot))
+        subscribe(RobotReturned, lambda event: self.driving.note_return(event.robot, event.away_s))
+        subscribe(ObservationChanged, self._announce_observation)
+
+    def _assign(self, event: CommandChanged) -> None:
+        robot = event.report.robot
+        self.robots.assign(robot, self._book.busy_with(robot))
+
+    def _announce_command(self, event: CommandChanged) -> None:
+        self.tally.steps[event.report.state.value] += 1
+        self.listeners.announce("command", event.report.command, to_json(event.report))
+
+    def _announce_observation(self, event: ObservationChanged) -> None:
+        self.listeners.announce("observation", str(event.report.observation), to_json(event.report))
 
     @property
     def database(self) -> Database:
@@ -181,7 +204,6 @@ class Fleet:
         await self.emergency.restore()
         await self.roads.restore()
         await self._queue_book.restore()
-        await self.plans.restore()
         await self.observations.restore()
         await self.suspensions.restore()
         start = self.reception.greeting()
@@ -268,14 +290,6 @@ class Fleet:
         """Return the robots that changed after revision ``since`` of :attr:`robots`."""
         return self.robots.reports(self._clock.time(), since)
 
-    def rows(self, since: int = -1) -> list[Any]:
-        """Return them as they are encoded (see :mod:`.operator_updates`)."""
-        return self.robots.rows(self._clock.time(), since, ReportRow)
-
-    async def commands(self, robot: str | None, limit: int) -> list[CommandReport]:
-        """Return the newest commands first, of one robot or of all."""
-        return await self._database.run(commands.newest, robot, limit)
-
     def open_commands(self) -> Counter[CommandState]:
         """Return how many commands with a step to come are in each state."""
         return self._book.count()
@@ -284,7 +298,7 @@ class Fleet:
         """Go by the site's newest facts and settings from now on, and tell operators of them."""
         report = self.site.report
         self.robots.limit(report.stale_after, report.lost_after)
-        self._book.tolerance = report.reached_tolerance
+        self._book.set_tolerance(report.reached_tolerance)
         await self.observations.restore()
         await self.roads.closures.site_changed()
         self.listeners.announce("site", report.id, to_json(report))
@@ -384,33 +398,6 @@ class Fleet:
             # A robot that was away in between says nothing about its link.
             if 0 <= took < self.site.report.lost_after:
                 self.robots.measured(robot.name, took)
-
-    def _check(self, message: Command) -> None:
-        """Raise RefusedError for a message that must not be sent to any robot now."""
-        self.emergency.check(message)
-        self.roads.closures.check(message)
-
-    async def _consider(self, message: Command) -> None:
-        await self.roads.closures.consider(message)
-
-    async def _fence(self, orders: Sequence[CommandOrder]) -> Sequence[RefusedError | None]:
-        """Return for each order why it must not be sent, None where it leads into no keepout."""
-        straight_from = [self.robots.straight_from(order.robot, order.message) for order in orders]
-        return await keepout_refusals(self.site, [order.message for order in orders], straight_from)
-
-    def _command_changed(self, command: CommandReport) -> None:
-        self.robots.assign(command.robot, self._book.busy_with(command.robot))
-        self.tally.steps[command.state.value] += 1
-        self.emergency.note_step(command)
-        self.driving.note_step(command)
-        self.roads.note_step(command)
-        self.listeners.announce("command", command.command, to_json(command))
-
-    def _observation_changed(self, observation: ObservationReport) -> None:
-        self.listeners.announce("observation", str(observation.observation), to_json(observation))
-
-    def _outbox_changed(self, robot: str) -> None:
-        self.mailboxes.changed(robot)
 
 
 def _attempt(

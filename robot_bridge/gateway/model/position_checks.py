@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Literal
 
 from ...core.messages import SendGPS, SendPos
 from ...core.messages.validation import SPEED
-from ...core.sites.settings import SiteBounds, SiteSettings
+from ...core.sites.settings import SettingsSource, SiteBounds
 from .robots import AcceptedArea, Robot
 
 # --- Whether a robot may be where it says that it is: not far from its site, nor in a leap from where it was
@@ -37,13 +36,13 @@ class Leap:
 class PlaceChecks:
     """Judges the places that robots say; it keeps for each robot the leap that is not believed yet."""
 
-    def __init__(self, settings: Callable[[], SiteSettings]) -> None:
-        self._settings = settings
+    def __init__(self, site: SettingsSource) -> None:
+        self._site = site
         self._leaps: dict[str, Leap] = {}
 
     def fault(self, robot: Robot, place: Place, now: float) -> str | None:
         """Return why the robot is not at ``place``, metres in the site frame, None where it may be there."""
-        settings = self._settings()
+        settings = self._site.settings
         limits = settings.limits
         beyond = distance_beyond(place, settings.bounds)
         if beyond > limits.place_within_m:
@@ -63,7 +62,7 @@ class PlaceChecks:
 
     def near(self) -> AcceptedArea:
         """Return where the place of a robot that is believed needs no second look."""
-        settings = self._settings()
+        settings = self._site.settings
         bounds, limits = settings.bounds, settings.limits
         within = limits.place_within_m
         return AcceptedArea(

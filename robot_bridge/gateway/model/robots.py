@@ -20,6 +20,7 @@ from ...core.messages import (
 )
 from .arrival import standing
 from .clocks import ClockStep, PoseOrder
+from .events import EventBus, RobotReturned
 
 # --- How far the knowledge of a robot can be trusted, from the age of its last message ---
 
@@ -110,15 +111,16 @@ class Robot:
 class Robots:
     """All robots by name. Every change gets the next revision, so that a reader can ask what is new."""
 
-    def __init__(self, stale_after: float = 3.0, lost_after: float = 10.0) -> None:
+    def __init__(
+        self, stale_after: float = 3.0, lost_after: float = 10.0, events: EventBus | None = None
+    ) -> None:
         self._stale_after = stale_after
         self._lost_after = lost_after
         self._robots: dict[str, Robot] = {}
         self._removed: dict[str, int] = {}
         """the robots that were removed and have not come back, with the revision of that."""
         self.revision = 0
-        self.is_back: Callable[[str, float], None] = lambda _robot, _seconds: None
-        """Called when a robot is heard again that was lost or offline, with how many seconds it was not."""
+        self._events = events or EventBus()
 
     def limit(self, stale_after: float, lost_after: float) -> None:
         """Judge liveness by other limits from now on, in seconds."""
@@ -253,7 +255,7 @@ class Robots:
         robot.link, robot.ended_in_order = link, stopped
         if not waited:
             if robot.state in AWAY:
-                self.is_back(name, now - robot.received_at)
+                self._events.publish(RobotReturned(name, now - robot.received_at))
             robot.received_at = now
         robot.state = self._judge(robot, now) if waited else RobotState.FRESH
         self._touch(robot)

@@ -194,7 +194,9 @@ def _stop_report(progress: PlanProgress, sent: SentStop) -> PlanStopReport:
     done = stop.is_target and stop.id in progress.done
     state = TaskState.DONE if done else TaskState.WAITING if report is None else report.state
     reason = None if done or report is None else report.reason
-    return PlanStopReport(sent.task, sent.robot, stop.kind, stop.id, stop.x, stop.y, state, reason)
+    facts = progress.facts.get(stop.id) if stop.is_target else None
+    placement = None if facts is None else facts.placement
+    return PlanStopReport(sent.task, sent.robot, stop.kind, stop.id, stop.x, stop.y, state, reason, placement)
 
 
 def _problem_reports(problem: PlanProblem) -> list[PlanProblemReport]:

@@ -12,8 +12,8 @@ import numpy as np
 from ...core.assignment.detours import ClearTravel, Floats, NearOrByRoad
 from ...core.assignment.job import AssignmentJob, CancellableTravel, RoadTravel, StraightTravel, Travel
 from ...core.assignment.meetings import meetings
-from ...core.assignment.plan import ConePlan
-from ...core.assignment.plan_changes import PlanSituation, replan
+from ...core.assignment.plan import ConePlan, PlanSituation
+from ...core.assignment.plan_changes import replan
 from ...core.assignment.progress import ClosedWay
 from ...core.assignment.solver import Objective
 from ...core.errors import AssignmentCancelledError

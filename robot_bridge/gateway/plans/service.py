@@ -7,14 +7,13 @@ gateway that was killed goes on with every plan where it stopped.
 from __future__ import annotations
 
 import asyncio
-import json
 import logging
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import partial
-from typing import Any, Protocol
+from typing import Any, NamedTuple, Protocol
 
-from ...core.assignment.plan import ConePlan, check_plan, plan_from_json
+from ...core.assignment.plan import ConePlan, check_plan, plan_of_document
 from ...core.assignment.progress import (
     PlanProblem,
     PlanProgress,
@@ -44,8 +43,9 @@ from ...core.messages import (
     TaskState,
     to_json,
 )
-from ...core.messages.plans import MOST_CONES
-from ..model.listeners import Listeners
+from ...core.messages.plans import MOST_CONES, Plans
+from ..model.events import Listeners
+from ..model.request_handlers import handles
 from ..model.robots import AWAY
 from ..model.task_queue import ENDS as TASK_ENDS
 from ..model.task_queue import Queue, queue_report, task_report
@@ -117,6 +117,14 @@ class _Followed:
         )
 
 
+class _Proposal(NamedTuple):
+    """A plan of what is left, where its robots come too near to one another, and its ways on closed roads."""
+
+    document: ConePlan
+    meetings: int
+    closed: int
+
+
 class PlanService:
     """The plans that robots drive. Each method returns when what it changed is stored."""
 
@@ -149,6 +157,7 @@ class PlanService:
                 if plan.state is PlanState.REPLANNING:
                     self._begin(one, try_again=False)
 
+    @handles(SubmitPlan)
     async def submit(self, request: SubmitPlan, operator: str) -> PlanReport:
         """Enter all tasks of a plan, and follow it; the same again changes nothing.
 
@@ -179,18 +188,21 @@ class PlanService:
             await self._follow(one)
             return self._announced(one)
 
-    async def read(self, request: GetPlans) -> list[PlanReport]:
+    @handles(GetPlans)
+    async def read(self, request: GetPlans) -> Plans:
         """Return plans as they are; raises RefusedError for one that is not known."""
         if request.plan is not None:
             one = self._plans.get(request.plan) or await self._ended(request.plan)
             if one is None:
                 raise _unknown(request.plan)
-            return [one.report(documents=request.documents)]
-        found = [one.report(documents=request.documents) for one in self._plans.values()]
-        for plan in await self._context.database.read(newest_ended_plans, request.ended):
-            found.append((await self._recalled(plan)).report(documents=request.documents))
-        return found
+            return Plans([one.report(documents=request.documents)])
+        newest = await self._context.database.read(newest_ended_plans, request.ended)
+        ended = [await self._recalled(plan) for plan in newest]
+        # What is driven is read last, so that no newer report of it can be on its way before this answer.
+        followed = [*self._plans.values(), *(one for one in ended if one.plan.name not in self._plans)]
+        return Plans([one.report(documents=request.documents) for one in followed])
 
+    @handles(PausePlan)
     async def pause(self, request: PausePlan, operator: str) -> PlanReport:
         """Send the robots of a plan nothing more; first that, then it is stored that the plan is paused."""
         one = self._plan(request.plan)
@@ -203,6 +215,7 @@ class PlanService:
             one.cancel_planning()
             return await self._put(one, PlanState.PAUSED, operator, request.reason, proposal=None, held={})
 
+    @handles(ResumePlan)
     async def resume(self, request: ResumePlan, operator: str) -> PlanReport:
         """Let the robots go on that are paused."""
         async with self._lock:
@@ -219,6 +232,7 @@ class PlanService:
                 )
             return await self._let_go_on(one, robots, operator)
 
+    @handles(Replan)
     async def replan(self, request: Replan, operator: str) -> PlanReport:
         """Hold the robots and begin to plan what is left."""
         async with self._lock:
@@ -226,6 +240,7 @@ class PlanService:
             self._check_no_emergency()
             return await self._hold(one, operator, try_again=request.try_again)
 
+    @handles(ConfirmReplan)
     async def confirm(self, request: ConfirmReplan, operator: str) -> PlanReport:
         """Enter the tasks of the proposed plan in place of what is left."""
         async with self._lock:
@@ -234,6 +249,7 @@ class PlanService:
             await self._follow(one)
             return await self._confirm(one, operator, request.override)
 
+    @handles(DiscardReplan)
     async def discard(self, request: DiscardReplan, operator: str) -> PlanReport:
         """Give up the plan of what is left; robots held for it go on."""
         async with self._lock:
@@ -246,6 +262,7 @@ class PlanService:
             one.cancel_planning()
             return await self._let_go_on(one, self._still_held(one.plan), operator)
 
+    @handles(ClearPlan)
     async def clear(self, request: ClearPlan, operator: str) -> PlanReport:
         """Follow a plan no more; its tasks stay in the queues."""
         async with self._lock:
@@ -385,12 +402,12 @@ class PlanService:
 
     async def _make(self, one: _Followed, making: Replanning, ground: ReplanGround) -> None:
         try:
-            proposal = await asyncio.to_thread(making.run)
-            meetings = await asyncio.to_thread(count_meetings, proposal, ground)
+            document = await asyncio.to_thread(making.run)
+            meetings = await asyncio.to_thread(count_meetings, document, ground)
             closed = 0
             if self._planner is not None:
                 ways = await asyncio.to_thread(
-                    ways_along_closed_roads, proposal, self._planner.closed, self._closed_now()
+                    ways_along_closed_roads, document, self._planner.closed, self._closed_now()
                 )
                 closed = len(ways)
         except (AssignmentError, RoadsError, RefusedError) as error:
@@ -400,11 +417,10 @@ class PlanService:
             log_unforeseen(log, f"plan of what is left of {one.plan.name}")
             await self._made(one, making, None, "it could not be planned; see the gateway's log")
         else:
-            one.meetings, one.closed = meetings, closed
-            await self._made(one, making, proposal, None)
+            await self._made(one, making, _Proposal(document, meetings, closed), None)
 
     async def _made(
-        self, one: _Followed, making: Replanning, proposal: ConePlan | None, why: str | None
+        self, one: _Followed, making: Replanning, proposal: _Proposal | None, why: str | None
     ) -> None:
         try:
             async with self._lock:
@@ -415,7 +431,8 @@ class PlanService:
                     reason = f"what is left could not be planned: {why}"
                     await self._put(one, PlanState.PAUSED, GATEWAY, reason, held={})
                     return
-                await self._put(one, PlanState.PROPOSED, GATEWAY, one.plan.reason, proposal=proposal)
+                one.meetings, one.closed = proposal.meetings, proposal.closed
+                await self._put(one, PlanState.PROPOSED, GATEWAY, one.plan.reason, proposal=proposal.document)
                 if one.plan.by_itself and not one.meetings and not one.closed and not self._stops.in_force:
                     await self._follow(one)
                     try:
@@ -570,14 +587,15 @@ def _unknown(name: str) -> RefusedError:
 def _document(request: SubmitPlan) -> ConePlan:
     """Return the plan of a request; raises RefusedError for what is none, or cannot be driven."""
     try:
-        plan = plan_from_json(json.dumps(request.document))
+        plan = plan_of_document(request.document)
     except PlanFileError as error:
         raise RefusedError(f"submit_plan: {error}") from error
     if sum(1 for _ in plan.all_stops()) > MOST_CONES or len(plan.targets) > MOST_CONES:
         raise RefusedError(f"submit_plan: a plan holds {MOST_CONES} cones and as many stops at most")
     if plan.crs:
         raise RefusedError(f"submit_plan: the plan is in {plan.crs}; give it in metres of the site frame")
-    faults = check_plan(plan)
+    # A desk leads ways round cones and standing robots, and counts them without these few decimetres.
+    faults = check_plan(plan, led_round=True)
     if faults:
         more = f" and {len(faults) - 1} more" if len(faults) > 1 else ""
         raise RefusedError(f"submit_plan: the plan cannot be driven: {faults[0]}{more}")

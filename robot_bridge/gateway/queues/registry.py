@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
-from collections.abc import AsyncIterator, Awaitable, Callable, Iterable, Sequence
+from collections.abc import AsyncIterator, Awaitable, Iterable, Sequence
 from dataclasses import dataclass, field
 from typing import TypeVar
 
@@ -12,8 +12,9 @@ from ...core.clock import Clock
 from ...core.errors import OutdatedError
 from ...core.messages import PlacementReport, QueueReport, to_json
 from ..commands.service import CommandService
-from ..model.listeners import Listeners
-from ..model.planner import Planner, StraightPlanner
+from ..commands.validation import WaitingRobots
+from ..model.events import EventBus, Listeners, QueueChanged
+from ..model.remaining_way import Planner, StraightPlanner
 from ..model.robots import Robots
 from ..model.task_queue import Queue, QueuedTask, queue_report
 from ..site.places import ServedSite
@@ -31,7 +32,7 @@ ENDED_TOLD = 10
 class QueueRegistry:
     """Holds every queue as it is stored; whoever changes one holds its lock.
 
-    ``due`` is called with the name of each robot whose queue may have something to send.
+    QueueChanged is published for each robot whose queue may have something to send.
     """
 
     def __init__(
@@ -39,15 +40,16 @@ class QueueRegistry:
         database: Database,
         robots: Robots,
         listeners: Listeners,
+        events: EventBus,
     ) -> None:
         self._database = database
         self._robots = robots
         self._listeners = listeners
+        self._events = events
         self._queues: dict[str, Queue] = {}
         self._ended: dict[str, list[QueuedTask]] = {}
         self._locks: dict[str, asyncio.Lock] = {}
         self._doubtful: set[str] = set()
-        self.due: Callable[[str], None] = lambda robot: None
 
     async def restore(self) -> None:
         """Take up the queues that an earlier gateway left."""
@@ -55,7 +57,7 @@ class QueueRegistry:
         for robot in self._queues:
             self._ended[robot] = await self._database.run(queues.newest_ended, robot, ENDED_TOLD)
         for robot in self.names():
-            self.due(robot)
+            self._events.publish(QueueChanged(robot))
 
     def get(self, robot: str) -> Queue:
         """Return a robot's queue as it was stored last; an empty one where there is none."""
@@ -72,7 +74,7 @@ class QueueRegistry:
     def doubt(self, robot: str) -> None:
         """Read a robot's queue from the database before it is used again: it may have been paused there."""
         self._doubtful.add(robot)
-        self.due(robot)
+        self._events.publish(QueueChanged(robot))
 
     @contextlib.asynccontextmanager
     async def holding(self, robots: Iterable[str]) -> AsyncIterator[None]:
@@ -115,7 +117,7 @@ class QueueRegistry:
         told = self._ended.setdefault(queue.robot, [])
         told[:0] = reversed(ended)
         del told[ENDED_TOLD:]
-        self.due(queue.robot)
+        self._events.publish(QueueChanged(queue.robot))
         return self.announce(queue.robot)
 
     def announce(self, robot: str) -> QueueReport:
@@ -144,7 +146,7 @@ class QueueRegistry:
 class QueueContext:
     """The queues in their ``book``, and what they depend on: site, robots, commands, database, clock (s).
 
-    ``planner`` finds the ways to tasks without a path.
+    ``planner`` finds the ways to tasks without a path; ``waiting`` robots let another pass first.
     """
 
     site: ServedSite
@@ -153,4 +155,5 @@ class QueueContext:
     book: QueueRegistry
     database: Database
     clock: Clock
+    waiting: WaitingRobots
     planner: Planner = field(default_factory=StraightPlanner)

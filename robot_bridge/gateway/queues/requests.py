@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import uuid
-from collections.abc import AsyncIterator, Callable, Collection, Mapping, Sequence
+from collections.abc import AsyncIterator, Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
 
@@ -16,12 +16,14 @@ from ...core.messages import (
     AddTasks,
     CollectingTasks,
     CollectLayout,
+    GetPlacements,
     GetQueue,
     MakeCurrent,
     MoveTask,
     PauseQueue,
     PauseRobot,
     PlacementReport,
+    Placements,
     QueueReport,
     QueueTask,
     RemoveTask,
@@ -33,13 +35,14 @@ from ...core.messages import (
     TaskKind,
     TaskState,
 )
+from ...core.messages.queues import Queues
 from ..commands.active_command import ActiveCommand, CommandOrder, because
 from ..commands.persistence import Also
 from ..model import task_queue
+from ..model.request_handlers import handles
 from ..model.task_queue import Queue, QueuedTask, queue_report
 from ..site.places import check_keepouts, check_places, tasks_in_site_frame
 from ..storage.repositories import queues, records
-from ..storage.repositories.closures import HoldRow
 from . import task_life
 from .registry import QueueContext
 from .task_life import commands_of_task, pause_with_task, task_of_command, task_of_rest
@@ -54,16 +57,17 @@ _TRIES = 3
 
 
 class PauseService:
-    """Pauses robots. ``waiting`` tells how a robot waits for another, and what it is to drive afterwards."""
+    """Pauses robots."""
 
-    def __init__(self, context: QueueContext, waiting: Callable[[str], HoldRow | None]) -> None:
+    def __init__(self, context: QueueContext) -> None:
         self._site = context.site
         self._robots = context.robots
         self._commands = context.commands
         self._book = context.book
         self._clock = context.clock
-        self._waiting = waiting
+        self._waiting = context.waiting
 
+    @handles(PauseRobot)
     async def pause(self, request: PauseRobot, operator: str) -> QueueReport:
         """Let a robot stand, and keep what it was doing; return its queue when that is stored.
 
@@ -104,7 +108,7 @@ class PauseService:
 
     def _kept(self, robot: str, doing: ActiveCommand | None) -> list[QueuedTask]:
         """Return as tasks what the robot does beside its queue, and is to do after another has passed."""
-        kept, known, row = [], self._robots.get(robot), self._waiting(robot)
+        kept, known, row = [], self._robots.get(robot), self._waiting.get(robot)
         if doing is not None:
             here = (known.pose.x, known.pose.y) if known.located and known.pose is not None else None
             kept.append(task_of_command(doing, self._site.settings.cones.offset, here))
@@ -170,6 +174,7 @@ class QueueEditor:
         self._database = context.database
         self._clock = context.clock
 
+    @handles(SetQueue)
     async def set(self, request: SetQueue, operator: str) -> QueueReport:
         """Replace what is not begun."""
         request = replace(request, tasks=await tasks_in_site_frame(self._site, request.tasks))
@@ -178,6 +183,7 @@ class QueueEditor:
             after = task_queue.replace_tasks(queue, request.tasks, known, operator, self._clock.time())
             return await self._edit(queue, after, operator, "another list took its place")
 
+    @handles(AddTasks)
     async def add(self, request: AddTasks, operator: str) -> QueueReport:
         """Put tasks into a queue."""
         request = replace(request, tasks=await tasks_in_site_frame(self._site, request.tasks))
@@ -187,6 +193,7 @@ class QueueEditor:
             after = task_queue.add_tasks(queue, request.tasks, request.before, known, operator, now)
             return await self._edit(queue, after, operator)
 
+    @handles(MoveTask)
     async def move(self, request: MoveTask, operator: str) -> QueueReport:
         """Move a task to another place of its queue."""
         async with self._editing(request.robot, request.revision) as queue:
@@ -194,6 +201,7 @@ class QueueEditor:
                 queue, task_queue.move_task(queue, request.task, request.before), operator
             )
 
+    @handles(RemoveTask)
     async def remove(self, request: RemoveTask, operator: str) -> QueueReport:
         """Take a task out of its queue."""
         async with self._editing(request.robot, request.revision) as queue:
@@ -201,11 +209,13 @@ class QueueEditor:
                 queue, task_queue.remove_task(queue, request.task), operator, request.reason
             )
 
+    @handles(MakeCurrent)
     async def make_current(self, request: MakeCurrent, operator: str) -> QueueReport:
         """Let a task be done first."""
         async with self._editing(request.robot, request.revision) as queue:
             return await self._edit(queue, task_queue.put_task_first(queue, request.task), operator)
 
+    @handles(PauseQueue)
     async def pause(self, request: PauseQueue, operator: str) -> QueueReport:
         """Send a robot nothing more by itself."""
         reason = because(f"paused by {operator}", request.reason)
@@ -217,6 +227,7 @@ class QueueEditor:
                 # An order beside the queue came in between, and the queue has been read again.
                 return await self._pause(request.robot, reason, operator)
 
+    @handles(ResumeQueue)
     async def resume(self, request: ResumeQueue, operator: str) -> QueueReport:
         """Let a queue go on; where its robot has not stopped yet as it was told to, as soon as it has."""
         async with self._editing(request.robot, request.revision) as queue:
@@ -225,7 +236,8 @@ class QueueEditor:
                 after = after.with_head(task_queue.return_task(current, task_life.STOPS_FIRST))
             return await self._edit(queue, after, operator)
 
-    async def take_over(self, request: TakeOver, operator: str) -> list[QueueReport]:
+    @handles(TakeOver)
+    async def take_over(self, request: TakeOver, operator: str) -> Queues:
         """Let other robots do what waits in one robot's queue, all of it or nothing."""
         names = [request.robot, *(share.robot for share in request.shares)]
         revisions = {request.robot: request.revision}
@@ -256,7 +268,7 @@ class QueueEditor:
                 await self._book.stored(names, self._commands.issue([abort], write))
             else:
                 await self._book.stored(names, self._database.run(write))
-            return [self._book.accept(after[name]) for name in names]
+            return Queues([self._book.accept(after[name]) for name in names])
 
     async def enter(self, entries: QueueEntries, operator: str, also: Also) -> list[QueueReport]:
         """Give several robots their tasks in one transaction, in which ``also`` is written; see there."""
@@ -315,7 +327,8 @@ class QueueEditor:
             if robot in self._robots and queue.tasks:
                 await self._edit(queue, queue.with_tasks((), edited=True), operator, reason)
 
-    async def read(self, request: GetQueue) -> list[QueueReport]:
+    @handles(GetQueue)
+    async def read(self, request: GetQueue) -> Queues:
         """Return queues as they are."""
         if request.robot is not None:
             self._robots.check_known(request.robot)
@@ -324,8 +337,14 @@ class QueueEditor:
             ended = await self._database.read(queues.newest_ended, name, request.ended)
             state = self._robots.get(name).state
             found.append(queue_report(self._book.get(name), state, ended, paths=request.paths))
-        return found
+        return Queues(found)
 
+    @handles(GetPlacements)
+    async def placed_cones(self, request: GetPlacements) -> Placements:
+        """Return cones that were put down, newest first."""
+        return Placements(await self._database.read(records.newest_placed_cones, request))
+
+    @handles(CollectLayout)
     async def collecting(self, request: CollectLayout) -> CollectingTasks:
         """Return a task for each cone that stands and is in no queue yet."""
         found = await self._database.read(records.standing, request.layout)

@@ -5,7 +5,6 @@ from __future__ import annotations
 import asyncio
 import logging
 import math
-from collections.abc import Callable
 from functools import partial
 
 from sqlalchemy import Connection
@@ -245,10 +244,7 @@ class QueueRunner:
         self._told: dict[str, RobotState] = {}
         self._returned: set[str] = set()
         """robots that are back after nobody had heard them for long."""
-        self.waits_for: Callable[[str, str], str | None] = lambda _robot, _task: None
-        """Tells whom a robot is to let pass before it is sent a task, None for nobody."""
-        context.book.due = self.schedule
-        context.robots.is_back = self._is_back
+        self._waiting = context.waiting
 
     async def run(self) -> None:
         """Keep them going until cancelled."""
@@ -321,7 +317,7 @@ class QueueRunner:
     async def stop_over(self, robot: str, first: Path, rest: Path, other: str, by: str, also: AlsoOf) -> str:
         """Send the robot along ``first`` only, as a task of its own; the task that it does waits behind that.
 
-        It is begun anew along ``rest`` as soon as :attr:`waits_for` lets it. ``also`` is written in the same
+        It is begun anew along ``rest`` as soon as it need not wait any more. ``also`` is written in the same
         transaction. Return the id of the command. Raises MessageError for a ``rest`` that ends elsewhere,
         RefusedError for a robot that does no task of its queue any more, and StoreError.
         """
@@ -367,7 +363,8 @@ class QueueRunner:
             # The queues of all other robots go on.
             log_unforeseen(log, f"queue of {robot}; it is looked at again")
 
-    def _is_back(self, robot: str, away: float) -> None:
+    def note_return(self, robot: str, away: float) -> None:
+        """Note that a robot is heard again that was lost or offline for ``away`` seconds."""
         queue = self._book.get(robot)
         if away > self._longest_silence and queue.running and queue.tasks:
             self._returned.add(robot)
@@ -423,7 +420,7 @@ class QueueRunner:
         """Return why what comes next is not sent yet, None when it may be; raises StoreError."""
         if self._is_stopping(robot, head):
             return task_life.STOPS_FIRST
-        other = self.waits_for(robot, head.id)
+        other = self._waiting.waits_for(robot, head.id)
         if other is not None:
             return f"waits for {other}"
         known = self._robots.get(robot)

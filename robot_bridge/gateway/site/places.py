@@ -18,7 +18,6 @@ from ...core.messages import (
     SetPath,
     SetPosEnd,
     SetPosIni,
-    SiteOffer,
     SiteReport,
     TargetPosition,
 )
@@ -28,7 +27,7 @@ from ...core.sites.fences import Fences
 from ...core.sites.settings import SiteSettings
 from ...core.sites.site import Site
 
-# --- What the fleet needs of a site, and of the choice between several ---
+# --- What the fleet needs of a site ---
 
 
 class ServedSite(Protocol):
@@ -93,16 +92,6 @@ class ServedSite(Protocol):
 
     def show(self, objects: Sequence[ObservationReport]) -> None:
         """Draw accepted objects, and no others, on the maps from now on."""
-
-
-class SiteChoice(Protocol):
-    """The sites that may be served."""
-
-    async def offers(self) -> list[SiteOffer]:
-        """Return the sites by the names of their folders."""
-
-    async def choose(self, name: str) -> SiteReport:
-        """Serve the site in the folder ``name`` from now on; raises RefusedError saying why not."""
 
 
 # --- May a robot be sent there: is the place on the site, and the way outside its keepouts? ---

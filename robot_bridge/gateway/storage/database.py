@@ -350,13 +350,16 @@ class Database:
         """What robots' accounts do to others."""
         self._worker = DatabaseWorker(self._engine, self.dialect, shown(self.url), patience, self.offences)
         self._watch: asyncio.Task[None] | None = None
-        self.observe: Callable[[float], None] = _pass_over
-        """Called with the seconds that each piece of work took, waiting included."""
+        self._observers: list[Callable[[float], None]] = []
 
     @property
     def where(self) -> str:
         """The database's URL without its password."""
         return shown(self.url)
+
+    def add_observer(self, observe: Callable[[float], None]) -> None:
+        """Call ``observe`` with the seconds that each piece of work takes, waiting included."""
+        self._observers.append(observe)
 
     async def open(self) -> None:
         """Check that the tables are those of this version; SQLite's are made where there are none.
@@ -404,12 +407,18 @@ class Database:
         """Return what tells when it is time to look for new rows; ``channel`` is one of the triggers'."""
         if not self.dialect.listens:
             return PollingWakeup()
-        listening = NotifiedWakeup(self._engine, channel, lambda: self._worker.backend, self.offences)
+        listening = NotifiedWakeup(self._engine, channel, self._worker, self.offences)
         if channel != GATEWAY_CHANNEL:
             return listening
-        return AdaptiveWakeup(
-            listening, lambda: self.read(self.dialect.doze), lambda: self.read(self.dialect.rouse)
-        )
+        return AdaptiveWakeup(listening, self)
+
+    async def doze(self) -> bool:
+        """Let those that write tell of new rows; false while somebody writes who does not. See StoreError."""
+        return await self.read(self.dialect.doze)
+
+    async def rouse(self) -> None:
+        """Let those that write tell of nothing; raises StoreError."""
+        await self.read(self.dialect.rouse)
 
     @property
     def session(self) -> int:
@@ -432,7 +441,9 @@ class Database:
         try:
             result: T = await self._submit(work, arguments, mode)
         finally:
-            self.observe(time.perf_counter() - began)
+            seconds = time.perf_counter() - began
+            for observe in self._observers:
+                observe(seconds)
         return result
 
     async def _submit(
@@ -457,10 +468,6 @@ async def to_its_end(work: Coroutine[Any, Any, T]) -> T:
     task = asyncio.ensure_future(work)
     task.add_done_callback(lambda done: done.cancelled() or done.exception())
     return await asyncio.shield(task)
-
-
-def _pass_over(_seconds: float) -> None:
-    """Take no note."""
 
 
 def _end_stuck(connection: Connection) -> None:

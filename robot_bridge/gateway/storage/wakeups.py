@@ -6,7 +6,6 @@ import asyncio
 import contextlib
 import logging
 from collections import Counter
-from collections.abc import Awaitable, Callable
 from typing import TYPE_CHECKING, Any, Protocol
 
 from sqlalchemy import Engine
@@ -55,6 +54,24 @@ class Wakeup(Protocol):
         """Stop."""
 
 
+class OwnBackend(Protocol):
+    """What writes for this program."""
+
+    @property
+    def backend(self) -> int | None:
+        """The number of its backend at the server, None while there is none."""
+
+
+class ReaderLock(Protocol):
+    """The lock by which those that write know whether the reader is awake."""
+
+    async def doze(self) -> bool:
+        """Hold it; false while somebody writes who thinks that the reader is awake."""
+
+    async def rouse(self) -> None:
+        """Let it go."""
+
+
 class PollingWakeup:
     """Looks again at once where there was something, else less and less often, down to every 20 ms."""
 
@@ -77,13 +94,11 @@ class PollingWakeup:
 class NotifiedWakeup:
     """LISTEN on a channel of PostgreSQL. What a notification carries is never looked at: anyone may send one.
 
-    Those of the backend ``own`` are passed over: what this program wrote itself is no news to it. A backend
+    Those of its ``own`` backend are passed over: what this program wrote itself is no news to it. A backend
     that sends a flood of them is noted in ``offences``, and for a while nobody listens: the reader looks.
     """
 
-    def __init__(
-        self, engine: Engine, channel: str, own: Callable[[], int | None], offences: Offences
-    ) -> None:
+    def __init__(self, engine: Engine, channel: str, own: OwnBackend, offences: Offences) -> None:
         self._engine = engine
         self._channel = channel
         self._own = own
@@ -158,7 +173,7 @@ class NotifiedWakeup:
             try:
                 connection.pgconn.consume_input()
                 while notice := connection.pgconn.notifies():
-                    if notice.be_pid != own():
+                    if notice.be_pid != own.backend:
                         self._news.set()
                         rate.count(notice.be_pid, loop.time())
             except Exception as error:
@@ -211,13 +226,11 @@ class AdaptiveWakeup:
     def __init__(
         self,
         listening: NotifiedWakeup,
-        doze: Callable[[], Awaitable[bool]],
-        rouse: Callable[[], Awaitable[None]],
+        lock: ReaderLock,
     ) -> None:
         self._listening = listening
         self._polling = PollingWakeup()
-        self._doze = doze
-        self._rouse = rouse
+        self._lock = lock
         self._dozes = False
         self._pace = 0.0
         """Seconds to wait after a notification, as long as there was nothing behind the last ones."""
@@ -225,7 +238,7 @@ class AdaptiveWakeup:
     async def doze(self) -> bool:
         """Begin to doze; false while somebody writes who thinks that the reader is awake."""
         # While nobody listens it would sleep until the second is over.
-        self._dozes = not self._listening.is_flooded and await self._doze()
+        self._dozes = not self._listening.is_flooded and await self._lock.doze()
         return self._dozes
 
     async def wait(self, *, found: bool) -> None:
@@ -241,7 +254,7 @@ class AdaptiveWakeup:
             await asyncio.sleep(self._pace)
             self._pace = min(max(2 * self._pace, FIRST_PACE_S), LONGEST_S)
         self._dozes = False
-        await self._rouse()
+        await self._lock.rouse()
 
     async def close(self) -> None:
         """End the connection."""

@@ -24,6 +24,7 @@ from ...core.messages import (
     Closures,
     Command,
     CommandReport,
+    GetClosures,
     MessageError,
     OpenRoad,
     QueueTask,
@@ -38,8 +39,9 @@ from ..commands.active_command import NOTHING, CommandOrder, because
 from ..commands.persistence import Also, AlsoOf
 from ..commands.requests import CommandRequests
 from ..commands.service import CommandService
-from ..model.listeners import Listeners
-from ..model.planner import Point
+from ..model.events import Listeners
+from ..model.remaining_way import Point
+from ..model.request_handlers import handles
 from ..site.places import ServedSite
 from ..storage.database import Database
 from ..storage.repositories import closures, requests
@@ -54,12 +56,7 @@ log = logging.getLogger(__name__)
 
 
 class DetourQueues(Protocol):
-    """The robots' queues, as far as another way concerns them.
-
-    ``waits_for`` is asked whom a robot is to let pass before it is sent a task of its queue.
-    """
-
-    waits_for: Callable[[str, str], str | None]
+    """The robots' queues, as far as another way concerns them."""
 
     async def redirect(self, robot: str, path: SetPath, operator: str, reason: str) -> CommandReport | None:
         """Send a task of a queue by another path; None where the robot's task is none of a queue."""
@@ -267,10 +264,16 @@ class ClosureService:
                     log.warning("closure %s: the site, as it is published now, has no such road", id)
         self._announce()
 
+    @handles(GetClosures)
+    async def closed(self) -> Closures:
+        """Return the roads that are closed."""
+        return self.report()
+
     def report(self) -> Closures:
         """Return the roads that are closed."""
         return Closures([self._reported(row) for row in self._rows.values()])
 
+    @handles(CloseRoad)
     async def close(self, request: CloseRoad, operator: str) -> RoadClosed:
         """Close a road and send the robots that it concerns another way; the same again changes nothing.
 
@@ -304,6 +307,7 @@ class ClosureService:
         for row in list(self._rows.values()):
             await self._lead_round(row, only=placed)
 
+    @handles(OpenRoad)
     async def open(self, request: OpenRoad, operator: str) -> ClosureReport:
         """Open a road; the same again changes nothing.
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 import asyncio
 import math
 import threading
-from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
-from typing import NamedTuple
+from typing import NamedTuple, Protocol
 
 import numpy as np
 
@@ -18,9 +18,10 @@ from ...core.roads.centrelines import Floats
 from ...core.roads.path_smoothing import DensePath, Driving, dense_path
 from ...core.roads.routes import Restrictions, Route, Router, with_ends
 from ...core.sites.site import Site
-from ..model.planner import PlannedPath, Point
+from ..model.remaining_way import PlannedPath, Point
 from ..model.robots import Robots
 from .robot_paths import RobotPaths
+from .route_process import EngineReport, ProcessEngines
 from .site_roads import ClosedRoads, RoadStretch, SiteRoads
 
 # --- Paths along the roads of the published site ---
@@ -46,28 +47,46 @@ class NoOpenRouteError(RefusedError):
     """There are roads, and no way that may be used leads along them."""
 
 
+class PublishedSite(Protocol):
+    """What serves a site, in time others."""
+
+    @property
+    def site(self) -> Site:
+        """The site as it was published last."""
+
+
 class RoadPlanner:
-    """Finds the shortest way along the centrelines of the site that ``site`` returns, around its keepouts.
+    """Finds the shortest way along the centrelines of the site that is ``served``, around its keepouts.
 
     The network is built here, and again when the site is another. Roads that operators closed stay closed on
     it, and those narrower than robots are never used. Safe to use from several threads; what is closed is
     told without waiting for any other.
     """
 
-    def __init__(self, site: Callable[[], Site], driving: Driving | None = None) -> None:
-        self._site = site
+    def __init__(self, served: PublishedSite, driving: Driving | None = None) -> None:
+        self._served = served
         self._driving = driving
         self._using = threading.Lock()
         self._building = threading.Lock()
         self._closures: dict[str, RoadStretch] = {}
         with refuse_road_errors():
-            self._roads = SiteRoads.of(site())
+            self._roads = SiteRoads.of(served.site, ProcessEngines)
         self._closed = self._roads.closed_roads()
 
     @property
     def has_roads(self) -> bool:
         """Whether the site has any roads."""
         return self._roads.router is not None
+
+    @property
+    def engine_report(self) -> EngineReport | None:
+        """How ways are found now, None where the site has no roads."""
+        return self._roads.engine_report
+
+    def close(self) -> None:
+        """End the process that finds ways; ways go on being found, more slowly."""
+        with self._building:
+            self._roads.close()
 
     def path(self, start: Point, goal: Point) -> PlannedPath:
         """Return the path, a straight line with a note where the site has no roads near both places.
@@ -106,7 +125,7 @@ class RoadPlanner:
             except NoOpenRouteError as error:
                 more = " Roads on which other robots' tasks lead were left out." if avoid else ""
                 raise RefusedError(f"{error}{more}") from error
-        speed = max(wanted.speed, self._site().settings.routes.speed_ms)
+        speed = max(wanted.speed, self._served.site.settings.routes.speed_ms)
         if isinstance(found, str):
             why = f" and not along roads: {found}" if found else "; the site has no roads"
             return _straight(start, goal, speed, f"the way is a straight line{why}")
@@ -140,12 +159,7 @@ class RoadPlanner:
         What asks it for seconds keeps nobody else from the roads. Raises RefusedError.
         """
         with self._in_use() as roads:
-            if roads.router is None:
-                return None
-            network, closed = roads.router.network, roads.router.closed
-        router = Router(network)
-        router.close(np.flatnonzero(closed).tolist())
-        return router
+            return None if roads.router is None else roads.router.copy()
 
     def renew(self) -> dict[str, int]:
         """Take over the roads of a new publication; return how many edges each closure closes there."""
@@ -161,18 +175,19 @@ class RoadPlanner:
 
     def _take_over(self, *, patient: bool) -> None:
         """Build the roads of a new publication beside those in use, which go on being used meanwhile."""
-        if self._roads.site is self._site():
+        if self._roads.site is self._served.site:
             return
         if not self._building.acquire(blocking=patient):
             raise RefusedError("the roads of a new publication are being read; try again in a moment")
         try:
-            site = self._site()
+            site = self._served.site
             if self._roads.site is not site:
                 with refuse_road_errors():
-                    roads = SiteRoads.of(site)
+                    roads = SiteRoads.of(site, ProcessEngines)
                 with self._using:
                     roads.set_closures(self._closures)
-                    self._roads, self._closed = roads, roads.closed_roads()
+                    before, self._roads, self._closed = self._roads, roads, roads.closed_roads()
+                before.close()
         finally:
             self._building.release()
 
@@ -230,7 +245,7 @@ class RoadPlanner:
     def _how(self) -> Driving:
         if self._driving is not None:
             return self._driving
-        how = self._site().settings.routes
+        how = self._served.site.settings.routes
         return Driving(how.spacing_m, how.turning_radius_m, how.robot_width_m)
 
 

@@ -14,8 +14,14 @@ from ...core.messages import (
     CommandReport,
     ConflictResolved,
     Conflicts,
+    GetConflicts,
+    GetRoute,
+    GetSurfaces,
     GetWaysOut,
     ResolveConflict,
+    RouteReport,
+    SurfaceAt,
+    Surfaces,
     WayOut,
     WaysOut,
     path_to_end,
@@ -24,15 +30,17 @@ from ...core.messages import (
 from ...core.sites.site import Site
 from ..commands.requests import CommandRequests
 from ..commands.service import CommandService
-from ..model.listeners import Listeners
-from ..model.planner import Point
+from ..commands.validation import WaitingRobots
+from ..model.events import Listeners
+from ..model.remaining_way import Point
+from ..model.request_handlers import handles
 from ..model.robots import Robots
-from ..monitoring.tasks import Steps
-from ..site.places import ServedSite
+from ..monitoring.periodic_tasks import Steps
+from ..site.places import ServedSite, route_in_site_frame
 from ..storage.database import Database
 from .closures import ClosureService, DetourQueues, Detours
 from .conflicts import Movement, conflicts_with, driving_movement, find_conflicts
-from .road_planning import RoadPlanner, RouteOptions
+from .road_planning import RoadPlanner, RouteOptions, route_for_operator
 from .robot_paths import RobotPath, RobotPaths, TrafficSnapshot, conflict_report, split_path
 from .yielding import REACH, YieldManager, yield_beside_path, yield_on_path
 
@@ -85,6 +93,7 @@ class TrafficControl:
         self._told = False
         self._next = 0.0
 
+    @handles(GetConflicts)
     async def conflicts(self) -> Conflicts:
         """Return the conflicts of all robots as they are on their ways now."""
         seen = self.situation()
@@ -108,10 +117,12 @@ class TrafficControl:
             self._listeners.announce("conflicts", "conflicts", to_json(report))
         self._told = something
 
+    @handles(GetWaysOut)
     async def ways_out(self, request: GetWaysOut) -> WaysOut:
         """Return what each of two robots in each other's way can do; nothing is done, nobody is told."""
         return await asyncio.to_thread(self._ways_out, self.situation(), request, self._site.site)
 
+    @handles(ResolveConflict)
     async def resolve(self, request: ResolveConflict, operator: str) -> ConflictResolved:
         """Let ``robot`` wait for ``other``, or send it another way.
 
@@ -300,17 +311,20 @@ class RoadTraffic:
         commands: CommandService,
         orders: CommandRequests,
         queues: DetourQueues,
+        waiting: WaitingRobots,
         database: Database,
         clock: Clock,
         planner: RoadPlanner | None,
         listeners: Listeners,
     ) -> None:
         self.planner = planner
+        self._site = site
+        self._robots = robots
         self._steps = Steps("roads")
         self.ways = RobotPaths(robots, commands)
         detours = Detours(self.ways, planner, orders, queues, commands, site)
         self.closures = ClosureService(database, clock, planner, detours, listeners)
-        self.waiting = YieldManager(database, commands, detours)
+        self.waiting = YieldManager(database, commands, detours, waiting)
         self.traffic = TrafficControl(
             clock,
             robots,
@@ -326,6 +340,23 @@ class RoadTraffic:
         """Go on with the closed roads and the waiting robots that an earlier gateway left."""
         await self.closures.restore()
         await self.waiting.restore()
+
+    @handles(GetRoute)
+    async def route(self, request: GetRoute) -> RouteReport:
+        """Return the way along the roads that an operator wants to see; raises RefusedError without one."""
+        request = await route_in_site_frame(self._site, request)
+        return await route_for_operator(self.planner, self._robots, self.ways, request)
+
+    @handles(GetSurfaces)
+    async def surfaces(self, request: GetSurfaces) -> Surfaces:
+        """Return which road surface is at each place; raises RefusedError for a CRS that leads nowhere."""
+        try:
+            found = await asyncio.to_thread(self._site.surfaces_at, request.points, request.crs)
+        except RefusedError as error:
+            raise RefusedError(f"get_surface: {error}") from error
+        return Surfaces(
+            [None if one is None else SurfaceAt(one.label, one.origin, one.name or None) for one in found]
+        )
 
     def note_step(self, command: CommandReport) -> None:
         """Note a step of a command; called with each."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from typing import NamedTuple
@@ -13,12 +13,14 @@ from numpy.typing import NDArray
 
 from ...core.errors import RefusedError
 from ...core.roads.centrelines import Floats, Ints
+from ...core.roads.engines import EngineFactory, RouteGraph, safe_engines
 from ...core.roads.map_matching import NearestEdge, edges_along, edges_of_closure
 from ...core.roads.network import Network, build_network, flags
 from ...core.roads.routes import REACH, Router
 from ...core.roads.surface_index import NOWHERE, SurfaceIndex
 from ...core.sites.geopackage import road_lines
 from ...core.sites.site import Site
+from .route_process import EngineReport, ProcessEngines
 
 # --- What is closed on a network at one moment; never changed, so that any thread may ask without waiting
 
@@ -94,14 +96,17 @@ class SiteRoads:
     _closures: dict[str, set[int]] = field(default_factory=dict)
 
     @classmethod
-    def of(cls, site: Site) -> SiteRoads:
-        """Build the network of ``site`` and close what leads through its keepouts."""
+    def of(cls, site: Site, engines: Callable[[RouteGraph], EngineFactory] = safe_engines) -> SiteRoads:
+        """Build the network of ``site`` and close what leads through its keepouts.
+
+        ``engines`` find the ways: by default those of this process that cannot end it.
+        """
         if not site.centrelines:
             return cls(site, None, np.zeros(0, bool))
         network = build_network(road_lines(site.centrelines))
         if (network.edges.surface == "").any():
             network = _with_surfaces(network, site.surface_index)
-        router = Router(network)
+        router = Router(network, engines)
         closed = site.keepout_index.edges_through(network)
         router.close(closed.tolist())
         log.info(
@@ -112,6 +117,21 @@ class SiteRoads:
             router.engine_name,
         )
         return cls(site, router, router.closed)
+
+    @property
+    def engine_report(self) -> EngineReport | None:
+        """How ways are found, None where there are no roads."""
+        if self.router is None:
+            return None
+        engines = self.router.engines
+        return (
+            engines.report if isinstance(engines, ProcessEngines) else EngineReport(self.router.engine_name)
+        )
+
+    def close(self) -> None:
+        """End what runs beside this process to find ways."""
+        if self.router is not None and isinstance(self.router.engines, ProcessEngines):
+            self.router.engines.close()
 
     def stretch(self, place: Place, reach: float) -> RoadStretch:
         """Return the road nearest to ``place``; raises RefusedError where none is within ``reach`` metres."""

@@ -21,7 +21,8 @@ from ...core.sites.site import Site
 from ..commands.active_command import NOTHING
 from ..commands.persistence import Also, AlsoOf
 from ..commands.service import CommandService
-from ..model.planner import Floats, Point
+from ..commands.validation import WaitingRobots
+from ..model.remaining_way import Floats, Point
 from ..storage.database import Database
 from ..storage.repositories import closures as stored
 from ..storage.repositories.closures import HoldRow
@@ -224,15 +225,15 @@ NEAR = 1.0
 class YieldManager:
     """Every robot that waits. What it drives afterwards is stored, so that it is sent on after a restart."""
 
-    def __init__(self, database: Database, book: CommandService, detours: Detours) -> None:
+    def __init__(
+        self, database: Database, book: CommandService, detours: Detours, waiting: WaitingRobots
+    ) -> None:
         self._database = database
         self._book = book
         self._detours = detours
-        self._rows: dict[str, HoldRow] = {}
+        self._rows = waiting
         self._doubtful = False
         """whether a robot may be stored as one that waits without being known here."""
-        book.drafting.waits = self.waits
-        detours.queues.waits_for = self.waits_for
 
     def __len__(self) -> int:
         return len(self._rows)
@@ -241,17 +242,15 @@ class YieldManager:
         """Return who waits, by name."""
         return dict(self._rows)
 
-    def row_of(self, robot: str) -> HoldRow | None:
-        """Return how a robot waits, None for one that does not."""
-        return self._rows.get(robot)
-
     def report(self) -> list[HoldReport]:
         """Return who waits as operators are told it."""
         return [hold_report(row) for row in self._rows.values()]
 
     async def restore(self) -> None:
         """Take up the robots that wait since an earlier gateway."""
-        self._rows = {row.robot: row for row in await self._database.run(stored.held)}
+        rows = await self._database.run(stored.held)
+        self._rows.clear()
+        self._rows.update({row.robot: row for row in rows})
 
     async def catch_up(self) -> None:
         """Take up robots that were stored as waiting without that being known; raises StoreError."""
@@ -292,15 +291,6 @@ class YieldManager:
             reason = f"waits for {row.other}"
             return await self._detours.send(way, SetPath(first), row.by, reason, also)
         return await self._detours.queues.stop_over(way.robot, first, rest, row.other, row.by, also)
-
-    def waits(self, robot: str) -> bool:
-        """Tell whether a robot waits."""
-        return robot in self._rows
-
-    def waits_for(self, robot: str, task: str) -> str | None:
-        """Return whom a robot is to let pass before a task of its queue goes on, None for nobody."""
-        row = self._rows.get(robot)
-        return None if row is None or row.task != task else row.other
 
     def note_step(self, report: CommandReport) -> None:
         """Note a command: whoever is told anything else waits no longer, and is sent on by nobody."""

@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from ...core.errors import BridgeError, listed_names
-from ...core.files import replacement
+from ...core.files import replacement, write_geopackage_layer
 from ...core.geometry import headings_of
 from ...core.sites.frame import SiteFrame, projections
 from ...core.sites.settings_tables import TrajectorySettings
@@ -40,8 +40,6 @@ POSITIONS, TRACKS = "positions", "tracks"
 
 _MEASURED_LINE = 2002
 """The code of a LineString with M in well-known binary (ISO)."""
-_UTC = 100
-"""GDAL's code for UTC in a field of date and time."""
 
 
 @dataclass
@@ -115,24 +113,9 @@ class TrajectoryFile:
 
     def _write(self, layer: str, kind: str, geometry: Any, columns: dict[str, Any]) -> None:
         projections()  # before pyogrio imports pyproj aloud
-        import pyogrio
-
-        times = [name for name, values in columns.items() if values.dtype.kind == "M"]
         try:
-            pyogrio.raw.write(
-                str(self._file),
-                geometry=geometry,
-                field_data=list(columns.values()),
-                fields=list(columns),
-                layer=layer,
-                driver="GPKG",
-                geometry_type=kind,
-                crs=self._frame.crs,
-                append=self._file.exists(),
-                dataset_options={"VERSION": "1.3"},
-                gdal_tz_offsets={name: np.full(len(geometry), _UTC) for name in times},
-            )
-        except (pyogrio.errors.DataSourceError, pyogrio.errors.DataLayerError, OSError) as error:
+            write_geopackage_layer(self._file, layer, kind, geometry, columns, self._frame.crs)
+        except OSError as error:
             raise BridgeError(
                 f"{self._file} cannot be written: {error}; check the folder and free space"
             ) from error

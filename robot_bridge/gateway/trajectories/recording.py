@@ -15,8 +15,10 @@ from ...core.clock import Clock
 from ...core.errors import DataRefusedError
 from ...core.messages import GetTrajectory, SendPos, Trajectory, TrajectoryPlace
 from ...core.messages.records import mark_text
+from ...core.sites.settings import SettingsSource
 from ...core.sites.settings_tables import TrajectorySettings
 from ..model.arrival import standing
+from ..model.request_handlers import handles
 from ..model.robots import RobotPose, Robots
 from ..storage.database import Database, to_its_end
 from ..storage.repositories import robots as stored_robots
@@ -84,14 +86,14 @@ LOOK_INTERVAL = 1.0
 
 
 class TrajectoryRecorder:
-    """Collects positions and hands them out in batches; ``settings`` is asked each time, so it may change.
+    """Collects positions and hands them out in batches; the ``site`` is asked for its settings each time.
 
     Where more than ``largest_backlog`` of them wait, the database is away or takes them more slowly than they
     come: the oldest are given up, which is logged once and counted.
     """
 
-    def __init__(self, settings: Callable[[], TrajectorySettings]) -> None:
-        self._settings = settings
+    def __init__(self, site: SettingsSource) -> None:
+        self._site = site
         self._thinning = PositionThinning()
         self._waiting: deque[PackedFix] = deque()
         self._told = False
@@ -105,7 +107,7 @@ class TrajectoryRecorder:
 
     def observe(self, fixes: Sequence[Fix]) -> None:
         """Take in where robots are."""
-        settings = self._settings()
+        settings = self._site.settings.trajectories
         kept = [pack(fix) for fix in fixes if self._thinning.keeps(fix, settings)]
         if kept:
             self._waiting.extend(kept)
@@ -117,8 +119,8 @@ class TrajectoryRecorder:
         # Not each time: it looks at every robot, and this is called for every few requests.
         if not 0 <= now - self._looked_at < LOOK_INTERVAL:
             self._looked_at = now
-            self._wait(self._thinning.silent(now - self._settings().max_interval_s))
-        self._told = self._told and len(self._waiting) > self._settings().largest_backlog / 2
+            self._wait(self._thinning.silent(now - self._site.settings.trajectories.max_interval_s))
+        self._told = self._told and len(self._waiting) > self._site.settings.trajectories.largest_backlog / 2
         return [self._waiting.popleft() for _ in range(min(BATCH, len(self._waiting)))]
 
     def finish(self) -> None:
@@ -135,7 +137,7 @@ class TrajectoryRecorder:
         self._give_up_the_oldest()
 
     def _give_up_the_oldest(self) -> None:
-        too_many = len(self._waiting) - self._settings().largest_backlog
+        too_many = len(self._waiting) - self._site.settings.trajectories.largest_backlog
         if too_many <= 0:
             return
         for _ in range(too_many):
@@ -330,14 +332,21 @@ def _write(
 # --- A page of where robots have been, as an operator asks for it ---
 
 
-async def get_trajectory(database: Database, request: GetTrajectory) -> Trajectory:
-    """Return the page of stored positions that ``request`` asks for; raises StoreError."""
-    wanted = TrajectoryQuery(tuple(request.robots), request.since, request.until, request.bounds)
-    mark = request.mark()
-    after = None if mark is None else PageMark(*mark)
-    places = await database.run(trajectories.read, wanted, request.limit, after)
-    more = len(places) == request.limit
-    return Trajectory(
-        places=[TrajectoryPlace(*place[1:]) for place in places],
-        next=mark_text(places[-1].received_at, places[-1].id) if more else None,
-    )
+class TrajectoryPages:
+    """The stored positions of robots, in pages."""
+
+    def __init__(self, database: Database) -> None:
+        self._database = database
+
+    @handles(GetTrajectory)
+    async def read(self, request: GetTrajectory) -> Trajectory:
+        """Return the page of stored positions that ``request`` asks for; raises StoreError."""
+        wanted = TrajectoryQuery(tuple(request.robots), request.since, request.until, request.bounds)
+        mark = request.mark()
+        after = None if mark is None else PageMark(*mark)
+        places = await self._database.run(trajectories.read, wanted, request.limit, after)
+        more = len(places) == request.limit
+        return Trajectory(
+            places=[TrajectoryPlace(*place[1:]) for place in places],
+            next=mark_text(places[-1].received_at, places[-1].id) if more else None,
+        )

@@ -90,8 +90,28 @@ class Link(Protocol):
         :raises CommandRefusedError: when the gateway refuses it, with its reason.
         """
 
-    def report(self, *, ok: bool, text: str | None = None, counts: dict[str, float] | None = None) -> None:
-        """Tell how the link's own side is: ``ok`` false is an alarm for operators."""
+    def report(
+        self,
+        *,
+        ok: bool,
+        text: str | None = None,
+        counts: dict[str, float] | None = None,
+        reached: bool = False,
+    ) -> None:
+        """Tell how the link's own side is: ``ok`` false is an alarm for operators.
+
+        ``reached`` where that is the matter with some of its robots, and none is out of reach.
+        """
+
+
+MOST_FAULTS = 3
+"""that are told in words."""
+
+
+def summary(faults: Sequence[str]) -> str | None:
+    """Return what is the matter with robots, as one line for operators; None for nothing."""
+    more = f" (and {len(faults) - MOST_FAULTS} more)" if len(faults) > MOST_FAULTS else ""
+    return "; ".join(faults[:MOST_FAULTS]) + more or None
 
 
 # --- What an adapter is: one kind of robots, as its process drives it and is driven by it ---

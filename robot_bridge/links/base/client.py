@@ -18,7 +18,7 @@ import msgspec
 from websockets.asyncio.client import ClientConnection, connect
 from websockets.exceptions import ConnectionClosed, InvalidHandshake, InvalidStatus, InvalidURI
 
-from ...core.logs import log_and_continue, notify
+from ...core.logs import log_and_continue
 from ...core.messages import (
     Ability,
     Abort,
@@ -39,6 +39,7 @@ from ...core.messages.administration import Playback
 from ...core.messages.json_values import site_report
 from ...core.messages.links import LINK_PROTOCOL, GetAreas, LinkHello, LinkStatus, Released, SiteAreas
 from ...core.sites.frame import SiteFrame
+from ...core.systemd import notify
 from ...protocol import jsonrpc
 from ...protocol.codec import decode_answer, params_of
 from ...protocol.credentials import ClientCredentials
@@ -195,9 +196,16 @@ class LinkClient:
         finally:
             del self._areas[answer]
 
-    def report(self, *, ok: bool, text: str | None = None, counts: dict[str, float] | None = None) -> None:
+    def report(
+        self,
+        *,
+        ok: bool,
+        text: str | None = None,
+        counts: dict[str, float] | None = None,
+        reached: bool = False,
+    ) -> None:
         """Tell how the link's own side is."""
-        status = LinkStatus(ok, text, counts or {})
+        status = LinkStatus(ok, text, counts or {}, None if ok else reached or None)
         if status != self._status:
             self._status = status
             if self._is_welcome:
@@ -418,7 +426,7 @@ class LinkClient:
         status, self._said_fault = self._status, self._memory.fault
         if self._said_fault is not None:
             text = f"{self._said_fault}; its robots take on nothing, and can be stopped"
-            status = LinkStatus(False, "; ".join(filter(None, (text, status.text))), status.counts)
+            status = LinkStatus(False, "; ".join(filter(None, (text, status.text))), status.counts, True)
         self._post(jsonrpc.call(LinkStatus.method, to_json(status) | {"counts": status.counts}))
 
     async def _watch_memory(self) -> None:

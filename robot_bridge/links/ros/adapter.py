@@ -12,7 +12,7 @@ from typing import Any, Generic, TypeVar
 from ...core.files import write_state
 from ...core.json_decoder import DecodingError, decode_json
 from ...core.messages import MessageError, check_robot_name
-from ..base.adapter import Adapter, Command, Link
+from ..base.adapter import Adapter, Command, Link, summary
 from ..base.errors import CommandRefusedError, LinkError
 from .robot import RosRobot
 from .settings import RobotSettings
@@ -64,8 +64,6 @@ class RobotNotes:
 # --- What adapters of ROS robots share: robots are found, each is led by itself, and told of together ---
 
 MOST_ROBOTS = 5000
-MOST_FAULTS = 3
-"""that are told in words."""
 
 Network = TypeVar("Network")
 Make = Callable[[str], RosRobot[Network]]
@@ -141,13 +139,13 @@ class RosAdapter(Adapter, Generic[Network]):
         robot.expect_server(bytes.fromhex(known) if known else None)
 
     def _report(self, link: Link) -> None:
-        faults = self._network_faults()
+        unreached = self._network_faults()
+        faults = [*unreached]
         faults += [f"{robot.name}: {text}" for robot in self._robots.values() for text in robot.faults]
         faults += [f"{name}: the link failed; its log says more" for name in sorted(self._failed)]
         faults += [] if self._notes.fault is None else [self._notes.fault]
-        more = f" (and {len(faults) - MOST_FAULTS} more)" if len(faults) > MOST_FAULTS else ""
-        text = "; ".join(faults[:MOST_FAULTS]) + more
-        link.report(ok=not faults, text=text or None, counts={"found": float(len(self._robots))})
+        counts = {"found": float(len(self._robots))}
+        link.report(ok=not faults, text=summary(faults), counts=counts, reached=not unreached)
 
     def _network_faults(self) -> list[str]:
         """Return what is wrong with the way to all robots, in words."""

@@ -46,7 +46,7 @@ from .errors import FaultError
 from .messages import Pose, image_of
 from .sensing import Sensing, stamp
 from .settings import RobotSettings
-from .site_maps import KEEPOUT, SPEED, Grids, Masks
+from .site_maps import KEEPOUT, SPEED, Grids, Masks, SiteMasks
 from .tasks import Tasks
 
 # --- What the way to a robot does for it, however that is made: over DDS, or over rosbridge ---
@@ -69,7 +69,13 @@ class RobotActions(Protocol[Network]):
     """Speaks to a robot. ``server`` is who has its tasks, None where nobody does."""
 
     server: bytes | None
-    feedback: str | None
+
+    @property
+    def feedback(self) -> str | None:
+        """How far its goal is yet; None where that is not known."""
+
+    def forget_feedback(self) -> None:
+        """Forget how far its goal was."""
 
     @property
     def abilities(self) -> Abilities:
@@ -255,7 +261,7 @@ class RosRobot(Generic[Network]):
         if anew:
             log.warning("robot %s: its action server has started anew", self.name)
             self._tasks.forget()
-            self._acting.feedback = None
+            self._acting.forget_feedback()
             if self._told is None:
                 self._is_anew = True
             elif not self._tasks.is_only_held:
@@ -342,10 +348,13 @@ class RosRobot(Generic[Network]):
             raise CommandRefusedError("the link's settings name no topic for its map")
         if topics.map is not None or topics.get_map is not None:
             grid = await self._grids.of(message.map)
-            if topics.map is not None:
-                self._acting.publish_latched("map", grid)
-            if topics.get_map is not None:
-                self._acting.serve_map(grid)
+            try:
+                if topics.map is not None:
+                    self._acting.publish_latched("map", grid)
+                if topics.get_map is not None:
+                    self._acting.serve_map(grid)
+            except FaultError as error:
+                raise CommandRefusedError(str(error)) from None
         if topics.keepout_mask is not None or topics.speed_mask is not None:
             if self._masking is not None:
                 self._masking.cancel()
@@ -354,11 +363,13 @@ class RosRobot(Generic[Network]):
     async def _show_masks(self, robot_map: bytes) -> None:
         """Publish keepouts and speeds; the map has been taken on whatever comes of that."""
         try:
-            masks = await self._masks.of(robot_map)
-        except CommandRefusedError as error:
+            self._publish_masks(await self._masks.of(robot_map))
+        except (CommandRefusedError, FaultError) as error:
             self._sensing.fault("masks", str(error))
-            return
-        self._sensing.faults.pop("masks", None)
+        else:
+            self._sensing.faults.pop("masks", None)
+
+    def _publish_masks(self, masks: SiteMasks) -> None:
         patterns = self._settings.patterns
         made = (("keepout", KEEPOUT, masks.keepout, 1.0), ("speed", SPEED, masks.speed, masks.multiplier))
         for name, kind, grid, multiplier in made:

@@ -153,7 +153,8 @@ def check_robots(settings: RobotSettings, table: str, file: Path) -> None:
     where = f"{file}: {table}"
     if settings.distribution not in DISTRIBUTIONS:
         raise LinkError(
-            f"{where}.distribution = {settings.distribution!r}: give one of {distribution_names()}"
+            f"{where}.distribution = {settings.distribution!r}: give one of {distribution_names()}; for "
+            "rolling the newest"
         )
     _check_numbers(settings, where)
     for field in settings.topics.__struct_fields__:

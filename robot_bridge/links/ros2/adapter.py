@@ -5,7 +5,8 @@ from __future__ import annotations
 import asyncio
 import logging
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -47,6 +48,7 @@ from .interfaces import (
     type_from_dds,
     type_to_dds,
 )
+from .security import SecuritySettings
 from .services import ActionClient, Refuse, ServiceClient, ServiceServer, by_topic, is_framed
 
 # --- Table ``[ros2]`` of a link's settings: the DDS network beside the robots ---
@@ -59,18 +61,22 @@ class Ros2Settings(RobotSettings, frozen=True, forbid_unknown_fields=True):
     range: Range = "subnet"
     interfaces: tuple[str, ...] = ()
     peers: tuple[str, ...] = ()
+    security: SecuritySettings | None = None
 
-    @property
-    def dds(self) -> DdsSettings:
-        """The DDS domain."""
-        return DdsSettings(self.domain, self.range, self.interfaces, self.peers)
+    def dds(self, folder: Path) -> DdsSettings:
+        """Return the DDS domain; files are in ``folder``. Raises RosError, which begins with the key."""
+        try:
+            security = None if self.security is None else self.security.beside(folder)
+        except RosError as error:
+            raise RosError(f"security.{error}") from None
+        return DdsSettings(self.domain, self.range, self.interfaces, self.peers, security)
 
 
 def check(settings: Ros2Settings, file: Path) -> None:
     """Raise LinkError, naming file and key, for what the types alone do not refuse."""
     check_robots(settings, "ros2", file)
     try:
-        _ = settings.dds
+        settings.dds(file.resolve().parent)
     except RosError as error:
         raise LinkError(f"{file}: ros2.{error}") from None
 
@@ -155,7 +161,12 @@ class DdsSubscriptions:
             self._sensing.faults.pop(topic, None)
         quality = quality_for(offered, depth=1 if kind == "image" else 10)
         if heard is None or heard.quality != quality or heard.type_name != type_name:
-            reader = self._participant.reader(topic_to_dds(topic), offered[0].type_name, quality)
+            try:
+                reader = self._participant.reader(topic_to_dds(topic), offered[0].type_name, quality)
+            except FaultError as error:
+                self._heard.pop(kind, None)
+                self._sensing.fault(f"permission {topic}", str(error))
+                return
             self._heard[kind] = _Heard(topic, type_name, reader, quality, keys)
         else:
             heard.offers = keys
@@ -204,20 +215,16 @@ class DdsActions:
         """Meet the servers and listeners that are there now."""
         self.server = None
         for action, setting in ACTIONS.items():
-            self._connect_action(action, setting, offers)
+            with self._noting_permission(setting):
+                self._connect_action(action, setting, offers)
         for setting in SERVICES:
             if setting in self._patterns:
-                names = service_names(self._topic(setting), TRIGGER)
-                servers = offers.get((names.request, True), [])
-                if not servers:
-                    self._services.pop(setting, None)
-                elif setting not in self._services:
-                    self._services[setting] = ServiceClient(
-                        self._participant, self._types, names, TRIGGER, framed=is_framed(servers[0])
-                    )
+                with self._noting_permission(setting):
+                    self._connect_service(setting, offers)
         for setting, known in WRITTEN.items():
             if setting in self._patterns:
-                self._connect_topic(setting, known, offers)
+                with self._noting_permission(setting):
+                    self._connect_topic(setting, known, offers)
 
     @property
     def abilities(self) -> Abilities:
@@ -231,6 +238,10 @@ class DdsActions:
             stop_service="stop" in self._services,
             cone_service="place_cone" in self._services,
         )
+
+    def forget_feedback(self) -> None:
+        """Forget how far its goal was."""
+        self.feedback = None
 
     def hears(self, setting: str) -> bool:
         """Tell whether somebody listens to the topic of a setting."""
@@ -305,10 +316,28 @@ class DdsActions:
             names = service_names(self._topic("get_map"), GET_MAP)
             self._map_server = ServiceServer(self._participant, names)
         # The map is the whole of the reply, so both are the same bytes.
-        self._map_server.reply = grid
+        self._map_server.set_reply(grid)
 
     def _topic(self, setting: str) -> str:
         return self._patterns[setting].topic_of(self._robot)
+
+    @contextmanager
+    def _noting_permission(self, setting: str) -> Iterator[None]:
+        """Note what the permissions of this link do not allow; the robot's other topics are used."""
+        try:
+            yield
+        except FaultError as error:
+            self._sensing.fault(f"permission {setting}", str(error))
+
+    def _connect_service(self, setting: str, offers: Offers) -> None:
+        names = service_names(self._topic(setting), TRIGGER)
+        servers = offers.get((names.request, True), [])
+        if not servers:
+            self._services.pop(setting, None)
+        elif setting not in self._services:
+            self._services[setting] = ServiceClient(
+                self._participant, self._types, names, TRIGGER, framed=is_framed(servers[0])
+            )
 
     def _connect_action(self, action: RosAction, setting: str, offers: Offers) -> None:
         if setting not in self._patterns:
@@ -359,9 +388,9 @@ class DdsActions:
         if not types:
             self._wanted.discard(setting)
             return
-        self._wanted.add(setting)
         if setting not in self._writers or self._writers[setting][0] != types[0]:
             self._write_to(setting, str(types[0]))
+        self._wanted.add(setting)
 
     def _listeners(self, setting: str, offers: Offers) -> list[Endpoint]:
         return offers.get((topic_to_dds(self._topic(setting)), True), [])
@@ -428,7 +457,7 @@ class Ros2Adapter(RosAdapter[Offers]):
         settings = self._settings
         try:
             types = Interfaces(settings.distribution)
-            participant = Participant(settings.dds)
+            participant = Participant(settings.dds(link.settings.folder))
         except RosError as error:
             raise LinkError(f"{link.settings.file}: ros2: {error}") from None
         outgoing = Outgoing(types, link.frame, settings.map_frame)

@@ -10,13 +10,16 @@ from __future__ import annotations
 import logging
 import re
 from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any, Literal
 from xml.sax.saxutils import quoteattr
 
-from ..ros.errors import RosError
+from ..ros.errors import FaultError, RosError
 from ..ros.settings import LONGEST_NAME
 from .interfaces import LARGEST_MESSAGE
+from .security import SECURED, DdsSecurity
 
 log = logging.getLogger(__name__)
 
@@ -41,13 +44,15 @@ class DdsSettings:
     """A DDS domain: its number, how far others are looked for, and where.
 
     ``interfaces`` are names or addresses of this computer's; none: loopback for ``localhost``, else the one
-    that cyclonedds takes. ``peers`` are addresses asked one by one, for networks without multicast.
+    that cyclonedds takes. ``peers`` are addresses asked one by one, for networks without multicast. With
+    ``security`` only those are heard and answered who show that they belong here.
     """
 
     domain: int = 0
     range: Range = "subnet"
     interfaces: tuple[str, ...] = ()
     peers: tuple[str, ...] = ()
+    security: DdsSecurity | None = None
 
     def __post_init__(self) -> None:
         if not 0 <= self.domain <= LARGEST_DOMAIN:
@@ -55,17 +60,18 @@ class DdsSettings:
         if self.range not in RANGES:
             raise RosError(f"range is {str(self.range)[:40]!r}; give one of {', '.join(RANGES)}")
 
-    def xml(self) -> str:
-        """Return cyclonedds's configuration of the domain."""
+    def xml(self, *, ignores_types: bool = True) -> str:
+        """Return cyclonedds's configuration of the domain; not every version ``ignores_types``."""
         peers = (["127.0.0.1"] if self.range == "localhost" else []) + list(self.peers)
         interfaces = self.interfaces or (("127.0.0.1",) if self.range == "localhost" else ())
+        ignored = f"<IgnoreTypeInformation>{IGNORED_TYPES}</IgnoreTypeInformation>" if ignores_types else ""
         multicast = "default" if self.range == "subnet" else "false"
         return (
             '<CycloneDDS><Domain Id="any"><General>'
             f"<Interfaces>{''.join(map(_interface, interfaces))}</Interfaces>"
             f"<AllowMulticast>{multicast}</AllowMulticast></General>"
             f"<Discovery>{_asked(peers)}</Discovery>"
-            f"<Compatibility><IgnoreTypeInformation>{IGNORED_TYPES}</IgnoreTypeInformation></Compatibility>"
+            f"<Compatibility>{ignored}</Compatibility>"
             f"<Internal><MaxSampleSize>{LARGEST_MESSAGE} B</MaxSampleSize></Internal>"
             "</Domain></CycloneDDS>"
         )
@@ -116,7 +122,7 @@ class RawReader:
     @property
     def matched(self) -> int:
         """How many writers it hears."""
-        return len(self._entity.get_matched_publications())
+        return _matched(self._entity, "publications")
 
     def close(self) -> None:
         """Hear nobody any more."""
@@ -144,7 +150,7 @@ class RawWriter:
     @property
     def matched(self) -> int:
         """How many readers hear it."""
-        return len(self._entity.get_matched_subscriptions())
+        return _matched(self._entity, "subscriptions")
 
 
 class Participant:
@@ -161,12 +167,19 @@ class Participant:
                 f"{error.name} is not installed; pip install 'fleet-supervisor-robot-bridge[ros2]'"
             ) from None
         try:
-            self._domain = domain.Domain(settings.domain, settings.xml())
-            self._participant = domain.DomainParticipant(settings.domain)
+            self._ignores_types = library_has(b"IgnoreTypeInformation")
+            self._domain = domain.Domain(settings.domain, settings.xml(ignores_types=self._ignores_types))
+            self._participant = domain.DomainParticipant(settings.domain, _shown(settings.security))
         except core.DDSException as error:
+            secured = (
+                ""
+                if settings.security is None
+                else (" Are the files of security valid, and for this domain? Cyclone DDS has said why")
+            )
             raise RosError(
                 f"DDS domain {settings.domain} cannot be joined ({error}); look at domain, range and "
                 "interfaces of the settings: are the interfaces there, is there room for another participant?"
+                f"{secured}"
             ) from None
         self._offers = builtin.BuiltinDataReader(self._participant, builtin.BuiltinTopicDcpsPublication)
         self._wants = builtin.BuiltinDataReader(self._participant, builtin.BuiltinTopicDcpsSubscription)
@@ -191,17 +204,26 @@ class Participant:
         return changed
 
     def reader(self, topic: str, type_name: str, quality: Quality) -> RawReader:
-        """Return a reader of a DDS topic; both names are those of DDS."""
+        """Return a reader of a DDS topic; both names are those of DDS.
+
+        :raises FaultError: where the permissions of this link do not allow that.
+        """
         from cyclonedds.sub import DataReader
 
-        return RawReader(DataReader(self._participant, self._topic(topic, type_name), qos=_qos(quality)))
+        with _permitted(topic, "read"):
+            made = self._topic(topic, type_name)
+            return RawReader(DataReader(self._participant, made, qos=_qos(quality)))
 
     def writer(self, topic: str, type_name: str, quality: Quality) -> RawWriter:
-        """Return a writer of a DDS topic; both names are those of DDS."""
+        """Return a writer of a DDS topic; both names are those of DDS.
+
+        :raises FaultError: where the permissions of this link do not allow that.
+        """
         from cyclonedds.pub import DataWriter
 
-        made = self._topic(topic, type_name)
-        return RawWriter(DataWriter(self._participant, made, qos=_qos(quality)), made.data_type)
+        with _permitted(topic, "write"):
+            made = self._topic(topic, type_name)
+            return RawWriter(DataWriter(self._participant, made, qos=_qos(quality)), made.data_type)
 
     def _topic(self, name: str, type_name: str) -> Any:
         from cyclonedds.topic import Topic
@@ -209,7 +231,7 @@ class Participant:
         key = (name, type_name)
         if key not in self._topics:
             if type_name not in self._types:
-                self._types[type_name] = _octet_type(type_name)
+                self._types[type_name] = _octet_type(type_name, described=self._ignores_types)
             self._topics[key] = Topic(self._participant, name, self._types[type_name])
         return self._topics[key]
 
@@ -269,15 +291,66 @@ def _qos(quality: Quality) -> Any:
     )
 
 
-def _octet_type(type_name: str) -> Any:
-    """Return a type of cyclonedds that is one octet, under ``type_name``, whose samples are bytes."""
+def library_has(word: bytes) -> bool:
+    """Tell whether Cyclone DDS's library was built with what ``word`` names."""
+    from cyclonedds import __library__
+
+    return word in Path(__library__.library_path).read_bytes()
+
+
+def _shown(security: DdsSecurity | None) -> Any:
+    """Return the Qos of a participant that shows its certificate; None for one that has none."""
+    from cyclonedds.core import Policy, Qos
+
+    if security is None:
+        return None
+    if not library_has(SECURED):
+        raise RosError(
+            "security is set, and the cyclonedds that is installed was built without DDS Security, as all "
+            "its wheels on PyPI are; install one that has it (docs/links-ros2.md, DDS Security)"
+        )
+    return Qos(*(Policy.Property(key, value) for key, value in security.properties().items()))
+
+
+@contextmanager
+def _permitted(topic: str, verb: str) -> Iterator[None]:
+    from cyclonedds.core import DDSException
+
+    try:
+        yield
+    except DDSException as error:
+        if error.code != DDSException.DDS_RETCODE_NOT_ALLOWED_BY_SECURITY:
+            raise
+        raise FaultError(f"the permissions of this link do not let it {verb} {topic}") from None
+
+
+def _matched(entity: Any, side: str) -> int:
+    """Return how many of the other side an endpoint has met; Cyclone DDS 0.10 says that in C alone."""
+    if hasattr(entity, f"get_matched_{side}"):
+        return len(getattr(entity, f"get_matched_{side}")())
+    from cyclonedds.internal import DDS
+
+    return max(0, int(getattr(DDS._dll_handle, f"dds_get_matched_{side}")(entity._ref, None, 0)))
+
+
+def _octet_type(type_name: str, *, described: bool) -> Any:
+    """Return a type of cyclonedds that is one octet, under ``type_name``, whose samples are bytes.
+
+    One that is not ``described`` is compared by its name alone: others know it as another type.
+    """
     from cyclonedds.idl import make_idl_struct, types
 
     made: Any = make_idl_struct("Octet", type_name, {"first": types.uint8}, dataclassify=False)
+    if not described:
+        made.__idl__.fill_type_data = _nothing
     made.__init__ = _keep
     made.serialize = _data
     made.deserialize = made.deserialize_key = classmethod(_made_of)
     return made
+
+
+def _nothing() -> None:
+    """Describe nothing."""
 
 
 def _keep(sample: Any, data: bytes = b"") -> None:

@@ -71,7 +71,7 @@ class ServiceClient:
 
 
 class ServiceServer:
-    """Answers each call of a service with ``reply``, its CDR, for nodes on Cyclone DDS.
+    """Answers each call of a service with one reply, for nodes on Cyclone DDS.
 
     Calls from Fast DDS come without the header that a reply repeats, and cannot be answered.
     """
@@ -79,7 +79,11 @@ class ServiceServer:
     def __init__(self, participant: Participant, names: ServiceNames) -> None:
         self._calls = participant.reader(names.request, names.request_type, Quality())
         self._replies = participant.writer(names.reply, names.reply_type, Quality())
-        self.reply = b""
+        self._reply = b""
+
+    def set_reply(self, reply: bytes) -> None:
+        """Have each call answered with ``reply`` from now on, the CDR of a response."""
+        self._reply = reply
 
     def answer(self) -> bool:
         """Answer the calls that have come; return whether there was one that cannot be answered."""
@@ -88,7 +92,7 @@ class ServiceServer:
         for call in self._calls.read_samples():
             if len(call) > end:
                 header = call[_ENCAPSULATION:end]
-                self._replies.write(self.reply[:_ENCAPSULATION] + header + self.reply[_ENCAPSULATION:])
+                self._replies.write(self._reply[:_ENCAPSULATION] + header + self._reply[_ENCAPSULATION:])
             else:
                 unanswered = True
         return unanswered

@@ -148,9 +148,9 @@ class RosbridgeActions:
         """How far its goal is yet."""
         return self._goals.feedback
 
-    @feedback.setter
-    def feedback(self, text: str | None) -> None:
-        self._goals.feedback = text
+    def forget_feedback(self) -> None:
+        """Forget how far its goal was."""
+        self._goals.forget_feedback()
 
     @property
     def written(self) -> list[str]:
@@ -310,7 +310,7 @@ class RosbridgeAdapter(RosAdapter[Graph]):
         super().__init__(settings, RobotNotes(file), keeps_servers=False)
         self._settings = settings
         self._connection = RosbridgeConnection(server)
-        self._watch = GraphWatch(self._connection, self._written, self._watched)
+        self._watch = GraphWatch(self._connection, self)
         self._books = self._notes.read(GoalBook.from_json)
         self._acting: list[RosbridgeActions] = []
         self._goals: list[ActionGoals] = []
@@ -350,7 +350,7 @@ class RosbridgeAdapter(RosAdapter[Graph]):
 
         def make(name: str) -> RosRobot[Graph]:
             sensing = Sensing(name, settings, link.frame)
-            goals = ActionGoals(name, self._connection, self._book(name), self._note_goals)
+            goals = ActionGoals(name, self._connection, self._book(name), self)
             acting = RosbridgeActions(name, settings, self._connection, outgoing, goals)
             self._acting.append(acting)
             self._goals.append(goals)
@@ -376,16 +376,20 @@ class RosbridgeAdapter(RosAdapter[Graph]):
     def _network_faults(self) -> list[str]:
         return [*self._connection.faults, *([self._watch.fault] if self._watch.fault else [])]
 
-    def _written(self) -> list[str]:
+    @property
+    def written_topics(self) -> list[str]:
+        """The topics of its robots of which it matters who listens to them."""
         return [topic for acting in self._acting for topic in acting.written]
 
-    def _watched(self) -> list[str]:
+    @property
+    def watched_topics(self) -> list[str]:
+        """The topics of its robots of which it matters how many publish them."""
         return [topic for goals in self._goals for topic in goals.watched]
 
     def _book(self, robot: str) -> GoalBook:
         return self._books.setdefault(robot, GoalBook())
 
-    def _note_goals(self) -> None:
+    def note_goals(self) -> None:
         """Write down which goals are open, so that the next process of this link sends none of them twice."""
         noted = {robot: rows for robot, book in self._books.items() if (rows := book.to_json())}
         self._notes.write(noted)

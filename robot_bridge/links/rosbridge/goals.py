@@ -8,7 +8,7 @@ from collections import deque
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from functools import partial
-from typing import Any
+from typing import Any, Protocol
 
 from ..ros.effects import Answered, CancelGoals, Effect, Idle, RosAction, SendGoal
 from ..ros.errors import FaultError
@@ -140,16 +140,21 @@ LOST = "its goal ended while rosbridge was away, and how is not known; look wher
 LEFT = "its goal was canceled while rosbridge was away; some servers do that to the goals of who leaves"
 
 
-class ActionGoals:
-    """Sends goals and says what becomes of them; ``note`` writes the book down."""
+class GoalNotes(Protocol):
+    """Where the books of goals are kept for the next process."""
 
-    def __init__(
-        self, robot: str, connection: RosbridgeConnection, book: GoalBook, note: Callable[[], None]
-    ) -> None:
+    def note_goals(self) -> None:
+        """Write down which goals are open."""
+
+
+class ActionGoals:
+    """Sends goals and says what becomes of them; ``notes`` has its book written down."""
+
+    def __init__(self, robot: str, connection: RosbridgeConnection, book: GoalBook, notes: GoalNotes) -> None:
         self._robot = robot
         self._connection = connection
         self._book = book
-        self._note = note
+        self._notes = notes
         self._earlier = {one.goal for one in book.entries}
         """Goals that an earlier process of this link sent."""
         self._topics: dict[RosAction, str] = {}
@@ -175,6 +180,10 @@ class ActionGoals:
     def server(self) -> bytes | None:
         """Who has the robot's goals: another one when servers were seen to have started anew."""
         return self._epoch.to_bytes(8, "big") if self.actions else None
+
+    def forget_feedback(self) -> None:
+        """Forget how far a goal was: its server has started anew."""
+        self.feedback = None
 
     @property
     def watched(self) -> list[str]:
@@ -266,7 +275,7 @@ class ActionGoals:
         self._book.forget()
         self._known.clear()
         self._held = None
-        self._note()
+        self._notes.note_goals()
 
     def _statuses_came(
         self, action: RosAction, statuses: dict[bytes, GoalStatus], tasks: Tasks, now: float
@@ -276,7 +285,7 @@ class ActionGoals:
         open_before = [one for one in self._book.entries if one.action is action and not one.is_over]
         translated, was_found = self._book.translate(action, statuses)
         if was_found or any(one.is_over for one in open_before):
-            self._note()
+            self._notes.note_goals()
         if GoalStatus.EXECUTING not in statuses.values():
             self.feedback = None
         effects: list[Effect] = []
@@ -306,7 +315,7 @@ class ActionGoals:
             if entry.is_over or entry.was_shown or sent_now or not self._is_settled(entry.action, now):
                 continue
             entry.is_over = True
-            self._note()
+            self._notes.note_goals()
             if entry.goal == tasks.goal:
                 tasks.result_came(entry.action, GoalStatus.ABORTED, None, LOST)
                 statuses = {**self._translated(entry.action), entry.goal: GoalStatus.ABORTED}
@@ -335,7 +344,7 @@ class ActionGoals:
         self._sent_in[asked.goal_id] = self._session
         while len(self._sent_in) > len(self._book.entries):
             self._sent_in.pop(next(iter(self._sent_in)))
-        self._note()
+        self._notes.note_goals()
         self._connection.send_goal(
             self._id(asked.goal_id),
             self._topics[asked.action],

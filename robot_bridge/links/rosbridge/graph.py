@@ -5,9 +5,9 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import logging
-from collections.abc import Callable, Collection
+from collections.abc import Collection
 from dataclasses import dataclass, field
-from typing import TypeVar
+from typing import Protocol, TypeVar
 
 from ..ros.errors import FaultError
 from .connection import Answer, RosbridgeConnection
@@ -48,18 +48,24 @@ class Graph:
     publishers: dict[str, int] = field(default_factory=dict)
 
 
+class GraphInterest(Protocol):
+    """What somebody wants to know of the network; asked at each look."""
+
+    @property
+    def written_topics(self) -> Collection[str]:
+        """The topics of which it matters who listens to them."""
+
+    @property
+    def watched_topics(self) -> Collection[str]:
+        """The topics of which it matters how many publish them."""
+
+
 class GraphWatch:
     """Asks rosapi again and again. ``fault`` says why nothing is known."""
 
-    def __init__(
-        self,
-        connection: RosbridgeConnection,
-        written: Callable[[], Collection[str]],
-        watched: Callable[[], Collection[str]],
-    ) -> None:
+    def __init__(self, connection: RosbridgeConnection, interest: GraphInterest) -> None:
         self._connection = connection
-        self._written = written
-        self._watched = watched
+        self._interest = interest
         self.graph = Graph()
         self.looks = 0
         """How often the network has been looked at."""
@@ -101,11 +107,11 @@ class GraphWatch:
         is_same = session == known.session and graph.topics == known.topics
         if is_same and self.looks % SUBSCRIBERS_EVERY:
             graph.listeners = dict(known.listeners)
-        for topic in self._written():
+        for topic in self._interest.written_topics:
             if topic in graph.topics and topic not in graph.listeners:
                 heard = await self._ask("subscribers", {"topic": topic}, SubscribersReply)
                 graph.listeners[topic] = len(heard.subscribers)
-        for topic in self._watched():
+        for topic in self._interest.watched_topics:
             told = await self._ask("publishers", {"topic": topic}, PublishersReply)
             graph.publishers[topic] = len(told.publishers)
         self.looks += 1

@@ -14,7 +14,7 @@ from typing import ClassVar
 from ...core.logs import RepeatedLines
 from ...core.messages import Ability, Alive, SendPos, SetPath, SetPosEnd, SetPosIni, Stopped
 from ...core.sites.frame import SiteFrame
-from ..base.adapter import Adapter, Command, Link
+from ..base.adapter import Adapter, Command, Link, summary
 from ..base.errors import CommandRefusedError
 from ..base.frames import LinkFrame
 from ..base.settings import LinkSettings, read_settings
@@ -48,6 +48,8 @@ log = logging.getLogger(__name__)
 
 TICK = 0.25
 """seconds between two looks at what is due."""
+REPORT_EVERY = 1.0
+"""seconds between two looks at what the matter is with vehicles."""
 FACTSHEET_WITHIN = 2.0
 """seconds for which a vehicle's factsheet is waited for before the gateway is told what it can do."""
 
@@ -92,6 +94,14 @@ class Vehicle:
                 future.set_result(None)
 
 
+class RandomNames:
+    """Names of orders and actions, drawn from so many that none comes twice."""
+
+    def draw(self) -> str:
+        """Return the next one."""
+        return secrets.token_hex(6)
+
+
 class Vda5050Adapter(Adapter):
     """Leads the vehicles of one interface."""
 
@@ -111,10 +121,9 @@ class Vda5050Adapter(Adapter):
         self._maps: Mapping[str, MapFrame] = {}
         self._repeated = RepeatedLines()
         self._faults = 0
+        self._trouble: str | None = None
         self._link: Link | None = None
-        self._broker = Broker(
-            broker_address(settings, own), self._topics.subscriptions(), self.receive, self._broker_changed
-        )
+        self._broker = Broker(broker_address(settings, own), self._topics.subscriptions(), self)
 
     # --- the gateway ----------------------------------------------------------------------------------
 
@@ -196,7 +205,7 @@ class Vda5050Adapter(Adapter):
         """The names of the vehicles that were heard."""
         return list(self._robots)
 
-    def receive(self, topic: str, payload: bytes, retained: bool = False) -> None:
+    def receive(self, topic: str, payload: bytes, *, retained: bool = False) -> None:
         """Deal with one message of the broker; what is wrong with it concerns its vehicle alone."""
         parsed = self._topics.parse(topic)
         if parsed is None:
@@ -245,9 +254,7 @@ class Vda5050Adapter(Adapter):
 
     def _controller(self, identity: VehicleId, now: float) -> VehicleController:
         def made(remembered: Remembered | None) -> VehicleController:
-            return VehicleController(
-                identity, self._led, self._maps, remembered, lambda: secrets.token_hex(6), now
-            )
+            return VehicleController(identity, self._led, self._maps, remembered, RandomNames(), now)
 
         try:
             return made(self._memory.recall(str(identity)))
@@ -255,13 +262,16 @@ class Vda5050Adapter(Adapter):
             log.error("vehicle %s begins without what was kept: %s", identity, error)
             return made(None)
 
-    def _broker_changed(self, reason: str | None) -> None:
+    def broker_changed(self, reason: str | None) -> None:
+        """Note that the broker is there (None), or why it is not."""
         if reason is not None:
             for vehicle in self._vehicles.values():
                 vehicle.controller.lose_broker()
-        self._report(reason)
+        self._trouble = reason
+        self._report(time.monotonic())
 
     async def _tick(self) -> None:
+        report_at = 0.0
         while True:
             await asyncio.sleep(TICK)
             now = time.monotonic()
@@ -276,6 +286,9 @@ class Vda5050Adapter(Adapter):
                 except Exception:
                     self._note_unforeseen(vehicle.controller.vehicle)
             self._repeated.summarise()
+            if now >= report_at:
+                report_at = now + REPORT_EVERY
+                self._report(now)
 
     def _tell(self, vehicle: Vehicle, now: float) -> None:
         """Have the gateway know a vehicle once it is known what it can do."""
@@ -289,7 +302,6 @@ class Vda5050Adapter(Adapter):
         if controller.factsheet is None or controller.factsheet.supports("initPosition"):
             abilities.append("start")
         link.add(vehicle.robot, abilities)
-        self._report(None)
 
     # --- effects --------------------------------------------------------------------------------------
 
@@ -348,11 +360,15 @@ class Vda5050Adapter(Adapter):
         self._faults += 1
         self._repeated.note_unforeseen(log, ("vda5050:", str(identity)), f"vehicle {identity}")
 
-    def _report(self, trouble: str | None) -> None:
-        if self._link is not None:
-            counts = {"vehicles": float(len(self._vehicles)), "faults": float(self._faults)}
-            with contextlib.suppress(ValueError):
-                self._link.report(ok=trouble is None, text=trouble, counts=counts)
+    def _report(self, now: float) -> None:
+        """Say that the broker is away, else what the matter is with the vehicles."""
+        if self._link is None:
+            return
+        counts = {"vehicles": float(len(self._vehicles)), "faults": float(self._faults)}
+        told = [(one.robot, one.controller.alarm(now)) for one in self._vehicles.values() if one.is_told]
+        text = self._trouble or summary([f"{robot}: {alarm}" for robot, alarm in told if alarm])
+        with contextlib.suppress(ValueError):
+            self._link.report(ok=text is None, text=text, counts=counts, reached=self._trouble is None)
 
 
 def load(file: Path) -> tuple[LinkSettings, Adapter]:

@@ -6,8 +6,8 @@ import asyncio
 import logging
 import random
 from collections import deque
-from collections.abc import Callable, Sequence
-from typing import Any
+from collections.abc import Sequence
+from typing import Any, Protocol
 
 import aiomqtt
 
@@ -33,25 +33,29 @@ TOGETHER = 200
 """messages that are read before others get a turn."""
 
 
+class BrokerListener(Protocol):
+    """Hears what the broker delivers, and how the connection to it is."""
+
+    def receive(self, topic: str, payload: bytes, *, retained: bool) -> None:
+        """Take a message in; ``retained``: the broker had kept it from earlier."""
+
+    def broker_changed(self, reason: str | None) -> None:
+        """Note that the broker is there (None), or why it is not."""
+
+
 class Broker:
     """Publishes and receives at QoS 0, as VDA 5050 asks; connections are told at QoS 1.
 
     What is published while there is no connection is thrown away: whoever published it does so again while
-    it is due. ``received`` is called with topic, payload and whether the broker had retained it; ``changed``
-    with None when the broker is there and with the reason when it is not.
+    it is due.
     """
 
     def __init__(
-        self,
-        address: BrokerAddress,
-        subscriptions: Sequence[str],
-        received: Callable[[str, bytes, bool], None],
-        changed: Callable[[str | None], None],
+        self, address: BrokerAddress, subscriptions: Sequence[str], listener: BrokerListener
     ) -> None:
         self._address = address
         self._subscriptions = subscriptions
-        self._received = received
-        self._changed = changed
+        self._listener = listener
         self._urgent: deque[tuple[str, bytes]] = deque()
         self._outgoing: deque[tuple[str, bytes]] = deque()
         self._wake = asyncio.Event()
@@ -92,7 +96,7 @@ class Broker:
                 self._lose()
             if loop.time() - begun > STABLE_AFTER:
                 wait = FIRST_WAIT
-            self._changed(f"broker {self._address}: {reason}")
+            self._listener.broker_changed(f"broker {self._address}: {reason}")
             log.warning("broker %s: %s; trying again in %.1f s", self._address, reason, wait)
             await asyncio.sleep(wait * random.uniform(0.8, 1.2))
             wait = min(wait * 2, LONGEST_WAIT)
@@ -120,7 +124,7 @@ class Broker:
                 granted = await client.subscribe(topic, qos=1 if topic.endswith("/connection") else 0)
                 check_granted(topic, granted)
             self._is_connected = True
-            self._changed(None)
+            self._listener.broker_changed(None)
             done, _ = await asyncio.wait({writing, reading}, return_when=asyncio.FIRST_COMPLETED)
             for task in done:
                 task.result()
@@ -134,7 +138,8 @@ class Broker:
         async for message in client.messages:
             payload = message.payload
             if isinstance(payload, bytes | bytearray):
-                self._received(message.topic.value, bytes(payload[: LARGEST + 1]), bool(message.retain))
+                content = bytes(payload[: LARGEST + 1])
+                self._listener.receive(message.topic.value, content, retained=bool(message.retain))
             read += 1
             if read % TOGETHER == 0:
                 await asyncio.sleep(0)

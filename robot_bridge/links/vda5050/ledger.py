@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Literal
 
 from ...core.messages import Request, SetPosIni
-from .messages import Action, ActionParameter, InstantActions, Order, State
+from .messages import Action, ActionParameter, FreshNames, InstantActions, Order, State
 from .presence import VehiclePresence
 from .tasks import Remembered, VehicleTask, recalled
 
@@ -181,11 +180,11 @@ class PositionInit:
     """Has the vehicle take a position, and settles that once the vehicle has done so."""
 
     def __init__(
-        self, ledger: Ledger, presence: VehiclePresence, new_id: Callable[[], str], finish_within: float
+        self, ledger: Ledger, presence: VehiclePresence, names: FreshNames, finish_within: float
     ) -> None:
         self._ledger = ledger
         self._presence = presence
-        self._new_id = new_id
+        self._names = names
         self._finish_within = finish_within
         self._init: _Init | None = None
 
@@ -207,7 +206,7 @@ class PositionInit:
         elif map_id is None:
             self._ledger.settle(command_id, "it is not known on which map of [vda5050.maps] the vehicle is")
         else:
-            self._init = _Init(command_id, self._new_id(), now)
+            self._init = _Init(command_id, self._names.draw(), now)
             parameters = self._parameters(message, map_id)
             self._ledger.publish_action("initPosition", self._init.action_id, "HARD", parameters)
 

@@ -7,7 +7,7 @@ import re
 from collections import Counter
 from dataclasses import dataclass
 from datetime import datetime, timezone
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, Protocol
 
 import msgspec
 from msgspec import UNSET, Meta, Struct, UnsetType, field
@@ -353,6 +353,13 @@ def _as_2_1(body: Any) -> Any:
 INBOUND_TOPICS = ("connection", "state", "visualization", "factsheet")
 _ACTIONS_OF_3_0 = {old: new for new, old in RENAMED_ACTIONS.items()}
 _LEVEL = re.compile(r"[^/+#$\x00-\x1f][^/+#\x00-\x1f]{0,127}")
+
+
+class FreshNames(Protocol):
+    """Names of orders and actions."""
+
+    def draw(self) -> str:
+        """Return one that was never used."""
 
 
 @dataclass(frozen=True)

@@ -9,7 +9,7 @@ from typing import Protocol
 
 from ...core.messages import SendPos
 from ...core.messages.validation import LONGEST_STATUS, one_line
-from .messages import Connection, Factsheet, Position, State, Velocity, Visualization
+from .messages import LEVELS, Connection, Factsheet, Position, State, VehicleFault, Velocity, Visualization
 
 # --- Two vehicles under one serial number, as they show in header numbers and in the broker's last wills
 
@@ -62,6 +62,8 @@ class SerialWatch:
 _OPERATED = ("AUTOMATIC", "SEMIAUTOMATIC")
 ANSWERS_WITHIN = 5.0
 """seconds after which a vehicle that was asked for its state and says nothing counts as gone."""
+ALARMING = LEVELS[:-1]
+"""Levels of errors for which a vehicle needs somebody: all but warnings."""
 MOST_FAULTS = 5
 """Faults that are named in a status."""
 
@@ -177,6 +179,18 @@ class VehiclePresence:
             return f"the vehicle's own emergency stop is active ({state.safety_state.e_stop[:40]})"
         return self._missing_place()
 
+    def alarm(self, now: float) -> str | None:
+        """Return what operators are to be alarmed of, the worst first; None where nothing is.
+
+        Its safety state, errors for which it needs somebody, and a serial number that two vehicles have.
+        """
+        state, parts = self.state, [self.serial_complaint(now)]
+        if state is not None and self.is_there(now):
+            parts += self._protection(state)
+            parts += [self._words(one) for one in state.errors if one.error_level in ALARMING][:MOST_FAULTS]
+        text = "; ".join(part for part in parts if part)
+        return text or None
+
     def status(self, now: float, more: str | None) -> str | None:
         """Return what operators are to know, worst first, as one line; None where all is well."""
         parts = [more, self.serial_complaint(now), *self._safety(), self._missing_place(), *self._faults()]
@@ -187,21 +201,31 @@ class VehiclePresence:
         state, parts = self.state, []
         if state is None:
             return []
-        if state.safety_state.e_stop != "NONE":
-            parts.append(f"emergency stop at the vehicle ({state.safety_state.e_stop[:40]})")
-        if state.safety_state.field_violation:
-            parts.append("protective field violated")
+        parts += self._protection(state)
         if state.operating_mode not in _OPERATED:
             parts.append(f"operating mode {state.operating_mode[:40]}")
         if state.paused:
             parts.append("paused")
         return parts
 
+    @staticmethod
+    def _protection(state: State) -> list[str]:
+        parts = []
+        if state.safety_state.e_stop != "NONE":
+            parts.append(f"emergency stop at the vehicle ({state.safety_state.e_stop[:40]})")
+        if state.safety_state.field_violation:
+            parts.append("protective field violated")
+        return parts
+
+    @staticmethod
+    def _words(fault: VehicleFault) -> str:
+        return f"{fault.error_level} {fault.summary}"
+
     def _faults(self) -> list[str]:
         if self.state is None:
             return []
         worst_first = sorted(self.state.errors, key=lambda fault: fault.rank)
-        return [f"{fault.error_level} {fault.summary}" for fault in worst_first[:MOST_FAULTS]]
+        return [self._words(fault) for fault in worst_first[:MOST_FAULTS]]
 
     def _missing_place(self) -> str | None:
         if self.position is None:

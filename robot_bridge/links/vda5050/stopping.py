@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
-from .messages import Action, InstantActions, State
+from .messages import Action, FreshNames, InstantActions, State
 
 
 @dataclass(frozen=True)
@@ -20,16 +19,16 @@ class StopLimits:
 class StopProcedure:
     """One stop of a vehicle, from the Abort (or from the order that replaces another) until it stands.
 
-    Only states that came after it began say anything. ``new_action_id`` names actions; a vehicle that cannot
-    pause is sent no startPause.
+    Only states that came after it began say anything. ``names`` are for actions; a vehicle that cannot pause
+    is sent no startPause.
     """
 
     def __init__(
-        self, begun_at: float, limits: StopLimits, new_action_id: Callable[[], str], *, can_pause: bool = True
+        self, begun_at: float, limits: StopLimits, names: FreshNames, *, can_pause: bool = True
     ) -> None:
         self._begun_at = begun_at
         self._limits = limits
-        self._new_action_id = new_action_id
+        self._names = names
         self._can_pause = can_pause
         self._emergency = False
         self._state: State | None = None
@@ -54,13 +53,13 @@ class StopProcedure:
         if self._is_cancel_due(now):
             repeated = self._cancelled_at is not None
             self._cancelled_at = now
-            self._cancels.append(self._new_action_id())
+            self._cancels.append(self._names.draw())
             actions.append(Action(action_type="cancelOrder", action_id=self._cancels[-1]))
             if repeated:
-                actions.append(Action(action_type="stateRequest", action_id=self._new_action_id()))
+                actions.append(Action(action_type="stateRequest", action_id=self._names.draw()))
         if self._is_pause_due(now):
             self._paused_at = now
-            actions.append(Action(action_type="startPause", action_id=self._new_action_id()))
+            actions.append(Action(action_type="startPause", action_id=self._names.draw()))
         return [InstantActions(actions=[action]) for action in actions]
 
     def note_state(self, state: State, now: float) -> None:

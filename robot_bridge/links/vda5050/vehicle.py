@@ -6,12 +6,12 @@ No I/O and no clock: messages and times come in, and what comes of them is colle
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
 from ...core.messages import Alive, MessageError, Request, SetPath, SetPosEnd, SetPosIni, Stopped
 from .ledger import Effect, Ledger, PositionInit
-from .messages import Connection, Factsheet, Inbound, State, VehicleId, Visualization
+from .messages import Connection, Factsheet, FreshNames, Inbound, State, VehicleId, Visualization
 from .presence import MapFrame, VehiclePresence
 from .stopping import StopLimits, StopProcedure
 from .tasks import Progress, Remembered, RouteLimits, VehicleTask, begin_plan
@@ -47,7 +47,7 @@ class VehicleSettings:
 class VehicleController:
     """Leads one vehicle. Call :meth:`advance` several times a second, and :meth:`drain` after every call.
 
-    Times are seconds of a steady clock; ``new_id`` draws names of orders and actions that were never used.
+    Times are seconds of a steady clock; ``names`` are for orders and actions.
     """
 
     def __init__(
@@ -56,15 +56,15 @@ class VehicleController:
         settings: VehicleSettings,
         maps: Mapping[str, MapFrame],
         remembered: Remembered | None,
-        new_id: Callable[[], str],
+        names: FreshNames,
         now: float,
     ) -> None:
         self.vehicle = vehicle
         self._settings = settings
-        self._new_id = new_id
+        self._names = names
         self._ledger = Ledger(remembered or Remembered(), now)
         self._presence = VehiclePresence(maps, settings.silent_after, settings.version)
-        self._init = PositionInit(self._ledger, self._presence, new_id, settings.accept_within)
+        self._init = PositionInit(self._ledger, self._presence, names, settings.accept_within)
         self._stop: StopProcedure | None = None
         self._admitted = self._awaits_halt = False
         self._next_alive = self._next_poll = self._next_unpause = self._next_clear = -math.inf
@@ -186,6 +186,11 @@ class VehicleController:
             self._next_alive = now + ALIVE_EVERY
             self._report(Alive())
 
+    def alarm(self, now: float) -> str | None:
+        """Return what operators are to be alarmed of, one line; None where nothing is."""
+        unstopped = None if self._stop is None else self._stop.complaint(now)
+        return "; ".join(filter(None, (unstopped, self._presence.alarm(now)))) or None
+
     def status(self, now: float) -> str | None:
         """Return what operators are to know of the vehicle, one line; None where all is well."""
         if self._stop is not None:
@@ -212,7 +217,7 @@ class VehicleController:
             return
         if sum(one.has_ended for one in state.instant_action_states) > MOST_SHOWN:
             self._next_clear = now + CLEAR_EVERY
-            self._ledger.publish_action("clearInstantActions", self._new_id())
+            self._ledger.publish_action("clearInstantActions", self._names.draw())
 
     def _poll(self, now: float) -> None:
         """Ask for the state of a vehicle that says too little for what is expected of it."""
@@ -224,9 +229,9 @@ class VehicleController:
         if presence.connection == "ONLINE" and busy and quiet and now >= self._next_poll:
             self._next_poll = now + self._settings.poll_every
             presence.note_asked(now)
-            self._ledger.publish_action("stateRequest", self._new_id())
+            self._ledger.publish_action("stateRequest", self._names.draw())
             if unknown and presence.factsheet is None:
-                self._ledger.publish_action("factsheetRequest", self._new_id())
+                self._ledger.publish_action("factsheetRequest", self._names.draw())
 
     # --- tasks ----------------------------------------------------------------------------------------
 
@@ -309,7 +314,7 @@ class VehicleController:
         asked = self._next_unpause > -math.inf
         if now >= self._next_unpause and (state.paused or not asked):
             self._next_unpause = now + REPEAT_EVERY
-            self._ledger.publish_action("stopPause", self._new_id())
+            self._ledger.publish_action("stopPause", self._names.draw())
         return "the vehicle does not end its pause" if state.paused else None
 
     def _begin_order(self, task: VehicleTask) -> None:
@@ -318,7 +323,7 @@ class VehicleController:
         points = [frame.from_site(x, y, 0.0)[:2] for x, y in task.path]
         theta = task.message.theta
         heading = None if theta is None else frame.from_site(*task.path[-1], theta)[2]
-        order_id = f"{task.command_id}-{self._new_id()}"
+        order_id = f"{task.command_id}-{self._names.draw()}"
         place = position.x, position.y
         task.begin(begin_plan(order_id, position.map_id, place, points, heading, self._limits()))
         self._ledger.set_paused(False)
@@ -338,7 +343,7 @@ class VehicleController:
             can_pause = sheet is None or sheet.supports("startPause")
             if self._is_surely_paused():
                 can_pause = False
-            self._stop = StopProcedure(now, self._settings.stop, self._new_id, can_pause=can_pause)
+            self._stop = StopProcedure(now, self._settings.stop, self._names, can_pause=can_pause)
         if emergency:
             self._stop.set_emergency()
         self._publish_stop(self._stop, now)

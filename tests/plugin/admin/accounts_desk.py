@@ -31,7 +31,10 @@ class AccountsDesk:
         panel.findChild(QLineEdit, "fleet_operator").setText("Ada")
         self._plugin.window.actions.connect.trigger()
         desk = self._plugin.window.desk
-        self.wait(lambda: desk.link.phase.value == "connected" and desk.site is not None, what="the link")
+        self.wait(
+            lambda: desk.state.link.phase.value == "connected" and desk.state.site is not None,
+            what="the link",
+        )
 
     def open(self) -> None:
         self._iface.findChild(QAction, "fleet_accounts").trigger()

@@ -17,7 +17,7 @@ def connect_as(window, gateway, wait, role):
     wait(lambda: not gateway._sockets, what="the end of the link")
     gateway.who = {"operator": "anna", "role": role}
     window.actions.connect.trigger()
-    wait(lambda: window.desk.link.role == role, what="the link")
+    wait(lambda: window.desk.state.link.role == role, what="the link")
 
 
 @pytest.fixture
@@ -38,7 +38,7 @@ def asked(gone, iface):
     """Opens the question, with these robots selected, by the key in the table."""
 
     def ask(*selected):
-        gone.desk.select_all(selected)
+        gone.desk.selection.select_all(selected)
         gone.dock.table.setFocus()
         QTest.keyClick(gone.dock.table, Qt.Key.Key_Delete)
         return iface.mainWindow().findChild(RemovalDialog)

@@ -29,7 +29,7 @@ class Hand:
         return self.window.dock.findChild(QLabel, "fleet_draft_text").text()
 
     def take(self, tool: str, robot: str | None = "r1") -> Hand:
-        self.window.desk.select(robot)
+        self.window.desk.selection.select(robot)
         getattr(self.window.actions, tool).trigger()
         return self
 

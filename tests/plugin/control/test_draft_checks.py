@@ -131,12 +131,12 @@ def test_a_target_too_near_to_that_of_another_robot_is_refused_and_that_one_name
     cone.click((70, 55))
     cone.key(Qt.Key.Key_Return)
     cone.sent()
-    cone.wait(lambda: len(cone.window.desk.book) == 1)
-    cone.window.desk.select("r2")
+    cone.wait(lambda: len(cone.window.desk.state.commands) == 1)
+    cone.window.desk.selection.select("r2")
     cone.click((70, 55.5))
     assert cone.complained("m from the target of r1 at ")
     assert "Not to be sent" in cone.told
-    cone.window.desk.select("r1")
+    cone.window.desk.selection.select("r1")
     cone.click((70, 55.5))
     assert "Not to be sent" not in cone.told
 
@@ -146,14 +146,14 @@ def test_a_target_too_near_to_the_end_of_another_robots_route_is_refused(cone, g
 
     gateway._queue("elsewhere", "r2", "SetPath", {"points": [[20.0, 20.0], [70.0, 55.0]]})
     gateway.step("elsewhere", CommandState.DELIVERED, "r2")
-    cone.wait(lambda: len(cone.window.desk.book) == 1)
+    cone.wait(lambda: len(cone.window.desk.state.commands) == 1)
     cone.click((70, 55.5))
     assert "m from the end of the route of r2 at 70.00, 55.00" in cone.told
     cone.click((20, 20))
     assert "Not to be sent" not in cone.told
     # What has come to its end is nobody's target any more.
     gateway.step("elsewhere", CommandState.REACHED, "r2")
-    cone.wait(lambda: cone.window.desk.book.task_of("r2") is None)
+    cone.wait(lambda: cone.window.desk.state.commands.task_of("r2") is None)
     cone.click((70, 55.5))
     assert "Not to be sent" not in cone.told
 
@@ -174,7 +174,7 @@ def test_a_robot_that_works_for_somebody_else_is_told_before_it_is_taken_from_th
     known, cone, gateway, wait
 ):
     asked_for_by(gateway, "bert")
-    wait(lambda: cone.window.desk.book.task_of("r1") is not None)
+    wait(lambda: cone.window.desk.state.commands.task_of("r1") is not None)
     cone.click((70, 55))
     assert "r1 is at work for bert (cone at 90.00, 20.00): sending this takes its place." in cone.told
     cone.key(Qt.Key.Key_Return)
@@ -185,7 +185,7 @@ def test_who_takes_it_meanwhile_is_told_in_place_of_sending(known, cone, gateway
     cone.click((70, 55))
     assert "is at work for" not in cone.told
     asked_for_by(gateway, "bert")
-    wait(lambda: cone.window.desk.book.task_of("r1") is not None)
+    wait(lambda: cone.window.desk.state.commands.task_of("r1") is not None)
     cone.key(Qt.Key.Key_Return)
     assert cone.complained("only now this is known: r1 is at work for bert")
     assert cone.nothing_sent()
@@ -195,7 +195,7 @@ def test_who_takes_it_meanwhile_is_told_in_place_of_sending(known, cone, gateway
 
 def test_ones_own_order_is_replaced_without_a_word(known, cone, gateway, wait):
     asked_for_by(gateway, "anna")
-    wait(lambda: cone.window.desk.book.task_of("r1") is not None)
+    wait(lambda: cone.window.desk.state.commands.task_of("r1") is not None)
     cone.click((70, 55))
     assert "is at work for" not in cone.told
 
@@ -208,7 +208,7 @@ def test_a_draft_is_looked_at_once_more_when_it_is_sent(cone, gateway):
     # Meanwhile somebody else has sent the other robot there.
     gateway._queue("elsewhere", "r2", "SetPosEnd", {"x": 70.0, "y": 55.0})
     gateway.step("elsewhere", CommandState.DELIVERED, "r2")
-    cone.wait(lambda: len(cone.window.desk.book) == 1)
+    cone.wait(lambda: len(cone.window.desk.state.commands) == 1)
     cone.key(Qt.Key.Key_Return)
     assert cone.nothing_sent()
     assert "from the target of r2" in cone.told
@@ -294,7 +294,11 @@ def test_a_draft_for_a_robot_of_which_nothing_is_heard_says_so(hand, gateway, ma
     cone.click((20, 20))
     assert "last heard" not in cone.told
     gateway.show(make_robot("r1", 50, 40, age=125.0, state=RobotState.LOST))
-    hand.wait(lambda: hand.window.desk.picture.view("r1", hand.window.desk.clock()).state is RobotState.LOST)
+    hand.wait(
+        lambda: (
+            hand.window.desk.state.robots.view("r1", hand.window.desk.clock.steady()).state is RobotState.LOST
+        )
+    )
     cone.click((22, 20))
     assert "r1 is lost, last heard 2 min ago: it is told this when it is heard again" in cone.told
     assert not hand.drafts.draft.findings.refused

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pytest
+from fleet_supervisor.plugin.ui import scheduling
 from qgis.PyQt.QtCore import Qt
 from qgis.PyQt.QtTest import QTest
 from qgis.PyQt.QtWidgets import QApplication
@@ -93,7 +94,9 @@ def test_everything_is_possible_without_a_mouse(tool):
 
 
 @pytest.mark.parametrize("tool", ["cone", "route"], indirect=True)
-def test_a_step_of_the_keys_that_cannot_be_checked_is_told_and_the_draft_stays(tool, layer_of):
+def test_a_step_of_the_keys_that_cannot_be_checked_is_told_and_the_draft_stays(tool, layer_of, monkeypatch):
+    # As on an idle machine, where a slice is long enough for a check of one place.
+    monkeypatch.setattr(scheduling, "SLICE_SECONDS", 60.0)
     layer = layer_of("Polygon", "Polygon ((1 1, 2 1, 2 2, 1 1))", role="keepout", name="Yard")
     if tool.op == OPS["route"]:
         tool.type(">")

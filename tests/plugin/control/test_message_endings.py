@@ -43,7 +43,7 @@ def tell_queue(at_desk, gateway, wait):
         gateway.tell(
             "queue", {**QUEUE, "state": state, "tasks": listed, "at": time.time(), "revision": revision}
         )
-        wait(lambda: at_desk.desk.queues.revision("r1") == revision, what="the queue")
+        wait(lambda: at_desk.desk.state.queues.revision("r1") == revision, what="the queue")
 
     return tell
 
@@ -83,11 +83,11 @@ def test_a_pause_that_was_not_sent_is_told_until_the_queue_is_paused(
     queue = {**QUEUE, "state": "running", "tasks": [{**TASK, "task": "t1", "state": "current"}]}
     gateway.answers["get_queue"] = lambda _: {"result": {"queues": [queue]}}
     at_desk.actions.connect.trigger()
-    wait(lambda: at_desk.desk.link.phase.value == "closed", what="the end of the link")
+    wait(lambda: at_desk.desk.state.link.phase.value == "closed", what="the end of the link")
     at_desk.queue_edits.pause("r1")
     told.begins("Pausing the queue of r1 was NOT sent")
     at_desk.actions.connect.trigger()
-    wait(lambda: at_desk.desk.link.phase.value == "connected", what="the link")
+    wait(lambda: at_desk.desk.state.link.phase.value == "connected", what="the link")
     wait(lambda: gateway.subscriptions == 2, what="the desk listening again")
     told.stays("Pausing the queue of r1 was NOT sent")
     tell_queue("paused", t1="waiting")
@@ -98,7 +98,7 @@ def test_what_was_refused_for_a_queue_comes_back_as_a_draft_and_goes_with_it(
     at_desk, gateway, iface, told, wait
 ):
     gateway.refuse["add_tasks"] = WHY
-    at_desk.desk.select("r1")
+    at_desk.desk.selection.select("r1")
     at_desk.actions.cone.trigger()
     iface.click(70, 55)
     at_desk.actions.enqueue.trigger()
@@ -149,22 +149,22 @@ def replay(at_desk, gateway, iface):
 
 def test_a_replay_that_was_not_loaded_is_told_until_one_is(replay, at_desk, told, wait):
     at_desk.actions.connect.trigger()
-    wait(lambda: at_desk.desk.link.phase.value == "closed", what="the end of the link")
+    wait(lambda: at_desk.desk.state.link.phase.value == "closed", what="the end of the link")
     replay.load()
     told.begins("The replay was not loaded")
     at_desk.actions.connect.trigger()
-    wait(lambda: at_desk.desk.link.phase.value == "connected", what="the link")
+    wait(lambda: at_desk.desk.state.link.phase.value == "connected", what="the link")
     told.stays("The replay was not loaded")
     replay.load()
     told.ends("The replay was not loaded")
 
 
 def test_without_a_robot_to_be_replayed_that_is_said_until_one_is_selected(replay, at_desk, told):
-    at_desk.desk.select(None)
+    at_desk.desk.selection.select(None)
     replay.form.selected.setChecked(True)
     replay.load()
     told.begins("No robot is selected to be replayed")
-    at_desk.desk.select("r1")
+    at_desk.desk.selection.select("r1")
     told.ends("No robot is selected to be replayed")
 
 

@@ -83,7 +83,7 @@ def in_conflict(gateway, desk, wait, *conflicts):
     at = time.time() + 20.0
     listed = [{**CONFLICT, "begins": at, "nearest_at": at, **one} for one in conflicts]
     gateway.tell("conflicts", {"t": time.time(), "conflicts": listed, "waiting": []})
-    wait(lambda: len(desk.roads.conflicts.conflicts) == len(listed), what="the conflicts")
+    wait(lambda: len(desk.state.conflicts.conflicts) == len(listed), what="the conflicts")
 
 
 @pytest.fixture
@@ -112,7 +112,7 @@ def test_a_refusal_goes_when_the_same_is_asked_again(refused_to_give_way, gatewa
 
 def send_refused(window, gateway, iface, wait):
     gateway.refuse["send"] = SEND_REFUSED
-    window.desk.select("r1")
+    window.desk.selection.select("r1")
     window.actions.cone.trigger()
     iface.click(30, 30)
     window.desk.sending.send()
@@ -143,10 +143,10 @@ def test_with_nothing_to_send_that_is_said_until_there_is_something(at_desk, ifa
 
 
 def test_without_a_robot_selected_that_is_said_until_one_is(at_desk, iface, wait):
-    at_desk.desk.select(None)
+    at_desk.desk.selection.select(None)
     at_desk.desk.abort_selected()
     assert is_told(iface, "No robot is selected")
-    at_desk.desk.select("r1")
+    at_desk.desk.selection.select("r1")
     assert is_gone(iface, wait, "No robot is selected")
 
 
@@ -169,7 +169,10 @@ def with_messages(window, gateway, iface, wait):
 
 
 def nothing_of_before(window, iface, wait):
-    wait(lambda: window.desk.picture.row("r1") is None and len(window.desk.picture), what="other robots")
+    wait(
+        lambda: window.desk.state.robots.row("r1") is None and len(window.desk.state.robots),
+        what="other robots",
+    )
     assert is_gone(iface, wait, "not now")
     wait(lambda: iface.bar.findChild(QLabel, "fleet_alarm_text") is None, what="the end of the alarms")
 
@@ -186,7 +189,7 @@ def test_nothing_of_a_database_is_left_at_another_one(at_desk, gateway, iface, w
     gateway.database = "one"
     for _ in range(2):
         at_desk.actions.connect.trigger()
-    wait(lambda: at_desk.desk._database == "one", what="the database")
+    wait(lambda: at_desk.desk.state._database == "one", what="the database")
     with_messages(at_desk, gateway, iface, wait)
     at_desk.actions.connect.trigger()
     gateway.database = "two"
@@ -201,7 +204,7 @@ def test_the_same_gateway_after_an_outage_keeps_what_is_true(at_desk, gateway, i
     with_messages(at_desk, gateway, iface, wait)
     for _ in range(2):
         at_desk.actions.connect.trigger()
-    wait(lambda: at_desk.desk.link.phase.value == "connected", what="the link")
+    wait(lambda: at_desk.desk.state.link.phase.value == "connected", what="the link")
     assert is_told(iface, "not now")
 
 

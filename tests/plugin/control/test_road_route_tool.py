@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 import pytest
-from fleet_supervisor.plugin.gateway_client.buffers import RequestResult
+from fleet_supervisor.plugin.gateway_client.requests import RequestResult
 from pyproj import Transformer
 from qgis.PyQt.QtCore import Qt
 from qgis.PyQt.QtWidgets import QApplication
@@ -21,8 +23,8 @@ class SlowRoads:
         self.hand, self.orders = hand, []
         self.preview = hand.window.desk.preview
         self.now = 100.0
-        monkeypatch.setattr(self.preview, "_submit", self.orders.append)
-        monkeypatch.setattr(self.preview, "_clock", lambda: self.now)
+        monkeypatch.setattr(self.preview, "_sender", SimpleNamespace(submit=self.orders.append))
+        monkeypatch.setattr(self.preview, "_clock", SimpleNamespace(steady=lambda: self.now))
 
     @property
     def draft(self):
@@ -195,7 +197,7 @@ def test_a_leg_that_cannot_be_checked_is_told(roads, layer_of):
 def test_another_robots_click_does_not_go_on_with_this_ones_route(roads):
     roads.hand.click((60, 40))
     roads.find()
-    roads.hand.window.desk.select("r2")
+    roads.hand.window.desk.selection.select("r2")
     roads.hand.click((70, 40))
     assert roads.hand.complained("The route on the map is for r1, but r2 is selected.")
     assert roads.ends == [(60, 40)] and roads.orders == []

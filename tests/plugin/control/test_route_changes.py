@@ -210,7 +210,7 @@ def test_what_follows_the_roads_is_not_changed_by_hand(route):
 
 
 def test_a_route_is_changed_for_its_own_robot_whoever_is_selected(route):
-    route.window.desk.select("r2")
+    route.window.desk.selection.select("r2")
     route.drag((60, 30), (70, 25))
     assert route.drafts.draft.robot == "r1"
     route.key(Qt.Key.Key_Return)

@@ -16,7 +16,7 @@ from fleet_supervisor.plugin.control.route_queries import (
     RouteQuestion,
     route_in_words,
 )
-from fleet_supervisor.plugin.gateway_client.buffers import RequestResult
+from fleet_supervisor.plugin.gateway_client.requests import RequestResult
 from fleet_supervisor.robot_bridge.core.messages import RouteReport, SurfaceMetres
 from qgis.PyQt.QtWidgets import QLineEdit, QPushButton, QWidget
 
@@ -32,6 +32,12 @@ class Gateway:
         result = {"points": [[0, 0], [1, 1]], "metres": 1.4, "seconds": 1.0}
         return preview.accept_answer(RequestResult(self.orders[-1], **(how or {"result": result})))
 
+    def submit(self, order):
+        self.orders.append(order)
+
+    def steady(self):
+        return self.now
+
     def goals(self):
         return [order.params["x"] for order in self.orders]
 
@@ -43,7 +49,7 @@ def gateway():
 
 @pytest.fixture
 def preview(qgis_app, gateway):
-    return RouteQuery(gateway.orders.append, lambda: gateway.now)
+    return RouteQuery(gateway, gateway)
 
 
 def to(x, **how):

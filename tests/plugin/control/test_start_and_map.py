@@ -64,9 +64,9 @@ def test_a_start_position_does_not_wipe_out_a_route(hand):
 
 
 def test_the_map_is_sent_to_every_selected_robot(hand, gateway, wait):
-    hand.window.desk.select_all(["r1", "r2"])
+    hand.window.desk.selection.select_all(["r1", "r2"])
     hand.window.actions.send_map.trigger()
     wait(lambda: gateway.asked("send_map") == [{"robot": "r1"}, {"robot": "r2"}])
-    hand.window.desk.select(None)
+    hand.window.desk.selection.select(None)
     hand.window.actions.send_map.trigger()
     assert hand.complained("No robot is selected, so none was sent the map")

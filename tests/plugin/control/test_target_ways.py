@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import pytest
 from fleet_supervisor.plugin.control.pending_command import CONE, ApproachKind, PendingCommand
@@ -43,11 +44,11 @@ class Roads:
     def declare(self, paths, **where):
         robot = replace(self.gateway.robots["r1"], paths=paths, **where)
         self.gateway.show(robot)
-        picture, clock = self.hand.window.desk.picture, self.hand.window.desk.clock
+        picture, clock = self.hand.window.desk.state.robots, self.hand.window.desk.clock
         told = robot.x, robot.y, paths
 
         def is_told():
-            report = picture.view("r1", clock()).report
+            report = picture.view("r1", clock.steady()).report
             return (report.x, report.y, report.paths) == told
 
         self.hand.wait(is_told, what="where r1 is, and what it declared")
@@ -228,7 +229,7 @@ def test_a_gateway_that_does_not_answer_keeps_the_target_here(roads, gateway, mo
     roads.hand.take("cone").click(GOAL)
     ways = roads.hand.window.desk.target_ways
     now = ways._clock
-    monkeypatch.setattr(ways, "_clock", lambda: now() + SLOW_AFTER + 1)
+    monkeypatch.setattr(ways, "_clock", SimpleNamespace(steady=lambda: now.steady() + SLOW_AFTER + 1))
     roads.settle()
     assert "The gateway does not answer which way leads there" in roads.hand.told
     assert roads.draft.fault is not None
@@ -267,7 +268,7 @@ def test_the_way_to_the_mouse_goes_with_whatever_makes_it_untrue(roads, gateway)
     way = roads.hand.iface.canvas.mapTool()._way
 
     def shown():
-        desk.select("r1")
+        desk.selection.select("r1")
         # One pixel beside where it was, so that the mouse has moved.
         roads.hand.move(70, 60)
         roads.hand.move(71, 60)
@@ -289,7 +290,7 @@ def test_the_way_to_the_mouse_goes_with_whatever_makes_it_untrue(roads, gateway)
         QTest.qWait(100)
         assert way.line == [], f"{go}: it came back"
     shown()
-    desk.select(None)
+    desk.selection.select(None)
     assert way.line == []
     shown()
     gateway.stop()
@@ -317,15 +318,15 @@ def test_what_the_log_says_of_a_cone_with_a_path(roads, gateway):
     from fleet_supervisor.plugin.gateway_client.command_cache import command_in_words
 
     desk = roads.hand.window.desk
-    roads.hand.wait(lambda: command in desk.book, what="the report")
-    assert command_in_words(desk.book.get(command)).startswith("cone at 69.9")
+    roads.hand.wait(lambda: command in desk.state.commands, what="the report")
+    assert command_in_words(desk.state.commands.get(command)).startswith("cone at 69.9")
 
 
 def test_the_target_of_an_unplaced_robot_says_that_nobody_looked_at_its_way(roads):
     gateway = roads.gateway
     gateway.show(replace(roads.make_robot("r9"), x=None, y=None, theta=None, v=None))
     desk = roads.hand.window.desk
-    roads.hand.wait(lambda: desk.picture.view("r9", desk.clock()) is not None, what="r9")
+    roads.hand.wait(lambda: desk.state.robots.view("r9", desk.clock.steady()) is not None, what="r9")
     roads.hand.take("cone", "r9").click(GOAL)
     assert "It is not known where r9 is, so nobody has looked at the way" in roads.hand.told
 

@@ -111,7 +111,7 @@ def test_pasted_longitude_and_latitude_are_refused_and_the_right_order_named(han
 
 @pytest.fixture
 def dialog(hand, iface):
-    hand.window.desk.select("r1")
+    hand.window.desk.selection.select("r1")
     hand.window.actions.coordinates.trigger()
     return iface.findChild(QDialog, "fleet_coordinates_dialog")
 
@@ -206,7 +206,7 @@ def test_what_is_no_place_cannot_be_set(dialog):
 
 
 def take_from(hand, layer, *chosen, robot="r1"):
-    hand.window.desk.select(robot)
+    hand.window.desk.selection.select(robot)
     hand.iface.canvas.setCurrentLayer(layer)
     if chosen:
         layer.selectByIds([feature.id() for feature in layer.getFeatures()][slice(*chosen)])
@@ -255,7 +255,7 @@ def test_selected_points_come_in_the_order_of_their_table_and_unsaved_ones_last(
         feature.setGeometry(QgsGeometry.fromPointXY(QgsPointXY(X + 15, Y + 40)))
         feature["name"] = name
         layer.addFeature(feature)
-    hand.window.desk.select("r1")
+    hand.window.desk.selection.select("r1")
     hand.iface.canvas.setCurrentLayer(layer)
     layer.selectAll()
     hand.window.actions.from_layer.trigger()
@@ -291,7 +291,7 @@ def test_what_cannot_be_taken_is_named(hand, layer_of, kind, wkts, text):
 def test_without_a_robot_or_a_layer_it_says_what_is_wanting(hand, layer_of):
     take_from(hand, layer_of("Point", "Point (1 1)"), robot=None)
     assert hand.complained("No robot is selected")
-    hand.window.desk.select("r1")
+    hand.window.desk.selection.select("r1")
     hand.iface.canvas.setCurrentLayer(None)
     hand.window.actions.from_layer.trigger()
     assert hand.complained("No layer of points or lines is active")

@@ -10,9 +10,9 @@ import time
 import warnings
 
 import pytest
-from fleet_supervisor.plugin.gateway_client.buffers import OperatorRequest
 from fleet_supervisor.plugin.gateway_client.connection import ConnectionThread
-from fleet_supervisor.plugin.gateway_client.link import ConnectionPhase
+from fleet_supervisor.plugin.gateway_client.connection_status import ConnectionPhase
+from fleet_supervisor.plugin.gateway_client.requests import OperatorRequest
 from fleet_supervisor.plugin.ui.errors import AddressError, NotSentError
 from fleet_supervisor.robot_bridge.core.clock import steady_time
 from qgis.PyQt.QtCore import QThread
@@ -40,6 +40,24 @@ def reason_when(connection, wait, phase):
 
     wait(there, 8, what=str(phase))
     return found[-1].reason
+
+
+def test_an_order_that_is_too_large_comes_back_and_keeps_no_other_from_the_gateway(connection, gateway, wait):
+    connection.open(gateway.url, "anna")
+    wait(lambda: phase_of(connection) is ConnectionPhase.CONNECTED, what="the link")
+    now = steady_time()
+    connection.submit(OperatorRequest("large", "submit_plan", {"plan": "x" * 2_000_000}, now))
+    connection.submit(OperatorRequest("a2", "abort", {"robot": "r1"}, now))
+    answers = {}
+
+    def answered():
+        for one in connection.collect_updates().answers:
+            answers[one.order.key] = one.error
+        return len(answers) == 2
+
+    wait(answered, 15, what="both answers")
+    assert "no message as large as this one of 2001 kB" in answers["large"] and answers["a2"] is None
+    assert gateway.asked("abort") == [{"robot": "r1"}]
 
 
 def test_a_gateway_is_greeted_and_its_site_and_robots_arrive(connection, gateway, make_robot, wait):

@@ -8,21 +8,22 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from fleet_supervisor.plugin.gateway_client.buffers import (
-    MOST_COMMANDS,
-    OperatorRequest,
-    PlacedConeUpdates,
-    QueueUpdates,
-    RequestOutbox,
-    UpdateBuffer,
-)
 from fleet_supervisor.plugin.gateway_client.command_cache import CommandCache, command_in_words
 from fleet_supervisor.plugin.gateway_client.connection import Backoff
-from fleet_supervisor.plugin.gateway_client.protocol import GatewayProtocol
-from fleet_supervisor.plugin.gateway_client.report_caches import PlacedConeCache, QueueCache
+from fleet_supervisor.plugin.gateway_client.fleet_state import MOST_COMMANDS, UpdateBuffer
+from fleet_supervisor.plugin.gateway_client.protocol import GatewayProtocol, RequestOutbox
+from fleet_supervisor.plugin.gateway_client.report_caches import (
+    PlacedConeCache,
+    PlanCache,
+    QueueCache,
+    plan_in,
+)
+from fleet_supervisor.plugin.gateway_client.requests import OperatorRequest
 from fleet_supervisor.plugin.gateway_client.robot_states import RobotStates
 from fleet_supervisor.plugin.gateway_client.robot_table import STATES, table_from_rows
 from fleet_supervisor.plugin.ui.errors import GatewayLinkError
+from fleet_supervisor.robot_bridge.core.assignment.plan import ConePlan, document_of
+from fleet_supervisor.robot_bridge.core.clock import ManualClock
 from fleet_supervisor.robot_bridge.core.messages import (
     CommandReport,
     CommandState,
@@ -165,8 +166,8 @@ def test_commands_are_told_in_words():
 def test_a_window_that_does_not_look_costs_a_bounded_memory(make_robot):
     mailbox = UpdateBuffer()
     for number in range(3 * MOST_COMMANDS):
-        mailbox.put_commands([command(command=f"command-{number}")])
-        mailbox.put_robots(sighting(make_robot(x=float(number)), float(number)))
+        mailbox.add(commands=[command(command=f"command-{number}")])
+        mailbox.add(robots=sighting(make_robot(x=float(number)), float(number)))
     news = mailbox.collect()
     assert len(news.robots) == 1
     assert list(news.commands)[-1] == f"command-{3 * MOST_COMMANDS - 1}"
@@ -176,7 +177,7 @@ def test_a_window_that_does_not_look_costs_a_bounded_memory(make_robot):
 
 def greeted(site):
     mailbox = UpdateBuffer()
-    protocol = GatewayProtocol("anna", 10.0, "ws://here/desk", mailbox, clock=lambda: 50.0)
+    protocol = GatewayProtocol("anna", 10.0, "ws://here/desk", mailbox, clock=ManualClock(uptime=50.0))
     (hello,) = protocol.begin()
     answer = {"jsonrpc": "2.0", "id": json.loads(hello)["id"]}
     sent = protocol.receive(json.dumps({**answer, "result": {"protocol": 1, "site": to_json(site)}}))
@@ -190,6 +191,7 @@ def test_after_the_greeting_the_desk_subscribes_and_asks_for_commands(site):
         ("get_commands", {"limit": 200}),
         ("get_closures", {}),
         ("get_queue", {"paths": False, "ended": 10}),
+        ("get_plans", {"documents": False, "ended": 10}),
     ]
     assert mailbox.collect().site == site
 
@@ -259,36 +261,106 @@ def test_queues_and_placed_cones_are_taken_from_news_answers_and_refusals(site):
     (every,) = [one["id"] for one in sent if one["method"] == "get_queue"]
     told(protocol, id=every, result={"queues": [queue("r1"), queue("r2")]})
     news = mailbox.collect()
-    assert news.queues.every and set(news.queues.queues) == {"r1", "r2"}
+    assert news.are_all_queues and set(news.queues) == {"r1", "r2"}
     told(protocol, method="queue", params=queue("r1", 2))
     told(protocol, method="placement", params=placement(7))
     told(protocol, id=answer_to(protocol, "set_queue"), result=queue("r2", 5))
     told(protocol, id=answer_to(protocol, "take_over"), result={"queues": [queue("r3", 6)]})
     told(protocol, id=answer_to(protocol, "get_placements"), result={"placements": [placement(8)]})
     news = mailbox.collect()
-    assert {name: one.revision for name, one in news.queues.queues.items()} == {"r1": 2, "r2": 5, "r3": 6}
-    assert set(news.placements.placements) == {7, 8} and not news.queues.every
+    assert {name: one.revision for name, one in news.queues.items()} == {"r1": 2, "r2": 5, "r3": 6}
+    assert set(news.placed_cones) == {7, 8} and not news.are_all_queues
     refusal = {"code": -32006, "message": "look again", "data": queue("r1", 9)}
     told(protocol, id=answer_to(protocol, "add_tasks"), error=refusal)
     news = mailbox.collect()
-    assert news.queues.queues["r1"].revision == 9
+    assert news.queues["r1"].revision == 9
     assert news.answers[-1].outdated and news.answers[-1].error == "look again"
 
 
+def plan(name="p1", revision=1, **more):
+    values = {"plan": name, "revision": revision, "state": "driven", "submitted_by": "anna", "done": 0}
+    return {**values, "submitted_at": 5.0, "by_itself": False, "cones": 0, "robots": ["r1"], **more}
+
+
+DOCUMENT = document_of(ConePlan((), (), (), "stay", "balanced", "preview", "straight"))
+
+
+def test_plans_are_taken_from_news_answers_and_refusals_and_none_that_was_overtaken(site):
+    protocol, mailbox, sent = greeted(site)
+    (every,) = [one["id"] for one in sent if one["method"] == "get_plans"]
+    told(protocol, id=every, result={"plans": [plan("p1"), plan("p2")]})
+    news, book = mailbox.collect(), PlanCache()
+    assert news.is_driving and book.merge(news.plans, news.is_driving) == ["p1", "p2"]
+    told(protocol, id=answer_to(protocol, "get_plans"), result={"plans": [plan("p1", document=DOCUMENT)]})
+    told(protocol, method="plan", params=plan("p1", done=1))
+    told(protocol, id=answer_to(protocol, "pause_plan"), result=plan("p2", 2, state="paused"))
+    told(
+        protocol, id=answer_to(protocol, "replan"), error={"code": -32006, "message": "", "data": plan("p3")}
+    )
+    news = mailbox.collect()
+    assert news.is_driving is None and book.merge(news.plans) == ["p1", "p2", "p3"]
+    one = book.get("p1")
+    assert one.is_whole and one.report.done == 1 and one.document is not None
+    told(protocol, method="plan", params=plan("p1", 2))
+    told(protocol, id=answer_to(protocol, "get_plans"), result={"plans": [plan("p1", 1, document=DOCUMENT)]})
+    assert book.merge(mailbox.collect().plans) == ["p1"]
+    one = book.get("p1")
+    assert one.report.revision == 2 and not one.is_whole and one.document is not None
+
+
+def test_what_a_gateway_says_when_a_link_begins_is_all_that_it_drives(site):
+    protocol, mailbox, sent = greeted(site)
+    book = PlanCache()
+    book.merge({"p1": plan_in(plan("p1", 9, document=DOCUMENT)), "p2": plan_in(plan("p2"))})
+    (every,) = [one["id"] for one in sent if one["method"] == "get_plans"]
+    # It is another one's backup that is served: a plan may be at an earlier revision.
+    told(protocol, id=every, result={"plans": [plan("p1", 3)]})
+    news = mailbox.collect()
+    assert sorted(book.merge(news.plans, news.is_driving)) == ["p1", "p2"]
+    assert book.get("p2") is None and book.get("p1").report.revision == 3 and not book.get("p1").is_whole
+    told(protocol, method="plan", params=plan("p1", 4))
+    assert book.merge(mailbox.collect().plans) == ["p1"]
+
+
+def test_a_gateway_that_knows_no_plans_says_so_and_the_link_goes_on(site):
+    protocol, mailbox, sent = greeted(site)
+    (every,) = [one["id"] for one in sent if one["method"] == "get_plans"]
+    told(protocol, id=every, error={"code": -32601, "message": "no such method"})
+    assert mailbox.collect().is_driving is False
+
+
+@pytest.mark.parametrize(
+    "wrong", [{"document": {"format": "?"}}, {"state": "gone"}, {"stops": [{}]}, {"stops": [{}] * 20_001}]
+)
+def test_a_plan_that_is_none_is_refused_in_words(site, wrong):
+    protocol, mailbox, _ = greeted(site)
+    with pytest.raises(GatewayLinkError, match="ws://here/desk"):
+        told(protocol, method="plan", params=plan(**wrong))
+    assert not mailbox.collect().plans
+
+
+def test_of_plans_that_ended_the_newest_are_kept():
+    book = PlanCache()
+    ended = [plan_in(plan(f"p{k}", state="finished", ended_at=float(k))) for k in range(30)]
+    book.merge({one.plan: one for one in (*ended, plan_in(plan("driven")))})
+    assert [one.plan for one in book] == [f"p{k}" for k in range(20, 30)] + ["driven"]
+    assert [one.plan for one in book.open()] == ["driven"]
+
+
 def test_a_robot_without_a_queue_has_revision_0_and_one_that_is_gone_is_forgotten():
-    book, news = QueueCache(), QueueUpdates()
-    news.take_all([queue_report(queue("r1", 4)), queue_report(queue("r2", 2))])
-    assert sorted(book.merge(news)) == ["r1", "r2"]
+    book = QueueCache()
+    two = {"r1": queue_report(queue("r1", 4)), "r2": queue_report(queue("r2", 2))}
+    assert sorted(book.merge(two, are_all=True)) == ["r1", "r2"]
     assert (book.revision("r1"), book.revision("r9")) == (4, 0)
-    fewer = QueueUpdates()
-    fewer.take_all([queue_report(queue("r2", 2))])
-    assert book.merge(fewer) == ["r1"] and book.get("r1") is None
+    fewer = {"r2": queue_report(queue("r2", 2))}
     assert book.merge(fewer) == []
+    assert book.merge(fewer, are_all=True) == ["r1"] and book.get("r1") is None
+    assert book.merge(fewer, are_all=True) == []
 
 
 def test_of_very_many_placed_cones_the_newest_are_kept(monkeypatch):
     monkeypatch.setattr("fleet_supervisor.plugin.gateway_client.report_caches.MOST_PLACEMENTS", 3)
-    book, news = PlacedConeCache(), PlacedConeUpdates()
-    news.add([placement_report(placement(number)) for number in (4, 1, 5, 2)])
-    assert book.merge(news) == [4, 1, 5, 2]
+    book = PlacedConeCache()
+    told = {number: placement_report(placement(number)) for number in (4, 1, 5, 2)}
+    assert book.merge(told) == [4, 1, 5, 2]
     assert sorted(one.placement for one in book) == [2, 4, 5]

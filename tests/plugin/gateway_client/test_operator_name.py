@@ -5,8 +5,9 @@ from __future__ import annotations
 import json
 
 import pytest
-from fleet_supervisor.plugin.gateway_client.buffers import UpdateBuffer
+from fleet_supervisor.plugin.gateway_client.fleet_state import UpdateBuffer
 from fleet_supervisor.plugin.gateway_client.protocol import GatewayProtocol
+from fleet_supervisor.robot_bridge.core.clock import ManualClock
 
 
 @pytest.mark.parametrize(
@@ -19,5 +20,5 @@ from fleet_supervisor.plugin.gateway_client.protocol import GatewayProtocol
     ],
 )
 def test_it_is_one_line_that_is_not_too_long(name, said):
-    (hello,) = GatewayProtocol(name, 5.0, "ws://127.0.0.1:1", UpdateBuffer(), lambda: 0.0).begin()
+    (hello,) = GatewayProtocol(name, 5.0, "ws://127.0.0.1:1", UpdateBuffer(), ManualClock()).begin()
     assert json.loads(hello)["params"]["operator"] == said

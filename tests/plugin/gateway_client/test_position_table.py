@@ -6,7 +6,7 @@ import json
 
 import numpy as np
 import pytest
-from fleet_supervisor.plugin.gateway_client.buffers import UpdateBuffer
+from fleet_supervisor.plugin.gateway_client.fleet_state import UpdateBuffer
 from fleet_supervisor.plugin.gateway_client.robot_table import (
     COLUMNS,
     SPARE_WORDS,
@@ -76,7 +76,7 @@ def test_the_words_of_a_day_do_not_pile_up():
     for minute in range(SPARE_WORDS + 99):
         robots.assign("r2", f"target-{minute}")
         frame = made.after(EVERYTHING, form=PositionForm.COLUMNS).frame
-        mailbox.put_robots(table_from_frame(frame, float(minute)))
+        mailbox.add(robots=table_from_frame(frame, float(minute)))
         known.merge(mailbox.collect().robots)
         assert len(known._words) <= SPARE_WORDS + 6
     assert known.told(2)["command"] == f"target-{SPARE_WORDS + 98}"

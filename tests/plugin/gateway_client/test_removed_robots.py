@@ -7,7 +7,7 @@ import time
 import numpy as np
 import pytest
 from fleet_supervisor.plugin.control.messages import Level, robot_topic
-from fleet_supervisor.plugin.gateway_client.buffers import UpdateBuffer
+from fleet_supervisor.plugin.gateway_client.fleet_state import UpdateBuffer
 from fleet_supervisor.plugin.gateway_client.robot_states import RobotStates
 from fleet_supervisor.plugin.gateway_client.robot_table import table_from_frame, table_from_rows
 from fleet_supervisor.plugin.map.overlay.trails import LENGTHS, Trails
@@ -50,13 +50,13 @@ def test_its_queue_and_what_was_told_of_it_are_gone(at_desk, gateway, wait, ifac
         queue = {"robot": robot, "revision": 1, "state": "paused", "robot_state": "lost", "tasks": tasks}
         gateway.tell("queue", queue)
         desk.messages.post(f"{robot} strays", Level.ERROR, robot_topic(robot))
-    wait(lambda: len(list(desk.queues)) == 2, what="the queues")
+    wait(lambda: len(list(desk.state.queues)) == 2, what="the queues")
     gateway.refuse["remove_task"] = "not now"
     at_desk.queue_edits.remove("r1", "t1")
     wait(lambda: any("not now" in text for text in iface.texts()), what="the refusal")
     remove(gateway, "r1")
-    wait(lambda: len(desk.picture) == 1, what="the news")
-    assert [queue.robot for queue in desk.queues] == ["r2"]
+    wait(lambda: len(desk.state.robots) == 1, what="the news")
+    assert [queue.robot for queue in desk.state.queues] == ["r2"]
     wait(lambda: not any("not now" in text or "r1 strays" in text for text in iface.texts()))
     assert any("r2 strays" in text for text in iface.texts())
 
@@ -65,12 +65,12 @@ def test_its_queue_and_what_was_told_of_it_are_gone(at_desk, gateway, wait, ifac
 def test_it_is_gone_from_table_map_layer_and_expressions(at_desk, gateway, wait, iface, removed):
     left = {"r1": "r2", "r2": "r1"}[removed]
     wait(lambda: layer_of(at_desk) == ["r1", "r2"], what="both robots in the layer")
-    at_desk.desk.select(removed)
+    at_desk.desk.selection.select(removed)
     remove(gateway, removed)
-    wait(lambda: len(at_desk.desk.picture) == 1, what="the news")
+    wait(lambda: len(at_desk.desk.state.robots) == 1, what="the news")
     assert rows_of(at_desk) == [left]
     assert layer_of(at_desk) == [left]
-    assert at_desk.desk.selection == ()
+    assert at_desk.desk.selection.robots == ()
     assert QgsExpression(f"robot_state('{removed}')").evaluate() is None
     assert QgsExpression(f"robot_state('{left}')").evaluate() == "fresh"
     at = {"r1": iface.pixel(50, 40), "r2": iface.pixel(80, 60)}
@@ -80,7 +80,7 @@ def test_it_is_gone_from_table_map_layer_and_expressions(at_desk, gateway, wait,
 
 
 def test_a_draft_for_it_is_taken_away_and_that_is_said(at_desk, gateway, wait, iface):
-    at_desk.desk.select("r1")
+    at_desk.desk.selection.select("r1")
     at_desk.actions.cone.trigger()
     iface.click(70, 55)
     assert at_desk.desk.drafts.draft is not None
@@ -90,24 +90,24 @@ def test_a_draft_for_it_is_taken_away_and_that_is_said(at_desk, gateway, wait, i
 
 
 def test_a_draft_for_another_stays(at_desk, gateway, wait, iface):
-    at_desk.desk.select("r2")
+    at_desk.desk.selection.select("r2")
     at_desk.actions.cone.trigger()
     iface.click(70, 55)
     remove(gateway, "r1")
-    wait(lambda: len(at_desk.desk.picture) == 1, what="the news")
+    wait(lambda: len(at_desk.desk.state.robots) == 1, what="the news")
     assert at_desk.desk.drafts.draft.robot == "r2"
-    assert at_desk.desk.selection == ("r2",)
+    assert at_desk.desk.selection.robots == ("r2",)
 
 
 def test_one_that_was_removed_while_the_link_was_away_is_gone_when_it_is_back(at_desk, gateway, wait):
     gateway.stop()
-    wait(lambda: at_desk.desk.link.phase.value == "retrying", what="the loss of the link")
+    wait(lambda: at_desk.desk.state.link.phase.value == "retrying", what="the loss of the link")
     del gateway.robots["r1"]
     gateway.start()
-    wait(lambda: at_desk.desk.link.phase.value == "connected", 10, "the link")
+    wait(lambda: at_desk.desk.state.link.phase.value == "connected", 10, "the link")
     told = [to_json(robot) for robot in gateway.robots.values()]
     gateway.tell("positions", {"t": time.time(), "robots": told, "everything": True})
-    wait(lambda: len(at_desk.desk.picture) == 1, what="the news")
+    wait(lambda: len(at_desk.desk.state.robots) == 1, what="the news")
     assert rows_of(at_desk) == ["r2"]
 
 
@@ -147,7 +147,7 @@ def test_what_arrives_between_two_looks_counts_in_its_order(messages, left):
     picture, mailbox = RobotStates(), UpdateBuffer()
     picture.merge(told("a", "b", "c"))
     for message in messages:
-        mailbox.put_robots(message)
+        mailbox.add(robots=message)
     picture.merge(mailbox.collect().robots)
     assert set(picture.arrays(0.0).names) == left
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from fleet_supervisor.plugin.gateway_client.buffers import UpdateBuffer
+from fleet_supervisor.plugin.gateway_client.fleet_state import UpdateBuffer
 from fleet_supervisor.plugin.gateway_client.robot_states import RobotStates
 from fleet_supervisor.plugin.gateway_client.robot_table import STATES, RobotTable, table_from_rows
 from fleet_supervisor.robot_bridge.core.messages import RobotState
@@ -142,7 +142,7 @@ def test_columns_age_as_liveness_says_for_one_robot(age, stopped, state, stale_a
 def test_a_window_that_looks_seldom_finds_the_newest_of_every_robot():
     mailbox = UpdateBuffer()
     for second in range(5):
-        mailbox.put_robots(table_from_rows([told(f"r{second % 2}", x=float(second))], float(second)))
+        mailbox.add(robots=table_from_rows([told(f"r{second % 2}", x=float(second))], float(second)))
     taken = mailbox.collect().robots
     assert {name: taken.report(row).x for row, name in enumerate(taken.names)} == {"r0": 4.0, "r1": 3.0}
     assert len(mailbox.collect().robots) == 0

@@ -41,7 +41,7 @@ def laptop(lid, at_desk):
 
 
 def states(window):
-    robots = window.desk.picture.arrays(window.desk.clock())
+    robots = window.desk.state.robots.arrays(window.desk.clock.steady())
     return {STATES[state] for state in robots.state.tolist()}
 
 
@@ -67,16 +67,16 @@ def test_what_had_come_in_before_is_not_taken_for_new(lid, monkeypatch, plugin, 
     window.dock.connection_panel._url.setText(gateway.url)
     window.dock.connection_panel._operator.setText("anna")
     window.actions.connect.trigger()
-    wait(lambda: gateway._sockets and window.desk.link.phase.value == "connected", what="the link")
+    wait(lambda: gateway._sockets and window.desk.state.link.phase.value == "connected", what="the link")
     lid.asleep = HOUR
     gateway.tell("positions", {"t": time.time(), "robots": [to_json(make_robot("r9"))]})
     wait(lambda: len(gateway.asked("hello")) == 2, 10, "another link")
     wait(lambda: len(gateway.asked("get_commands")) == 2, what="its questions")
-    assert window.desk.picture.row("r9") is None
+    assert window.desk.state.robots.row("r9") is None
 
 
 def test_an_order_from_before_is_handed_back_and_not_sent_again(laptop, lid, gateway, wait, iface):
-    laptop.desk.select("r1")
+    laptop.desk.selection.select("r1")
     laptop.actions.cone.trigger()
     iface.click(70, 55)
     gateway.mute.add("send")

@@ -4,17 +4,18 @@ from __future__ import annotations
 
 import json
 
-from fleet_supervisor.plugin.gateway_client.buffers import UpdateBuffer
+from fleet_supervisor.plugin.gateway_client.fleet_state import UpdateBuffer
 from fleet_supervisor.plugin.gateway_client.protocol import GatewayProtocol
+from fleet_supervisor.robot_bridge.core.clock import ManualClock
 
 
 def told(desk, *robots):
     """Have the desk hear what a gateway sends."""
     mailbox = UpdateBuffer()
-    mailbox.put_link(desk.link)
+    mailbox.add(link=desk.state.link)
     frame = {"jsonrpc": "2.0", "method": "suspensions", "params": {"robots": list(robots)}}
-    GatewayProtocol("Ada", 1.0, "ws://gateway/desk", mailbox, lambda: 0.0).receive(json.dumps(frame))
-    desk._take_news(mailbox.collect())
+    GatewayProtocol("Ada", 1.0, "ws://gateway/desk", mailbox, ManualClock()).receive(json.dumps(frame))
+    desk.state.merge(mailbox.collect())
 
 
 def test_what_is_locked_hangs_there_until_it_is_unlocked(at_desk):

@@ -218,9 +218,9 @@ def look_at_panel(show: Show, window, desk_window, gateway, desk_tests) -> None:
     dock.connection_panel._url.setText(gateway.url)
     dock.connection_panel._operator.setText("anna")
     desk_window.actions.connect.trigger()
-    desk_tests.wait_until(lambda: len(desk.picture) == 5, what="five robots")
+    desk_tests.wait_until(lambda: len(desk.state.robots) == 5, what="five robots")
     desk_tests.wait_until(lambda: alarm_bar(window) is not None, what="the alarm of a low battery")
-    desk.select("r1")
+    desk.selection.select("r1")
     from tests.support.button_places import Watched
 
     make_panels_narrow(window)
@@ -243,11 +243,11 @@ def look_at_panel(show: Show, window, desk_window, gateway, desk_tests) -> None:
     desk_tests.wait_until(lambda: not dock.banner.isHidden(), what="the banner")
     show.look("panel_emergency", window)
     crowd(gateway)
-    desk_tests.wait_until(lambda: len(desk.roads.conflicts.conflicts) == 4, 15, what="four conflicts")
+    desk_tests.wait_until(lambda: len(desk.state.conflicts.conflicts) == 4, 15, what="four conflicts")
     show.look("panel_crowded", window)
     count_rows(show, dock)
     gateway.tell("conflicts", {"t": time.time(), "conflicts": [], "waiting": []})
-    desk_tests.wait_until(lambda: not desk.roads.conflicts.conflicts, what="the end of the conflicts")
+    desk_tests.wait_until(lambda: not desk.state.conflicts.conflicts, what="the end of the conflicts")
     gateway.stand(in_force=False)
     desk_tests.wait_until(lambda: dock.banner.isHidden(), what="the end of the banner")
     show.watched = None
@@ -298,7 +298,7 @@ def order(desk, gateway, desk_tests) -> None:
     meeting = {"robot": "r1", "other": "r2", "kind": "head-on", "metres": 0.4, "x": 60.0, "y": 50.0}
     times = {"begins": time.time() + 5, "nearest_at": time.time() + 7, "ends": time.time() + 9}
     gateway.tell("conflicts", {"t": time.time(), "conflicts": [{**meeting, **times}], "waiting": []})
-    desk_tests.wait_until(lambda: len(desk.observations) == 2, what="the observations")
+    desk_tests.wait_until(lambda: len(desk.state.observations) == 2, what="the observations")
 
 
 def look_at_docks(show: Show, window, plugin, desk_tests) -> None:

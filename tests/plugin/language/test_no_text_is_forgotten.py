@@ -50,6 +50,7 @@ TEXTS = {
     "QGIS (QgsGraphAnalyzer)": "the name of an engine, as robot-bridge tells those of the others",
     "another way": "a word of the protocol",
     "every queue": "the key that newest news of all queues are kept under",
+    "every plan": "the key that newest news of all cone plans are kept under",
     "stage": "the field of a layer that is read unless another is named",
     "yyyy-MM-dd HH:mm:ss": "how Qt is told a format",
     "listening on (ws://127\\.0\\.0\\.1:\\d+)": "what is looked for in the log of the practice gateway",

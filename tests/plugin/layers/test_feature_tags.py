@@ -14,8 +14,9 @@ from fleet_supervisor.plugin.layers.roles import LayerExpressions
 from fleet_supervisor.plugin.layers.site_transform import SiteGeoreference
 from fleet_supervisor.robot_bridge.core.roads.centrelines import BACKWARD, BOTH, FORWARD
 from fleet_supervisor.robot_bridge.core.sites.frame import SiteFrame
-from osgeo import gdal
+from osgeo import gdal, ogr, osr
 from qgis.core import (
+    NULL,
     QgsCoordinateReferenceSystem,
     QgsExpressionContext,
     QgsFeedback,
@@ -43,7 +44,7 @@ CITY = """<?xml version="1.0" encoding="UTF-8"?>
 """
 
 
-@pytest.fixture(scope="module", params=["hstore", "json"])
+@pytest.fixture(scope="module", params=["hstore", "json", "json field"])
 def city(request, qgis_app, tmp_path_factory):
     """A city as GDAL converts it by itself; tags as hstore, or as newer versions write them on request."""
     folder = tmp_path_factory.mktemp("osm")
@@ -67,6 +68,8 @@ def city(request, qgis_app, tmp_path_factory):
     }
     if request.param == "json":
         layers = {name: with_json(layer) for name, layer in layers.items()}
+    elif request.param == "json field":
+        layers = {name: with_json_field(layer, folder) for name, layer in layers.items()}
     return layers
 
 
@@ -80,6 +83,32 @@ def with_json(layer):
     for feature in features:
         feature[at] = json.dumps(read_tags(feature[at]))
     assert copy.dataProvider().addFeatures(features)
+    return copy
+
+
+def with_json_field(layer, folder):
+    """Return a copy in a GeoPackage whose field of tags says that it is JSON, as GDAL 3.7 writes it."""
+    file = str(folder / f"json_{layer.name()}.gpkg")
+    here = osr.SpatialReference()
+    here.ImportFromEPSG(32633)
+    target = ogr.GetDriverByName("GPKG").CreateDataSource(file)
+    kind = ogr.wkbMultiPolygon if layer.name() == "buildings" else ogr.wkbLineString
+    table = target.CreateLayer(layer.name(), here, kind)
+    for name in layer.fields().names()[1:]:
+        field = ogr.FieldDefn(name, ogr.OFTString)
+        field.SetSubType(ogr.OFSTJSON if name == "other_tags" else ogr.OFSTNone)
+        table.CreateField(field)
+    for feature in layer.getFeatures():
+        row = ogr.Feature(table.GetLayerDefn())
+        row.SetGeometry(ogr.CreateGeometryFromWkb(feature.geometry().asWkb().data()))
+        for name in layer.fields().names()[1:]:
+            text = feature[name]
+            if text != NULL:
+                row[name] = json.dumps(read_tags(text)) if name == "other_tags" else str(text)
+        assert table.CreateFeature(row) == ogr.OGRERR_NONE
+    del row, table, target
+    copy = QgsVectorLayer(f"{file}|layername={layer.name()}", layer.name(), "ogr")
+    assert any(isinstance(feature["other_tags"], dict) for feature in copy.getFeatures())
     return copy
 
 

@@ -1,7 +1,7 @@
 """Warnings about many features: one a kind, with the first features, and none lost."""
 
 import pytest
-from fleet_supervisor.plugin.layers.errors import MOST_KINDS, FeatureWarnings
+from fleet_supervisor.plugin.layers.layer_source import MOST_KINDS, FeatureWarnings
 
 
 @pytest.fixture

@@ -5,9 +5,9 @@ import random
 import numpy as np
 import pytest
 from fleet_supervisor.plugin.layers import obstacle_layers
-from fleet_supervisor.plugin.layers.errors import FeatureWarnings
 from fleet_supervisor.plugin.layers.geometry import line_wkb, multi_line_wkb, polygon_wkb, rings_of
 from fleet_supervisor.plugin.layers.layer_expressions import ObstacleValues
+from fleet_supervisor.plugin.layers.layer_source import FeatureWarnings
 from fleet_supervisor.plugin.layers.obstacle_layers import OutlineBatch, ReadFeature
 from fleet_supervisor.plugin.layers.roles import LayerExpressions, set_expressions, set_role
 from fleet_supervisor.plugin.layers.site_transform import LayerToSiteTransform

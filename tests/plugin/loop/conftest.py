@@ -24,7 +24,8 @@ class Loop:
     def __init__(self, processes, site, folder):
         self._processes = processes
         self._site = site
-        self._database = f"sqlite:///{folder / 'fleet.db'}"
+        self.file = folder / "fleet.db"
+        self._database = f"sqlite:///{self.file}"
         self.address = ""
         self._runs = 0
 
@@ -94,7 +95,7 @@ class Operator(OperatorAtDesk):
         super().__init__(iface)
         self.desk = plugin.window.desk
         self._reports = {}
-        self.desk.commands_changed.connect(self._note)
+        self.desk.state.commands_changed.connect(self._note)
 
     def _note(self, reports):
         self._reports.update({report.command: report for report in reports})
@@ -110,18 +111,20 @@ class Operator(OperatorAtDesk):
         self.show_site()
 
     def show_site(self, margin=0.0):
-        x_min, y_min, x_max, y_max = self.desk.site.bounds
-        e, n = self.desk.site.origin
+        x_min, y_min, x_max, y_max = self.desk.state.site.bounds
+        e, n = self.desk.state.site.origin
         self.show_map((e + x_min - margin, n + y_min - margin, e + x_max + margin, n + y_max + margin), CRS)
 
     def report(self, robot):
-        return self.desk.picture.view(robot, self.desk.clock()).report
+        return self.desk.state.robots.view(robot, self.desk.clock.steady()).report
 
     def states(self):
-        return {view.name: view.state.value for view in self.desk.picture.views(self.desk.clock())}
+        return {
+            view.name: view.state.value for view in self.desk.state.robots.views(self.desk.clock.steady())
+        }
 
     def click_site(self, x, y):
-        e, n = self.desk.site.origin
+        e, n = self.desk.state.site.origin
         self.click_map(e + x, n + y, CRS)
 
     def set_cone(self, robot, x, y):

@@ -6,7 +6,7 @@ import shutil
 from dataclasses import replace
 
 import pytest
-from fleet_supervisor.plugin.gateway_client.link import ConnectionPhase, OperatorCredentials
+from fleet_supervisor.plugin.gateway_client.connection_status import ConnectionPhase, OperatorCredentials
 from fleet_supervisor.robot_bridge.core.sites.site import read_site, write_site
 from qgis.PyQt.QtTest import QTest
 from qgis.PyQt.QtWidgets import QAction, QDialog, QLineEdit, QPushButton
@@ -69,13 +69,13 @@ def test_accounts_and_site_are_kept_from_the_desk(start_loop, sites, operator, i
     loop, desk = start_loop(sites / "north"), operator.desk
     url = f"{loop.address}/desk"
     operator.connect(url, "anna")
-    operator.wait("the site", lambda: desk.site is not None, SECONDS)
+    operator.wait("the site", lambda: desk.state.site is not None, SECONDS)
     iface.findChild(QAction, "fleet_accounts").trigger()
     window = shown(operator, iface, "fleet_accounts_dialog")
     told(operator, window, "has no accounts")
     # The first account closes the desk to everybody without a token.
     adas = make_account(operator, iface, window, "Ada")
-    operator.wait("being cut off", lambda: desk.link.phase is ConnectionPhase.FAILED, SECONDS)
+    operator.wait("being cut off", lambda: desk.state.link.phase is ConnectionPhase.FAILED, SECONDS)
     desk.open_link(url, "somebody", OperatorCredentials(adas))
     told(operator, window, "1 account")
     bens = make_account(operator, iface, window, "Ben")
@@ -99,8 +99,8 @@ def test_accounts_and_site_are_kept_from_the_desk(start_loop, sites, operator, i
     told(operator, window, "The token of Ben is revoked.")
     choose_south(operator, iface, desk)
     desk.open_link(url, "Ben", OperatorCredentials(bens))
-    operator.wait("being refused", lambda: desk.link.phase is ConnectionPhase.FAILED, SECONDS)
-    assert "revoked" in desk.link.reason
+    operator.wait("being refused", lambda: desk.state.link.phase is ConnectionPhase.FAILED, SECONDS)
+    assert "revoked" in desk.state.link.reason
 
 
 def choose_south(operator, iface, desk):
@@ -111,4 +111,4 @@ def choose_south(operator, iface, desk):
     click(window, "fleet_site_serve")
     click(shown(operator, iface, "fleet_site_question"), "fleet_site_confirm")
     told(operator, window, "South field is served now.")
-    operator.wait("the desk's site", lambda: desk.site.id == "south", SECONDS)
+    operator.wait("the desk's site", lambda: desk.state.site.id == "south", SECONDS)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import itertools
+import json
 import math
 import signal
 import sqlite3
@@ -10,7 +12,9 @@ from itertools import combinations
 import numpy as np
 import pytest
 from fleet_supervisor.plugin.planning.layouts.layout_layer import MARK
+from fleet_supervisor.plugin.plugin import FleetPlugin
 from fleet_supervisor.robot_bridge.core.layouts.catalogue import LAYOUTS
+from fleet_supervisor.robot_bridge.core.messages import PlanState, TaskState
 from qgis.core import QgsFeature, QgsGeometry, QgsPointXY, QgsProject, QgsVectorLayer
 from qgis.PyQt.QtCore import Qt
 from qgis.PyQt.QtTest import QTest
@@ -23,6 +27,10 @@ from qgis.PyQt.QtWidgets import (
     QMessageBox,
     QPushButton,
 )
+from websockets.sync.client import connect
+
+from tests.plugin.conftest import let_deleted_go
+from tests.plugin.loop.conftest import Operator
 
 TOLERANCE = 0.20
 ROBOT_WIDTH = 0.5
@@ -62,7 +70,7 @@ class Planner:
 
     def add_points(self, name, fields, rows):
         """Add a layer of points: rows are x and y in the site frame, and the values of ``fields``."""
-        e, n = self.operator.desk.site.origin
+        e, n = self.operator.desk.state.site.origin
         layer = QgsVectorLayer(f"Point?crs=EPSG:32633{fields}", name, "memory")
         features = []
         for x, y, *values in rows:
@@ -108,12 +116,49 @@ class Planner:
         which.setCurrentIndex(which.findText(text))
 
     def tasks_of(self, robot):
-        queue = self.operator.desk.queues.get(robot)
+        queue = self.operator.desk.state.queues.get(robot)
         return [] if queue is None else queue.tasks
 
     @property
+    def report(self):
+        """What the gateway reports of the plan that is shown."""
+        known = self.dock.driven.known
+        return None if known is None else known.report
+
+    @property
+    def offer(self):
+        """The plan of what is left, once it is shown."""
+        known = self.dock.driven.known
+        return known.proposal if known is not None and known.is_whole else None
+
+    @property
     def done(self):
-        return self.dock.driven.progress.done
+        stops = [] if self.report is None else self.report.stops
+        return {one.id for one in stops if one.kind in ("place", "collect") and one.state is TaskState.DONE}
+
+
+class SecondDesk:
+    """Another operator, at a desk of their own."""
+
+    def __init__(self, loop, name):
+        self._socket, self._ids = connect(f"{loop.address}/desk", proxy=None), itertools.count(1)
+        self.ask("hello", operator=name)
+
+    def ask(self, method, **params):
+        number = next(self._ids)
+        call = {"jsonrpc": "2.0", "id": number, "method": method, "params": params}
+        self._socket.send(json.dumps(call))
+        while True:
+            answer = json.loads(self._socket.recv(60))
+            if answer.get("id") == number:
+                return answer["result"]
+
+    def plan(self):
+        (plan,) = self.ask("get_plans", ended=1)["plans"]
+        return plan
+
+    def close(self):
+        self._socket.close()
 
 
 @pytest.fixture
@@ -181,22 +226,21 @@ def test_three_robots_place_a_lane_change_and_two_go_on_when_one_is_killed(
     plan = planner.solve(2.0)
     assert {stop.id for _, stop in plan.all_stops()} == cones
     assert not planner.dock.drafts.draft.meetings, planner.dock.bar.trouble.text()
-    assert not len(operator.desk.queues), "nothing is sent before the operator says so"
+    assert not len(operator.desk.state.queues), "nothing is sent before the operator says so"
     planner.send()
     operator.wait("cones being placed", lambda: len(planner.done) >= 4, 120)
     of_r1 = {stop.id for stop in plan.robot("r1").stops}
     operator.wait("two cones of r1", lambda: len(planner.done & of_r1) >= 2, 120)
     robots["r1"].send_signal(signal.SIGKILL)
-    operator.wait("r1 being missed", lambda: "r1" in planner.dock.driven.trouble.away, 20)
+    operator.wait("r1 being missed", lambda: [one.robot for one in planner.report.problems] == ["r1"], 20)
     left = of_r1 - planner.done
     assert left
     planner.press("fleet_plan_rest")
-    operator.wait("a new plan", lambda: planner.dock.driven.offer is not None, 20)
-    offer = planner.dock.driven.offer
-    taken = {stop.id for _, stop in offer.plan.all_stops()}
-    assert left <= taken and offer.plan.robot("r1").lost
-    assert not offer.meetings, planner.dock.bar.trouble.text()
-    assert operator.desk.queues.get("r1").tasks, "nothing is taken over before the operator confirms"
+    operator.wait("a new plan", lambda: planner.offer is not None, 20)
+    taken = {stop.id for _, stop in planner.offer.all_stops()}
+    assert left <= taken and planner.offer.robot("r1").lost
+    assert not planner.report.meetings, planner.dock.bar.trouble.text()
+    assert operator.desk.state.queues.get("r1").tasks, "nothing is taken over before the operator confirms"
     planner.press("fleet_plan_confirm")
     operator.wait("every cone being placed", lambda: planner.done == cones, 240)
     operator.wait("quiet", lambda: not planner.dock.driven.busy, 10)
@@ -222,30 +266,84 @@ def test_three_robots_place_a_lane_change_and_two_go_on_when_one_is_killed(
                 assert least_distance_to(after, one.x, one.y) > CLEAR, (robot, one.cone)
 
 
-def test_a_lost_robots_cones_are_taken_over_without_a_question_when_that_is_switched_on_and_collected_again(
-    impatient_loop, operator, planner, iface
+def placed(database):
+    """Return the cones that are put down, each as often as it was."""
+    with sqlite3.connect(database) as connection:
+        return sorted(cone for (cone,) in connection.execute("select cone from placements"))
+
+
+def pause_and_resume(second, operator, planner):
+    """Have another operator pause the plan and let it go on; the panel follows."""
+    plan = second.plan()
+    assert plan["submitted_by"] == "anna"
+    second.ask("pause_plan", plan=plan["plan"], reason="people on the track")
+    why = "Paused: r1, r2 (bert: people on the track)"
+    operator.wait("the pause", lambda: why in planner.dock.bar.text.text(), 20)
+    second.ask("resume_plan", plan=plan["plan"], revision=second.plan()["revision"])
+    operator.wait("going on", lambda: planner.report.state is PlanState.DRIVEN, 20)
+
+
+def test_a_plan_goes_on_without_its_robot_its_desk_and_its_gateway_and_is_collected_again(
+    impatient_loop, operator, plugin, iface, tmp_path
 ):
-    loop = impatient_loop
+    loop, database = impatient_loop, tmp_path / "fleet.db"
     starts = {"r1": (24.0, 2.0, 0.0), "r2": (40.0, 2.0, 0.0)}
     # Who is to be killed far from any cone is slow: however late that is done, it stands at none of them.
     speeds = {"r1": 0.2, "r2": 4.0}
     robots = {name: loop.start_robot(name, pose, speed=speeds[name]) for name, pose in starts.items()}
     operator.connect_to(loop, list(starts))
+    planner = Planner(operator, plugin, iface)
     lane = {"speed": 5, "approach": 10, "width": 4, "spacing": 12}
     layer = planner.place_layout("braking_lane", lane, 18.0, 8.0)
-    cones = {str(feature["id"]) for feature in layer.getFeatures()}
+    cones = sorted(str(feature["id"]) for feature in layer.getFeatures())
     planner.set_robots(carries=9, aboard=9, speed=3.0, count=2)
     planner.solve(1.0)
     assert not planner.dock.bar.by_itself.isChecked()
     planner.dock.bar.by_itself.click()
     planner.send()
     operator.wait("r1 being under way", lambda: planner.tasks_of("r1"), 20)
+    second = SecondDesk(loop, "bert")
+    pause_and_resume(second, operator, planner)
+    # QGIS is closed, as far as the plugin is concerned; then r1 dies, and nobody is asked.
+    plugin.unload()
+    let_deleted_go()
     robots["r1"].send_signal(signal.SIGKILL)
-    operator.wait("every cone being placed", lambda: planner.done == cones, 240)
-    operator.wait("quiet", lambda: not planner.dock.driven.busy, 10)
-    assert planner.dock.driven.driven.plan.robot("r1").lost
-    assert {one.robot for one in operator.desk.placements} <= {"r1", "r2"}
+    operator.wait("r1 being done without", lambda: second.plan()["robots"] == ["r2"], 60)
+    second.close()
+    operator.wait("a cone of the new plan", lambda: placed(database), 60)
+    loop.gateway.send_signal(signal.SIGKILL)
+    loop.gateway.wait()
+    before = placed(database)
+    assert before != cones, "it was killed in the middle"
+    loop.start_gateway(loop.port)
+    second = SecondDesk(loop, "bert")
+    plan = second.plan()
+    assert (plan["state"], plan["robots"]) == ("driven", ["r2"])
+    # So that the panel is sure to come to a plan in the middle.
+    second.ask("pause_plan", plan=plan["plan"])
+    second.close()
+    assert placed(database) != cones
 
+    again = FleetPlugin(iface)
+    again.initGui()
+    try:
+        operator = Operator(again, iface)
+        operator.connect_to(loop, ["r1", "r2"])
+        planner = Planner(operator, again, iface)
+        operator.wait("the plan", lambda: "Paused: r2 (bert)" in planner.dock.bar.text.text(), 20)
+        # A robot that was not heard of yet would stay paused, which the panel would say.
+        operator.wait("r2 being heard of", lambda: operator.states()["r2"] == "fresh", 30)
+        planner.press("fleet_plan_resume")
+        operator.wait("every cone being placed", lambda: len(planner.done) == len(cones), 240)
+        assert placed(database) == cones, "none is missing and none stands twice"
+        assert planner.dock.bar.text.text().startswith("Done: ")
+        collect_again(operator, planner, iface, cones)
+    finally:
+        again.unload()
+        let_deleted_go()
+
+
+def collect_again(operator, planner, iface, cones):
     planner.press("fleet_plan_clear")
     planner.dock.tabs.setCurrentWidget(planner.dock.placed)
     planner.choose_placed("layout braking_lane")
@@ -261,7 +359,7 @@ def test_a_lost_robots_cones_are_taken_over_without_a_question_when_that_is_swit
     operator.wait("all of it being collected", lambda: len(planner.done) == len(cones), 240)
     # That a cone was collected is told after that the command was done.
     collected = "every cone noted as collected"
-    operator.wait(collected, lambda: all(one.collected_at for one in operator.desk.placements), 10)
+    operator.wait(collected, lambda: all(one.collected_at for one in operator.desk.state.placed_cones), 10)
 
 
 def test_a_plan_into_a_keepout_is_sent_with_an_override_that_the_audit_log_keeps(
@@ -282,7 +380,7 @@ def test_a_plan_into_a_keepout_is_sent_with_an_override_that_the_audit_log_keeps
     QTest.mouseClick(confirm, Qt.MouseButton.LeftButton)
     operator.wait("the cone being placed", lambda: planner.done == {"c1"}, 120)
     with sqlite3.connect(tmp_path / "fleet.db") as connection:
-        asked = connection.execute("select done, detail from audit where action = 'set_queue' order by id")
+        asked = connection.execute("select done, detail from audit where action = 'submit_plan' order by id")
         (refused, why_not), (done, why) = asked.fetchall()
     assert (refused, done) == (0, 1)
     assert "lies in the keepout 'Water basin'" in why_not

@@ -29,7 +29,7 @@ def texts(operator):
 def drive(operator, robot, points):
     command = f"command-{robot}-{len(operator.sent_to(robot))}"
     path = {"points": [list(point) for point in points]}
-    operator.desk.ask(Send(command, robot, "SetPath", path, override=OVERRIDE), "a path")
+    operator.desk.orders.ask(Send(command, robot, "SetPath", path, override=OVERRIDE), "a path")
 
 
 def test_it_is_told_by_name_while_it_happens_and_gone_when_it_ends(fenced, operator):

@@ -12,10 +12,9 @@ from fleet_supervisor.robot_bridge.core.messages import CommandState
 from qgis.PyQt.QtWidgets import QLabel, QLineEdit, QPushButton
 
 from tests.robot_bridge.links.vda5050.peers import Yard, require_peers
-from tests.support.databases.database_server import free_port
 from tests.support.errors import StageError
 from tests.support.patience import START
-from tests.support.processes import Processes
+from tests.support.processes import Processes, free_port
 from tests.support.robots.ros_nodes import Nodes
 from tests.support.robots.ros_peer import ros_python
 from tests.support.robots.rosbridge_peer import rosbridge_command
@@ -105,7 +104,7 @@ def clear_emergency(operator):
     asked = window.findChild(ClearDialog)
     asked.findChild(QLineEdit, "fleet_clear_reason").setText("it was a test")
     asked.findChild(QPushButton, "fleet_clear_confirm").click()
-    operator.wait("the end of it", lambda: not operator.desk.emergency.in_force, 20)
+    operator.wait("the end of it", lambda: not operator.desk.state.emergency.in_force, 20)
 
 
 def banner(operator):

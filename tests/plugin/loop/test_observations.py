@@ -44,8 +44,8 @@ def seen(loop, operator, photo, dock):
     """r1 has told of a bin beside it, and sent an image of it."""
     loop.start_robot("r1", (20, 8, 0), more=["--see", "24,10,bin-7", "--image", str(photo)])
     operator.connect_to(loop, ["r1"])
-    operator.wait("two observations", lambda: len(operator.desk.observations) == 2, 20)
-    return {one.op: one for one in operator.desk.observations}
+    operator.wait("two observations", lambda: len(operator.desk.state.observations) == 2, 20)
+    return {one.op: one for one in operator.desk.state.observations}
 
 
 def layer():
@@ -113,9 +113,11 @@ def test_an_accepted_object_is_in_the_next_map_with_what_the_operator_wrote(seen
     dock.form.radius.setValue(0.4)
     click(dock.form.accept)
     operator.wait(
-        "the review", lambda: operator.desk.observations.get(number).state is ObservationState.ACCEPTED, 5
+        "the review",
+        lambda: operator.desk.state.observations.get(number).state is ObservationState.ACCEPTED,
+        5,
     )
-    told = operator.desk.observations.get(number)
+    told = operator.desk.state.observations.get(number)
     assert (told.semantics, told.height, told.radius, told.reviewed_by) == ("litter bin", 1.1, 0.4, "anna")
     operator.wait("the layer", lambda: rows().get(number) == "accepted", 5)
     bin_7 = objects_on_map(loop)["bin-7"]
@@ -132,16 +134,20 @@ def test_a_rejected_object_is_on_no_map_and_a_review_can_be_revised(seen, dock, 
     dock.form.reason.setText("only a shadow")
     click(dock.form.reject)
     operator.wait(
-        "the review", lambda: operator.desk.observations.get(number).state is ObservationState.REJECTED, 5
+        "the review",
+        lambda: operator.desk.state.observations.get(number).state is ObservationState.REJECTED,
+        5,
     )
-    assert operator.desk.observations.get(number).reason == "only a shadow"
+    assert operator.desk.state.observations.get(number).reason == "only a shadow"
     assert objects_on_map(loop) == {}
     click(dock.reviewed)
     choose(dock, number)
     assert "State: rejected, by anna." in dock.form.about.text()
     click(dock.form.accept)
     operator.wait(
-        "the other way", lambda: operator.desk.observations.get(number).state is ObservationState.ACCEPTED, 5
+        "the other way",
+        lambda: operator.desk.state.observations.get(number).state is ObservationState.ACCEPTED,
+        5,
     )
     assert "bin-7" in objects_on_map(loop)
 
@@ -152,7 +158,9 @@ def test_an_image_is_reviewed_without_attributes(seen, dock, operator):
     assert not dock.form.height_m.isEnabled()
     click(dock.form.accept)
     operator.wait(
-        "the review", lambda: operator.desk.observations.get(number).state is ObservationState.ACCEPTED, 5
+        "the review",
+        lambda: operator.desk.state.observations.get(number).state is ObservationState.ACCEPTED,
+        5,
     )
 
 
@@ -164,7 +172,7 @@ def test_a_double_click_goes_there_and_choosing_reviews_nothing(seen, dock, oper
     centre = operator.canvas.center()
     assert (round(centre.x()), round(centre.y())) == (640444, 5193490)
     assert operator.canvas.extent().height() < 100
-    assert operator.desk.observations.get(number).state is ObservationState.PENDING
+    assert operator.desk.state.observations.get(number).state is ObservationState.PENDING
 
 
 def test_without_a_link_a_review_is_refused_and_nothing_written_is_lost(seen, dock, operator):

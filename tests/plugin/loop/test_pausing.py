@@ -27,7 +27,7 @@ def test_a_robot_that_was_sent_directly_stands_and_places_its_cone_after_that_on
     assert operator.report("r1").x < 109
     operator.wait("something to continue", plugin.window.actions.go_on.isEnabled, 10)
     QTest.keyClick(iface, Qt.Key.Key_F10, ALT | SHIFT)
-    operator.wait("the cone", lambda: len(operator.desk.placements) == 1, 60)
+    operator.wait("the cone", lambda: len(operator.desk.state.placed_cones) == 1, 60)
     x, y = aborted.params["points"][-1]
     operator.wait(
         "r1 at its place",
@@ -42,4 +42,4 @@ def test_a_robot_that_was_sent_directly_stands_and_places_its_cone_after_that_on
         ("SetPath", "reached"),
         ("SetPosEnd", "reached"),
     ]
-    assert operator.desk.queues.get("r1").tasks == []
+    assert operator.desk.state.queues.get("r1").tasks == []

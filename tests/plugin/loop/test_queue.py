@@ -32,7 +32,7 @@ def test_a_queue_is_driven_in_the_order_that_the_operator_gave_it(loop, operator
     for name in PLACES:
         enqueue(operator, panel, name)
     QTest.mouseClick(panel.findChild(QToolButton, "fleet_queue_hold"), Qt.MouseButton.LeftButton)
-    operator.wait("the pause", lambda: operator.desk.queues.get("r1").state.value == "paused", 10)
+    operator.wait("the pause", lambda: operator.desk.state.queues.get("r1").state.value == "paused", 10)
     third = panel.list.visualRect(panel.list.tasks.index(2, 1)).center()
     QTest.mouseClick(panel.list.viewport(), Qt.MouseButton.LeftButton, pos=third)
     QTest.keyClick(panel.list, Qt.Key.Key_Up, Qt.KeyboardModifier.AltModifier)
@@ -57,7 +57,7 @@ def in_order(panel):
 def test_an_override_stands_in_the_log_that_everybody_sees(loop, operator, plugin):
     loop.start_robot("r1", (20, 8, 0))
     operator.connect_to(loop, ["r1"])
-    e, n = operator.desk.site.origin
+    e, n = operator.desk.state.site.origin
     layer = QgsVectorLayer("Polygon?crs=EPSG:32633&field=name:string", "closed", "memory")
     feature = QgsFeature(layer.fields())
     feature.setGeometry(QgsGeometry.fromWkt("Polygon ((28 4, 36 4, 36 12, 28 12, 28 4))"))

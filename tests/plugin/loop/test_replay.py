@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import contextlib
+import sqlite3
 import time
 
 import numpy as np
@@ -42,19 +44,27 @@ def drive(tmp_path_factory, root):
         loop.start_robot("r2", (20, 84, 0))
         until(lambda: len(asked(loop, "get_positions")["robots"]) == 2)
         # There is something to show a pixel of the time line before the command, too.
-        time.sleep(2)
+        until(lambda: (first := stored(loop, "min", "r1")) and first < time.time() - 2)
         began = time.time()
         cone = {"x": 40.0, "y": 8.0, "cone": True}
         asked(loop, "send", command="first-drive", robot="r1", op="SetPosEnd", params=cone)
         until(lambda: asked(loop, "get_commands", robot="r1")["commands"][0]["state"] == "reached")
         # The gateway stores once a second.
-        time.sleep(2.5)
+        ended = time.time()
+        until(lambda: all((last := stored(loop, "max", name)) and last > ended for name in ("r1", "r2")))
         yield loop, began
 
 
 def asked(loop, method, **params):
     (answer,) = ask(loop.address, (method, params))
     return answer
+
+
+def stored(loop, which, robot):
+    """When the first (min) or last (max) of the robot's positions in the database came; None without any."""
+    with contextlib.closing(sqlite3.connect(loop.file)) as database:
+        found = f"select {which}(received_at) from trajectories where robot = ?"
+        return database.execute(found, (robot,)).fetchone()[0]
 
 
 def until(true, seconds=60):
@@ -119,7 +129,7 @@ def test_a_drive_is_played_while_the_live_map_goes_on(driven, dock, operator):
     assert dock.map.overlay._placed.scene.plans == []
     # The live robot is where it is, and is heard of.
     assert operator.report("r1").x == pytest.approx(40, abs=0.5)
-    assert operator.desk.link.phase.value == "connected"
+    assert operator.desk.state.link.phase.value == "connected"
     assert "not live" in dock.banner.text()
     # All that was driven is in view, by its pixels.
     placed = dock.map.overlay._placed

@@ -40,7 +40,7 @@ def at_roads(loop, operator):
 
 
 def move_to(operator, x, y):
-    e, n = operator.desk.site.origin
+    e, n = operator.desk.state.site.origin
     move_mouse(operator.canvas.viewport(), operator._on_canvas(QgsPointXY(e + x, n + y), CRS))
 
 
@@ -66,7 +66,7 @@ def close_road(operator, x, y, reason):
     part(operator, QLineEdit, "fleet_closure_reason").setText(reason)
     part(operator, QComboBox, "fleet_closure_time").setCurrentIndex(2)
     QTest.mouseClick(part(operator, QPushButton, "fleet_closure_confirm"), Qt.MouseButton.LeftButton)
-    operator.wait("the road closed", lambda: operator.desk.roads.closures, 10)
+    operator.wait("the road closed", lambda: operator.desk.state.closures, 10)
 
 
 def test_the_way_along_the_roads_follows_the_mouse_and_a_click_takes_it(at_roads):
@@ -109,14 +109,14 @@ def test_a_road_is_closed_by_a_click_the_robot_on_it_sent_round_and_opened_again
     (row,) = layer("Closed roads").getFeatures()
     assert (row["reason"], row["closed_by"], row["edges"]) == ("tree on the road", "anna", 1)
     assert row["until"] != ""
-    newest = operator.desk.book.get(operator.sent_to("r1")[-1].command)
+    newest = operator.desk.state.commands.get(operator.sent_to("r1")[-1].command)
     assert newest.command != first.command
-    box_before = operator.desk.roads.closures
+    box_before = operator.desk.state.closures
     operator.click_site(*SOUTH)
     operator.wait("the question", lambda: part(operator, QPushButton, "fleet_open_road_confirm"), 5)
-    assert operator.desk.roads.closures == box_before
+    assert operator.desk.state.closures == box_before
     QTest.mouseClick(part(operator, QPushButton, "fleet_open_road_confirm"), Qt.MouseButton.LeftButton)
-    operator.wait("the road open", lambda: operator.desk.roads.closures == (), 10)
+    operator.wait("the road open", lambda: operator.desk.state.closures == (), 10)
     operator.wait("no closed road", lambda: layer("Closed roads").featureCount() == 0, 10)
 
 
@@ -181,7 +181,7 @@ def test_a_robot_that_stands_in_the_way_is_foretold_and_sent_aside_and_the_other
     window = operator.desk.parent()
     window.dock.tabs.setCurrentWidget(window.dock.conflict_panel)
     apart = []
-    operator.desk.pulled.connect(lambda: apart.append(metres_apart(operator, "r1", "r3")))
+    operator.desk.state.updated.connect(lambda: apart.append(metres_apart(operator, "r1", "r3")))
     operator.select("r1")
     operator.choose("fleet_road_route")
     operator.click_site(66.0, 8.0)
@@ -198,9 +198,9 @@ def test_a_robot_that_stands_in_the_way_is_foretold_and_sent_aside_and_the_other
     assert min(apart) > 1.3
     press(operator, "fleet_stop_r1")
     operator.wait(
-        "r1 paused", lambda: operator.desk.queues.get("r1") and not operator.report("r1").command, 15
+        "r1 paused", lambda: operator.desk.state.queues.get("r1") and not operator.report("r1").command, 15
     )
-    operator.wait("nobody in the way", lambda: not operator.desk.roads.conflicts.conflicts, 15)
+    operator.wait("nobody in the way", lambda: not operator.desk.state.conflicts.conflicts, 15)
     part(operator, QAction, "fleet_continue").trigger()
     operator.wait("a free place", lambda: part(operator, QToolButton, "fleet_aside_r3"), 15)
     operator.wait("its button", lambda: part(operator, QToolButton, "fleet_aside_r3").isEnabled(), 15)

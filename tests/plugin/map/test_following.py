@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from fleet_supervisor.plugin.map.overlay.screen import keep_in_view, show_places
+from fleet_supervisor.plugin.map.overlay.scene import keep_in_view, show_places
 from qgis.core import QgsPointXY
 from qgis.gui import QgsMapCanvas
 from qgis.PyQt.QtTest import QTest
@@ -28,8 +28,8 @@ def test_several_selected_robots_are_kept_in_view_and_others_may_go(
     at_desk, gateway, iface, make_robot, wait
 ):
     gateway.show(make_robot("r3", 20, 20))
-    wait(lambda: len(at_desk.desk.picture) == 3)
-    at_desk.desk.select_all(["r1", "r2"])
+    wait(lambda: len(at_desk.desk.state.robots) == 3)
+    at_desk.desk.selection.select_all(["r1", "r2"])
     at_desk.actions.follow.trigger()
     gateway.show(make_robot("r1", 260, 20), make_robot("r2", 330, 60))
     wait(lambda: is_shown(iface, 260, 20) and is_shown(iface, 330, 60), 4, "both robots")
@@ -37,7 +37,7 @@ def test_several_selected_robots_are_kept_in_view_and_others_may_go(
 
 
 def test_only_one_of_both_ways_to_follow_is_on(at_desk, gateway, iface, make_robot):
-    at_desk.desk.select("r1")
+    at_desk.desk.selection.select("r1")
     at_desk.actions.follow.trigger()
     at_desk.actions.follow_all.trigger()
     assert not at_desk.actions.follow.isChecked() and at_desk.actions.follow_all.isChecked()

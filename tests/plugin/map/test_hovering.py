@@ -113,7 +113,7 @@ def test_the_card_is_whole_in_the_corner_of_the_map(at_desk, viewport, gateway, 
 def test_a_task_stands_on_the_card_with_the_metres_to_go(at_desk, viewport, gateway, iface, wait):
     gateway._queue("command-1", "r2", "SetPosEnd", {"x": 80.0, "y": 72.5, "cone": True})
     gateway.step("command-1", CommandState.ACKNOWLEDGED, "r2")
-    wait(lambda: at_desk.desk.book.task_of("r2") is not None)
+    wait(lambda: at_desk.desk.state.commands.task_of("r2") is not None)
     point_at(viewport, iface.pixel(80, 60))
     assert "cone at 80.00, 72.50: acknowledged, 12.5 m to go" in cards(viewport)[0]
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from fleet_supervisor.plugin.ui.glyphs import TRAIL
@@ -24,14 +26,14 @@ def is_blue(iface, x, y):
 def driven(at_desk, gateway, make_robot, iface, wait):
     """r1 has driven 20 m to the east, half a metre a message."""
     desk = at_desk.desk
-    began = desk.clock()
+    began = desk.clock.steady()
     ahead = [0.0]
-    desk.clock = lambda: began + ahead[0]
+    desk.clock = SimpleNamespace(steady=lambda: began + ahead[0])
     for step in range(41):
         ahead[0] += 0.5
         gateway.show(make_robot("r1", 50 + step / 2, 40, v=1.0))
         x = 50 + step / 2
-        wait(lambda x=x: desk.picture.view("r1", desk.clock()).report.x == x)
+        wait(lambda x=x: desk.state.robots.view("r1", desk.clock.steady()).report.x == x)
         at_desk.view.show_now()
     return at_desk
 
@@ -46,13 +48,13 @@ def test_a_trail_is_painted_and_is_there_again_after_the_view_has_moved(driven, 
 
 def test_robots_are_placed_anew_when_the_map_gets_another_crs(at_desk, gateway, iface, make_robot, wait):
     gateway.show(make_robot("r1", 60, 30))
-    wait(lambda: at_desk.desk.picture.row("r1") is not None)
+    wait(lambda: at_desk.desk.state.robots.row("r1") is not None)
     other = QgsCoordinateReferenceSystem("EPSG:3857")
     iface.canvas.setDestinationCrs(other)
     way = QgsCoordinateTransform(
         QgsCoordinateReferenceSystem("EPSG:32633"), other, at_desk.desk.project.transformContext()
     )
-    origin = at_desk.desk.site.origin
+    origin = at_desk.desk.state.site.origin
     place = way.transform(QgsPointXY(origin[0] + 60, origin[1] + 30))
 
     def is_there():
@@ -86,9 +88,9 @@ def test_robots_of_another_site_leave_nothing_behind(driven, gateway, site, ifac
     gateway.robots.clear()
     gateway.site = replace(site, id="other", name="Other")
     gateway.show(make_robot("z9", 20, 20))
-    wait(lambda: driven.desk.link.phase.value == "retrying")
+    wait(lambda: driven.desk.state.link.phase.value == "retrying")
     gateway.start()
-    wait(lambda: len(driven.desk.picture) == 1 and driven.desk.picture.row("z9") == 0, 15)
+    wait(lambda: len(driven.desk.state.robots) == 1 and driven.desk.state.robots.row("z9") == 0, 15)
     wait(lambda: driven.view.layer.layer.featureCount() == 1)
     assert [feature["robot"] for feature in driven.view.layer.layer.getFeatures()] == ["z9"]
     assert not is_blue(iface, 62, 40)
@@ -100,18 +102,18 @@ def test_another_gateway_of_the_same_site_has_nothing_of_the_one_before(
     driven, gateway, site, iface, make_robot, wait
 ):
     desk = driven.desk
-    desk.select("r1")
+    desk.selection.select("r1")
     desk.orders.abort("r1")
-    wait(lambda: len(desk.book) == 1)
+    wait(lambda: len(desk.state.commands) == 1)
     other = type(gateway)(site)
     other.start()
     try:
         other.show(make_robot("z9", 20, 20))
         rows = []
-        desk.site_changed.connect(lambda: rows.append(driven.dock.table.model().rowCount()))
+        desk.state.site_changed.connect(lambda: rows.append(driven.dock.table.model().rowCount()))
         desk.open_link(other.url, "anna")
-        wait(lambda: len(desk.picture) == 1 and desk.picture.row("z9") == 0)
-        assert len(desk.book) == 0 and desk.selected is None
+        wait(lambda: len(desk.state.robots) == 1 and desk.state.robots.row("z9") == 0)
+        assert len(desk.state.commands) == 0 and desk.selection.last is None
         assert driven.dock.log.view.model().rowCount() == 0
         # Not for a moment does a row show what another robot told.
         assert rows == [0]
@@ -124,12 +126,12 @@ def test_another_gateway_of_the_same_site_has_nothing_of_the_one_before(
 
 def test_the_same_gateway_again_takes_nothing_away(driven, gateway, wait):
     desk = driven.desk
-    desk.select("r1")
+    desk.selection.select("r1")
     desk.close_link()
-    wait(lambda: desk.link.phase.value == "closed")
+    wait(lambda: desk.state.link.phase.value == "closed")
     desk.open_link(gateway.url, "anna")
-    wait(lambda: desk.link.phase.value == "connected")
-    assert desk.selected == "r1" and len(desk.picture) == 2
+    wait(lambda: desk.state.link.phase.value == "connected")
+    assert desk.selection.last == "r1" and len(desk.state.robots) == 2
 
 
 def test_a_thousand_newcomers_are_in_table_and_layer_without_the_window_waiting(
@@ -138,7 +140,7 @@ def test_a_thousand_newcomers_are_in_table_and_layer_without_the_window_waiting(
     rng = np.random.default_rng(2)
     crowd = [make_robot(f"n{k}", *rng.uniform(0, 100, 2).tolist()) for k in range(1000)]
     gateway.show(*crowd)
-    wait(lambda: len(at_desk.desk.picture) == 1002, 20)
+    wait(lambda: len(at_desk.desk.state.robots) == 1002, 20)
     wait(lambda: at_desk.view.layer.layer.featureCount() == 1002, 20)
     model = at_desk.dock.table.model()
     wait(lambda: model.rowCount() == 1002, 20)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from fleet_supervisor.plugin.gateway_client.robot_states import RobotStates
 from fleet_supervisor.plugin.gateway_client.robot_table import table_from_rows
-from fleet_supervisor.plugin.map.layers import AT_ONCE, RobotLayer
+from fleet_supervisor.plugin.map.reported_layers import AT_ONCE, RobotLayer
 from qgis.core import NULL, QgsPalLayerSettings, QgsProject, QgsSingleSymbolRenderer
 from qgis.gui import QgsAttributeTableFilterModel, QgsDualView
 
@@ -131,7 +131,7 @@ def test_while_a_project_is_read_its_layers_are_left_alone(at_desk, tmp_path, wa
 
     def in_the_middle(*_):
         # As timers do that run while QGIS shows how far it is.
-        at_desk.desk.pulled.emit()
+        at_desk.desk.state.updated.emit()
         touched.append(at_desk.view.layer.layer)
 
     project.layerLoaded.connect(in_the_middle)

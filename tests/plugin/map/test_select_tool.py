@@ -17,7 +17,7 @@ CONTROL = Qt.KeyboardModifier.ControlModifier
 def desk(at_desk, gateway, make_robot, iface, wait):
     """Four robots in a row, and the tool in hand."""
     gateway.show(*[make_robot(f"r{k}", 20.0 * k, 50.0) for k in range(1, 5)])
-    wait(lambda: len(at_desk.desk.picture) == 4)
+    wait(lambda: len(at_desk.desk.state.robots) == 4)
     wait(lambda: at_desk.view.overlay.robot_at(*xy(iface.pixel(80, 50))) == "r4")
     wait(lambda: at_desk.dock.table.model().rowCount() == 4)
     at_desk.actions.select.trigger()
@@ -58,36 +58,36 @@ def move(iface, at, held):
 
 def test_a_click_selects_one_robot_and_beside_them_none(desk, iface):
     click(iface, 40, 50)
-    assert desk.selection == ("r2",)
+    assert desk.selection.robots == ("r2",)
     click(iface, 60, 50)
-    assert desk.selection == ("r3",)
+    assert desk.selection.robots == ("r3",)
     click(iface, 60, 90)
-    assert desk.selection == ()
+    assert desk.selection.robots == ()
 
 
 def test_a_right_click_changes_no_selection(desk, iface):
     click(iface, 40, 50)
     iface.click(60, 50, Qt.MouseButton.RightButton)
-    assert desk.selection == ("r2",)
+    assert desk.selection.robots == ("r2",)
     iface.click(60, 90, Qt.MouseButton.RightButton)
-    assert desk.selection == ("r2",)
+    assert desk.selection.robots == ("r2",)
 
 
 @pytest.mark.parametrize("held", [SHIFT, CONTROL])
 def test_a_click_with_shift_or_ctrl_adds_and_takes_away(desk, iface, held):
     click(iface, 40, 50)
     click(iface, 60, 50, held)
-    assert desk.selection == ("r2", "r3")
-    assert desk.selected == "r3"
+    assert desk.selection.robots == ("r2", "r3")
+    assert desk.selection.last == "r3"
     click(iface, 60, 90, held)
-    assert desk.selection == ("r2", "r3")
+    assert desk.selection.robots == ("r2", "r3")
     click(iface, 60, 50, held)
-    assert desk.selection == ("r2",)
+    assert desk.selection.robots == ("r2",)
 
 
 def test_a_rectangle_selects_those_in_it_and_is_seen_while_it_is_drawn(desk, iface):
     (band,) = drag(iface, (30, 60), (70, 40))
-    assert desk.selection == ("r2", "r3")
+    assert desk.selection.robots == ("r2", "r3")
     assert band == QRect(iface.pixel(30, 60), iface.pixel(70, 40)).normalized()
     assert not [b for b in iface.canvas.viewport().findChildren(QRubberBand) if b.isVisible()]
 
@@ -102,9 +102,9 @@ def test_a_rectangle_selects_those_in_it_and_is_seen_while_it_is_drawn(desk, ifa
     ],
 )
 def test_rectangles_combine_with_what_is_selected_as_in_qgis(desk, iface, held, left):
-    desk.select_all(["r1", "r2"])
+    desk.selection.select_all(["r1", "r2"])
     drag(iface, (30, 60), (90, 40), held)
-    assert desk.selection == left
+    assert desk.selection.robots == left
 
 
 def test_a_rectangle_is_one_of_the_screen_when_the_map_is_rotated(desk, iface, wait):
@@ -117,7 +117,7 @@ def test_a_rectangle_is_one_of_the_screen_when_the_map_is_rotated(desk, iface, w
     QTest.mousePress(viewport, LEFT, NONE, left)
     move(iface, right, NONE)
     QTest.mouseRelease(viewport, LEFT, NONE, right)
-    assert desk.selection == ("r2", "r3")
+    assert desk.selection.robots == ("r2", "r3")
 
 
 def test_a_double_click_goes_to_the_robot(desk, iface):
@@ -127,25 +127,25 @@ def test_a_double_click_goes_to_the_robot(desk, iface):
     centre = iface.canvas.center()
     assert (centre.x() - 488000, centre.y() - 5190000) == pytest.approx((80, 50), abs=1)
     assert iface.canvas.extent().height() < 110
-    assert desk.selection == ("r4",)
+    assert desk.selection.robots == ("r4",)
 
 
 def test_escape_selects_none(desk, iface):
-    desk.select_all(["r1", "r2"])
+    desk.selection.select_all(["r1", "r2"])
     QTest.keyClick(iface.canvas, Qt.Key.Key_Escape)
-    assert desk.selection == ()
+    assert desk.selection.robots == ()
 
 
 def test_an_arrow_at_the_border_selects_and_shows_the_robots_beyond(desk, at_desk, iface, wait):
     iface.look_at(0, 0, 50, 40)
     wait(lambda: len(at_desk.view.overlay._painter.hints) > 0)
     iface.canvas.grab()
-    row = desk.picture.row("r4")
+    row = desk.state.robots.row("r4")
     (hint,) = [h for h in at_desk.view.overlay._painter.hints if row in h.rows]
     assert hint.x < iface.canvas.width() and hint.y < iface.canvas.height()
     at = QPoint(round(hint.x), round(hint.y))
     QTest.mouseClick(iface.canvas.viewport(), LEFT, NONE, at)
-    assert "r4" in desk.selection
+    assert "r4" in desk.selection.robots
     QTest.mouseDClick(iface.canvas.viewport(), LEFT, NONE, at)
     shown = iface.canvas.extent()
     assert shown.xMinimum() < 488080 < shown.xMaximum()
@@ -158,14 +158,14 @@ def test_the_table_and_the_layer_show_the_same_selection(desk, at_desk, iface, w
     rows = at_desk.dock.table.selectionModel().selectedRows()
     assert sorted(index.data() for index in rows) == ["r2", "r3"]
     layer.selectByExpression("robot in ('r1', 'r3', 'r4')")
-    assert sorted(desk.selection) == ["r1", "r3", "r4"]
-    assert desk.selected == "r3"
+    assert sorted(desk.selection.robots) == ["r1", "r3", "r4"]
+    assert desk.selection.last == "r3"
     layer.removeSelection()
-    assert desk.selection == ()
+    assert desk.selection.robots == ()
 
 
 def test_abort_asks_every_selected_robot_and_no_other(desk, at_desk, gateway, wait):
-    desk.select_all(["r1", "r3"])
+    desk.selection.select_all(["r1", "r3"])
     at_desk.actions.abort.trigger()
     wait(lambda: len(gateway.asked("send")) == 2)
     sent = [(params["robot"], params["op"]) for params in gateway.asked("send")]

@@ -15,7 +15,7 @@ from qgis.PyQt.QtWidgets import QLabel
 @pytest.fixture
 def drawn(at_desk, iface):
     """A desk with a cone target for r1 as a draft."""
-    at_desk.desk.select("r1")
+    at_desk.desk.selection.select("r1")
     at_desk.actions.cone.trigger()
     iface.click(70, 55)
     assert at_desk.desk.drafts.draft is not None
@@ -24,7 +24,7 @@ def drawn(at_desk, iface):
 
 def tell(gateway, site, wait, window):
     gateway.tell("site", to_json(site))
-    wait(lambda: window.desk.site == site, what="the news of the site")
+    wait(lambda: window.desk.state.site == site, what="the news of the site")
 
 
 @pytest.mark.parametrize("how", [{"version": "2"}, {"id": "chosen", "name": "Chosen"}])
@@ -34,12 +34,14 @@ def test_robots_commands_and_a_stop_outlast_a_site_that_is_published_anew_or_cho
     desk = drawn.desk
     desk.abort_selected()
     desk.emergency_stop()
-    wait(lambda: len(desk.book) == 1 and desk.emergency.in_force, what="the abort and the stop")
-    stop = desk.emergency
+    wait(
+        lambda: len(desk.state.commands) == 1 and desk.state.emergency.in_force, what="the abort and the stop"
+    )
+    stop = desk.state.emergency
     tell(gateway, replace(site, **how), wait, drawn)
-    assert desk.emergency == stop and drawn.dock.banner.isVisible()
-    assert len(desk.book) == 1 and len(desk.picture) == 2
-    assert desk.selection == ("r1",)
+    assert desk.state.emergency == stop and drawn.dock.banner.isVisible()
+    assert len(desk.state.commands) == 1 and len(desk.state.robots) == 2
+    assert desk.selection.robots == ("r1",)
 
 
 def test_a_draft_is_held_against_the_site_that_was_published_anew(drawn, gateway, site, wait, iface):
@@ -54,9 +56,9 @@ def test_a_draft_is_held_against_the_site_that_was_published_anew(drawn, gateway
 def test_an_order_to_send_outlasts_it(drawn, gateway, site, wait, monkeypatch):
     monkeypatch.setattr(scheduling, "SLICE_SECONDS", 0.0)
     drawn.desk.sending.send()
-    drawn.desk.connection._mailbox.put_site(replace(site, version="2"))
-    drawn.desk.pull()
-    assert drawn.desk.site.version == "2" and drawn.desk.checks.has_order
+    drawn.desk.connection._buffer.add(site=replace(site, version="2"))
+    drawn.desk.state.pull()
+    assert drawn.desk.state.site.version == "2" and drawn.desk.checks.has_order
     wait(lambda: gateway.asked("send"), what="the command")
     assert len(gateway.asked("send")) == 1
 
@@ -68,10 +70,10 @@ def test_another_site_is_told_whoever_had_it_served(at_desk, gateway, site, wait
         tell(gateway, other, wait, at_desk)
     else:
         gateway.stop()
-        wait(lambda: at_desk.desk.link.phase.value == "retrying", what="the loss of the link")
+        wait(lambda: at_desk.desk.state.link.phase.value == "retrying", what="the loss of the link")
         gateway.site = other
         gateway.start()
-        wait(lambda: at_desk.desk.site == other, 10, "the other site")
+        wait(lambda: at_desk.desk.state.site == other, 10, "the other site")
     assert [text for text in iface.texts() if "Other, no longer Yard" in text]
 
 
@@ -86,9 +88,9 @@ def test_a_draft_for_other_robots_is_taken_away_and_that_is_said(drawn, gateway,
         tell(gateway, replace(site, origin=(1.0, 2.0)), wait, drawn)
     else:
         gateway.stop()
-        wait(lambda: drawn.desk.link.phase.value == "retrying", what="the loss of the link")
+        wait(lambda: drawn.desk.state.link.phase.value == "retrying", what="the loss of the link")
         gateway.site = replace(site, id="other")
         gateway.start()
-        wait(lambda: drawn.desk.site.id == "other", 10, "the other gateway")
+        wait(lambda: drawn.desk.state.site.id == "other", 10, "the other gateway")
     assert drawn.desk.drafts.draft is None
     assert any("was not sent: another site is served now" in text for text in iface.texts())

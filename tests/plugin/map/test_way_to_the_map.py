@@ -48,7 +48,7 @@ def test_robots_and_clicks_follow_the_operation_that_the_project_prefers(at_desk
     at_desk.view.zoom_to("r1")
     at = pixel(iface, there)
     wait(lambda: at_desk.view.overlay.robot_at(at.x(), at.y()) == "r1", what="the robot in its new place")
-    at_desk.desk.select("r1")
+    at_desk.desk.selection.select("r1")
     at_desk.actions.cone.trigger()
     QTest.mouseClick(iface.canvas.viewport(), Qt.MouseButton.LeftButton, pos=at)
     wait(lambda: at_desk.desk.drafts.draft is not None, what="the cone")
@@ -57,7 +57,7 @@ def test_robots_and_clicks_follow_the_operation_that_the_project_prefers(at_desk
 
 def test_in_a_project_without_a_crs_a_draft_says_what_the_map_is_taken_for(at_desk, iface, gateway, wait):
     told = at_desk.dock.findChild(QLabel, "fleet_draft_text")
-    at_desk.desk.select("r1")
+    at_desk.desk.selection.select("r1")
     at_desk.actions.cone.trigger()
     iface.click(70, 55)
     assert "no CRS" not in told.text()

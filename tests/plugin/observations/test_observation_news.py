@@ -6,10 +6,11 @@ import json
 
 import pytest
 from fleet_supervisor.plugin.gateway_client import report_caches
-from fleet_supervisor.plugin.gateway_client.buffers import UpdateBuffer
+from fleet_supervisor.plugin.gateway_client.fleet_state import UpdateBuffer
 from fleet_supervisor.plugin.gateway_client.protocol import GatewayProtocol
 from fleet_supervisor.plugin.gateway_client.report_caches import ObservationCache
 from fleet_supervisor.plugin.ui.errors import GatewayLinkError
+from fleet_supervisor.robot_bridge.core.clock import ManualClock
 from fleet_supervisor.robot_bridge.core.messages import ObservationState
 
 
@@ -32,7 +33,7 @@ def mailbox():
 
 @pytest.fixture
 def protocol(mailbox):
-    return GatewayProtocol("anna", 10.0, "ws://here/desk", mailbox, lambda: 0.0)
+    return GatewayProtocol("anna", 10.0, "ws://here/desk", mailbox, ManualClock())
 
 
 def hear(protocol, params):
@@ -43,9 +44,9 @@ def test_the_newest_of_each_is_kept_until_the_window_looks(protocol, mailbox):
     hear(protocol, told(1))
     hear(protocol, told(2))
     hear(protocol, told(1, "rejected", reviewed_by="bob"))
-    found = mailbox.collect().observations.observations
+    found = mailbox.collect().observations
     assert {number: one.state.value for number, one in found.items()} == {1: "rejected", 2: "pending"}
-    assert mailbox.collect().observations.observations == {}
+    assert mailbox.collect().observations == {}
 
 
 def test_what_is_no_observation_ends_the_link_with_its_text(protocol):

@@ -7,8 +7,7 @@ from pathlib import Path
 
 import pytest
 from fleet_supervisor.plugin.gateway_client import report_caches
-from fleet_supervisor.plugin.gateway_client.buffers import ObservationUpdates
-from fleet_supervisor.plugin.gateway_client.link import ConnectionPhase, ConnectionStatus
+from fleet_supervisor.plugin.gateway_client.connection_status import ConnectionPhase, ConnectionStatus
 from fleet_supervisor.plugin.gateway_client.report_caches import ObservationCache
 from fleet_supervisor.plugin.observations.observation_views import ObservationFeed, Thumbnails
 from fleet_supervisor.robot_bridge.core.messages import observation_report
@@ -54,12 +53,12 @@ class Desk(QObject):
 
     def __init__(self):
         super().__init__()
+        self.state = self.orders = self
         self.link, self.observations = ConnectionStatus(ConnectionPhase.CLOSED), ObservationCache()
 
     def tell(self, *numbers):
-        news = ObservationUpdates()
-        news.add([reviewed(number) for number in numbers])
-        self.observations_changed.emit(self.observations.merge(news))
+        told = {number: reviewed(number) for number in numbers}
+        self.observations_changed.emit(self.observations.merge(told))
 
 
 def reviewed(number):

@@ -17,7 +17,7 @@ from tests.support.fleet_panel import press
 
 
 def test_abort_asks_the_selected_robot_only(at_desk, gateway, wait):
-    at_desk.desk.select("r2")
+    at_desk.desk.selection.select("r2")
     press(at_desk, QToolButton, "fleet_abort_button")
     wait(lambda: gateway.asked("send"))
     (params,) = gateway.asked("send")
@@ -34,7 +34,7 @@ def test_abort_all_is_one_press_and_no_question(at_desk, gateway, wait):
     press(at_desk, QPushButton, "fleet_abort_all_button")
     assert QApplication.activeModalWidget() is None
     wait(lambda: gateway.asked("abort_all"))
-    wait(lambda: len(at_desk.desk.book) == 2, what="both aborts")
+    wait(lambda: len(at_desk.desk.state.commands) == 2, what="both aborts")
     assert at_desk.dock.findChild(QLabel, "fleet_draft_text").text() == "ABORT ALL: sent to 2 robots"
 
 
@@ -51,7 +51,7 @@ def test_abort_all_is_repeated_when_the_link_broke_before_the_answer(at_desk, ga
     wait(lambda: gateway.asked("abort_all"))
     gateway.stop()
     gateway.mute.clear()
-    wait(lambda: at_desk.desk.link.phase.value == "retrying")
+    wait(lambda: at_desk.desk.state.link.phase.value == "retrying")
     gateway.start()
     wait(lambda: len(gateway.asked("abort_all")) == 2, 8)
     first, again = gateway.asked("abort_all")
@@ -71,7 +71,7 @@ def test_an_order_that_is_not_answered_is_told(at_desk, gateway, iface, wait):
 
 
 def test_the_log_shows_each_step_with_time_who_and_how_far_off(at_desk, gateway, iface, wait):
-    at_desk.desk.select("r1")
+    at_desk.desk.selection.select("r1")
     at_desk.actions.cone.trigger()
     iface.click(70, 55)
     press(at_desk, QToolButton, "fleet_send_button")
@@ -100,7 +100,7 @@ def test_the_log_shows_each_step_with_time_who_and_how_far_off(at_desk, gateway,
 
 def test_the_line_below_the_robots_follows_the_command_that_was_sent_last(at_desk, gateway, iface, wait):
     line = at_desk.dock.findChild(QLabel, "fleet_draft_text")
-    at_desk.desk.select("r1")
+    at_desk.desk.selection.select("r1")
     at_desk.actions.cone.trigger()
     iface.click(70, 55)
     words = at_desk.desk.drafts.draft.in_words()
@@ -115,7 +115,7 @@ def test_the_line_below_the_robots_follows_the_command_that_was_sent_last(at_des
 
 def test_the_line_says_of_an_abort_that_it_is_done(at_desk, gateway, wait):
     line = at_desk.dock.findChild(QLabel, "fleet_draft_text")
-    at_desk.desk.select("r1")
+    at_desk.desk.selection.select("r1")
     press(at_desk, QToolButton, "fleet_abort_button")
     wait(lambda: line.text() == "Queued. Abort of r1.", what="the abort being kept")
     (command,) = gateway.commands
@@ -125,13 +125,13 @@ def test_the_line_says_of_an_abort_that_it_is_done(at_desk, gateway, wait):
 
 def test_the_line_leaves_a_command_for_what_happens_after_it(at_desk, gateway, wait):
     line = at_desk.dock.findChild(QLabel, "fleet_draft_text")
-    at_desk.desk.select("r1")
+    at_desk.desk.selection.select("r1")
     press(at_desk, QToolButton, "fleet_abort_button")
     wait(lambda: line.text() == "Queued. Abort of r1.", what="the abort being kept")
     at_desk.desk.remarked.emit("3 commands written")
     (command,) = gateway.commands
     gateway.step(command, CommandState.REACHED, "r1")
-    wait(lambda: at_desk.desk.book.get(command).state is CommandState.REACHED)
+    wait(lambda: at_desk.desk.state.commands.get(command).state is CommandState.REACHED)
     assert line.text() == "3 commands written"
 
 

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 from fleet_supervisor.plugin.gateway_client.connection import ConnectionThread
-from fleet_supervisor.plugin.gateway_client.link import (
+from fleet_supervisor.plugin.gateway_client.connection_status import (
     ROLES,
     ConnectionPhase,
     ConnectionStatus,
@@ -316,8 +316,8 @@ def test_each_role_reaches_as_far_as_it_may_and_is_told_where_it_ends(
     desk = window.desk
     token = bridge.run("operators", "add", role.title(), "--role", role)
     desk.open_link(bridge.url, role.title(), OperatorCredentials(token, str(bridge.ca)))
-    wait(lambda: desk.link.phase is ConnectionPhase.CONNECTED and desk.site is not None, 10)
-    desk.answered.connect(answers.append)
+    wait(lambda: desk.state.link.phase is ConnectionPhase.CONNECTED and desk.state.site is not None, 10)
+    desk.orders.answered.connect(answers.append)
 
     def error_of(request, action) -> str:
         # Questions that the desk asks by itself, such as for observations, are answered here as well.
@@ -329,7 +329,7 @@ def test_each_role_reaches_as_far_as_it_may_and_is_told_where_it_ends(
         return str(to_request()[-1].error or "")
 
     def draw_and_send():
-        desk.select("nobody")
+        desk.selection.select("nobody")
         window.actions.cone.trigger()
         iface.canvas.mapTool().add_point((100.0, 80.0))
         wait(lambda: not desk.checks.is_under_way)
@@ -339,10 +339,10 @@ def test_each_role_reaches_as_far_as_it_may_and_is_told_where_it_ends(
     assert (refused in error_of(Send, draw_and_send)) is not stops
     assert (refused in error_of(AbortAll, window.actions.abort_all.trigger)) is not stops
     assert (refused in error_of(EmergencyStop, window.actions.emergency.trigger)) is not stops
-    assert (desk.emergency is not None and desk.emergency.in_force) is stops
-    stop = desk.emergency.stop if stops else "none"
+    assert (desk.state.emergency is not None and desk.state.emergency.in_force) is stops
+    stop = desk.state.emergency.stop if stops else "none"
     error = error_of(ClearEmergencyStop, lambda: desk.clear_emergency(stop, "all is well again"))
     assert (f"{refused} supervisor" in error) is not clears
     wait(lambda: any(refused in text for text in iface.texts()) is not clears)
     if clears:
-        wait(lambda: not desk.emergency.in_force)
+        wait(lambda: not desk.state.emergency.in_force)

@@ -23,7 +23,7 @@ def test_the_window_goes_on_while_a_gateway_hangs(at_desk, gateway, wait):
     timer = QTimer()
     timer.timeout.connect(lambda: ticks.append(time.monotonic()))
     timer.start(20)
-    at_desk.desk.select("r1")
+    at_desk.desk.selection.select("r1")
     at_desk.actions.abort.trigger()
     press(at_desk, QPushButton, "fleet_abort_all_button")
     at_desk.actions.connect.trigger()
@@ -41,17 +41,19 @@ def test_after_a_blocked_window_the_newest_position_is_shown_first(at_desk, gate
         gateway.show(make_robot("r1", float(x), 40))
     time.sleep(2)
     shown = []
-    at_desk.desk.pulled.connect(lambda: shown.append(at_desk.desk.picture.view("r1", 0.0).report.x))
+    at_desk.desk.state.updated.connect(
+        lambda: shown.append(at_desk.desk.state.robots.view("r1", 0.0).report.x)
+    )
     wait(lambda: shown)
     assert shown[0] == 99.0
 
 
 def test_what_follows_on_the_news_is_a_piece_of_its_own(at_desk, wait):
     told = []
-    at_desk.desk._timer.stop()
+    at_desk.desk.state._timer.stop()
     QCoreApplication.processEvents()
-    at_desk.desk.pulled.connect(lambda: told.append(True))
-    at_desk.desk.pull()
+    at_desk.desk.state.updated.connect(lambda: told.append(True))
+    at_desk.desk.state.pull()
     assert told == []
     wait(lambda: told, what="the signal")
 
@@ -60,12 +62,12 @@ def test_the_map_is_drawn_in_a_piece_after_the_one_in_which_lists_look_at_the_ne
     at_desk, wait, monkeypatch
 ):
     view, told = at_desk.view, []
-    at_desk.desk._timer.stop()
+    at_desk.desk.state._timer.stop()
     QTest.qWait(100)
     monkeypatch.setattr(view, "show_now", lambda: told.append("drawn"))
     # As if there were news, and long since the last frame.
     view.shown, view._last_frame = (-1, -1), 0.0
-    at_desk.desk.pulled.emit()
+    at_desk.desk.state.updated.emit()
     assert told == []
     wait(lambda: told == ["drawn"], what="the frame")
 

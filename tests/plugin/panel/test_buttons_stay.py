@@ -35,10 +35,10 @@ def test_no_button_moves_whatever_is_reported(panel, gateway, make_robot, wait, 
     watched = Watched(dock)
     names = [f"robot-{k}-with-a-long-name" for k in range(12)]
     gateway.show(*(make_robot(name, 10.0 * k, 20, battery=0.01) for k, name in enumerate(names)))
-    wait(lambda: len(desk.picture) == 14, what="the robots")
+    wait(lambda: len(desk.state.robots) == 14, what="the robots")
     dock.table.refresh()
     watched.check("robots have come")
-    desk.select(names[0])
+    desk.selection.select(names[0])
     watched.check("a robot is selected")
     found = Findings(refused=(LONG,), warnings=(LONG,))
     for words, draft in (
@@ -67,7 +67,7 @@ def test_no_button_moves_whatever_is_reported(panel, gateway, make_robot, wait, 
     gateway._queue("c1", names[0], "SetPosEnd", {"x": 60.0, "y": 50.0, "cone": True})
     gateway.step("c1", CommandState.DELIVERED, names[0])
     gateway.step("c1", CommandState.FAILED, names[0], reason=LONG)
-    wait(lambda: desk.book.get("c1") is not None, what="the command")
+    wait(lambda: desk.state.commands.get("c1") is not None, what="the command")
     watched.check("a command has failed")
     task = {
         "robot": names[0],
@@ -86,12 +86,12 @@ def test_no_button_moves_whatever_is_reported(panel, gateway, make_robot, wait, 
     pairs = [conflict(names[k], names[k + 1]) for k in range(5)]
     for listed in (pairs, pairs[2:], pairs[::-1], []):
         gateway.tell("conflicts", {"t": time.time(), "conflicts": listed, "waiting": []})
-        wait(lambda listed=listed: len(desk.roads.conflicts.conflicts) == len(listed), what="conflicts")
+        wait(lambda listed=listed: len(desk.state.conflicts.conflicts) == len(listed), what="conflicts")
         watched.check(f"{len(listed)} conflicts")
 
 
 def _state_of(desk, robot):
-    queue = desk.queues.get(robot)
+    queue = desk.state.queues.get(robot)
     return "" if queue is None else queue.state.value
 
 
@@ -107,16 +107,16 @@ def test_no_button_moves_with_the_banner_and_the_link(panel, gateway, iface, wai
         wait(lambda: dock.banner.isVisible(), what="the banner")
         watched.check(f"an emergency stop is in force, {list(more)}")
     gateway.stop()
-    wait(lambda: desk.link.phase.value == "retrying", what="the loss of the link")
+    wait(lambda: desk.state.link.phase.value == "retrying", what="the loss of the link")
     watched.check("the link is lost")
     panel.actions.connect.trigger()
-    wait(lambda: desk.link.phase.value == "closed", what="the end of the link")
+    wait(lambda: desk.state.link.phase.value == "closed", what="the end of the link")
     watched.check("the link is ended")
     dock.findChild(QToolButton, "fleet_access_button").setChecked(True)
     watched.check("the fields of the token are open")
     gateway.start()
     panel.actions.connect.trigger()
-    wait(lambda: desk.link.phase.value == "connected", what="the link")
+    wait(lambda: desk.state.link.phase.value == "connected", what="the link")
     watched.check("the link is back")
     gateway.stand(in_force=False)
     wait(lambda: not dock.banner.isVisible(), what="the end of the banner")
@@ -129,7 +129,7 @@ def test_a_gateway_that_refuses_moves_no_button(panel, gateway, wait):
     watched.check("the link is ended")
     gateway.protocol = 99
     panel.actions.connect.trigger()
-    wait(lambda: panel.desk.link.phase.value == "failed", what="the refusal")
+    wait(lambda: panel.desk.state.link.phase.value == "failed", what="the refusal")
     watched.check("the gateway refuses")
 
 

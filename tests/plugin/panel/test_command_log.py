@@ -3,6 +3,7 @@
 import csv
 import re
 import time
+from types import SimpleNamespace
 
 import pytest
 from fleet_supervisor.plugin.gateway_client.command_cache import CommandCache
@@ -109,9 +110,9 @@ def test_filters_by_robot_and_by_how_it_went(log, whose, which, commands):
 def test_the_selected_robots_commands_follow_the_selection(log, at_desk):
     choose(log, "fleet_log_robot", "Selected robots")
     assert rows(log) == []
-    at_desk.desk.select("r1")
+    at_desk.desk.selection.select("r1")
     assert [what for what, _ in rows(log)] == ["r1 · abort", "r1 · cone at 70.00, 55.00"]
-    at_desk.desk.select_all(["r1", "r2"])
+    at_desk.desk.selection.select_all(["r1", "r2"])
     assert len(rows(log)) == 4
 
 
@@ -233,9 +234,9 @@ def test_older_commands_of_each_selected_robot_are_asked_for(log, at_desk, gatew
         return [question.get("robot") for question in gateway.asked("get_commands")[before:]]
 
     choose(log, "fleet_log_robot", "Selected robots")
-    at_desk.desk.select_all(["r2", "r1"])
+    at_desk.desk.selection.select_all(["r2", "r1"])
     assert asked(2) == ["r1", "r2"]
-    at_desk.desk.select(None)
+    at_desk.desk.selection.select(None)
     assert asked(1) == [None]
     choose(log, "fleet_log_robot", "All robots")
     assert asked(1) == [None]
@@ -298,7 +299,7 @@ def test_it_is_told_how_many_older_commands_came_and_that_there_are_no_others(
 def test_of_several_robots_it_is_told_once(log, at_desk, gateway, wait):
     told = notes(at_desk)
     choose(log, "fleet_log_robot", "Selected robots")
-    at_desk.desk.select_all(["r2", "r1"])
+    at_desk.desk.selection.select_all(["r2", "r1"])
     press_older(log)
     press_older(log)
     wait(lambda: len(gateway.asked("get_commands")) == 5 and len(told) == 2, what="what came of it")
@@ -345,7 +346,7 @@ def later(at_desk, monkeypatch):
 
     def pass_by(seconds):
         now = at_desk.desk.clock
-        monkeypatch.setattr(at_desk.desk, "clock", lambda: now() + seconds)
+        monkeypatch.setattr(at_desk.desk, "clock", SimpleNamespace(steady=lambda: now.steady() + seconds))
 
     return pass_by
 
@@ -358,7 +359,7 @@ def test_a_gateway_that_does_not_answer_is_told_once_and_can_be_asked_again(
 ):
     told = notes(at_desk)
     choose(log, "fleet_log_robot", "Selected robots")
-    at_desk.desk.select_all(["r2", "r1"])
+    at_desk.desk.selection.select_all(["r2", "r1"])
     gateway.mute.add("get_commands")
     press_older(log)
     QTest.qWait(300)
@@ -392,7 +393,7 @@ def test_what_a_lost_link_kept_back_is_told_and_comes_when_it_is_there_again(
 
 def test_one_answer_of_several_that_are_refused_is_told(log, at_desk, gateway, wait, complaints):
     choose(log, "fleet_log_robot", "Selected robots")
-    at_desk.desk.select_all(["r2", "r1"])
+    at_desk.desk.selection.select_all(["r2", "r1"])
     gateway.refuse["get_commands"] = "the database is away"
     press_older(log)
     wait(lambda: len(gateway.asked("get_commands")) == 3 and complaints, what="the refusal")

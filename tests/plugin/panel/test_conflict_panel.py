@@ -26,7 +26,7 @@ def tell(at_desk, gateway, wait):
 
     def told(*conflicts, waiting=()):
         gateway.tell("conflicts", {"t": time.time(), "conflicts": list(conflicts), "waiting": list(waiting)})
-        known = at_desk.desk.roads
+        known = at_desk.desk.state
         wait(lambda: [one.x for one in known.conflicts.conflicts] == [one["x"] for one in conflicts])
 
     return told

@@ -47,7 +47,7 @@ def test_no_button_of_the_observations_moves(opened, at_desk, gateway, wait):
         dock.choose(number)
         watched.check(f"observation {number} is looked at")
     tell(gateway, 1, "accepted", reviewed_by=WORD, semantics=WORD, reason=LONG)
-    wait(lambda: desk.observations.get(1).state.value == "accepted", what="the review")
+    wait(lambda: desk.state.observations.get(1).state.value == "accepted", what="the review")
     dock.choose(1)
     watched.check("one was reviewed by another desk")
     gateway.refuse["review_observation"] = LONG
@@ -59,7 +59,7 @@ def test_no_button_of_the_observations_moves(opened, at_desk, gateway, wait):
     dock.reviewed.setChecked(True)
     watched.check("reviewed ones are shown, too")
     at_desk.actions.connect.trigger()
-    wait(lambda: desk.link.phase.value == "closed", what="the end of the link")
+    wait(lambda: desk.state.link.phase.value == "closed", what="the end of the link")
     watched.check("the link is ended")
 
 

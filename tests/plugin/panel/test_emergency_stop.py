@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import sys
+
 import pytest
 from fleet_supervisor.plugin.panel.emergency import ClearDialog, in_words
 from fleet_supervisor.plugin.ui.dialogs import ShrinkableScrollArea
@@ -84,6 +86,48 @@ def test_one_click_and_no_question_stops_everything_and_the_banner_says_what_was
     assert first.endswith(", by anna")
     assert counts == "0 of 2 robots acknowledged, 0 seen to stand"
     assert waiting == "No answer from r1, r2"
+
+
+def test_no_listener_that_fails_keeps_a_stop_or_an_abort_from_robots_or_from_the_others(
+    at_desk, gateway, wait, monkeypatch
+):
+    desk, raised = at_desk.desk, []
+
+    def fail(*_):
+        raise RuntimeError("a listener failed")
+
+    def fail_once(table, merge=desk.state.robots.merge):
+        monkeypatch.setattr(desk.state.robots, "merge", merge)
+        fail()
+
+    # As QGIS does: without it PyQt ends the program.
+    monkeypatch.setattr(sys, "excepthook", lambda kind, error, trace: raised.append(str(error)))
+    state, signals = desk.state, []
+    for signal in (
+        state.emergency_changed,
+        state.answered,
+        state.merged,
+        state.updated,
+        state.commands_changed,
+    ):
+        signals.append((signal, signal.connect(fail)))
+    for signal in (desk.emergency_changed, desk.orders.asked_again, desk.drafts.changed):
+        signals.append((signal, signal.connect(fail)))
+    desk.selection.select_all(["r1", "r2"])
+    desk.abort_selected()
+    desk.abort_all()
+    press_stop(at_desk)
+    wait(lambda: "in force" in banner(at_desk), what="the banner")
+    assert [one["robot"] for one in gateway.asked("send")] == ["r1", "r2"]
+    assert len(gateway.asked("abort_all")) == len(gateway.asked("emergency_stop")) == 1
+    monkeypatch.setattr(state.robots, "merge", fail_once)
+    gateway.stand(in_force=False)
+    wait(lambda: banner(at_desk) == "", what="what came with a report that failed")
+    gateway.stand(in_force=True)
+    wait(lambda: "in force" in banner(at_desk), what="the update after it")
+    assert set(raised) == {"a listener failed"}
+    for signal, connection in signals:
+        signal.disconnect(connection)
 
 
 @pytest.fixture
@@ -194,7 +238,7 @@ def test_a_stop_pressed_while_the_link_is_down_is_sent_when_it_is_back_and_says_
     at_desk, gateway, iface, wait
 ):
     gateway.stop()
-    wait(lambda: at_desk.desk.link.phase.value == "retrying", what="the loss of the link")
+    wait(lambda: at_desk.desk.state.link.phase.value == "retrying", what="the loss of the link")
     press_stop(at_desk)
     assert any("EMERGENCY STOP is NOT sent yet: the link is down" in text for text in iface.texts())
     assert "not confirmed it yet" in banner(at_desk)
@@ -275,7 +319,7 @@ def test_who_may_not_clear_it_is_told_so_and_it_stays(stopped, gateway, iface, w
 
 def test_what_the_gateway_refuses_while_it_is_in_force_comes_back_as_a_draft(stopped, gateway, iface, wait):
     gateway.refuse["send"] = "an emergency stop is in force since 12:00:00 UTC, by anna"
-    stopped.desk.select("r1")
+    stopped.desk.selection.select("r1")
     stopped.actions.cone.trigger()
     iface.click(30, 30)
     stopped.desk.sending.send()

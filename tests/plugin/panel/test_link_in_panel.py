@@ -84,9 +84,9 @@ def test_disconnecting_shows_it_and_the_robots_stay_and_age(at_desk, wait):
     press(at_desk, QToolButton, "fleet_connect_button")
     wait(lambda: "Not connected" in state_line(at_desk))
     assert len(table(at_desk)[1]) == 2
-    first = at_desk.desk.picture.view("r1", at_desk.desk.clock()).age
+    first = at_desk.desk.state.robots.view("r1", at_desk.desk.clock.steady()).age
     QTest.qWait(200)
-    assert at_desk.desk.picture.view("r1", at_desk.desk.clock()).age > first + 0.15
+    assert at_desk.desk.state.robots.view("r1", at_desk.desk.clock.steady()).age > first + 0.15
 
 
 def test_a_gateway_gone_in_mid_session_lets_robots_turn_stale_then_lost_and_comes_back(
@@ -99,7 +99,7 @@ def test_a_gateway_gone_in_mid_session_lets_robots_turn_stale_then_lost_and_come
     window = plugin.window
     window.dock.findChild(QLineEdit, "fleet_url").setText(gateway.url)
     window.actions.connect.trigger()
-    wait(lambda: len(window.desk.picture) == 2)
+    wait(lambda: len(window.desk.state.robots) == 2)
     gateway.stop()
 
     def states():

@@ -26,3 +26,9 @@ def test_a_link_that_is_down_is_told_once_with_its_robots_until_it_is_back():
     assert over == began
     notices.show(report(text="the broker refuses the password"))
     assert began[1] == "Link agvs is down: the broker refuses the password."
+    notices.show(
+        Links([LinkReport("agvs", "vda5050", True, "agv-1: emergency stop at the vehicle (MANUAL)")])
+    )
+    assert began[2] == "Link agvs: agv-1: emergency stop at the vehicle (MANUAL)."
+    notices.show(Links([LinkReport("agvs", "vda5050", True)]))
+    assert over == began

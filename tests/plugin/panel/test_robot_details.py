@@ -1,6 +1,7 @@
 """All that is known of the selected robot, on the real panel."""
 
 import base64
+from types import SimpleNamespace
 
 import pytest
 from fleet_supervisor.plugin.panel import robot_details
@@ -54,7 +55,7 @@ def test_a_long_name_of_a_row_is_not_cut_off(details, at_desk, monkeypatch):
     monkeypatch.setattr(
         robot_details, "tr", lambda text, **values: name if text == "Task" else text.format(**values)
     )
-    at_desk.desk.select("r1")
+    at_desk.desk.selection.select("r1")
     assert name in dict(sections(details)["Now"])
     tree = details.findChild(QTreeWidget, "fleet_details")
     child = tree.findItems(name, Qt.MatchFlag.MatchRecursive)[0]
@@ -64,7 +65,7 @@ def test_a_long_name_of_a_row_is_not_cut_off(details, at_desk, monkeypatch):
 
 def test_diagnostics_are_shown_as_received_with_their_units(details, at_desk, gateway, make_robot, wait):
     gateway.show(make_robot("r1", 50.123, 40, status="brake hot", device_time=1.7e9, accuracy=0.05))
-    at_desk.desk.select("r1")
+    at_desk.desk.selection.select("r1")
     wait(lambda: ("status", "brake hot") in sections(details).get("Diagnostics as received", []))
     told = dict(sections(details)["Diagnostics as received"])
     assert told["x"] == "50.123 m"
@@ -76,9 +77,9 @@ def test_diagnostics_are_shown_as_received_with_their_units(details, at_desk, ga
 
 
 def test_what_was_not_heard_for_hours_is_told_in_hours(details, at_desk, monkeypatch):
-    at_desk.desk.select("r1")
+    at_desk.desk.selection.select("r1")
     clock = at_desk.desk.clock
-    monkeypatch.setattr(at_desk.desk, "clock", lambda: clock() + 7215.3)
+    monkeypatch.setattr(at_desk.desk, "clock", SimpleNamespace(steady=lambda: clock.steady() + 7215.3))
     details.refresh()
     assert "last heard 2.0 h ago over" in dict(sections(details)["Now"])["State"]
 
@@ -92,7 +93,7 @@ def test_nothing_received_is_left_out():
 
 
 def test_commands_from_before_this_desk_are_asked_for(details, at_desk, gateway, wait):
-    at_desk.desk.select("r1")
+    at_desk.desk.selection.select("r1")
     wait(lambda: {"robot": "r1", "limit": 200} in gateway.asked("get_commands"))
     gateway._queue("command-1", "r1", "SetPosEnd", {"x": 1.0, "y": 2.0, "cone": True})
     gateway._queue("command-2", "r2", "Abort", {})
@@ -103,7 +104,7 @@ def test_commands_from_before_this_desk_are_asked_for(details, at_desk, gateway,
 
 
 def test_alarms_of_the_robot_are_among_it(details, at_desk, gateway, make_robot, wait):
-    at_desk.desk.select("r1")
+    at_desk.desk.selection.select("r1")
     gateway.show(make_robot("r1", 50, 40, battery=0.1))
     wait(lambda: "Alarms" in sections(details))
     assert sections(details)["Alarms"][0][1] == "r1 has 10% of its battery left (new)"
@@ -114,7 +115,7 @@ def test_the_last_image_is_fetched_decoded_and_shown(details, at_desk, gateway, 
         "result": {"observations": [seen(9, "SetObject"), seen(8), seen(7)]}
     }
     gateway.answers["get_image"] = lambda params: {"result": {"media_type": "image/png", "image": an_image()}}
-    at_desk.desk.select("r1")
+    at_desk.desk.selection.select("r1")
     picture = details.findChild(QLabel, "fleet_last_image")
     wait(lambda: picture.isVisible())
     assert gateway.asked("get_image") == [{"observation": 8}]
@@ -130,27 +131,27 @@ def test_the_last_image_is_fetched_decoded_and_shown(details, at_desk, gateway, 
 def test_an_image_that_cannot_be_read_is_said(details, at_desk, gateway, wait, image):
     gateway.answers["get_observations"] = lambda params: {"result": {"observations": [seen(8)]}}
     gateway.answers["get_image"] = lambda params: {"result": {"image": image}}
-    at_desk.desk.select("r1")
+    at_desk.desk.selection.select("r1")
     wait(lambda: "cannot be read" in details.findChild(QLabel, "fleet_image_text").text())
     assert not details.findChild(QLabel, "fleet_last_image").isVisible()
 
 
 def test_a_refused_image_and_no_image_are_said(details, at_desk, gateway, wait):
     gateway.refuse["get_observations"] = "viewers see no observations here"
-    at_desk.desk.select("r1")
+    at_desk.desk.selection.select("r1")
     text = details.findChild(QLabel, "fleet_image_text")
     wait(lambda: text.text() == "No image: viewers see no observations here")
     gateway.refuse.clear()
-    at_desk.desk.select("r2")
+    at_desk.desk.selection.select("r2")
     wait(lambda: text.text() == "r2 has sent no image lately")
 
 
 def test_an_image_of_another_robot_is_not_shown_for_this_one(details, at_desk, gateway, wait):
     gateway.answers["get_observations"] = lambda params: {"result": {"observations": [seen(8)]}}
     gateway.answers["get_image"] = lambda params: {"result": {"image": an_image()}}
-    at_desk.desk.select("r1")
+    at_desk.desk.selection.select("r1")
     picture = details.findChild(QLabel, "fleet_last_image")
     wait(lambda: picture.isVisible())
     gateway.mute.add("get_observations")
-    at_desk.desk.select("r2")
+    at_desk.desk.selection.select("r2")
     wait(lambda: not picture.isVisible())

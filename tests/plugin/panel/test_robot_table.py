@@ -42,7 +42,7 @@ def table(at_desk, gateway, make_robot, wait):
         make_robot("r3", None, None, v=None, battery=0.25, link="sql", status="charging"),
         make_robot("a9", 10, 10, v=0.0, battery=0.5, age=20.0, state=RobotState.LOST),
     )
-    wait(lambda: len(at_desk.desk.picture) == 4)
+    wait(lambda: len(at_desk.desk.state.robots) == 4)
     at_desk.dock.table.refresh()
     return at_desk.dock.table
 
@@ -243,11 +243,11 @@ def test_names_are_sorted_by_their_numbers_and_newcomers_among_them(
     table, at_desk, gateway, make_robot, wait
 ):
     gateway.show(*[make_robot(name, 1, 1) for name in ("r10", "R3", "r2b", "Ö1")])
-    wait(lambda: len(at_desk.desk.picture) == 8)
+    wait(lambda: len(at_desk.desk.state.robots) == 8)
     table.refresh()
     assert column(table, "Robot") == ["a9", "r1", "r2", "r2b", "R3", "r3", "r10", "Ö1"]
     gateway.show(make_robot("r9", 1, 1), make_robot("r100", 1, 1))
-    wait(lambda: len(at_desk.desk.picture) == 10)
+    wait(lambda: len(at_desk.desk.state.robots) == 10)
     table.refresh()
     assert column(table, "Robot")[6:9] == ["r9", "r10", "r100"]
     click_head(table, "Robot")
@@ -259,12 +259,12 @@ def test_what_changes_is_put_in_order_again_and_stays_selected(table, at_desk, g
     assert column(table, "Robot") == ["r2", "r1", "a9", "r3"]
     view_row = column(table, "Robot").index("r1")
     QTest.mouseClick(table.viewport(), LEFT, pos=table.visualRect(table.model().index(view_row, 0)).center())
-    assert at_desk.desk.selection == ("r1",)
+    assert at_desk.desk.selection.robots == ("r1",)
     gateway.show(make_robot("r1", 50, 40, v=2.5))
     wait(lambda: column(table, "Robot") == ["r1", "r2", "a9", "r3"])
     assert [index.row() for index in table.selectionModel().selectedRows()] == [0]
     assert table.currentIndex().row() == 0
-    assert at_desk.desk.selection == ("r1",)
+    assert at_desk.desk.selection.robots == ("r1",)
 
 
 # --- which ---
@@ -307,7 +307,7 @@ def test_what_is_typed_narrows_the_list_at_once(table, at_desk):
 def test_only_some_are_listed(table, at_desk, gateway, wait, which, names):
     gateway._queue("command-1", "r1", "SetPosEnd", {"x": 70.0, "y": 40.0})
     gateway.step("command-1", CommandState.ACKNOWLEDGED, "r1")
-    wait(lambda: at_desk.desk.book.task_of("r1") is not None)
+    wait(lambda: at_desk.desk.state.commands.task_of("r1") is not None)
     at_desk.dock.robots.mark_troubled({"r3"})
     box = at_desk.dock.findChild(QComboBox, "fleet_robot_filter")
     for _ in range(list(RobotChoice).index(which)):
@@ -317,20 +317,20 @@ def test_only_some_are_listed(table, at_desk, gateway, wait, which, names):
 
 
 def test_a_selected_robot_that_the_filter_hides_stays_selected(table, at_desk):
-    at_desk.desk.select("r2")
+    at_desk.desk.selection.select("r2")
     type_search(at_desk, "r1")
-    assert at_desk.desk.selection == ("r2",)
+    assert at_desk.desk.selection.robots == ("r2",)
     assert table.selectionModel().selectedRows() == []
     type_search(at_desk, "")
     assert [table.model().name_at(i.row()) for i in table.selectionModel().selectedRows()] == ["r2"]
 
 
 def test_keys_move_the_selection(table, at_desk):
-    at_desk.desk.select("r1")
+    at_desk.desk.selection.select("r1")
     QTest.keyClick(table, Qt.Key.Key_Down)
-    assert at_desk.desk.selection == ("r2",)
+    assert at_desk.desk.selection.robots == ("r2",)
     QTest.keyClick(table, Qt.Key.Key_Down, Qt.KeyboardModifier.ShiftModifier)
-    assert set(at_desk.desk.selection) == {"r2", "r3"}
+    assert set(at_desk.desk.selection.robots) == {"r2", "r3"}
 
 
 # --- columns ---
@@ -367,7 +367,7 @@ def test_states_stand_in_the_operators_words(table, monkeypatch):
 def test_the_tip_tells_hours_of_what_was_not_heard_for_hours(table, at_desk):
     row = column(table, "Robot").index("a9")
     index = table.model().index(row, 0)
-    table.model().show(at_desk.desk.clock() + 7215.3)
+    table.model().show(at_desk.desk.clock.steady() + 7215.3)
     assert "last heard 2.0 h ago over" in index.data(Qt.ItemDataRole.ToolTipRole)
 
 
@@ -378,7 +378,7 @@ def test_ten_thousand_are_sorted_and_searched(table, at_desk, gateway, make_robo
     rng = np.random.default_rng(1)
     speeds = rng.uniform(0.1, 9.0, 10_000)
     gateway.show(*[make_robot(f"n{k:05}", k % 100, k // 100, v=float(speeds[k])) for k in range(10_000)])
-    wait(lambda: len(at_desk.desk.picture) == 10_004, 30)
+    wait(lambda: len(at_desk.desk.state.robots) == 10_004, 30)
     table.refresh()
     table.sortByColumn(TITLES.index("Speed"), Qt.SortOrder.DescendingOrder)
     assert table.model().name_at(0) == f"n{int(speeds.argmax()):05}"

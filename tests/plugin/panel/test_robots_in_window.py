@@ -26,7 +26,7 @@ def test_the_table_tells_what_is_known_of_each_robot(at_desk, gateway, make_robo
 def test_the_table_sorts_by_number_and_keeps_the_selection(at_desk, gateway, make_robot, wait):
     gateway.show(make_robot("r3", v=10.0), make_robot("r4", v=9.0))
     wait(lambda: len(table(at_desk)[1]) == 4)
-    at_desk.desk.select("r4")
+    at_desk.desk.selection.select("r4")
     view, rows = table(at_desk)
     view.sortByColumn(list(rows[0]).index("Speed"), Qt.SortOrder.DescendingOrder)
     assert [row["Robot"] for row in table(at_desk)[1]][:2] == ["r3", "r4"]
@@ -39,7 +39,7 @@ def test_a_click_in_the_table_selects_on_the_map_and_in_the_layer(at_desk, wait)
     view, _ = table(at_desk)
     wait(lambda: view.model().rowCount() == 2)
     QTest.mouseClick(view.viewport(), LEFT, pos=view.visualRect(view.model().index(1, 0)).center())
-    assert at_desk.desk.selected == "r2"
+    assert at_desk.desk.selection.last == "r2"
     assert [feature["robot"] for feature in layer.selectedFeatures()] == ["r2"]
 
 
@@ -47,7 +47,7 @@ def test_a_selection_in_the_layer_selects_in_the_table(at_desk, wait):
     layer = at_desk.view.layer.layer
     wait(lambda: layer.featureCount() == 2, 3)
     layer.selectByExpression("robot = 'r2'")
-    assert at_desk.desk.selected == "r2"
+    assert at_desk.desk.selection.last == "r2"
     view, _ = table(at_desk)
     assert [index.data() for index in view.selectionModel().selectedRows()] == ["r2"]
 
@@ -68,7 +68,7 @@ def test_a_double_click_or_enter_in_the_table_goes_to_the_robot(at_desk, iface, 
 
 
 def test_a_followed_robot_stays_in_view(at_desk, gateway, iface, make_robot, wait):
-    at_desk.desk.select("r1")
+    at_desk.desk.selection.select("r1")
     at_desk.actions.follow.trigger()
     gateway.show(make_robot("r1", 190, 150))
     wait(lambda: abs(iface.canvas.center().x() - 488190) < 30, 4, "the map to follow")

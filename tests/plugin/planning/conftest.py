@@ -10,14 +10,7 @@ import pytest
 from fleet_supervisor.robot_bridge.core.assignment import solver
 from qgis.PyQt.QtWidgets import QAction, QDockWidget
 
-from tests.plugin.planning.panel_parts import (
-    answer,
-    planned,
-    put_cones,
-    put_road,
-    question,
-    queue,
-)
+from tests.plugin.planning.panel_parts import GatewayPlans, put_cones, put_road, queue, submitted
 
 
 @pytest.fixture
@@ -27,7 +20,12 @@ def site(site):
 
 
 @pytest.fixture
-def panel(at_desk, iface, wait):
+def plans(gateway):
+    return GatewayPlans(gateway)
+
+
+@pytest.fixture
+def panel(plans, at_desk, iface, wait):
     put_cones((40, 40), (45, 40), (50, 44), (75, 60), (80, 64), (85, 60))
     iface.findChild(QAction, "fleet_plan_panel").trigger()
     dock = iface.findChild(QDockWidget, "fleet_plan_dock")
@@ -45,21 +43,19 @@ def endless(monkeypatch):
 
     def stage(days, targets, start, aim, effort):
         for step in itertools.count(1):
-            effort.progress(min(step / 1000, 1.0))
+            effort.progress.report(min(step / 1000, 1.0))
             time.sleep(0.01)
 
     return lambda: monkeypatch.setattr(solver, "solved_stage", stage)
 
 
 @pytest.fixture
-def under_way(panel, gateway, wait):
+def under_way(panel, plans, gateway, wait):
     """A plan that both robots drive; each is at its first cone."""
-    planned(panel, wait)
-    answer(question(panel), send=True)
-    wait(lambda: len(gateway.asked("set_queue")) == 2 and not panel.driven.busy, 10)
+    submitted(panel, plans, wait)
     for robot in ("r1", "r2"):
         gateway.tell("queue", queue(panel, robot, ["current", "waiting", "waiting"]))
-    wait(lambda: len(panel._desk.queues) == 2, 5)
+    wait(lambda: len(panel._desk.state.queues) == 2, 5)
     return panel
 
 

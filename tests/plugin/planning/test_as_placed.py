@@ -137,7 +137,7 @@ def test_cones_placed_while_the_panel_was_closed_are_shown_when_it_opens(panel, 
     panel.placed.which.setCurrentIndex(panel.placed.which.findText("everything"))
     panel.close()
     gateway.tell("placement", to_json(placed(1)))
-    wait(lambda: len(panel._desk.placements) == 1, 10, "the placed cone")
+    wait(lambda: len(panel._desk.state.placed_cones) == 1, 10, "the placed cone")
     assert panel.placed.table.rowCount() == 0
     panel.show()
     assert panel.placed.table.rowCount() == 1

@@ -15,9 +15,7 @@ from tests.plugin.planning.panel_parts import (
     SHORT,
     answer,
     closing,
-    offered,
     planned,
-    press,
     question,
     way_to,
 )
@@ -36,41 +34,8 @@ def test_a_plan_is_made_round_the_roads_that_are_closed_at_the_gateway(far_cones
     assert max(y for _, y in round_it) > 85
     assert far_cones.bar.trouble.text() == ""
     gateway.tell("closures", closing())
-    wait(lambda: not far_cones._desk.roads.closures, 5)
+    wait(lambda: not far_cones._desk.state.closures, 5)
     assert max(y for _, y in way_to(planned(far_cones, wait), "far-1")) < 50
-
-
-def test_a_road_that_is_closed_under_a_plan_that_is_driven_is_told_until_another_is_agreed_to(
-    far_cones, gateway, wait, iface
-):
-    planned(far_cones, wait)
-    answer(question(far_cones), send=True)
-    wait(lambda: gateway.asked("set_queue") and not far_cones.driven.busy, 10)
-    gateway.tell("closures", closing(SHORT))
-    wait(lambda: far_cones.driven.trouble.closed, 5)
-
-    def told():
-        return [text for text in iface.texts() if "leads along a road that bert closed" in text]
-
-    assert len(told()) == 1
-    offered(far_cones, wait)
-    assert max(y for _, y in way_to(far_cones.driven.offer.plan, "far-1")) > 85
-    assert len(told()) == 1, "nobody has agreed yet"
-    press(far_cones, "fleet_plan_confirm")
-    wait(lambda: not far_cones.driven.busy, 10)
-    assert told() == []
-    assert far_cones.driven.trouble.closed == ()
-
-
-def test_a_road_that_is_opened_again_is_no_trouble_any_more(far_cones, gateway, wait, iface):
-    planned(far_cones, wait)
-    answer(question(far_cones), send=True)
-    wait(lambda: gateway.asked("set_queue") and not far_cones.driven.busy, 10)
-    gateway.tell("closures", closing(SHORT))
-    wait(lambda: far_cones.driven.trouble.closed, 5)
-    gateway.tell("closures", closing())
-    wait(lambda: not far_cones.driven.trouble, 5)
-    assert not any("closed" in text for text in iface.texts())
 
 
 @pytest.mark.parametrize(
@@ -93,12 +58,7 @@ class Held:
 
     def __init__(self, dock, monkeypatch):
         monkeypatch.setattr(scheduling, "SLICE_SECONDS", 0.0)
-        looks = (
-            dock.drafts._look,
-            dock.drafts._look_at_made,
-            dock.driven._look_at_offer,
-            dock.driven._followed._look,
-        )
+        looks = (dock.drafts._look, dock.drafts._look_at_made)
         self._timers = [look._slices._timer for look in looks]
         for timer in self._timers:
             timer.setInterval(3_600_000)
@@ -121,13 +81,13 @@ def held(far_cones, monkeypatch):
 
 def close_road(dock, gateway, wait):
     gateway.tell("closures", closing(SHORT))
-    wait(lambda: dock._desk.roads.closures, 5)
+    wait(lambda: dock._desk.state.closures, 5)
 
 
 def test_the_window_goes_on_while_a_plan_is_held_against_closed_roads(far_cones, held, gateway, wait):
     plan = planned(far_cones, wait)
     close_road(far_cones, gateway, wait)
-    assert len(list(closed_ways(plan, far_cones._desk.roads.closures))) == 1 + len(list(plan.all_stops()))
+    assert len(list(closed_ways(plan, far_cones._desk.state.closures))) == 1 + len(list(plan.all_stops()))
     assert held.under_way
     assert far_cones.drafts.draft.closed == () and far_cones.bar.trouble.text() == ""
     held.let_go()
@@ -144,30 +104,6 @@ def test_a_plan_that_took_the_place_of_another_is_left_alone_by_what_was_found_o
     held.let_go()
     wait(lambda: not held.under_way, 5)
     assert far_cones.drafts.draft is None
-
-
-def test_a_plan_that_is_sent_before_it_was_held_against_a_closed_road_is_no_less_in_trouble(
-    far_cones, held, gateway, wait
-):
-    planned(far_cones, wait)
-    close_road(far_cones, gateway, wait)
-    answer(question(far_cones), send=True)
-    held.let_go()
-    wait(lambda: far_cones.driven.trouble.closed, 5)
-    assert far_cones.driven.driven.closed != ()
-
-
-def test_a_plan_of_the_rest_that_is_confirmed_before_it_was_held_against_a_closed_road_is_no_less_in_trouble(
-    far_cones, held, gateway, wait
-):
-    planned(far_cones, wait)
-    answer(question(far_cones), send=True)
-    wait(lambda: gateway.asked("set_queue") and not far_cones.driven.busy, 10)
-    offered(far_cones, wait)
-    close_road(far_cones, gateway, wait)
-    press(far_cones, "fleet_plan_confirm")
-    held.let_go()
-    wait(lambda: far_cones.driven.trouble.closed, 5)
 
 
 def test_a_plan_is_not_there_before_it_was_held_against_a_road_that_was_closed_meanwhile(
@@ -204,7 +140,6 @@ def test_the_panel_outlives_a_task_that_qgis_deleted_while_its_plan_is_held_agai
 def test_nothing_is_looked_at_once_the_plugin_is_unloaded(far_cones, held, gateway, wait, plugin):
     planned(far_cones, wait)
     close_road(far_cones, gateway, wait)
-    answer(question(far_cones), send=True)
     assert held.under_way
     plugin.unload()
     assert not held.under_way

@@ -1,178 +1,263 @@
-"""What is left is planned anew when a robot is lost or a cone failed."""
+"""A plan that the gateway drives is steered and followed, whichever desk submitted it."""
 
 from __future__ import annotations
 
 import pytest
-from fleet_supervisor.plugin.gateway_client.buffers import OperatorRequest, RequestResult
+from fleet_supervisor.plugin.control.messages import PLAN_ASKED
+from qgis.PyQt.QtCore import Qt
 from qgis.PyQt.QtTest import QTest
-from qgis.PyQt.QtWidgets import QCheckBox
 
 from tests.plugin.planning.panel_parts import (
+    LOST_R1,
+    child,
     cones_of,
+    hung,
     lose_r1,
     offered,
+    planned,
     press,
     queue,
+    submitted,
 )
 
-
-def test_a_lost_robot_is_told_and_nothing_is_sent_before_somebody_agrees(under_way, gateway, wait, iface):
-    lose_r1(under_way, gateway, wait)
-    assert any("r1 is lost or offline" in text for text in iface.texts())
-    QTest.qWait(300)
-    asked = {method for method, _ in gateway.requests}
-    assert not asked & {"pause_queue", "take_over", "resume_queue"}
-    offered(under_way, wait)
-    assert [one["robot"] for one in gateway.asked("pause_queue")] == ["r2"]
-    assert gateway.asked("take_over") == [] and len(gateway.asked("set_queue")) == 2
-    cones = cones_of(under_way.driven.offer.plan)
-    assert len(cones["r2"]) == 5 and cones["r1"] == []
-    press(under_way, "fleet_plan_confirm")
-    wait(lambda: not under_way.driven.busy, 10)
-    (taken,) = gateway.asked("take_over")
-    assert taken["robot"] == "r1" and [share["robot"] for share in taken["shares"]] == ["r2"]
-    # All that waits is in it: the two of r2, and the three of the lost robot with what it was doing.
-    assert len(taken["shares"][0]["tasks"]) == 5
-    assert [task["cone"] for task in gateway.asked("set_queue")[-1]["tasks"]] == cones["r2"]
+STEERING = ("pause_plan", "resume_plan", "replan", "confirm_replan", "discard_replan", "clear_plan")
 
 
-def test_nobody_is_sent_by_itself_to_a_cone_at_which_a_lost_robot_stands(
-    under_way, gateway, wait, make_robot
+def steered(gateway):
+    return [(method, params) for method, params in gateway.requests if method in STEERING]
+
+
+def state_of(panel):
+    known = panel.driven.known
+    return None if known is None else known.report.state.value
+
+
+def test_a_lost_robot_is_told_and_nothing_is_confirmed_before_somebody_agrees(
+    under_way, plans, gateway, wait, iface
 ):
-    cone = under_way.driven.driven.plan.robot("r1").stops[1]
-    gateway.show(make_robot("r1", cone.x, cone.y))
-    picture = under_way._desk.picture
-    wait(lambda: picture.view("r1", under_way._desk.clock()).report.x == pytest.approx(cone.x), 5)
-    under_way.bar.by_itself.click()
-    lose_r1(under_way, gateway, wait)
-    wait(lambda: under_way.driven.offer is not None and not under_way.driven.busy, 15, "a new plan")
-    assert "r2 and r1 come within 0.0 m" in under_way.bar.trouble.text()
-    QTest.qWait(300)
-    assert under_way.driven.offer is not None and gateway.asked("take_over") == []
+    lose_r1(under_way, plans, wait)
+    assert len(hung(iface, "r1 is lost or offline")) == 1 and "r1 is lost" in under_way.bar.trouble.text()
+    assert steered(gateway) == []
+    offered(under_way, plans, wait)
+    name = plans.name
+    assert steered(gateway) == [("replan", {"plan": name, "revision": 1, "try_again": False})]
+    assert "New plan, not sent yet: 6 cones, 1 robot" in under_way.bar.text.text()
+    assert under_way.tree.topLevelItem(0).text(2) == "LOST, 0 cones"
+    assert cones_of(under_way.driven.shown_plan)["r1"] == []
+    press(under_way, "fleet_plan_confirm")
+    wait(lambda: state_of(under_way) == "driven" and not under_way.driven.asking, 10)
+    assert steered(gateway)[1:] == [("confirm_replan", {"plan": name, "revision": 3})]
+    plans.tell(problems=[], robots=["r2"])
+    wait(lambda: not hung(iface, "r1 is lost or offline"), what="the end of what is over")
+    assert under_way.bar.trouble.text() == ""
+
+
+def test_what_speaks_against_a_new_plan_is_counted_beside_it(under_way, plans, wait):
+    lose_r1(under_way, plans, wait)
+    offered(under_way, plans, wait, meetings=2, closed=1)
+    text = under_way.bar.trouble.text()
+    assert text == "1 way leads along a closed road; robots come too near to one another at 2 places"
 
 
 @pytest.mark.parametrize("again", [False, True])
-def test_a_cone_that_failed_is_told_and_given_up_or_tried_again(under_way, gateway, wait, iface, again):
-    first, *others = cones_of(under_way.driven.driven.plan)["r1"]
-    stopped = queue(under_way, "r1", ["failed", "waiting", "waiting"], state="paused")
-    stopped["tasks"][0]["reason"] = "a wall"
-    gateway.tell("queue", stopped)
-    wait(lambda: under_way.driven.trouble.failed == ((first, "a wall"),), 5)
-    assert any(first in text and "a wall" in text for text in iface.texts())
-    box = under_way.findChild(QCheckBox, "fleet_plan_again")
-    assert box.isEnabled() and not box.isChecked()
-    box.setChecked(again)
-    offered(under_way, wait)
-    offer = under_way.driven.offer.plan
-    assert len(gateway.asked("set_queue")) == 2 and not gateway.asked("take_over"), "nobody has agreed yet"
-    planned_again = [cone for cones in cones_of(offer).values() for cone in cones]
-    assert planned_again.count(first) == (1 if again else 0)
-    assert set(others) <= set(planned_again)
-    left_out = [(one.target.id, "a wall" in one.reason) for one in offer.left_out]
-    assert left_out == ([] if again else [(first, True)])
-    sent = len(gateway.requests)
-    press(under_way, "fleet_plan_confirm")
-    wait(lambda: not under_way.driven.busy, 10)
-    queued = [params for method, params in gateway.requests[sent:] if method == "set_queue"]
-    cones = [task.get("cone") for params in queued for task in params["tasks"]]
-    assert cones.count(first) == (1 if again else 0) and set(others) <= set(cones)
+def test_a_cone_that_failed_is_told_and_given_up_or_tried_again(
+    under_way, plans, gateway, wait, iface, again
+):
+    first = cones_of(under_way.driven.shown_plan)["r1"][0]
+    assert not under_way.bar.again.isEnabled()
+    plans.tell(steps=0, problems=[{"kind": "failed", "stop": first, "reason": "a wall"}])
+    wait(lambda: hung(iface, f"cone {first} failed: a wall"), 5)
+    assert under_way.bar.again.isEnabled() and not under_way.bar.again.isChecked()
+    under_way.bar.again.setChecked(again)
+    press(under_way, "fleet_plan_rest")
+    wait(lambda: gateway.asked("replan"), 5)
+    assert gateway.asked("replan")[0]["try_again"] is again
 
 
-def test_a_queue_that_somebody_else_holds_is_not_set_going(under_way, gateway, wait, iface):
+def test_a_road_that_was_closed_is_told_until_it_is_open_again(under_way, plans, wait, iface):
+    closed = {"kind": "closed", "robot": "r1", "stop": "row-2", "reason": "tree"}
+    plans.tell(steps=0, problems=[closed])
+    wait(lambda: hung(iface, "the way of r1 to row-2 leads along a closed road (tree)"), 5)
+    plans.tell(steps=0, problems=[])
+    wait(lambda: not hung(iface, "leads along a closed road"), 5)
+
+
+def test_going_on_as_before_discards_the_new_plan(under_way, plans, gateway, wait):
+    lose_r1(under_way, plans, wait)
+    offered(under_way, plans, wait)
+    press(under_way, "fleet_plan_discard")
+    wait(lambda: state_of(under_way) == "driven", 5)
+    assert gateway.asked("discard_replan") == [{"plan": plans.name, "revision": 3}]
+    assert "New plan" not in under_way.bar.text.text()
+
+
+def test_what_another_operator_did_meanwhile_is_shown_in_place_of_what_was_seen(
+    under_way, plans, gateway, wait, iface
+):
+    report = plans._changed(plans.name, state="paused", by="bert", reason="people on the track")
+    press(under_way, "fleet_plan_rest")
+    wait(lambda: hung(iface, "look at it again"), 5, "the refusal")
+    assert under_way.driven.known.report.revision == report["revision"]
+    assert under_way.bar.text.text().endswith("Paused: r1, r2 (bert: people on the track)")
+
+
+def test_a_plan_is_paused_and_goes_on_by_one_button_each(under_way, plans, gateway, wait):
+    assert not under_way.bar.resume.isEnabled()
+    press(under_way, "fleet_plan_pause")
+    wait(lambda: state_of(under_way) == "paused", 5)
+    assert under_way.bar.text.text() == "Under way: 0 of 6 cones. Paused: r1, r2 (anna)"
+    press(under_way, "fleet_plan_resume")
+    wait(lambda: state_of(under_way) == "driven", 5)
+    assert steered(gateway) == [
+        ("pause_plan", {"plan": plans.name}),
+        ("resume_plan", {"plan": plans.name, "revision": 2}),
+    ]
+
+
+def test_robots_that_somebody_paused_are_named_also_when_they_do_not_go_on(under_way, gateway, wait, iface):
+    for robot, states in (("r1", ["failed", "waiting", "waiting"]), ("r2", ["waiting"] * 3)):
+        why = {"state": "paused", "at": 50.0, "by": "bert", "reason": "paused by bert"}
+        gateway.tell("queue", queue(under_way, robot, states, **why))
+    wait(lambda: under_way.driven.paused == ["r2"], 5, "the pause, without the robot whose cone failed")
+    assert under_way.bar.text.text() == "Under way: 0 of 6 cones. Paused: r2 (paused by bert)"
+    press(under_way, "fleet_plan_resume")
+    wait(lambda: hung(iface, "The queue of r2 stays paused (paused by bert)"), 5, "what did not go on")
+
+
+def test_a_queue_that_somebody_else_holds_is_named_when_a_new_plan_is_confirmed(
+    under_way, plans, gateway, wait, iface
+):
     held = {"state": "paused", "reason": "paused by bert", "by": "bert", "at": 77.0}
     gateway.tell("queue", queue(under_way, "r2", ["waiting"] * 3, **held))
-    lose_r1(under_way, gateway, wait)
-    offered(under_way, wait)
+    offered(under_way, plans, wait)
     press(under_way, "fleet_plan_confirm")
-    wait(lambda: not under_way.driven.busy, 10)
-    assert gateway.asked("pause_queue") == [] and gateway.asked("resume_queue") == []
-    assert any("r2 stays paused (paused by bert)" in text for text in iface.texts())
+    wait(lambda: hung(iface, "r2 stays paused (paused by bert)"), 10)
 
 
-def test_going_on_as_before_lets_go_what_was_held_and_sends_nothing_else(under_way, gateway, wait):
-    lose_r1(under_way, gateway, wait)
-    ours = {"state": "paused", "reason": "paused by anna: plan of what is left", "by": "anna", "at": 88.0}
-    gateway.mute.add("pause_queue")
+def test_no_click_is_lost_between_two_and_a_pause_waits_for_no_answer(under_way, plans, gateway, wait):
+    press(under_way, "fleet_plan_pause")
+    wait(lambda: state_of(under_way) == "paused", 5)
+    gateway.mute.add("resume_plan")
+    press(under_way, "fleet_plan_resume")
+    assert "Being sent" in under_way.bar.text.text()
+    bar = under_way.bar
+    for button in (bar.resume, bar.rest, bar.confirm, bar.discard, bar.clear, bar.send):
+        assert not button.isEnabled(), "what cannot be asked now cannot be pressed either"
+    press(under_way, "fleet_plan_pause")
+    wait(lambda: [method for method, _ in steered(gateway)] == ["pause_plan", "resume_plan", "pause_plan"], 5)
+
+
+@pytest.mark.parametrize(
+    ("state", "button"),
+    [("driven", "rest"), ("driven", "clear"), ("driven", "pause"), ("paused", "resume"),
+     ("proposed", "confirm"), ("proposed", "discard")],
+)  # fmt: skip
+def test_every_refusal_is_told_with_its_reason(under_way, plans, gateway, wait, iface, state, button):
+    if state == "proposed":
+        offered(under_way, plans, wait)
+    else:
+        plans.tell(state=state)
+    wait(lambda: state_of(under_way) == state, 5)
+    for method in STEERING:
+        gateway.refuse[method] = f"{method}: anna is viewer, and that takes operator"
+    press(under_way, f"fleet_plan_{button}")
+    wait(lambda: hung(iface, "anna is viewer, and that takes operator"), 5)
+    assert state_of(under_way) == state and not under_way.driven.asking
+
+
+def test_what_is_sent_by_itself_is_chosen_before_and_told_when_it_happened(
+    panel, plans, gateway, wait, iface
+):
+    told = []
+    panel.driven.remarked.connect(told.append)
+    panel.bar.by_itself.click()
+    submitted(panel, plans, wait)
+    assert gateway.asked("submit_plan")[0]["by_itself"] is True
+    assert panel.bar.by_itself.isChecked() and not panel.bar.by_itself.isEnabled()
+    why = "plan of what is left: r1 is lost or offline"
+    plans.tell(steps=3, by="gateway", reason=why, robots=["r2"])
+    wait(lambda: any("sent by itself" in text and why in text for text in told), 5)
+    plans.tell(by="gateway", reason="no robot of plan 'x' is left to take over", problems=LOST_R1)
+    wait(lambda: hung(iface, "No new cone plan was sent by itself: no robot of plan"), 5)
+    why = "what is left could not be planned: it took too long"
+    plans.tell(by="gateway", reason=why, state="paused")
+    wait(lambda: hung(iface, f"The cone plan is paused: {why}."), 5)
+    assert not hung(iface, "No new cone plan was sent by itself")
+    press(panel, "fleet_plan_resume")
+    wait(lambda: not hung(iface, "could not be planned"), 5, "the end of what is over")
+
+
+def berts(plans, gateway, name="berts", robots=("r1", "r2")):
+    """Have bert submit once more what was submitted first."""
+    params = {**gateway.asked("submit_plan")[0], "plan": name}
+    report = plans.submit(params, by="bert")["result"]
+    report["robots"] = list(robots)
+    return report
+
+
+def test_the_plan_of_another_operator_is_shown_and_can_be_steered(under_way, plans, gateway, wait, iface):
+    own = plans.name
+    press(under_way, "fleet_plan_clear")
+    wait(lambda: under_way.driven.known is None, 5)
+    gateway.tell("plan", berts(plans, gateway))
+    wait(lambda: under_way.which.count() == 2, 5)
+    assert under_way.driven.known is None, "no button is another plan's all at once"
+    under_way.which.setCurrentIndex(1)
+    under_way.which.activated.emit(1)
+    wait(lambda: under_way.driven.shown_plan is not None, 5, "its document")
+    assert under_way.which.currentText().startswith("bert, ") and own != under_way.driven.shown
+    assert child(under_way, "r1", "row-1") and under_way.tree.topLevelItemCount() == 2
+    press(under_way, "fleet_plan_pause")
+    wait(lambda: gateway.asked("pause_plan") == [{"plan": "berts"}], 5)
+    plans.tell(state="cleared", by="bert")
+    wait(lambda: hung(iface, "bert cleared the cone plan"), 5)
+    assert under_way.driven.known is None and under_way.which.count() == 1
+
+
+def test_a_new_plan_is_made_beside_one_that_others_drive(under_way, plans, gateway, wait):
+    own = under_way.driven.shown
+    assert under_way.which.currentData() == own
+    under_way.which.setCurrentIndex(0)
+    under_way.which.activated.emit(0)
+    planned(under_way, wait)
+    assert "Not sent yet: 6 cones" in under_way.bar.text.text()
+    plans.tell(steps=0, done=1)
+    wait(lambda: under_way._desk.state.plans.get(own).report.done == 1, 5)
+    assert under_way.drafts.draft is not None and under_way.driven.known is None
+
+
+def test_a_desk_that_is_started_again_shows_what_is_driven(under_way, plans, gateway, wait, plugin, iface):
+    subscribed = gateway.subscriptions
+    gateway.stop()
+    plans.tell(done=2)
+    # What the window knows of it is gone, as with another QGIS.
+    under_way._desk.state.plans.clear()
+    under_way.driven.forget()
+    gateway.start()
+    wait(lambda: gateway.subscriptions > subscribed, 15, "the link")
+    wait(lambda: under_way.driven.shown_plan is not None, 10, "the plan")
+    assert under_way.bar.text.text() == "Under way: 2 of 6 cones"
+    assert cones_of(under_way.driven.shown_plan)["r1"] and under_way.tree.topLevelItemCount() == 2
+
+
+def test_a_plan_that_ended_while_the_link_was_down_is_shown_as_done(under_way, plans, gateway, wait):
+    subscribed = gateway.subscriptions
+    gateway.stop()
+    plans.tell(state="finished", done=6, ended_at=1_700_000_100.0)
+    gateway.start()
+    wait(lambda: gateway.subscriptions > subscribed, 15, "the link")
+    wait(lambda: under_way.bar.text.text() == "Done: 6 of 6 cones", 10)
+    press(under_way, "fleet_plan_clear")
+    assert gateway.asked("clear_plan") == [] and under_way.driven.known is None
+
+
+def test_nothing_of_a_question_is_left_when_something_else_is_asked(under_way, plans, gateway, wait, iface):
+    gateway.refuse["replan"] = "nobody is left"
     press(under_way, "fleet_plan_rest")
-    wait(lambda: gateway.asked("pause_queue"), 5)
-    gateway.tell("queue", queue(under_way, "r2", ["current", "waiting", "waiting"], **ours))
-    wait(lambda: under_way._desk.queues.get("r2").at == 88.0, 5)
-    under_way.driven.sending._answered(
-        RequestResult(OperatorRequest(under_way.driven.sending._key, "pause_queue"), {})
-    )
-    wait(lambda: under_way.driven.offer is not None and not under_way.driven.busy, 15)
-    press(under_way, "fleet_plan_discard")
-    wait(lambda: gateway.asked("resume_queue"), 5)
-    assert gateway.asked("resume_queue") == [{"robot": "r2", "revision": 3}]
-    assert gateway.asked("take_over") == [] and under_way.driven.offer is None
-
-
-def test_a_new_plan_is_not_sent_when_a_cone_was_given_up_meanwhile(under_way, gateway, wait, iface):
-    lose_r1(under_way, gateway, wait)
-    offered(under_way, wait)
-    gateway.tell("queue", queue(under_way, "r2", ["waiting"] * 3, state="paused", at=99.0))
-    wait(lambda: under_way._desk.queues.get("r2").at == 99.0, 5)
-    press(under_way, "fleet_plan_confirm")
-    wait(lambda: any("Given up since this plan was made: " in text for text in iface.texts()), 5)
-    assert gateway.asked("take_over") == [] and under_way.driven.offer is not None
-
-
-def test_what_is_switched_on_is_done_once_it_can_be_and_not_said_again_and_again(
-    under_way, gateway, wait, iface
-):
-    under_way.bar.by_itself.click()
-    gateway.stand(in_force=True, stop="stop-1", at=1.0, by="bert")
-    wait(lambda: under_way._desk.emergency is not None and under_way._desk.emergency.in_force, 5)
-    lose_r1(under_way, gateway, wait)
-    for revision in (4, 5):
-        states = ["current", "waiting", "waiting"]
-        gateway.tell("queue", queue(under_way, "r2", states, revision=revision))
-        wait(lambda revision=revision: under_way._desk.queues.revision("r2") == revision, 5)
-    assert sum("An emergency stop is in force" in text for text in iface.texts()) == 1
-    assert gateway.asked("pause_queue") == [] and gateway.asked("take_over") == []
-
-
-def test_what_was_told_of_a_lost_robot_is_taken_down_when_a_new_plan_is_agreed_to(
-    under_way, gateway, wait, iface
-):
-    lose_r1(under_way, gateway, wait)
-    assert any("r1 is lost or offline" in text for text in iface.texts())
-    offered(under_way, wait)
-    press(under_way, "fleet_plan_confirm")
-    wait(lambda: not under_way.driven.busy, 10)
-    assert not any("r1 is lost or offline" in text for text in iface.texts())
-
-
-def pause(under_way, gateway, wait, **why):
-    """Pause both queues, as an emergency stop does."""
-    for robot in ("r1", "r2"):
-        told = {"state": "paused", "at": 50.0, "by": "bert", "reason": "emergency stop by bert", **why}
-        gateway.tell("queue", queue(under_way, robot, ["waiting"] * 3, **told))
-    wait(lambda: len(under_way.driven.paused) == 2, 5, "the pauses")
-
-
-def test_a_plan_that_somebody_paused_says_so_and_goes_on_by_one_button(under_way, gateway, wait):
-    assert not under_way.bar.resume.isEnabled()
-    pause(under_way, gateway, wait)
-    assert under_way.bar.text.text() == "Under way: 0 of 6 cones. Paused: r1, r2 (emergency stop by bert)"
-    press(under_way, "fleet_plan_resume")
-    wait(lambda: len(gateway.asked("resume_queue")) == 2 and not under_way.driven.busy, 10)
-    assert [one["robot"] for one in gateway.asked("resume_queue")] == ["r1", "r2"]
-
-
-def test_no_robot_goes_on_while_an_emergency_stop_is_in_force(under_way, gateway, wait, iface):
-    gateway.stand(in_force=True, stop="stop-1", at=1.0, by="bert")
-    wait(lambda: under_way._desk.emergency is not None and under_way._desk.emergency.in_force, 5)
-    pause(under_way, gateway, wait)
-    press(under_way, "fleet_plan_resume")
-    wait(lambda: any("An emergency stop is in force" in text for text in iface.texts()), 5)
-    assert gateway.asked("resume_queue") == []
-
-
-def test_a_robot_whose_cone_failed_does_not_go_on_with_the_others(under_way, gateway, wait):
-    pause(under_way, gateway, wait)
-    gateway.tell("queue", queue(under_way, "r1", ["failed", "waiting", "waiting"], state="paused", at=60.0))
-    wait(lambda: list(under_way.driven.paused) == ["r2"], 5)
-    press(under_way, "fleet_plan_resume")
-    wait(lambda: gateway.asked("resume_queue") and not under_way.driven.busy, 10)
-    assert [one["robot"] for one in gateway.asked("resume_queue")] == ["r2"]
+    wait(lambda: hung(iface, "nobody is left"), 5)
+    under_way._desk.messages.end(PLAN_ASKED)
+    assert hung(iface, "nobody is left")
+    press(under_way, "fleet_plan_pause")
+    wait(lambda: not hung(iface, "nobody is left"), 5)
+    QTest.keyClick(under_way.tree, Qt.Key.Key_Delete)
+    assert not under_way.drafts.busy

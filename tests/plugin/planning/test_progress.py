@@ -6,9 +6,9 @@ import itertools
 from dataclasses import replace
 
 import pytest
+from fleet_supervisor.plugin.planning import progress as desk
 from fleet_supervisor.plugin.planning.plan_views import stop_rows
 from fleet_supervisor.plugin.planning.progress import problem_in_words
-from fleet_supervisor.plugin.planning.proposal import PlanProposal
 from fleet_supervisor.robot_bridge.core.assignment.job import (
     AssignmentJob,
     ConeTarget,
@@ -18,7 +18,6 @@ from fleet_supervisor.robot_bridge.core.assignment.job import (
 )
 from fleet_supervisor.robot_bridge.core.assignment.plan_changes import plan_with_trips, replan
 from fleet_supervisor.robot_bridge.core.assignment.progress import (
-    ClosedWay,
     ConeFacts,
     PlanProblem,
     PlanProgress,
@@ -31,6 +30,11 @@ from fleet_supervisor.robot_bridge.core.assignment.progress import (
 from fleet_supervisor.robot_bridge.core.assignment.solver import Objective, assign
 from fleet_supervisor.robot_bridge.core.messages import (
     PlacementReport,
+    PlanProblemKind,
+    PlanProblemReport,
+    PlanReport,
+    PlanState,
+    PlanStopReport,
     QueueReport,
     QueueState,
     RobotState,
@@ -140,7 +144,7 @@ def test_a_lost_robot_with_cones_to_come_is_trouble_and_one_that_has_finished_is
         "r2": driven.tell("r2", [DONE, DONE, DONE], RobotState.OFFLINE),
     }
     trouble = problem_of(driven.plan, driven.progress, queues)
-    assert trouble == PlanProblem(("r1",)) and "r1 is lost" in problem_in_words(trouble)
+    assert trouble == PlanProblem(("r1",))
 
 
 def test_what_a_lost_robot_was_doing_and_what_waited_is_shared_out_and_the_rest_stays(driven):
@@ -227,18 +231,31 @@ def test_a_new_plan_waits_for_what_a_robot_is_at_already():
     assert last.after == [second.task, report.tasks[0].task]
 
 
-def test_the_table_says_what_a_cone_waits_for():
-    staged = Staged()
-    for one in staged.plan.robots:
-        staged.progress.sent(sent_stops(one, staged.tasks[one.robot.id]))
-    (waiting,) = [task for task in staged.tasks["r1"] if task.cone == "c3"]
-    report = staged.task("r1", 2, WAITING, reason="waits for cone d1 of r2")
-    assert report.task == waiting.task
-    staged.progress.take_queue(QueueReport("r1", 1, QueueState.RUNNING, RobotState.FRESH, [report], []))
-    draft = PlanProposal(staged.plan, None, staged.facts, "plan-1")
-    words = {row.stop.id: row.in_words() for row in stop_rows(draft, staged.progress)["r1"]}
-    assert words["c3"] == "in the queue: waits for cone d1 of r2"
-    assert words["c1"] == ""
+def reported(plan, states, placements=()):
+    """What a desk knows of a plan of which the gateway reported stops in ``states``, by their ids."""
+    stops = [
+        PlanStopReport(f"task-{stop.id}", one.robot.id, stop.kind, stop.id, stop.x, stop.y, *states[stop.id])
+        for one, stop in plan.all_stops()
+        if stop.id in states
+    ]
+    report = PlanReport("p", 1, PlanState.DRIVEN, "anna", BEGAN, False, 6, 0, ["r1", "r2"], stops)
+    return desk.ReportedProgress(report, placements)
+
+
+def test_the_table_says_what_a_cone_waits_for_and_how_far_off_one_stands():
+    plan = Staged().plan
+    off = PlacementReport(1, "task-c1", "r1", 1, 0, 1, 0, 0.0, 0.07, BEGAN, "c", cone="c1", plan="p")
+    states = {
+        "c1": (DONE,), "c2": (CURRENT, "not shown"), "c3": (WAITING, "waits for cone d1 of r2"),
+        "d1": (DONE, None, 5), "d2": (FAILED, "a wall"),
+    }  # fmt: skip
+    collected = PlacementReport(5, "another", "r9", 1, 0, 1, 0, 0.0, 0.09, BEGAN, "c", plan="before")
+    rows = stop_rows(plan, reported(plan, states, [off, collected]))
+    shown = {row.stop.id: (row.in_words(), row.deviation) for one in rows.values() for row in one}
+    assert shown["c1"] == ("done", 0.07) and shown["c2"] == ("under way", None)
+    assert shown["c3"] == ("in the queue: waits for cone d1 of r2", None)
+    assert shown["d1"] == ("done", 0.09), "of a cone that was collected, what is written of its placing"
+    assert shown["d2"] == ("FAILED: a wall", None) and shown["d3"] == ("", None)
 
 
 def test_of_a_cone_that_was_sent_again_the_newest_task_counts(driven):
@@ -258,12 +275,11 @@ def test_of_a_cone_that_was_sent_again_the_newest_task_counts(driven):
 
 
 def test_trouble_with_many_ways_cones_and_robots_names_the_first_and_counts_the_others():
-    trouble = PlanProblem(
-        tuple(f"r{k}" for k in range(10)),
-        tuple((f"c{k}", "stuck") for k in range(4)),
-        tuple(ClosedWay("r1", f"c{k}", "anna") for k in range(58)),
-    )
-    assert problem_in_words(trouble).split("; ") == [
+    away, failed, closed = PlanProblemKind.AWAY, PlanProblemKind.FAILED, PlanProblemKind.CLOSED
+    problems = [PlanProblemReport(away, f"r{k}") for k in range(10)]
+    problems += [PlanProblemReport(failed, None, f"c{k}", "stuck") for k in range(4)]
+    problems += [PlanProblemReport(closed, "r1", f"c{k}") for k in range(58)]
+    assert problem_in_words(problems).split("; ") == [
         "r0 is lost or offline",
         "r1 is lost or offline",
         "r2 is lost or offline",
@@ -272,8 +288,8 @@ def test_trouble_with_many_ways_cones_and_robots_names_the_first_and_counts_the_
         "cone c1 failed: stuck",
         "cone c2 failed: stuck",
         "and 1 more",
-        "the way of r1 to c0 leads along a road that anna closed",
-        "the way of r1 to c1 leads along a road that anna closed",
-        "the way of r1 to c2 leads along a road that anna closed",
+        "the way of r1 to c0 leads along a closed road",
+        "the way of r1 to c1 leads along a closed road",
+        "the way of r1 to c2 leads along a closed road",
         "and 55 more",
     ]

@@ -10,6 +10,7 @@ from fleet_supervisor.plugin.gateway_client.robot_states import RobotStates
 from fleet_supervisor.plugin.gateway_client.robot_table import table_from_rows
 from fleet_supervisor.plugin.planning.forms import SHOWN, RobotsForm
 from fleet_supervisor.plugin.planning.plan_settings import PlanSettings
+from fleet_supervisor.robot_bridge.core.clock import ManualClock
 from fleet_supervisor.robot_bridge.core.messages import RobotState, to_json
 from qgis.PyQt.QtCore import Qt
 from qgis.PyQt.QtTest import QTest
@@ -31,10 +32,10 @@ def form(qgis_app):
 @pytest.fixture
 def show(form):
     """Show these robots, heard of this moment."""
-    desk = SimpleNamespace(picture=RobotStates(), clock=lambda: NOW)
+    desk = SimpleNamespace(state=SimpleNamespace(robots=RobotStates()), clock=ManualClock(uptime=NOW))
 
     def shown(*robots):
-        desk.picture.merge(table_from_rows([to_json(robot) for robot in robots], NOW))
+        desk.state.robots.merge(table_from_rows([to_json(robot) for robot in robots], NOW))
         form.show_robots(desk, PlanSettings())
 
     return shown

@@ -226,15 +226,21 @@ def files(tmp_path_factory):
     return folder
 
 
-@pytest.mark.parametrize("packages", [True, False])
-def test_a_layout_is_assigned_headless(qgis_process, root, files, packages):
-    site = root / "resources" / "sample_site" / "sample_site.gpkg"
+@pytest.fixture(scope="module")
+def placed(qgis_process, files):
+    """The cones of a layout, in a file beside the robots."""
     done = qgis_process(
         "run", "fleet:conelayout", "--", "LAYOUT=iso3888_1", f"POINT=640432,5193486.2 [{UTM}]", "HEADING=90",
         "DIMENSIONS=vehicle_width=1.7; exit_length=15", f"SITE_CRS={UTM}",
         f"CONES={files / 'cones.gpkg'}", f"FINDINGS={files / 'findings.gpkg'}",
     )  # fmt: skip
     assert done.status == 0, done.said
+    return files / "cones.gpkg"
+
+
+@pytest.mark.parametrize("packages", [True, False])
+def test_a_layout_is_assigned_headless(qgis_process, root, files, placed, packages):
+    site = root / "resources" / "sample_site" / "sample_site.gpkg"
     done = qgis_process(
         "run", "fleet:assigncones", "--",
         *(f"{name.upper()}={files / name}.gpkg" for name in ("cones", "robots", "stores")),
@@ -247,7 +253,7 @@ def test_a_layout_is_assigned_headless(qgis_process, root, files, packages):
     plan = plan_from_json((files / "plan.json").read_text("utf-8"))
     assert check_plan(plan) == []
     assert plan.method.startswith("pyvrp" if packages else "preview")
-    cones = pyogrio.read_info(files / "cones.gpkg")["features"]
+    cones = pyogrio.read_info(placed)["features"]
     assert len(plan.targets) == cones > 10
     stops = pyogrio.read_info(files / f"targets{packages}.gpkg")["features"]
     assert stops == sum(len(one.stops) for one in plan.robots)

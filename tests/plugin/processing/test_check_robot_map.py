@@ -108,11 +108,10 @@ def test_a_process_with_no_display_makes_the_layer(qgis_process, tmp_path):
     assert finding["kind"] == "orientation"
 
 
-def test_the_campus_has_no_error(export_by_process, qgis_process, data, tmp_path):
+def test_the_campus_has_no_error(export, qgis_process, data, tmp_path):
     campus = data / "upc_campus_nord" / "upc_campus_nord_local.gpkg"
     layers = [f"{campus}|layername={name}" for name in ("buildings", "walls", "furniture")]
-    done, file = export_by_process(*layers, CENTER="48,48", WIDTH=104, HEIGHT=104)
-    assert done.status == 0, done.said
+    file = export(*layers, CENTER="48,48", WIDTH=104, HEIGHT=104).file
     done = qgis_process("run", "fleet:checkrobotmap", "--", f"MAP={file}", f"FINDINGS={tmp_path / 'f.gpkg'}")
     assert done.status == 0, done.said
     assert done.result("ERROR_COUNT") == 0

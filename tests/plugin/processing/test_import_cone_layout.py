@@ -8,6 +8,7 @@ import pytest
 from qgis.core import (
     QgsFeature,
     QgsGeometry,
+    QgsProcessingContext,
     QgsProcessingException,
     QgsVectorLayer,
 )
@@ -114,6 +115,20 @@ def test_tracks_and_wide_tables_are_read_by_themselves(bring, table, tmp_path):
         made = bring(FILE=file, ORIGIN=PLACE)["CONES"].getFeatures()
         found = [(f["colour"], f.geometry().asPoint().y() - Y) for f in made]
         assert found == [("blue", pytest.approx(2)), ("yellow", pytest.approx(-2))]
+
+
+def test_a_file_that_is_not_there_is_named_before_a_crs_is_asked_for(provider, listener, tmp_path):
+    import processing
+
+    file = tmp_path / "track.csv"
+    said = r"track\.csv cannot be read: No such file or directory"
+    with pytest.raises(QgsProcessingException, match=said):
+        processing.run(
+            "fleet:importconelayout",
+            {"FILE": str(file), "ORIGIN": "0,0", "CONES": "memory:"},
+            context=QgsProcessingContext(),
+            feedback=listener,
+        )
 
 
 def test_a_file_of_another_kind_is_refused_with_what_is_read(bring, tmp_path):

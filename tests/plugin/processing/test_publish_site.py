@@ -386,14 +386,16 @@ def test_the_map_of_a_publication_is_the_map_exported_from_the_layers(
     assert exported.border == published.border
 
 
-def test_helsinki_is_published_by_its_profile_with_every_loss_named(qgis_process, data, tmp_path):
+def test_helsinki_is_published_by_its_profile_with_every_loss_named(publish, data):
     helsinki = data / "osm" / "helsinki_centre_utm35n.gpkg"
-    words = [f"OBSTACLES={helsinki}|layername={name}" for name in ("buildings", "barriers")]
-    words += [f"ROAD_CENTRELINES={helsinki}|layername=roads", "PROFILE=openstreetmap", "SITE_ID=helsinki"]
-    words += ["SITE_CRS=EPSG:32635", "ORIGIN=385700,6671500", f"FOLDER={tmp_path}"]
-    done = qgis_process("run", "fleet:publishsite", "--", *words, packages=False)
-    assert done.status == 0, done.said
-    site = read_site(tmp_path)
+    done = publish(
+        OBSTACLES=[f"{helsinki}|layername={name}" for name in ("buildings", "barriers")],
+        ROAD_CENTRELINES=[f"{helsinki}|layername=roads"],
+        PROFILE="openstreetmap",
+        SITE_CRS="EPSG:32635",
+        ORIGIN="385700,6671500",
+    )
+    site = read_site(done.folder)
     assert len(site.centrelines) == 2384
     kinds = {label.partition(",")[0] for label in site.outlines.semantics}
     assert {"building", "retaining_wall", "bollard"} <= kinds
@@ -403,14 +405,17 @@ def test_helsinki_is_published_by_its_profile_with_every_loss_named(qgis_process
     assert len(estimated) > 100 and {3.0, 1.5, 2.0, 12.0, 18.0} <= set(estimated)
 
 
-def test_the_papers_campus_in_local_metres_is_published_by_its_profile(qgis_process, data, tmp_path):
+def test_the_papers_campus_in_local_metres_is_published_by_its_profile(publish, data):
     campus = data / "upc_campus_nord" / "upc_campus_nord_local.gpkg"
     layers = ("buildings", "walls", "step_edges", "furniture")
-    words = [f"OBSTACLES={campus}|layername={name}" for name in layers]
-    words += ["PROFILE=upc_campus_nord", "SITE_ID=campus", "SITE_CRS=EPSG:25831", "ORIGIN=426000,4582000"]
-    done = qgis_process("run", "fleet:publishsite", "--", *words, "LOCAL=true", f"FOLDER={tmp_path}")
-    assert done.status == 0, done.said
-    site = read_site(tmp_path)
+    done = publish(
+        OBSTACLES=[f"{campus}|layername={name}" for name in layers],
+        PROFILE="upc_campus_nord",
+        SITE_CRS="EPSG:25831",
+        ORIGIN="426000,4582000",
+        LOCAL=True,
+    )
+    site = read_site(done.folder)
     # The model's own metres are the site frame's, whatever place it is published at.
     np.testing.assert_allclose(tuple(site.bounds), (-40, -1, 101, 124))
     labels = [label.partition(",")[0] for label in site.outlines.semantics]

@@ -201,6 +201,10 @@ def test_a_layer_without_roads_is_refused_with_what_it_holds(run, make_layer, na
     empty = make_layer("roads", fields=ALL, features=[])
     with pytest.raises(QgsProcessingException, match="the layer roads has no features: choose the layer of"):
         run(name, empty, **places)
+    # Its having no CRS either is not what to mend.
+    nowhere = QgsVectorLayer("LineString", "roads", "memory")
+    with pytest.raises(QgsProcessingException, match="the layer roads has no features: choose the layer of"):
+        run(name, nowhere, **places)
     far = make_layer("roads", fields=ALL, features=[("LINESTRING(0 0, 1e12 0)", *SQUARE[0][1:])])
     said = r"no feature of the layer roads is a road: .* has a coordinate .* 100 000 km"
     with pytest.raises(QgsProcessingException, match=said):

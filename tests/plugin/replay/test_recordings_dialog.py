@@ -32,7 +32,7 @@ def window(plugin, iface, gateway, wait):
     panel.findChild(QLineEdit, "fleet_url").setText(gateway.url)
     plugin.window.actions.connect.trigger()
     desk = plugin.window.desk
-    wait(lambda: desk.link.phase.value == "connected" and desk.site is not None, what="the link")
+    wait(lambda: desk.state.link.phase.value == "connected" and desk.state.site is not None, what="the link")
     wait(lambda: gateway.subscriptions, what="the subscription")
     iface.findChild(QAction, "fleet_recordings").trigger()
     dialog = iface.findChild(QDialog, "fleet_recordings_dialog")

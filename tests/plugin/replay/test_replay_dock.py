@@ -7,7 +7,7 @@ import time
 from itertools import groupby, pairwise
 
 import pytest
-from fleet_supervisor.plugin.map.overlay import paths_painter
+from fleet_supervisor.plugin.map.overlay import task_painter
 from fleet_supervisor.plugin.replay import replay_map
 from fleet_supervisor.plugin.ui import scheduling
 from qgis.core import QgsProject
@@ -27,7 +27,7 @@ def loaded(at_desk, gateway, iface, wait):
     now = time.time()
     gateway._clock = itertools.count(round(now) - 15)
     at_desk.desk.orders.abort("r1")
-    wait(lambda: len(at_desk.desk.book), what="the abort")
+    wait(lambda: len(at_desk.desk.state.commands), what="the abort")
     places = [["r1", now - 20 + k, 50.0 + k, 40.0, 0.0, 1.0, None, None] for k in range(10)]
     gateway.answers["get_trajectory"] = lambda params: {"result": {"places": places, "next": None}}
     next(action for action in iface.plugins.actions() if action.objectName() == "fleet_replay").trigger()
@@ -76,7 +76,8 @@ def test_another_gateway_of_the_same_site_is_not_shown_the_history_of_the_one_be
         other.show(make_robot("r1", 20, 20))
         at_desk.desk.open_link(other.url, "anna")
         wait(
-            lambda: at_desk.desk.picture.arrays(0.0).xy.tolist() == [[20, 20]], what="the other gateway's r1"
+            lambda: at_desk.desk.state.robots.arrays(0.0).xy.tolist() == [[20, 20]],
+            what="the other gateway's r1",
         )
         assert len(loaded.fetching.history) == 0
         assert not lines()
@@ -89,9 +90,9 @@ def test_another_gateway_of_the_same_site_is_not_shown_the_history_of_the_one_be
 
 def test_the_same_gateway_again_takes_no_history_away(loaded, at_desk, gateway, wait):
     at_desk.desk.close_link()
-    wait(lambda: at_desk.desk.link.phase.value == "closed")
+    wait(lambda: at_desk.desk.state.link.phase.value == "closed")
     at_desk.desk.open_link(gateway.url, "anna")
-    wait(lambda: at_desk.desk.link.phase.value == "connected")
+    wait(lambda: at_desk.desk.state.link.phase.value == "connected")
     assert len(loaded.fetching.history) == 10 and lines()
 
 
@@ -129,14 +130,14 @@ def test_while_time_is_held_the_map_goes_on_until_it_is_whole_and_follows_its_vi
     loaded, at_desk, gateway, wait, monkeypatch
 ):
     """Of many ways some are drawn in each frame; a moment that is held has no other frame."""
-    monkeypatch.setattr(paths_painter, "FILL_SECONDS", 0.0)
+    monkeypatch.setattr(task_painter, "FILL_SECONDS", 0.0)
     begun = loaded.clockwork.since
     for k in range(4):
         path = {"points": [[10.0, 20.0 * k], [90.0, 20.0 * k]]}
         steps = [{"state": "queued", "at": begun, "by": "anna"}]
         known = {"command": f"p{k}", "robot": f"w{k}", "op": "SetPath", "params": path, "operator": "anna"}
         gateway.tell("command", {**known, "state": "queued", "steps": steps})
-    wait(lambda: "p3" in at_desk.desk.book and not loaded.is_busy, what="the commands")
+    wait(lambda: "p3" in at_desk.desk.state.commands and not loaded.is_busy, what="the commands")
     ways = loaded.map.overlay._painter._plans._ways
     loaded.clockwork.seek(begun + 12.0)
     assert not loaded.map.overlay.is_whole
@@ -181,7 +182,7 @@ def test_of_what_is_removed_nothing_is_left_to_be_done(loaded):
 def test_a_replay_of_selected_robots_has_their_marks_alone(loaded, at_desk, gateway, wait):
     at_desk.desk.orders.abort("r2")
     wait(lambda: {mark.command.robot for mark in loaded.line.marks} == {"r1", "r2"}, what="both aborts")
-    at_desk.desk.select("r2")
+    at_desk.desk.selection.select("r2")
     loaded.form.selected.setChecked(True)
     loaded.form.load.click()
     wait(lambda: not loaded.is_busy and loaded.line.marks, what="the replay")

@@ -39,7 +39,7 @@ def test_any_name_will_do(connections, name):
 
 def test_a_new_name_takes_the_place_of_the_old_one_and_stays_the_last(connections):
     connections.store(connection("Yard"))
-    connections.last = "Yard"
+    connections.set_last("Yard")
     connections.store(connection("North yard"), "Yard")
     assert connections.names() == ["North yard"]
     assert connections.last == "North yard"
@@ -47,7 +47,7 @@ def test_a_new_name_takes_the_place_of_the_old_one_and_stays_the_last(connection
 
 def test_one_that_is_removed_is_not_the_last_any_more(connections):
     connections.store(connection("Yard"))
-    connections.last = "Yard"
+    connections.set_last("Yard")
     connections.remove("Yard")
     assert connections.last == ""
     assert connections.get("Yard") is None

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 
 import pytest
-from fleet_supervisor.plugin.gateway_client.link import ConnectionPhase
+from fleet_supervisor.plugin.gateway_client.connection_status import ConnectionPhase
 from fleet_supervisor.plugin.panel.window import MENU, FleetWindow
 from fleet_supervisor.plugin.settings.connections import GatewayConnection
 from fleet_supervisor.plugin.tour.practice_fleet import PracticeFleet, find_program
@@ -168,7 +168,7 @@ def test_a_program_that_ends_is_told_with_what_it_said(iface, wait, tmp_path):
 
 def test_connected_elsewhere_it_starts_nothing_and_asks_for_no_deeds(tour, gateway, wait):
     tour.desk.open_link(gateway.url, "anna")
-    wait(lambda: tour.desk.link.phase is ConnectionPhase.CONNECTED)
+    wait(lambda: tour.desk.state.link.phase is ConnectionPhase.CONNECTED)
     tour.action.start()
     tour.go_to(at_of(FLEET))
     tour.click("fleet_tour_offer")
@@ -179,7 +179,7 @@ def test_connected_elsewhere_it_starts_nothing_and_asks_for_no_deeds(tour, gatew
             tour.action.panel.show_step(at)
             assert step.practice not in tour.text("fleet_tour_text")
     tour.action.end()
-    assert tour.desk.link.phase is ConnectionPhase.CONNECTED
+    assert tour.desk.state.link.phase is ConnectionPhase.CONNECTED
 
 
 def test_the_sample_site_opens(tour):
@@ -200,7 +200,7 @@ def test_a_practice_fleet_is_driven_and_ends_with_the_tour(tour, wait):
     tour.action.start()
     tour.go_to(at_of(FLEET))
     tour.click("fleet_tour_offer")
-    wait(lambda: len(tour.desk.picture.views(tour.desk.clock())) == 3, 60, "three robots")
+    wait(lambda: len(tour.desk.state.robots.views(tour.desk.clock.steady())) == 3, 60, "three robots")
     processes = list(tour.action.fleet.findChildren(type(tour.action.fleet._processes[0])))
     assert len(processes) == 4
     wait(lambda: "is connected" in tour.text("fleet_tour_said"))
@@ -211,7 +211,7 @@ def test_a_practice_fleet_is_driven_and_ends_with_the_tour(tour, wait):
     tour.click("fleet_tour_close")
     assert tour.action.panel is None
     assert tour.window.dock.connection_panel.url() == before
-    assert tour.desk.link.phase is ConnectionPhase.CLOSED
+    assert tour.desk.state.link.phase is ConnectionPhase.CLOSED
     for pid in pids:
         with pytest.raises(ProcessLookupError):
             os.kill(pid, 0)

@@ -1,11 +1,13 @@
 """Work in slices: the first at once or soon, others when the window has time, none after it was given up."""
 
 from itertools import groupby
+from types import SimpleNamespace
 
 import pytest
 from fleet_supervisor.plugin.ui import scheduling
 from fleet_supervisor.plugin.ui.errors import FleetError
 from fleet_supervisor.plugin.ui.scheduling import ONE_STEP, CooperativeTask, scaled_progress
+from fleet_supervisor.robot_bridge.core.clock import ManualClock
 from qgis.PyQt.QtCore import QTimer
 
 
@@ -15,7 +17,7 @@ class Diary:
     def __init__(self):
         self.told = []
         self.now = 0.0
-        self.slices = CooperativeTask(clock=self.tick)
+        self.slices = CooperativeTask(clock=SimpleNamespace(steady=self.tick))
 
     def tick(self):
         self.now += 0.001
@@ -156,7 +158,7 @@ def test_slices_of_one_step_each_leave_the_window_its_time_after_every_step(qgis
     events = QTimer()
     events.timeout.connect(lambda: told.append("events"))
     events.start(0)
-    slices = CooperativeTask(seconds=ONE_STEP, clock=lambda: 0.0)
+    slices = CooperativeTask(seconds=ONE_STEP, clock=ManualClock())
     slices.begin_soon(work())
     wait(lambda: not slices.is_busy)
     events.stop()

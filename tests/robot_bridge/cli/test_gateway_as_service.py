@@ -13,6 +13,7 @@ import time
 import urllib.error
 import urllib.request
 from dataclasses import replace
+from pathlib import Path
 
 import pytest
 from prometheus_client.parser import text_string_to_metric_families
@@ -86,6 +87,10 @@ def test_a_gateway_that_is_well_says_so(bridge):
     assert (status, found["status"], found["site"]) == (200, "ok", {"id": "sample", "version": 1})
     assert found["database"]["ok"] and found["database"]["latency_s"] < 2
     assert found["save"]["age_s"] < 10 and found["sql_link"]["age_s"] < 10
+    assert found["routes"] == {"engine": "SciPy", "ok": True, "starts": 0}
+    # It has made what finds ways: RoutingKit may end its process, and is loaded in another one.
+    assert "scipy" in (loaded := Path(f"/proc/{bridge.gateway.pid}/maps").read_text())
+    assert "routingkit" not in loaded
 
 
 def test_a_gateway_whose_database_is_locked_says_so_and_recovers(bridge):
@@ -150,17 +155,23 @@ def test_a_new_publication_is_taken_over_and_robots_and_desks_are_told(bridge, s
     assert health(bridge)[1]["site"]["version"] == 2
 
 
+def news_of(frame):
+    """Return what a frame tells of the site, nothing where it tells of something else."""
+    return frame["params"] if frame["method"] == "site" else {}
+
+
 def test_settings_are_taken_over_without_a_new_publication(bridge, site):
     robot, desk = bridge.robot("r1"), bridge.desk()
     robot.plug_in(1)
     told = []
     desk._hear = told.append
-    change(site, "stale_after_s = 3.0", "stale_after_s = 9.5")
-    desk.until(lambda: [f for f in told if f["method"] == "site" and f["params"]["stale_after"] == 9.5])
-    robot.ask("Alive")
-    time.sleep(3.2)
-    (known,) = desk.ask("get_positions")["robots"]
-    assert known["state"] == "fresh"
+    change(site, "lost_after_s = 10.0", "lost_after_s = 900.0")
+    for old, new in ((3.0, 0.2), (0.2, 600.0)):
+        change(site, f"stale_after_s = {old}", f"stale_after_s = {new}")
+        desk.until(lambda now=new: [f for f in told if news_of(f).get("stale_after") == now])
+        # A robot that says nothing more is stale, and then it is not.
+        wanted = "stale" if new < old else "fresh"
+        wait_until(lambda now=wanted: desk.ask("get_positions")["robots"][0]["state"] == now)
     robot.listen(0.3)
     assert [call["method"] for call in robot.calls if call["method"] != "Start"] == []
 
@@ -301,6 +312,11 @@ def stuck(bridge, path):
     return link
 
 
+def since_saved(bridge):
+    """Seconds since what is known of robots was last stored; None before the first time."""
+    return health(bridge)[1]["save"]["age_s"]
+
+
 def told_places(desk):
     return sum(robot.get("x") is not None for robot in desk.ask("get_positions")["robots"])
 
@@ -348,10 +364,11 @@ def test_a_database_that_does_not_answer_does_not_keep_it_from_ending(bridge):
 
     robot = bridge.robot("r1")
     robot.plug_in(1)
+    wait_until(lambda: since_saved(bridge) is not None)
     lock = sqlite3.connect(bridge.file, isolation_level=None)
     lock.execute("begin immediate")
     robot.tell("SendPos", {"x": 1.0, "y": 8.0, "theta": 0.0, "v": 0.0})
-    time.sleep(1.5)
+    wait_until(lambda: since_saved(bridge) > 1.5, what="a save that does not come to its end")
     began = time.monotonic()
     bridge.gateway.send_signal(signal.SIGTERM)
     assert bridge.gateway.wait(30) in (0, 1)
@@ -369,6 +386,7 @@ def test_positions_wait_while_the_database_is_away_and_are_stored_later(bridge):
     lock.execute("begin immediate")
     for n in range(12):
         robot.tell("SendPos", {"x": 1.0 + n, "y": 8.0, "theta": 0.0, "v": 1.0})
+        # Of positions closer than min_interval_s (0.2 s) not each is stored.
         time.sleep(0.3)
     lock.execute("rollback")
     assert lock.execute("select count(*) from trajectories").fetchone() == (0,)

@@ -11,11 +11,12 @@ from websockets.asyncio.client import connect
 from robot_bridge.core.sites.settings_tables import LimitSettings, LinkOptions
 from robot_bridge.core.sites.site import read_site
 from robot_bridge.gateway import app
-from robot_bridge.gateway.auth.connection import ClientConnection
+from robot_bridge.gateway.auth.client_connection import ClientConnection
 from robot_bridge.gateway.auth.gate import AuthGate
 from robot_bridge.gateway.fleet.link_supervision import LinkProcesses
 from robot_bridge.gateway.fleet.service import Fleet
-from robot_bridge.gateway.monitoring import tasks
+from robot_bridge.gateway.model.request_handlers import RequestHandlers
+from robot_bridge.gateway.monitoring import periodic_tasks as tasks
 from robot_bridge.gateway.site.site_maps import SiteMaps
 from robot_bridge.gateway.storage.database import Database
 
@@ -29,7 +30,7 @@ async def running(sample_site, tmp_path):
     await database.open()
     gate = AuthGate(database, LimitSettings(), may_be_open=True)
     fleet = Fleet(SiteMaps(read_site(sample_site)), database)
-    made = app.Gateway(fleet, gate, LinkProcesses(LinkOptions(), sample_site))
+    made = app.Gateway(fleet, gate, LinkProcesses(LinkOptions(), sample_site), RequestHandlers())
     server = await made.serve("127.0.0.1", 0)
     yield made, server.sockets[0].getsockname()[1]
     server.close()

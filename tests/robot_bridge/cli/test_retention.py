@@ -2,6 +2,7 @@
 
 import asyncio
 from dataclasses import replace
+from types import SimpleNamespace
 
 import pytest
 from sqlalchemy import func, insert, select
@@ -20,6 +21,7 @@ from robot_bridge.gateway import app, retention
 from robot_bridge.gateway.auth.gate import AuthGate
 from robot_bridge.gateway.fleet.link_supervision import LinkProcesses
 from robot_bridge.gateway.fleet.service import Fleet
+from robot_bridge.gateway.model.request_handlers import RequestHandlers
 from robot_bridge.gateway.retention import Retention
 from robot_bridge.gateway.site.site_maps import SiteMaps
 from robot_bridge.gateway.storage.database import Database
@@ -184,23 +186,23 @@ def left(connection):
 
 async def test_what_is_too_old_goes_and_all_else_stays(database, settings):
     await database.run(fill)
-    await Retention(database, lambda: settings, ManualClock(wall=NOW)).prune()
+    await Retention(database, SimpleNamespace(settings=settings), ManualClock(wall=NOW)).prune()
     assert await database.run(left) == KEPT
 
 
 async def test_nothing_goes_before_the_times_that_hold_without_settings(database, site):
     await database.run(fill)
     count = await database.run(rows)
-    await Retention(database, lambda: site.settings, ManualClock(wall=ago(0) + 50 * DAY)).prune()
+    await Retention(database, site, ManualClock(wall=ago(0) + 50 * DAY)).prune()
     assert await database.run(rows) == count
-    await Retention(database, lambda: site.settings, ManualClock(wall=ago(0) + 370 * DAY)).prune()
+    await Retention(database, site, ManualClock(wall=ago(0) + 370 * DAY)).prune()
     assert set((await database.run(left))[commands.c.id]) == {"old-open"}
 
 
 async def test_a_clock_that_was_set_far_ahead_deletes_nothing_for_a_day(database, settings, caplog):
     await database.run(fill)
     clocks, count = ManualClock(wall=NOW), await database.run(rows)
-    keeping = Retention(database, lambda: settings, clocks)
+    keeping = Retention(database, SimpleNamespace(settings=settings), clocks)
     clocks.wall += 4000 * DAY
     await keeping.prune()
     clocks.advance(DAY - 60)
@@ -215,7 +217,7 @@ async def test_a_clock_that_was_set_far_ahead_deletes_nothing_for_a_day(database
 async def test_a_clock_that_may_be_ahead_from_the_start_deletes_nothing_for_a_day(database, settings):
     await database.run(fill)
     clocks, count = ManualClock(wall=NOW), await database.run(rows)
-    keeping = Retention(database, lambda: settings, clocks)
+    keeping = Retention(database, SimpleNamespace(settings=settings), clocks)
     keeping.doubt_clock()
     clocks.advance(DAY - 60)
     await keeping.prune()
@@ -228,7 +230,7 @@ async def test_a_clock_that_may_be_ahead_from_the_start_deletes_nothing_for_a_da
 async def test_a_clock_that_was_set_right_again_deletes_no_more_than_before(database, settings):
     await database.run(fill)
     clocks = ManualClock(wall=NOW)
-    keeping = Retention(database, lambda: settings, clocks)
+    keeping = Retention(database, SimpleNamespace(settings=settings), clocks)
     clocks.wall += 4000 * DAY
     await keeping.prune()
     clocks.wall -= 4000 * DAY
@@ -250,7 +252,9 @@ async def test_it_goes_in_pieces_between_which_others_have_the_database(database
     )
     fixes = [Fix("r1", at, SendPos(x, 0.0, 0.5, 1.0)) for at, x in times()]
     await database.run(trajectories.add, list(map(pack, fixes)))
-    pruning = asyncio.create_task(Retention(database, lambda: settings, ManualClock(wall=NOW)).prune())
+    pruning = asyncio.create_task(
+        Retention(database, SimpleNamespace(settings=settings), ManualClock(wall=NOW)).prune()
+    )
     counts = set()
     while not pruning.done():
         counts.add(len(await database.run(trajectories.read, TrajectoryQuery(), 5000, None)))
@@ -279,7 +283,7 @@ async def test_the_gateway_does_it_by_the_settings_of_its_site(
         AuthGate(database, LimitSettings(), may_be_open=True),
         LinkProcesses(settings.links, tmp_path),
     )
-    work = app.Gateway(fleet, gate, links).works("ws://127.0.0.1:1")["prune"]
+    work = app.Gateway(fleet, gate, links, RequestHandlers()).works("ws://127.0.0.1:1")["prune"]
     pruning = asyncio.create_task(work())
     async with asyncio.timeout(10):
         while "prune" not in fleet.tally.beats:

@@ -6,7 +6,7 @@ from robot_bridge.core.messages import GetTrajectory, MessageError, SendPos
 from robot_bridge.gateway.storage.database import Database, read_address
 from robot_bridge.gateway.storage.repositories import trajectories
 from robot_bridge.gateway.storage.repositories.trajectories import Fix, pack
-from robot_bridge.gateway.trajectories.recording import get_trajectory
+from robot_bridge.gateway.trajectories.recording import TrajectoryPages
 
 NOW = 1_790_000_000.25
 
@@ -27,7 +27,7 @@ async def pages(database, **wanted):
     """Return the positions of every page, and how many pages there were."""
     found, after, count = [], None, 0
     while True:
-        page = await get_trajectory(database, GetTrajectory(after=after, **wanted))
+        page = await TrajectoryPages(database).read(GetTrajectory(after=after, **wanted))
         found += page.places
         count += 1
         if page.next is None:

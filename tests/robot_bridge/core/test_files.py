@@ -5,6 +5,7 @@ from __future__ import annotations
 import errno
 import os
 import stat
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 import pytest
@@ -94,3 +95,19 @@ def test_a_folder_that_was_made_in_vain_is_taken_away(tmp_path):
         (staged.folder / "a").write_text("new")
         staged.publish()
     assert texts(tmp_path / "maps" / "tiles") == {"a": "new"}
+
+
+@pytest.mark.parametrize("fails", [False, True])
+def test_what_writes_into_the_folder_is_left_before_that_is_removed(tmp_path, fails):
+    left = []
+
+    @contextmanager
+    def writer(folder):
+        yield folder / "half"
+        left.append(folder.is_dir())
+
+    with suppress(KeyError), StagedFiles(tmp_path) as staged:
+        staged.enter(writer(staged.folder)).write_text("a", encoding="utf-8")
+        if fails:
+            raise KeyError
+    assert left == [True] and list(tmp_path.iterdir()) == []

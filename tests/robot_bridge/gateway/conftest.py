@@ -75,7 +75,7 @@ class RoadYard(Yard):
         self.news = {}
         self.database = Database(self.url)
         await self.database.open()
-        planner = RoadPlanner(lambda: self.site.site)
+        planner = RoadPlanner(self.site)
         self.fleet = Fleet(self.site, self.database, clock=self.clock, planner=planner)
         self.fleet.listeners.add(self)
         await self.fleet.start()

@@ -16,6 +16,7 @@ from robot_bridge.core.sites.settings_tables import LinkOptions
 from robot_bridge.gateway.fleet import link_supervision
 from robot_bridge.gateway.fleet.link_supervision import LinkProcesses
 from tests.support.bridge.bridge_programs import wait_until
+from tests.support.processes import is_running
 
 SETTINGS = 'kind = "tracker"\n[tracker]\nnmea_udp = "127.0.0.1:0"\n[tracker.names]\n1 = "car-1"\n'
 
@@ -53,15 +54,6 @@ def children(bridge):
 
 def reported(desk, link):
     return next((one for one in desk.links if one["link"] == link), None)
-
-
-def is_running(pid):
-    try:
-        os.kill(pid, 0)
-    except ProcessLookupError:
-        return False
-    # One that has ended and that nobody has waited for yet is listed as well.
-    return "Z" not in os.popen(f"ps -o stat= -p {pid}").read()
 
 
 def test_links_are_started_again_and_told_of_and_end_with_their_gateway(bridge):

@@ -71,16 +71,17 @@ def test_a_gateway_killed_at_any_moment_loses_no_task_and_has_none_driven_twice(
     operator = Operator(bridge)
     operator.desk.wait_for_robots("r1")
     begins = [(20.0, 20.0), *CONES]
-    operator.set("r1", [cone(n, begins[n] if n % 2 else None) for n in range(len(CONES))])
+    operator.set("r1", [cone(n, begins[n] if n % 2 else None) for n in range(4)])
     dice = random.Random(5)
-    for _ in range(5):
+    # At each transaction in turn it dies in the crash plays, without processes of its own.
+    for _ in range(3):
         operator.desk.listen(dice.uniform(0.1, 0.8))
         bridge.kill_gateway()
         bridge.start_gateway()
         operator = Operator(bridge)
     operator.until(lambda: operator.left("r1") == [])
     assert operator.queues["r1"]["state"] == "running"
-    driven_once(bridge, len(CONES))
+    driven_once(bridge, 4)
 
 
 def test_a_gateway_killed_between_two_tasks_sends_the_next_when_it_is_back(bridge):

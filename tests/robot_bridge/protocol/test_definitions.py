@@ -22,7 +22,7 @@ from robot_bridge.core.messages import (
 )
 from robot_bridge.protocol.asyncapi import documents, link_documents, served
 from robot_bridge.protocol.codec import decode_request
-from robot_bridge.protocol.json_schemas import HEADS, NOTIFICATIONS, RESULTS, plain_text, schema_of
+from robot_bridge.protocol.json_schemas import HEADS, NOTIFICATIONS, plain_text, schema_of
 
 
 def accepts(schema, value) -> bool:
@@ -50,7 +50,6 @@ def test_there_is_one_for_every_message():
         *(f"head/{method}.json" for method in HEADS),
         *link_documents(),
     }
-    assert set(RESULTS) == set(DESK_REQUESTS.values())
     assert json.loads(documents()["index.json"])["documents"] == sorted({*paths, "asyncapi.json"})
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -44,7 +45,7 @@ class Robot:
         self.said = []
         limits = BodyLimits(speed=3.0)
         values = {"magic": 42, "pose": (0.0, 0.0, 0.0), "limits": limits, "rate": 5.0, **settings}
-        self.agent = Agent(AgentSettings(**values), self.said.append)
+        self.agent = Agent(AgentSettings(**values), SimpleNamespace(say=self.said.append))
         self.agent.receive(OpAck(magic=42, robot="r1", database="first"), None)
 
     def live(self, seconds):
@@ -138,7 +139,9 @@ def test_before_it_acknowledges_an_abort_it_says_where_it_is(robot):
 
 def test_a_robot_that_was_not_let_in_says_nothing_of_itself_to_an_abort():
     said = []
-    agent = Agent(AgentSettings(magic=42, pose=(0.0, 0.0, 0.0), limits=BodyLimits()), said.append)
+    agent = Agent(
+        AgentSettings(magic=42, pose=(0.0, 0.0, 0.0), limits=BodyLimits()), SimpleNamespace(say=said.append)
+    )
     assert agent.receive(Abort(), 2) == OpAck(id=2)
     assert said == []
 
@@ -182,7 +185,7 @@ def test_it_says_stopped_when_it_leaves(robot):
 def test_it_says_nothing_before_its_ready_was_taken():
     said = []
     settings = AgentSettings(magic=42, pose=(0.0, 0.0, 0.0), limits=BodyLimits())
-    agent = Agent(settings, said.append)
+    agent = Agent(settings, SimpleNamespace(say=said.append))
     agent.greet()
     agent.alive()
     for _ in range(20):

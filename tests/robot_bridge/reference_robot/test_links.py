@@ -22,7 +22,7 @@ ADMITTED = {"id": 1, "ok": True, "magic": 42, "robot": "r1", "database": "first"
 
 
 def agent_on(link) -> Agent:
-    return Agent(AgentSettings(magic=42, pose=(0.0, 0.0, 0.0), limits=BodyLimits()), link.say)
+    return Agent(AgentSettings(magic=42, pose=(0.0, 0.0, 0.0), limits=BodyLimits()), link)
 
 
 @pytest.fixture

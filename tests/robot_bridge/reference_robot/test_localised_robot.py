@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from concurrent.futures import Future
 from dataclasses import replace
+from types import SimpleNamespace
 
 import msgspec
 import numpy as np
@@ -56,7 +57,7 @@ class Robot:
         self.body = localised_robot(yard, settings, LIMITS, pose, executor or InlineExecutor(), **more)
         self.said, self._ids = [], 0
         values = AgentSettings(magic=1, pose=pose, limits=LIMITS, body=self.body, map_margin=MAP_MARGIN)
-        self.agent = Agent(replace(values, asks_path=True), self.said.append)
+        self.agent = Agent(replace(values, asks_path=True), SimpleNamespace(say=self.said.append))
         self.agent.receive(OpAck(magic=1, robot="r1"), None)
         self.map_ack = self.tell(SetMap(encode(robot_map or yard)))
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -62,7 +63,9 @@ def drive(robot_map, seed=1, people=(), settings=SETTINGS):
     body = localised_robot(corridor(PILLARS), settings, LIMITS, pose, InlineExecutor(), seed=seed)
     for walker in people:
         body._world.surroundings.add(walker, lambda walker=walker: walker(body.readings / 5))
-    agent = Agent(AgentSettings(magic=1, pose=pose, limits=LIMITS, body=body), said.append)
+    agent = Agent(
+        AgentSettings(magic=1, pose=pose, limits=LIMITS, body=body), SimpleNamespace(say=said.append)
+    )
     agent.receive(OpAck(magic=1, robot="r1"), None)
     agent.receive(SetMap(encode(robot_map)), 1)
     agent.receive(SetPath([(5.0, 4.0), (38.0, 4.0)]), 2)

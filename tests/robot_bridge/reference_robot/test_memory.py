@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+from types import SimpleNamespace
 
 import pytest
 
@@ -31,7 +32,7 @@ class Runs:
         settings = AgentSettings(
             self.magic, (0.0, 0.0, 0.0), limits, noise=0.0, asks_path=self.asks_path, memory=self.memory
         )
-        self.agent = Agent(settings, self.said.append)
+        self.agent = Agent(settings, SimpleNamespace(say=self.said.append))
         self.agent.greet()
         (ready,) = self.said
         self.agent.receive(OpAck(magic=ready.magic, robot="r1", database=database), None)

@@ -62,6 +62,8 @@ class Play:
         self.clock = ManualClock(wall=1000.0)
         self.robots = {}
         self.turns = 0
+        self.resumed = 0, 0
+        """transactions and turns until a queue was last told to go on."""
         self._journal = journal
         self._client = DatabaseClient(url)
         self.sql = self._client.sql
@@ -91,7 +93,7 @@ class Play:
             self.database = MortalDatabase(self.url, self.death)
             try:
                 await self.database.open()
-                planner = RoadPlanner(lambda: self.site.site) if self.roads else None
+                planner = RoadPlanner(self.site) if self.roads else None
                 journal = StopJournal(self._journal)
                 self.fleet = Fleet(self.site, self.database, self.clock, planner, journal)
                 self.fleet.emergency.reach(self._stop_all)
@@ -219,14 +221,14 @@ class Play:
 
     async def queue(self, robot="r1"):
         """Return a robot's queue as operators see it."""
-        (found,) = await self.ask(lambda fleet: fleet.queues.read(GetQueue(robot, paths=True)))
+        (found,) = (await self.ask(lambda fleet: fleet.queues.read(GetQueue(robot, paths=True)))).queues
         return found
 
     async def give(self, *tasks, robot="r1"):
         """Give a robot a queue."""
 
         async def give(fleet):
-            (seen,) = await fleet.queues.read(GetQueue(robot))
+            (seen,) = (await fleet.queues.read(GetQueue(robot))).queues
             return await fleet.queues.set(SetQueue(robot, seen.revision, list(tasks)), "Ada")
 
         await self.ask(give)
@@ -235,10 +237,11 @@ class Play:
         """Let a robot's queue go on."""
 
         async def resume(fleet):
-            (seen,) = await fleet.queues.read(GetQueue(robot))
+            (seen,) = (await fleet.queues.read(GetQueue(robot))).queues
             return await fleet.queues.resume(ResumeQueue(robot, seen.revision), "Ada")
 
         await self.ask_once(resume)
+        self.resumed = self.death.count, self.turns
 
     async def resume_all(self):
         """Let all queues go on; each was paused, unless nothing was left in it by then."""

@@ -185,7 +185,7 @@ async def made_current(play):
     await play.wait(2)
 
     async def first(fleet):
-        (seen,) = await fleet.queues.read(GetQueue("r1"))
+        (seen,) = (await fleet.queues.read(GetQueue("r1"))).queues
         return await fleet.queues.make_current(MakeCurrent("r1", seen.revision, "task-000c"), "Ada")
 
     await play.ask_once(first)
@@ -201,8 +201,8 @@ async def taken_over(play):
     await play.wait(2)
 
     async def take(fleet):
-        (given,) = await fleet.queues.read(GetQueue("r1"))
-        (mine,) = await fleet.queues.read(GetQueue("r2"))
+        (given,) = (await fleet.queues.read(GetQueue("r1"))).queues
+        (mine,) = (await fleet.queues.read(GetQueue("r2"))).queues
         tasks = [one.task for one in mine.tasks if one.state.value == "waiting"]
         tasks += [one.task for one in given.tasks]
         share = Share("r2", mine.revision, [SharedTask(one) for one in tasks])
@@ -302,7 +302,7 @@ async def seen(play):
     await play.wait(2)
 
     async def review(fleet):
-        for one in await fleet.observations.newest(GetObservations()):
+        for one in (await fleet.observations.newest(GetObservations())).observations:
             told = ReviewObservation(one.observation, one.object == "cone-7", reason="looked at it")
             await fleet.observations.review(told, "Ada")
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 from robot_bridge.core.errors import StoreError, UncertainError
-from robot_bridge.gateway.storage.database import Database, DatabaseWorker, shown
+from robot_bridge.gateway.storage.database import Database, DatabaseWorker, _settle, shown
 from robot_bridge.gateway.storage.dialects import PATIENCE_S
 
 _ENGINES: dict = {}
@@ -53,8 +53,8 @@ class WorkerInPlace(DatabaseWorker):
     """Does each job at once, in the thread that asks for it: plays are many, and wait for no other thread."""
 
     def submit(self, job):
-        """Do ``job``."""
-        self._do_in_order([job])
+        """Do ``job``; its future tells in the next round of the loop, which no thread has to wake."""
+        job.loop.call_soon(_settle, self._do([job]))
 
     def close(self, timeout):
         """Close the connection."""

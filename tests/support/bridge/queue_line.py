@@ -42,7 +42,7 @@ class Line:
         return report
 
     async def seen(self, robot="r1", **how):
-        (report,) = await self.queues.read(GetQueue(robot, **how))
+        (report,) = (await self.queues.read(GetQueue(robot, **how))).queues
         return report
 
     async def states(self, robot="r1"):

@@ -6,7 +6,14 @@ import json
 from contextlib import asynccontextmanager
 
 from robot_bridge.core.clock import ManualClock
-from robot_bridge.core.messages import OpAck, Ready, Send, SendPos, to_json
+from robot_bridge.core.messages import (
+    GetCommands,
+    OpAck,
+    Ready,
+    Send,
+    SendPos,
+    to_json,
+)
 from robot_bridge.gateway.api.robot_sql import SqlInterface
 from robot_bridge.gateway.fleet.service import Fleet
 from robot_bridge.gateway.site.site_maps import SiteMaps
@@ -95,7 +102,7 @@ class Yard:
         return found.steps[-1].reason
 
     async def _stored(self):
-        return list(reversed(await self.fleet.commands(None, 1000)))
+        return list(reversed((await self.fleet.orders.newest(GetCommands(None, 1000))).commands))
 
     # --- the database as any other program sees it ---------------------------------------------------------
 

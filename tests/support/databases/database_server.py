@@ -7,12 +7,10 @@ import contextlib
 import itertools
 import os
 import pwd
-import random
 import secrets
 import select
 import shutil
 import signal
-import socket
 import subprocess
 import tempfile
 import time
@@ -20,6 +18,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from tests.support.errors import StageError
+from tests.support.processes import free_port
 
 OWNER = "fleet"
 """The account that owns every new database; it is no superuser and may make no accounts."""
@@ -199,16 +198,6 @@ class DatabaseServer(abc.ABC):
 
     @abc.abstractmethod
     def _create_database(self, name: str) -> None: ...
-
-
-def free_port() -> int:
-    """Return a port on loopback that nobody listens on and no client is given while a server is down."""
-    lowest = int(Path("/proc/sys/net/ipv4/ip_local_port_range").read_text(encoding="ascii").split()[0])
-    for port in random.sample(range(10_000, max(lowest, 20_000)), 100):
-        with socket.socket() as probe, contextlib.suppress(OSError):
-            probe.bind(("127.0.0.1", port))
-            return port
-    raise StageError("100 ports of 127.0.0.1 from 10000 on were all taken")
 
 
 def find_program(name: str, *folders: str) -> str:

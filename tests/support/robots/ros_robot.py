@@ -52,7 +52,8 @@ MASK_PLACES = {"road": (20.0, 8.0), "excavation": (95.0, 151.0)}
 
 def say(event: str, **more: object) -> None:
     """Print what has happened."""
-    print(json.dumps({"event": event, **more}), flush=True)
+    # With its end in one piece: several threads say something.
+    print(json.dumps({"event": event, **more}) + "\n", end="", flush=True)
 
 
 class Robot(Node):

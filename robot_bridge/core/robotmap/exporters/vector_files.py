@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import struct
-import warnings
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from pathlib import Path
@@ -14,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...errors import ExportError, GeoreferenceError, MissingExportPackageError, installation
+from ...files import write_geopackage_layer
 from ..model import RobotMap
 from .geometries import MapShape, Points, obstacle_shapes, segment_shapes, signed_area
 
@@ -124,46 +124,22 @@ def write_geopackage(
     3.6 and older read. Raises MissingExportPackageError without pyogrio and ExportError when the file cannot
     be written; nothing is left behind.
     """
-    pyogrio = _pyogrio()
+    _check_pyogrio()
     if target.exists():
         raise ExportError(f"{target} is there already: remove it, or choose another name")
     try:
         for name, shapes in geopackage_layers(robot_map).items():
-            _write_layer(pyogrio, target, name, shapes, crs, to_crs)
-    except (pyogrio.errors.DataSourceError, pyogrio.errors.DataLayerError, OSError) as error:
+            geometry = np.empty(len(shapes), dtype=object)
+            geometry[:] = [wkb_of(shape, to_crs) for shape in shapes]
+            names = shapes[0].attributes
+            columns = {one: _column([shape.attributes[one] for shape in shapes]) for one in names}
+            write_geopackage_layer(target, name, shapes[0].kind, geometry, columns, crs)
+    except OSError as error:
         with suppress(OSError):
             target.unlink()
         raise ExportError(
             f"{target} cannot be written: {error}. Check the folder's rights and free space."
         ) from error
-
-
-def _write_layer(
-    pyogrio: Any,
-    target: Path,
-    name: str,
-    shapes: Sequence[MapShape],
-    crs: str | None,
-    to_crs: ToCrs | None,
-) -> None:
-    columns = list(shapes[0].attributes)
-    geometry = np.empty(len(shapes), dtype=object)
-    geometry[:] = [wkb_of(shape, to_crs) for shape in shapes]
-    with warnings.catch_warnings():
-        # A map without a CRS is what it is.
-        warnings.filterwarnings("ignore", message="'crs' was not provided")
-        pyogrio.raw.write(
-            str(target),
-            geometry=geometry,
-            field_data=[_column([shape.attributes[column] for shape in shapes]) for column in columns],
-            fields=columns,
-            layer=name,
-            driver="GPKG",
-            geometry_type=shapes[0].kind,
-            crs=crs,
-            append=target.exists(),
-            dataset_options={"VERSION": "1.3"},
-        )
 
 
 def _border(robot_map: RobotMap) -> MapShape:
@@ -200,12 +176,11 @@ def _points(points: Points) -> bytes:
     return struct.pack("<I", len(points)) + np.asarray(points, dtype="<f8").tobytes()
 
 
-def _pyogrio() -> Any:
+def _check_pyogrio() -> None:
     try:
-        import pyogrio
+        import pyogrio  # noqa: F401 - only whether it is there
     except ImportError:
         raise MissingExportPackageError(
             "GeoPackage needs the Python package pyogrio, which is not installed here; install it "
             f"{installation('pyogrio')}, or choose GeoJSON"
         ) from None
-    return pyogrio

@@ -18,7 +18,7 @@ def beyond(at_desk, gateway, make_robot, iface, wait):
         make_robot(name, 60 + 130 * (k - 3.5), 600, **states.get(name, {})) for k, name in enumerate(NAMES)
     ]
     gateway.show(*robots)
-    wait(lambda: len(at_desk.desk.picture) == 10, what="the robots")
+    wait(lambda: len(at_desk.desk.state.robots) == 10, what="the robots")
     return at_desk
 
 
@@ -43,5 +43,5 @@ def test_no_name_lies_over_another(beyond, wait):
 def test_the_one_to_worry_about_and_the_selected_one_are_named_first(beyond, wait):
     wait(lambda: is_named(beyond, NAMES[3]), what="the name of the lost one")
     assert not is_named(beyond, NAMES[4])
-    beyond.desk.select(NAMES[4])
+    beyond.desk.selection.select(NAMES[4])
     wait(lambda: is_named(beyond, NAMES[4]), what="the name of the selected one")

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from fleet_supervisor.plugin.map.overlay.labels import GRID, HEIGHT, LINES, LabelPlacer
-from fleet_supervisor.plugin.map.overlay.screen import Screen
+from fleet_supervisor.plugin.map.overlay.scene import Screen
 
 SCREEN = Screen((0.0, 0.0), (0.0, 0.0), (1.0, 0.0), (0.0, 1.0), 303, 200)
 NOBODY = np.empty((0, 2))

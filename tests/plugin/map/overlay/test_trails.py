@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
-from fleet_supervisor.plugin.map.overlay.screen import Screen
+from fleet_supervisor.plugin.map.overlay.scene import Screen
 from fleet_supervisor.plugin.map.overlay.trails import LENGTHS, SHORTEST_WAIT, TrailImage, Trails
 from qgis.PyQt.QtGui import QImage, QPainter
 
 SCREEN = Screen((0.0, 0.0), (0.0, 0.0), (1.0, 0.0), (0.0, 1.0), 200, 100)
 
 
-def same(xy):
-    return xy
+SAME = SimpleNamespace(to_map=lambda xy: xy)
+"""A site frame that is the map's CRS."""
 
 
 def drive(trails, seconds, robots=1, step=1.0, image=None, screen=SCREEN, speed=1.0):
@@ -21,7 +23,7 @@ def drive(trails, seconds, robots=1, step=1.0, image=None, screen=SCREEN, speed=
         at = np.column_stack([np.full(robots, 10.0 + speed * number * step), 50.0 + 3.0 * np.arange(robots)])
         trails.extend(at, number * step)
         if image is not None:
-            image.extend(at, screen, same, number * step)
+            image.extend(at, screen, SAME, number * step)
     return at
 
 
@@ -98,12 +100,12 @@ def test_it_fades_and_is_gone_when_it_is_old(qgis_app, robots, seconds):
     image = TrailImage(trails)
     at = drive(trails, 60, robots=robots, image=image)
     for _ in range(20):
-        image.extend(at, SCREEN, same, 60.0)
+        image.extend(at, SCREEN, SAME, 60.0)
     now = painted(image)[50]
     newest, middle, oldest = (round(70 - part * min(seconds, 60.0)) for part in (0.1, 0.5, 0.9))
     assert now[newest] > now[middle] > now[oldest] > 0
     for frame in range(40):
-        image.extend(at, SCREEN, same, 61.0 + seconds + frame * 0.05)
+        image.extend(at, SCREEN, SAME, 61.0 + seconds + frame * 0.05)
     assert painted(image).max() == 0
 
 
@@ -112,7 +114,7 @@ def test_trails_of_many_robots_are_a_pixel_wide(qgis_app):
     image = TrailImage(trails)
     at = drive(trails, 60, robots=400, image=image)
     for _ in range(20):
-        image.extend(at, SCREEN, same, 60.0)
+        image.extend(at, SCREEN, SAME, 60.0)
     alpha = painted(image)
     assert (alpha[50:98:3, 58:70] > 0).all()
     assert alpha[51:99:3].max() == alpha[52:99:3].max() == alpha[:50].max() == 0
@@ -124,11 +126,11 @@ def test_after_the_view_has_moved_the_whole_trail_is_there_again(qgis_app, ratio
     image = TrailImage(trails)
     at = drive(trails, 60, image=image)
     moved = Screen((0.0, 0.0), (-20.0, -60.0), (2.0, 0.0), (0.0, 2.0), 200, 100, ratio)
-    image.extend(at, moved, same, 60.0)
+    image.extend(at, moved, SAME, 60.0)
     # While the view still moves the old image goes along.
     assert painted(image, moved)[round(40 * ratio), round(60 * ratio)] > 0
     for _ in range(30):
-        image.extend(at, moved, same, 60.0)
+        image.extend(at, moved, SAME, 60.0)
     alpha = painted(image, moved)
     assert (alpha[round(40 * ratio), round(4 * ratio) : round(118 * ratio)] > 0).all()
     assert alpha[: round(34 * ratio)].max() == 0
@@ -141,7 +143,7 @@ def test_robots_of_another_site_leave_no_trail_of_those_before(qgis_app):
     trails.clear()
     at = np.array([[150.0, 20.0]])
     trails.extend(at, 61.0)
-    image.extend(at, SCREEN, same, 61.0)
+    image.extend(at, SCREEN, SAME, 61.0)
     assert painted(image)[40:60].max() == 0
 
 
@@ -151,7 +153,7 @@ def test_a_robot_that_is_put_elsewhere_far_off_draws_no_line_there(qgis_app):
     for second, x in enumerate((10.0, 11.0, 90_000.0, 90_001.0)):
         at = np.array([[x, 50.0]])
         trails.extend(at, float(second))
-        image.extend(at, SCREEN, same, float(second))
+        image.extend(at, SCREEN, SAME, float(second))
     assert painted(image)[50, 20:].max() == 0
 
 
@@ -173,7 +175,7 @@ def test_a_robot_that_goes_many_pixels_in_a_frame_leaves_a_trail_without_gaps(qg
     for second in range(6):
         at = np.tile([20.5 + 30.0 * second, 10.5 + 15.0 * second], (robots, 1))
         trails.extend(at, float(second))
-        image.extend(at, SCREEN, same, float(second))
+        image.extend(at, SCREEN, SAME, float(second))
     alpha = painted(image)
     across = np.arange(22, 170)
     for x, y in zip(across, (10.5 + (across - 20.0) / 2).astype(int), strict=True):
@@ -197,7 +199,7 @@ def test_a_trail_that_is_drawn_again_has_its_own_age_beside_those_of_others(qgis
         trails.extend(np.array([[float(second) - 40.0, 20.0], [130.0, 60.0]]), float(second))
     image = TrailImage(trails)
     for _ in range(20):
-        image.extend(np.array([[20.0, 20.0], [130.0, 60.0]]), SCREEN, same, 60.0)
+        image.extend(np.array([[20.0, 20.0], [130.0, 60.0]]), SCREEN, SAME, 60.0)
     alpha = painted(image)
     newer, older = alpha[20, 11:20].astype(int), alpha[60, 12:128].astype(int)
     assert older.min() > 0

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
+from fleet_supervisor.plugin import plugin as installed
 from fleet_supervisor.plugin.gateway_client.robot_states import RobotStates
-from fleet_supervisor.plugin.map.overlay import paths_painter
-from fleet_supervisor.plugin.map.overlay.paths_painter import MANY, PathsImage
-from fleet_supervisor.plugin.map.overlay.scene import MapScene, SiteScene, TaskPath
-from fleet_supervisor.plugin.map.overlay.screen import Screen
+from fleet_supervisor.plugin.map.overlay import task_painter
+from fleet_supervisor.plugin.map.overlay.primitives import drawn
+from fleet_supervisor.plugin.map.overlay.scene import MapScene, Screen, SiteScene, TaskPath, screen_image
+from fleet_supervisor.plugin.map.overlay.task_painter import MANY, PathsImage
 from qgis.PyQt.QtGui import QImage, QPainter
 
 WIDTH, HEIGHT = 200, 100
@@ -19,16 +22,22 @@ ASIDE = Screen((90.0, -50.0), (100.0, 50.0), (1.0, 0.0), (0.0, -1.0), WIDTH, HEI
 NOWHERE = np.empty((0, 2))
 
 
-def same(xy):
-    return xy
+class Same:
+    """A site frame that is the map's CRS."""
+
+    def to_map(self, xy):
+        return xy
 
 
-def placed(*heights, to_map=same):
+SAME = Same()
+
+
+def placed(*heights, placement=SAME):
     """A scene with a way from left to right at each of these pixels from the top."""
     ways = [np.array([(0.0, -y), (WIDTH, -y)]) for y in heights]
     plans = [TaskPath(f"c{k}", f"r{k}", way, False) for k, way in enumerate(ways)]
     scene = SiteScene(RobotStates().arrays(0.0), plans=plans)
-    return MapScene(scene, NOWHERE, NOWHERE, ways, NOWHERE, NOWHERE, to_map)
+    return MapScene(scene, NOWHERE, NOWHERE, ways, NOWHERE, NOWHERE, placement)
 
 
 def rows(image, scene, screen=SCREEN, column=100):
@@ -45,12 +54,12 @@ def rows(image, scene, screen=SCREEN, column=100):
 @pytest.fixture
 def slow(qgis_app, monkeypatch):
     """A frame in which there is time for one way only."""
-    monkeypatch.setattr(paths_painter, "FILL_SECONDS", 0.0)
+    monkeypatch.setattr(task_painter, "FILL_SECONDS", 0.0)
 
 
 def test_few_ways_are_there_at_once(qgis_app, monkeypatch):
     # As on an idle machine, where painting two ways takes a fraction of it.
-    monkeypatch.setattr(paths_painter, "FILL_SECONDS", 60.0)
+    monkeypatch.setattr(task_painter, "FILL_SECONDS", 60.0)
     image = PathsImage()
     assert {20, 60} <= set(rows(image, placed(20, 60)))
     assert image.is_whole
@@ -98,7 +107,7 @@ def test_a_sheet_that_the_view_has_moved_on_from_is_not_the_last(slow):
 def test_ways_of_another_map_are_not_shown_on_this_one(slow):
     image = PathsImage()
     rows(image, placed(20))
-    shown = rows(image, placed(40, 60, to_map=lambda xy: xy))
+    shown = rows(image, placed(40, 60, placement=Same()))
     assert 20 not in shown and len(shown) > 0
 
 
@@ -107,3 +116,31 @@ def test_without_ways_nothing_is_kept(qgis_app):
     rows(image, scene)
     assert rows(image, placed()) == []
     assert image._shown.image is None
+
+
+def fill(draw):
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(task_painter, "route", lambda painter, *_: draw(painter))
+        PathsImage().prepare(placed(20), SCREEN)
+
+
+@pytest.mark.parametrize(
+    "paint", [fill, lambda draw: screen_image(SCREEN, draw), lambda draw: drawn(draw, 32, 1.0)]
+)
+def test_a_painter_is_ended_where_painting_fails(qgis_app, paint):
+    """Kept by the traceback it would outlive its image, for which Qt ends the program."""
+    painters = []
+
+    def fail(painter):
+        painters.append(painter)
+        raise ValueError("no such colour")
+
+    with pytest.raises(ValueError, match="no such colour"):
+        paint(fail)
+    assert [painter.isActive() for painter in painters] == [False]
+
+
+def test_every_painter_is_one_that_is_ended():
+    folder = Path(installed.__file__).parent
+    made = [path.name for path in folder.rglob("*.py") if "QPainter(" in path.read_text("utf-8")]
+    assert made == ["glyphs.py"]

@@ -31,14 +31,14 @@ def time_enough(monkeypatch):
 
 @pytest.fixture
 def cone(at_desk):
-    at_desk.desk.select("r1")
+    at_desk.desk.selection.select("r1")
     at_desk.actions.cone.trigger()
     return at_desk
 
 
 @pytest.fixture
 def route(at_desk):
-    at_desk.desk.select("r1")
+    at_desk.desk.selection.select("r1")
     at_desk.actions.route.trigger()
     return at_desk
 
@@ -58,7 +58,7 @@ def test_a_click_puts_a_cone_and_enter_sends_it_where_it_was_put(cone, iface, ga
     pixel = iface.canvas.mapUnitsPerPixel()
     assert params["params"]["x"] == pytest.approx(70, abs=pixel)
     assert params["params"]["y"] == pytest.approx(55, abs=pixel)
-    wait(lambda: len(cone.desk.book) == 1)
+    wait(lambda: len(cone.desk.state.commands) == 1)
     assert cone.desk.drafts.draft is None
 
 
@@ -125,7 +125,7 @@ def test_leaving_the_tool_keeps_the_draft_and_sends_nothing(cone, iface, gateway
 
 def test_the_draft_stays_with_the_robot_it_was_made_for(cone, iface, gateway, wait):
     iface.click(70, 55)
-    cone.desk.select("r2")
+    cone.desk.selection.select("r2")
     assert drawn(cone).startswith("Cone for r1 at ")
     key(iface, Qt.Key.Key_Return)
     assert sent(gateway, wait)["robot"] == "r1"
@@ -133,7 +133,7 @@ def test_the_draft_stays_with_the_robot_it_was_made_for(cone, iface, gateway, wa
 
 def test_a_click_with_another_robot_selected_is_for_that_robot(cone, iface, gateway, wait):
     iface.click(70, 55)
-    cone.desk.select("r2")
+    cone.desk.selection.select("r2")
     iface.click(72, 50)
     assert drawn(cone).startswith("Cone for r2 at ")
     key(iface, Qt.Key.Key_Return)
@@ -150,7 +150,7 @@ def test_without_a_robot_a_click_says_whom_to_select(at_desk, iface, tool):
 
 def test_without_a_gateway_a_click_says_that_the_site_is_not_known(plugin, iface):
     window = plugin.window
-    window.desk.select("r1")
+    window.desk.selection.select("r1")
     window.actions.cone.trigger()
     iface.click(70, 55)
     assert any("The site is not known yet. Connect" in text for text in iface.texts())
@@ -309,7 +309,7 @@ def test_the_next_leg_follows_the_mouse(route, iface):
 
 def test_a_route_is_not_given_to_another_robot_nor_lost(route, iface):
     iface.click(40, 30)
-    route.desk.select("r2")
+    route.desk.selection.select("r2")
     iface.click(60, 50)
     assert route.desk.drafts.draft.robot == "r1"
     assert len(route.desk.drafts.draft.points) == 1
@@ -336,12 +336,12 @@ def test_a_draft_that_the_gateway_refuses_comes_back(cone, iface, gateway, wait)
 def test_a_draft_without_a_link_is_not_sent_and_not_lost(cone, iface, gateway, wait):
     iface.click(70, 55)
     gateway.stop()
-    wait(lambda: cone.desk.link.phase.value == "retrying")
+    wait(lambda: cone.desk.state.link.phase.value == "retrying")
     key(iface, Qt.Key.Key_Return)
     assert any("was NOT sent" in text for text in iface.texts())
     assert cone.desk.drafts.draft is not None
     gateway.start()
-    wait(lambda: cone.desk.link.phase.value == "connected", 8)
+    wait(lambda: cone.desk.state.link.phase.value == "connected", 8)
     QTest.qWait(300)
     assert gateway.asked("send") == []
 
@@ -350,9 +350,9 @@ def test_a_click_on_a_robot_selects_it_and_beside_it_selects_none(at_desk, iface
     wait(lambda: at_desk.view.overlay.robot_at(*pair(iface.pixel(80, 60))) == "r2")
     at_desk.actions.select.trigger()
     iface.click(80, 60)
-    assert at_desk.desk.selected == "r2"
+    assert at_desk.desk.selection.last == "r2"
     iface.click(20, 90)
-    assert at_desk.desk.selected is None
+    assert at_desk.desk.selection.last is None
 
 
 def pair(point: QPoint):
@@ -384,7 +384,7 @@ def test_the_way_to_the_mouse_goes_with_the_robot_and_with_the_tool(cone, iface,
     wait(lambda: 3 in bands(iface), what="the way")
     assert "28" in QToolTip.text()
     if how == "another robot":
-        cone.desk.select("r2")
+        cone.desk.selection.select("r2")
     else:
         cone.actions.select.trigger()
     assert 3 not in bands(iface)

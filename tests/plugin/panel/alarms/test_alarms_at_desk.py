@@ -174,7 +174,7 @@ def meeting(seconds, **more):
 
 def test_robots_that_will_pass_too_near_before_they_do(at_alarms, gateway, wait):
     gateway.tell("conflicts", meeting(60.0))
-    wait(lambda: len(at_alarms.desk.roads.conflicts.conflicts) == 1)
+    wait(lambda: len(at_alarms.desk.state.conflicts.conflicts) == 1)
     QTest.qWait(1200)
     assert alarms(at_alarms) == []
     gateway.tell("conflicts", meeting(29.0))
@@ -191,7 +191,7 @@ def test_two_robots_are_one_alarm_whichever_of_them_is_told_first(at_alarms, gat
     # r1 has come to its end, and stands in the way of r2.
     told["conflicts"][0] |= {"robot": "r2", "other": "r1"}
     gateway.tell("conflicts", told)
-    roads = at_alarms.desk.roads
+    roads = at_alarms.desk.state
     wait(lambda: roads.conflicts.conflicts[0].robot == "r2", what="the news of it")
     watch = at_alarms.dock.findChild(QTableView, "fleet_alarms").parent()._watch
     watch.evaluate()
@@ -358,7 +358,7 @@ def test_a_double_click_or_enter_goes_to_both_robots(at_alarms, gateway, make_ro
         QTest.keyClick(view, Qt.Key.Key_Return)
     else:
         QTest.mouseDClick(view.viewport(), LEFT, pos=view.visualRect(view.model().index(0, 1)).center())
-    assert at_alarms.desk.selection == ("r2", "r1")
+    assert at_alarms.desk.selection.robots == ("r2", "r1")
     centre = iface.canvas.extent().center()
     assert (centre.x() - 488000, centre.y() - 5190000) == pytest.approx((79.75, 60), abs=0.5)
 
@@ -469,7 +469,7 @@ def test_without_a_link_nothing_is_an_alarm_and_the_panel_says_so(at_alarms, gat
     gateway.stop()
     note = at_alarms.dock.findChild(QLabel, "fleet_alarm_note")
     wait(lambda: note.text() == "Nothing is watched: the desk is not connected.")
-    wait(lambda: at_alarms.desk.picture.view("r1", at_alarms.desk.clock()).age > 10.5, 15)
+    wait(lambda: at_alarms.desk.state.robots.view("r1", at_alarms.desk.clock.steady()).age > 10.5, 15)
     assert alarms(at_alarms) == []
 
 
@@ -488,7 +488,7 @@ def test_of_ten_thousand_robots_the_two_that_are_close_are_found(at_desk, gatewa
     near = make_robot("n10000", crowd[7777].x + 0.2, crowd[7777].y)
     gateway.show(make_robot("r1", None, None), make_robot("r2", None, None))
     gateway.show(*crowd, near)
-    wait(lambda: len(at_desk.desk.picture) == 10_003, 30)
+    wait(lambda: len(at_desk.desk.state.robots) == 10_003, 30)
     panel._watch.evaluate()
     assert {(alarm.robot, alarm.other) for alarm in panel._watch.board.alarms()} == {("n7777", "n10000")}
 
@@ -502,4 +502,4 @@ def test_unloading_leaves_nothing(plugin, iface):
     part.remove()
     assert tabs.count() == before - 1
     assert bar_texts(iface) == []
-    plugin.window.desk.pull()
+    plugin.window.desk.state.pull()

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 import pytest
 from fleet_supervisor.plugin.panel.alarms.rules import Alarm, AlarmKind
 from fleet_supervisor.plugin.panel.alarms.watch import MOST_LINES, WITHIN, AlarmMessages
@@ -30,7 +32,7 @@ def clock():
 
 @pytest.fixture
 def messages(clock):
-    return AlarmMessages(lambda: clock[0])
+    return AlarmMessages(SimpleNamespace(steady=lambda: clock[0]))
 
 
 def alarms(number):

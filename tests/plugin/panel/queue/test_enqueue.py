@@ -12,7 +12,7 @@ from qgis.PyQt.QtWidgets import QToolButton
 
 @pytest.fixture
 def desk(at_desk):
-    at_desk.desk.select("r1")
+    at_desk.desk.selection.select("r1")
     return at_desk
 
 
@@ -27,7 +27,7 @@ def tasks(gateway, robot="r1"):
 def test_a_cone_goes_into_the_queue_of_the_robot_that_it_was_made_for(desk, iface, gateway, wait):
     desk.actions.cone.trigger()
     iface.click(70, 55)
-    desk.desk.select("r2")
+    desk.desk.selection.select("r2")
     enqueue(desk)
     wait(lambda: len(tasks(gateway)) == 1)
     (task,) = tasks(gateway)
@@ -41,7 +41,7 @@ def test_a_route_goes_in_as_a_path_behind_what_is_there(desk, iface, gateway, wa
     desk.actions.cone.trigger()
     iface.click(70, 55)
     enqueue(desk)
-    wait(lambda: desk.desk.queues.revision("r1") == 1)
+    wait(lambda: desk.desk.state.queues.revision("r1") == 1)
     desk.actions.route.trigger()
     for point in ((40, 30), (60, 30), (60, 60)):
         iface.click(*point)
@@ -107,7 +107,7 @@ def test_a_target_in_another_robots_queue_is_in_the_way(desk, iface, gateway, wa
 
     queued = [QueueTask("task-one", 20.0, 20.0), QueueTask("task-two", 70.0, 55.0)]
     gateway.queues.give("r2", queued)
-    wait(lambda: desk.desk.queues.revision("r2") == 1)
+    wait(lambda: desk.desk.state.queues.revision("r2") == 1)
     desk.actions.cone.trigger()
     iface.click(70, 55)
     assert any("from a task of r2 at 70.00, 55.00" in text for text in iface.texts())

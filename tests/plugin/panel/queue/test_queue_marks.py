@@ -17,8 +17,8 @@ PLACES = [(60.0, 50.0), (80.0, 50.0), (80.0, 70.0)]
 @pytest.fixture
 def marks(at_desk, gateway, wait):
     gateway.queues.give("r1", [QueueTask(f"task-of-{k}", *place) for k, place in enumerate(PLACES)])
-    wait(lambda: at_desk.desk.queues.get("r1") is not None)
-    at_desk.desk.select("r1")
+    wait(lambda: at_desk.desk.state.queues.get("r1") is not None)
+    at_desk.desk.selection.select("r1")
     return at_desk.queue_marks
 
 
@@ -30,9 +30,9 @@ def test_the_tasks_of_the_selected_robot_are_marked_in_their_order(marks, at_des
     assert there(marks) == [pytest.approx(place) for place in PLACES]
     at_desk.queue_edits.move("r1", "task-of-2", "task-of-1")
     wait(lambda: there(marks)[1] == pytest.approx(PLACES[2]))
-    at_desk.desk.select("r2")
+    at_desk.desk.selection.select("r2")
     assert there(marks) == []
-    at_desk.desk.select(None)
+    at_desk.desk.selection.select(None)
     assert there(marks) == []
 
 
@@ -56,7 +56,7 @@ def test_marks_are_painted_where_the_tasks_are_and_go_with_the_map(marks, iface)
 def test_marks_go_with_the_queue_that_they_are_of(marks, at_desk, iface):
     QTest.qWait(100)
     assert is_ringed(iface, PLACES[2])
-    at_desk.desk.select("r2")
+    at_desk.desk.selection.select("r2")
     assert not is_ringed(iface, PLACES[2])
 
 

@@ -23,7 +23,7 @@ def task(name: str, x: float = 60.0) -> QueueTask:
 @pytest.fixture
 def panel(at_desk, gateway, wait):
     gateway.queues.give("r1", [task(name) for name in NAMES])
-    at_desk.desk.select("r1")
+    at_desk.desk.selection.select("r1")
     at_desk.dock.tabs.setCurrentWidget(at_desk.dock.queue_panel)
     wait(lambda: shown(at_desk.dock.queue_panel) == NAMES, what="the queue")
     return at_desk.dock.queue_panel
@@ -58,10 +58,10 @@ def test_the_queue_of_the_selected_robot_is_shown_with_what_is_done_now(panel, a
     assert panel.list.tasks.index(0, 2).data() == "now"
     assert panel.list.tasks.index(1, 1).data() == "place cone K2 at 60.00, 50.00"
     assert text(panel, "fleet_queue_head") == "r1: 4 tasks, running"
-    at_desk.desk.select("r2")
+    at_desk.desk.selection.select("r2")
     assert shown(panel) == []
     assert text(panel, "fleet_queue_head").startswith("r2 has no queue")
-    at_desk.desk.select(None)
+    at_desk.desk.selection.select(None)
     assert "1 have one, 0 of them paused" in text(panel, "fleet_queue_head")
 
 
@@ -201,9 +201,9 @@ def test_no_button_moves_whatever_becomes_of_the_queue(panel, at_desk, gateway, 
     press(panel, Qt.Key.Key_Delete)
     wait(lambda: text(panel, "fleet_queue_conflict"), what="a change that came too late")
     watched.check("a change came too late")
-    at_desk.desk.select("r2")
+    at_desk.desk.selection.select("r2")
     watched.check("another robot is selected, which has none")
-    at_desk.desk.select(None)
+    at_desk.desk.selection.select(None)
     watched.check("none is selected")
 
 

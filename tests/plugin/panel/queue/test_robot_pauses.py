@@ -20,7 +20,7 @@ def driving(at_desk, gateway, wait):
     for robot in ("r1", "r2"):
         cone = QueueTask(f"task-of-{robot}", 60.0, 50.0, kind=TaskKind.PLACE, cone=f"K-{robot}")
         gateway.queues.give(robot, [cone])
-    wait(lambda: len(at_desk.desk.queues) == 2, what="both queues")
+    wait(lambda: len(at_desk.desk.state.queues) == 2, what="both queues")
     return at_desk
 
 
@@ -33,7 +33,7 @@ def is_paused(gateway, robot) -> bool:
 
 
 def test_by_the_menu_every_selected_robot_is_paused_and_goes_on(driving, gateway, wait):
-    driving.desk.select_all(["r1", "r2"])
+    driving.desk.selection.select_all(["r1", "r2"])
     driving.actions.pause.trigger()
     wait(lambda: is_paused(gateway, "r1") and is_paused(gateway, "r2"), what="both pauses")
     assert [one["robot"] for one in gateway.asked("pause_robot")] == ["r1", "r2"]
@@ -50,7 +50,7 @@ def test_both_are_in_menu_and_toolbar_beside_abort_robot(driving, gateway, wait)
     for row in (driving.menu_entries(), toolbar.actions()):
         at = row.index(actions.abort)
         assert row[at - 2 : at] == [actions.pause, actions.go_on]
-    driving.desk.select("r1")
+    driving.desk.selection.select("r1")
     toolbar.show()
     QTest.mouseClick(toolbar.widgetForAction(actions.pause), Qt.MouseButton.LeftButton)
     wait(lambda: is_paused(gateway, "r1") and actions.go_on.isEnabled(), what="the pause")
@@ -59,7 +59,7 @@ def test_both_are_in_menu_and_toolbar_beside_abort_robot(driving, gateway, wait)
 
 
 def test_by_key_too(driving, gateway, iface, wait):
-    driving.desk.select("r1")
+    driving.desk.selection.select("r1")
     QTest.keyClick(iface, Qt.Key.Key_F10, ALT)
     wait(lambda: is_paused(gateway, "r1") and driving.actions.go_on.isEnabled(), what="the pause")
     assert gateway.asked("emergency_stop") == []
@@ -69,7 +69,7 @@ def test_by_key_too(driving, gateway, iface, wait):
 
 
 def test_the_reason_is_told_where_the_queue_is(driving, gateway, wait):
-    driving.desk.select("r1")
+    driving.desk.selection.select("r1")
     driving.dock.tabs.setCurrentWidget(driving.dock.queue_panel)
     driving.actions.pause.trigger()
     head = driving.dock.queue_panel.findChild(QLabel, "fleet_queue_head")
@@ -78,12 +78,12 @@ def test_the_reason_is_told_where_the_queue_is(driving, gateway, wait):
 
 def test_only_where_a_selected_robot_is_paused_there_is_something_to_continue(driving, gateway, wait):
     assert not driving.actions.go_on.isEnabled()
-    driving.desk.select("r1")
+    driving.desk.selection.select("r1")
     driving.actions.pause.trigger()
     wait(driving.actions.go_on.isEnabled, what="Continue")
-    driving.desk.select("r2")
+    driving.desk.selection.select("r2")
     assert not driving.actions.go_on.isEnabled()
-    driving.desk.select_all(["r1", "r2"])
+    driving.desk.selection.select_all(["r1", "r2"])
     assert driving.actions.go_on.isEnabled()
     driving.actions.go_on.trigger()
     wait(lambda: not is_paused(gateway, "r1"), what="going on")
@@ -99,14 +99,14 @@ def test_without_a_robot_it_says_so(at_desk, gateway, iface):
 def test_who_may_not_is_told_by_the_gateway(driving, gateway, iface, wait):
     refusal = "pause_robot: anna is viewer, and this takes operator"
     gateway.answers["pause_robot"] = lambda params: {"error": {"code": FORBIDDEN, "message": refusal}}
-    driving.desk.select("r1")
+    driving.desk.selection.select("r1")
     driving.actions.pause.trigger()
     wait(lambda: any(f"Pause of r1: {refusal}" in text for text in iface.texts()), what="the refusal")
     assert not is_paused(gateway, "r1")
 
 
 def test_without_a_link_it_says_that_nothing_was_sent(plugin, iface):
-    plugin.window.desk.select("r1")
+    plugin.window.desk.selection.select("r1")
     plugin.window.actions.pause.trigger()
     assert any("Pause of r1 was NOT sent" in text for text in iface.texts())
 
@@ -121,7 +121,7 @@ def test_a_paused_robot_is_shown_as_paused_and_found_by_that(driving, gateway, m
 
     gateway.show(make_robot("r1", stopped=True), make_robot("r2", stopped=True))
     wait(lambda: shown() == {"r1": "stopped", "r2": "stopped"}, what="both standing")
-    driving.desk.select_all(["r1"])
+    driving.desk.selection.select_all(["r1"])
     driving.actions.pause.trigger()
     wait(lambda: shown() == {"r1": "paused", "r2": "stopped"}, what="the pause")
     model.text = "paused"

@@ -23,7 +23,7 @@ from robot_bridge.core.assignment.job import (
     StraightTravel,
 )
 from robot_bridge.core.assignment.plan import check_plan
-from robot_bridge.core.assignment.pyvrp_search import SearchClock, loaded_days_by_pyvrp
+from robot_bridge.core.assignment.pyvrp_search import SearchClock, SearchProgress, loaded_days_by_pyvrp
 from robot_bridge.core.assignment.schedules import (
     BALANCED,
     LEAST_DISTANCE,
@@ -99,7 +99,7 @@ def found(job: AssignmentJob, objective: str, before: list[Schedule], gate_s: fl
     start = next(
         plan for plan in reversed(list(every_plan(job, before))) if by_hand(job, plan, gate_s)[0] < math.inf
     )
-    clock = SearchClock(NO_HURRY, lambda share: None)
+    clock = SearchClock(NO_HURRY, SearchProgress(lambda share: True))
     return loaded_days_by_pyvrp(days, before, start, StageObjective(objective), clock)
 
 

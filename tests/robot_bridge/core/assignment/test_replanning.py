@@ -8,8 +8,15 @@ from dataclasses import replace
 import pytest
 
 from robot_bridge.core.assignment.job import StraightTravel
-from robot_bridge.core.assignment.plan import STORE, ConePlan, check_plan, plan_from_json, plan_to_json
-from robot_bridge.core.assignment.plan_changes import PlanSituation, expected_situation, replan
+from robot_bridge.core.assignment.plan import (
+    STORE,
+    ConePlan,
+    PlanSituation,
+    check_plan,
+    plan_from_json,
+    plan_to_json,
+)
+from robot_bridge.core.assignment.plan_changes import expected_situation, replan
 from robot_bridge.core.assignment.solver import PREVIEW, Objective, assign
 from robot_bridge.core.errors import JobError
 from tests.robot_bridge.core.assignment.jobs import scattered

@@ -7,7 +7,7 @@ import json
 from types import SimpleNamespace
 
 from robot_bridge.gateway.api.operator_server import OperatorSession
-from robot_bridge.gateway.model.listeners import Listeners
+from robot_bridge.gateway.model.events import Listeners
 
 
 class Connection:
@@ -31,7 +31,7 @@ class Connection:
 
 async def test_news_that_cannot_be_told_keep_back_none_that_come_after_them(caplog):
     fleet, connection = SimpleNamespace(listeners=Listeners()), Connection()
-    session = OperatorSession(fleet, connection, gate=None)
+    session = OperatorSession(fleet, connection, gate=None, handlers=None)
     running = asyncio.create_task(session.run())
     await asyncio.sleep(0)
     fleet.listeners.announce("command", "one", {"what": object()})

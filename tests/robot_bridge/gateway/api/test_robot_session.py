@@ -12,9 +12,10 @@ import pytest
 from robot_bridge.core.errors import DataRefusedError, StoreError
 from robot_bridge.core.logs import RepeatedLines
 from robot_bridge.core.sites.settings_tables import LimitSettings
-from robot_bridge.gateway.api.robot_session import RobotConnection
+from robot_bridge.gateway.api.robot_session import RobotConnection, RobotSessions
 from robot_bridge.gateway.api.robot_websockets import LinkConnection, WebSocketInterface
 from robot_bridge.gateway.api.shared_connection import LinkedRobotChannel
+from robot_bridge.gateway.fleet.registration import ConnectionClaims
 from robot_bridge.gateway.monitoring.metrics import Counters
 from robot_bridge.links.base.linked_robots import frame_of
 from robot_bridge.protocol import jsonrpc
@@ -58,7 +59,7 @@ def own(connection):
         tally=Counters(),
         repeated=RepeatedLines(),
     )
-    own = RobotConnection(fleet, connection, "r1", lambda _session: None)
+    own = RobotConnection(fleet, connection, "r1", RobotSessions(ConnectionClaims()))
     own.session._admitted = True
     return own
 
@@ -113,7 +114,9 @@ async def test_what_a_robot_said_is_asked_for_again_unless_the_database_refuses_
 def test_a_connection_that_fails_keeps_no_stop_from_the_others(caplog):
     told = []
     reached = SimpleNamespace(reach=lambda _link: None)
-    link = WebSocketInterface(SimpleNamespace(emergency=reached, orders=reached))
+    link = WebSocketInterface(
+        SimpleNamespace(emergency=reached, orders=reached, reception=SimpleNamespace(holds=None))
+    )
     good = [SimpleNamespace(robot=f"r{n}", stop_now=told.append) for n in range(3)]
     bad = [SimpleNamespace(robot=f"b{n}", stop_now=fail) for n in range(3)]
     # In the order in which they are kept, which nobody knows: some of the good ones come behind a bad one.
@@ -132,7 +135,7 @@ def link(connection):
     connection.identity = SimpleNamespace(name="agvs")
     fleet = SimpleNamespace(take_poses=fail, links=SimpleNamespace(introduce=fail), repeated=RepeatedLines())
     gate = SimpleNamespace(spoken_for=lambda _visitor: ("*",), limits=None)
-    return LinkConnection(fleet, connection, gate, lambda _session: None, lambda _session: True)
+    return LinkConnection(fleet, connection, gate, RobotSessions(ConnectionClaims()))
 
 
 async def test_what_goes_wrong_over_a_link_has_a_number_and_ends_no_connection(link, connection, caplog):
@@ -170,7 +173,11 @@ async def test_what_stops_a_linked_robot_waits_for_no_turn_and_all_else_does(lin
 
 async def test_one_message_of_a_linked_robot_that_goes_wrong_keeps_the_next_from_nothing(connection, caplog):
     place = LinkedRobotChannel(
-        SimpleNamespace(), SimpleNamespace(name="agvs"), "r1", LimitSettings(), lambda _session: None
+        SimpleNamespace(),
+        SimpleNamespace(name="agvs"),
+        "r1",
+        LimitSettings(),
+        RobotSessions(ConnectionClaims()),
     )
     done = asyncio.Event()
 

@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from websockets.frames import Frame, Opcode
 
-from robot_bridge.gateway.auth.connection import LONGEST, FrameParser, short_text
+from robot_bridge.gateway.auth.client_connection import LONGEST, FrameParser, short_text
 
 payloads = st.one_of(st.binary(max_size=200), st.integers(0, 70_000).map(lambda size: b"a" * size))
 frames = st.builds(

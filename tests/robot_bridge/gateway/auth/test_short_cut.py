@@ -5,7 +5,8 @@ from __future__ import annotations
 import pytest
 from websockets.frames import Frame, Opcode
 
-from robot_bridge.gateway.auth.connection import FastPath, RateLimit
+from robot_bridge.gateway.auth.client_connection import FastPath
+from robot_bridge.gateway.auth.rate_limit import RateLimit
 
 REQUEST = b"GET /robot HTTP/1.1\r\nHost: x\r\n\r\n"
 
@@ -32,7 +33,7 @@ def taken():
 @pytest.fixture
 def short_cut(taken):
     way = FastPath()
-    way.handler = taken
+    way.set_handler(taken)
     way.begin(REQUEST)
     return way
 
@@ -68,7 +69,7 @@ def test_nothing_is_taken_out_of_the_middle_of_a_frame(short_cut, taken, plenty)
 
 def test_frames_behind_the_request_leave_no_short_cut(taken, plenty):
     way = FastPath()
-    way.handler = taken
+    way.set_handler(taken)
     way.begin(REQUEST + text("a message whose edges nobody followed")[:9])
     assert way.handle_messages(text("p1"), plenty) == 0
 

@@ -12,7 +12,7 @@ from websockets.exceptions import ConnectionClosed
 
 from robot_bridge.core.sites.settings_tables import LimitSettings
 from robot_bridge.gateway.auth.accounts import TokenKind
-from robot_bridge.gateway.auth.connection import ClientConnection, Identity
+from robot_bridge.gateway.auth.client_connection import ClientConnection, Identity
 
 
 class OpenDoor:
@@ -38,7 +38,7 @@ class Host:
         visitor.let_in(Identity(TokenKind.ROBOT, "r", None, "s"), 10_000)
 
     async def serve(self, visitor):
-        visitor.short_cut.handler = self._at_once
+        visitor.handle_at_once(self._at_once)
         async for message in visitor:
             if message == "wait":
                 await asyncio.wait_for(self.goes_on.wait(), 5)

@@ -199,7 +199,7 @@ async def test_a_command_knows_where_its_robot_was_as_it_was_ordered(two):
 async def test_a_robot_waits_for_another_until_it_is_told_something_else(two, monkeypatch):
     released = []
     monkeypatch.setattr(persistence.closures, "release", lambda _connection, robot: released.append(robot))
-    two.fleet._book.drafting.waits = {"r1"}.__contains__
+    two.fleet.queue_context.waiting["r1"] = None
     for robot in ("r1", "r2"):
         await two.send(f"begin-{robot}", "SetPosIni", robot, x=20.0, y=40.0)
     assert released == []

@@ -8,7 +8,15 @@ import time
 import pytest
 
 from robot_bridge.core.errors import RefusedError, UncertainError
-from robot_bridge.core.messages import AbortTask, MessageError, Ready, Send, SendPos
+from robot_bridge.core.messages import (
+    AbortAll,
+    AbortTask,
+    GetCommands,
+    MessageError,
+    Ready,
+    Send,
+    SendPos,
+)
 
 LOOP = [(10.0, 10.0), (20.0, 10.0), (20.0, 20.0), (10.0, 20.0), (10.0, 10.0)]
 
@@ -79,7 +87,7 @@ def test_an_abort_names_one_thing(what):
 
 async def test_why_all_were_aborted_is_kept(ready):
     await ready.send("a")
-    await ready.fleet.orders.abort_all("Ada", reason="lunch")
+    await ready.fleet.orders.abort_all(AbortAll(reason="lunch"), "Ada")
     assert await ready.reason("a") == "before the robot acknowledged it: lunch"
 
 
@@ -106,7 +114,7 @@ async def test_a_command_expires_when_it_says_also_after_a_restart(ready):
     ready.now += 300.0
     await ready.fleet.save()
     assert await ready.states() == {"soon": "expired", "late": "queued", "usual": "expired"}
-    (report,) = await ready.fleet.commands("r1", 1)
+    (report,) = (await ready.fleet.orders.newest(GetCommands("r1", 1))).commands
     assert report.steps[0].reason == "while the road is free"
 
 

@@ -5,7 +5,14 @@ from __future__ import annotations
 import pytest
 
 from robot_bridge.core.errors import RefusedError, StoreError
-from robot_bridge.core.messages import MessageError, Send, TargetPosition
+from robot_bridge.core.messages import (
+    AbortAll,
+    GetCommands,
+    MessageError,
+    Send,
+    SetPositions,
+    TargetPosition,
+)
 
 FULL_LIFE = ["queued", "delivered", "acknowledged", "reached"]
 
@@ -101,7 +108,7 @@ async def test_a_target_sent_after_an_abort_outlives_it(ready):
 
 async def test_abort_all_tells_every_robot(ready):
     await ready.ready("r2", link="sql")
-    aborts = await ready.fleet.orders.abort_all("Ada")
+    aborts = (await ready.fleet.orders.abort_all(AbortAll(), "Ada")).commands
     assert sorted(abort.robot for abort in aborts) == ["r1", "r2"]
     assert ready.waiting("r1") == ["Abort"]
     assert "Abort" in ready.waiting("r2")
@@ -109,11 +116,11 @@ async def test_abort_all_tells_every_robot(ready):
 
 async def test_abort_all_asked_again_under_its_id_changes_nothing(ready):
     await ready.ready("r2", link="sql")
-    first = await ready.fleet.orders.abort_all("Ada", "one-press-of-the-button")
-    again = await ready.fleet.orders.abort_all("Ada", "one-press-of-the-button")
+    first = (await ready.fleet.orders.abort_all(AbortAll("one-press-of-the-button"), "Ada")).commands
+    again = (await ready.fleet.orders.abort_all(AbortAll("one-press-of-the-button"), "Ada")).commands
     assert [abort.command for abort in again] == [abort.command for abort in first]
     assert ready.waiting("r1") == ["Abort"]
-    other = await ready.fleet.orders.abort_all("Ada")
+    other = (await ready.fleet.orders.abort_all(AbortAll(), "Ada")).commands
     assert {abort.command for abort in other}.isdisjoint(abort.command for abort in first)
 
 
@@ -121,7 +128,7 @@ async def test_an_abort_ends_without_a_deviation(ready):
     await ready.send("x", "Abort")
     await ready.take()
     await ready.at(3.0, 4.0)
-    (report,) = await ready.fleet.commands("r1", 1)
+    (report,) = (await ready.fleet.orders.newest(GetCommands("r1", 1))).commands
     assert (report.state.value, report.deviation) == ("reached", None)
 
 
@@ -308,11 +315,10 @@ async def test_a_robot_is_where_it_was_when_the_gateway_starts_anew(ready):
 
 async def test_set_positions_sends_all_targets(ready):
     await ready.ready("r2")
-    reports = await ready.fleet.orders.set_positions(
-        [TargetPosition("r1", 1.0, 2.0, cone=True), TargetPosition("r2", 3.0, 4.0, 0.5)], "Ada"
-    )
+    targets = [TargetPosition("r1", 1.0, 2.0, cone=True), TargetPosition("r2", 3.0, 4.0, 0.5)]
+    reports = await ready.fleet.orders.set_positions(SetPositions(targets), "Ada")
     # Left out, no cone is placed, by whichever request a target comes.
-    assert [(r.robot, r.op, r.params, r.state.value) for r in reports] == [
+    assert [(r.robot, r.op, r.params, r.state.value) for r in reports.commands] == [
         ("r1", "SetPosEnd", {"x": 1.0, "y": 2.0, "cone": True}, "queued"),
         ("r2", "SetPosEnd", {"x": 3.0, "y": 4.0, "theta": 0.5, "cone": False}, "queued"),
     ]
@@ -329,7 +335,7 @@ async def test_set_positions_sends_all_targets(ready):
 async def test_set_positions_sends_none_when_one_is_refused(ready, second, text):
     await ready.ready("r2")
     with pytest.raises(RefusedError, match=text):
-        await ready.fleet.orders.set_positions([TargetPosition("r1", 1.0, 2.0), second], "Ada")
+        await ready.fleet.orders.set_positions(SetPositions([TargetPosition("r1", 1.0, 2.0), second]), "Ada")
     assert await ready.states() == {}
     assert ready.waiting() == []
 
@@ -342,7 +348,7 @@ async def test_a_transaction_that_fails_leaves_nothing_in_memory(ready):
     refuse_commands_of_r2(ready)
     with pytest.raises(StoreError, match=r"database .* refuses a value"):
         await ready.fleet.orders.set_positions(
-            [TargetPosition("r1", 1.0, 2.0), TargetPosition("r2", 3.0, 4.0)], "Ada"
+            SetPositions([TargetPosition("r1", 1.0, 2.0), TargetPosition("r2", 3.0, 4.0)]), "Ada"
         )
     assert await ready.states() == {"a": "queued"}
     assert ready.told == []

@@ -4,7 +4,14 @@ from __future__ import annotations
 
 import pytest
 
-from robot_bridge.core.messages import AbortTask, EmergencyStop, OpAck, Ready, SendPos
+from robot_bridge.core.messages import (
+    AbortAll,
+    AbortTask,
+    EmergencyStop,
+    OpAck,
+    Ready,
+    SendPos,
+)
 from tests.support.bridge.queue_line import PLACES, placed, task
 
 CONE = PLACES["a"]
@@ -15,7 +22,7 @@ async def abort(yard):
 
 
 async def abort_all(yard):
-    await yard.fleet.orders.abort_all("Ada", "command-all")
+    await yard.fleet.orders.abort_all(AbortAll("command-all"), "Ada")
 
 
 async def stop(yard):

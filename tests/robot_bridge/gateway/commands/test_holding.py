@@ -22,7 +22,7 @@ class Stored:
         self.asked = 0
         self.meanwhile = meanwhile
 
-    async def look_up(self):
+    async def read_again(self):
         self.asked += 1
         if self.asked == 1 and self.meanwhile is not None:
             await self.meanwhile()
@@ -30,7 +30,7 @@ class Stored:
 
 def held_robots(meanwhile=None):
     stored = Stored(meanwhile)
-    return RobotLocks(Database(), stored.look_up), stored
+    return RobotLocks(Database(), stored), stored
 
 
 async def lose(held):

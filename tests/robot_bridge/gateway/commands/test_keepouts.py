@@ -13,6 +13,7 @@ from robot_bridge.core.errors import OverridableError, RefusedError
 from robot_bridge.core.messages import (
     AddTasks,
     Send,
+    SetPositions,
     SetQueue,
     Share,
     SharedTask,
@@ -89,7 +90,7 @@ async def test_a_path_around_a_keepout_and_a_robot_that_is_said_to_stand_in_one_
 async def test_of_several_targets_none_is_sent_when_one_lies_in_a_keepout(line):
     wanted = [TargetPosition("r1", 50.0, 40.0), TargetPosition("r2", *BASIN)]
     with pytest.raises(RefusedError, match=IN_IT):
-        await line.yard.fleet.orders.set_positions(wanted, "Ada")
+        await line.yard.fleet.orders.set_positions(SetPositions(wanted), "Ada")
     assert await line.yard.states() == {}
 
 
@@ -103,7 +104,7 @@ async def test_keepouts_are_looked_for_once_however_many_targets_there_are(line,
 
     monkeypatch.setattr(SiteMaps, "keepouts_entered", noted)
     await line.yard.fleet.orders.set_positions(
-        [TargetPosition("r1", 50.0, 40.0), TargetPosition("r2", 52.0, 40.0)], "Ada"
+        SetPositions([TargetPosition("r1", 50.0, 40.0), TargetPosition("r2", 52.0, 40.0)]), "Ada"
     )
     assert asked == [[[(50.0, 40.0)], [(52.0, 40.0)]]]
 
@@ -111,7 +112,7 @@ async def test_keepouts_are_looked_for_once_however_many_targets_there_are(line,
 async def test_a_site_without_keepouts_is_not_asked_for_them(line, monkeypatch):
     monkeypatch.setattr(SiteMaps, "has_keepouts", False)
     monkeypatch.delattr(SiteMaps, "keepouts_entered")
-    await line.yard.fleet.orders.set_positions([TargetPosition("r1", 50.0, 40.0)], "Ada")
+    await line.yard.fleet.orders.set_positions(SetPositions([TargetPosition("r1", 50.0, 40.0)]), "Ada")
     assert await line.yard.states() != {}
 
 
@@ -166,5 +167,5 @@ async def test_a_robot_takes_over_no_path_through_a_keepout_unless_it_is_overrid
     with pytest.raises(RefusedError, match=ACROSS_IT):
         await line.queues.take_over(request, "Ada")
     request = dataclasses.replace(request, override="it is drained")
-    taken = await line.queues.take_over(request, "Ada")
+    taken = (await line.queues.take_over(request, "Ada")).queues
     assert [[one.task for one in report.tasks] for report in taken] == [["task-000a"], [AROUND.task]]

@@ -10,6 +10,7 @@ import pytest
 from robot_bridge.core.errors import RefusedError, StoreError
 from robot_bridge.core.messages import (
     Abort,
+    AbortAll,
     AbortTask,
     EmergencyStop,
     MessageError,
@@ -17,6 +18,7 @@ from robot_bridge.core.messages import (
     SetPath,
     SetPosEnd,
     SetPosIni,
+    SetPositions,
     TargetPosition,
 )
 from robot_bridge.gateway.commands import requests as order_module
@@ -67,13 +69,13 @@ async def test_a_target_in_a_keepout_is_refused_of_send_and_of_set_positions(two
     said = await refusal(orders.send(Send("command-a", "r1", "SetPosEnd", {"x": x, "y": y}), "Ada"))
     assert "lies in the keepout 'Water basin'" in said
     positions = [TargetPosition("r1", 50.0, 40.0), TargetPosition("r2", x, y)]
-    assert "Water basin" in await refusal(orders.set_positions(positions, "Ada"))
+    assert "Water basin" in await refusal(orders.set_positions(SetPositions(positions), "Ada"))
     assert two.waiting("r1") == two.waiting("r2") == []
 
 
 async def test_robots_that_are_named_twice_are_named(orders):
     positions = [TargetPosition(name, 50.0, 40.0) for name in ("r2", "r1", "r2", "r1", "r3")]
-    assert await refusal(orders.set_positions(positions, "Ada")) == (
+    assert await refusal(orders.set_positions(SetPositions(positions), "Ada")) == (
         "positions: r1, r2 is named more than once; give each robot one target"
     )
 
@@ -122,11 +124,12 @@ async def test_a_command_that_is_no_longer_the_robot_s_task_is_not_aborted(two):
 
 
 async def test_all_are_aborted_under_ids_made_from_one(two, orders):
-    reports = await orders.abort_all("Ada", "abort-all-0001", "smoke")
+    reports = (await orders.abort_all(AbortAll("abort-all-0001", "smoke"), "Ada")).commands
     made = {name: str(uuid.uuid5(uuid.NAMESPACE_OID, f"abort-all-0001 {name}")) for name in ("r1", "r2")}
     assert {report.robot: report.command for report in reports} == made
     assert {report.steps[0].reason for report in reports} == {"smoke"}
-    first, second = [{one.command for one in await orders.abort_all("Ada")} for _ in range(2)]
+    told = [(await orders.abort_all(AbortAll(), "Ada")).commands for _ in range(2)]
+    first, second = [{one.command for one in commands} for commands in told]
     assert not first & second
 
 

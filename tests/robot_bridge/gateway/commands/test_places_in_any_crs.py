@@ -5,8 +5,8 @@ from __future__ import annotations
 import pytest
 
 from robot_bridge.core.errors import RefusedError
-from robot_bridge.core.messages import MessageError, Role
-from robot_bridge.gateway.api.operator_requests import Caller, answer
+from robot_bridge.core.messages import MessageError
+from robot_bridge.gateway.model.request_handlers import RequestHandlers
 from robot_bridge.protocol.codec import decode_desk_request
 
 ON_SITE = (66.0, 44.0)
@@ -26,9 +26,12 @@ async def ask(roads):
     await roads.take()
     await roads.at(20.0, 8.0)
 
+    fleet = roads.fleet
+    handlers = RequestHandlers(fleet.orders, fleet.queues, fleet.roads, fleet.roads.closures)
+
     async def ask(method, **params):
         request = decode_desk_request(method, params)
-        return await answer(roads.fleet, request, Caller("Ada", Role.OPERATOR, "127.0.0.1"))
+        return await handlers.answer(request, "Ada")
 
     return ask
 

@@ -179,7 +179,7 @@ async def test_an_observation_that_its_robot_tells_again_meanwhile_is_told_to_op
 async def test_a_review_is_told_to_operators_whatever_failed_after_it_was_stored(roads, lose, work, error):
     await roads.ready()
     await roads.fleet.receive("r1", "sql", SetObject(100.0, 80.0, "cone-7"), 7)
-    (seen,) = await roads.fleet.observations.newest(GetObservations())
+    (seen,) = (await roads.fleet.observations.newest(GetObservations())).observations
     roads.news.clear()
     lose(roads, work, True, error)
     with pytest.raises(error):
@@ -192,7 +192,7 @@ async def test_a_review_is_told_to_operators_whatever_failed_after_it_was_stored
 async def test_what_was_accepted_is_on_the_map_whatever_failed(roads, lose, error):
     await roads.ready()
     await roads.fleet.receive("r1", "sql", SetObject(100.0, 80.0, "cone-7"), 7)
-    (seen,) = await roads.fleet.observations.newest(GetObservations())
+    (seen,) = (await roads.fleet.observations.newest(GetObservations())).observations
     # The review is stored; an UncertainError comes of its commit, a StoreError of drawing it.
     lose(roads, records.review if error is UncertainError else records.on_map, True, error)
     with pytest.raises(error):

@@ -17,7 +17,6 @@ from robot_bridge.core.robotmap.outlines import OutlineRow, Outlines
 from robot_bridge.core.sites.settings import SiteBounds, SiteSettings
 from robot_bridge.core.sites.settings_tables import MapSettings
 from robot_bridge.core.sites.site import Site
-from robot_bridge.gateway.api.operator_requests import send_map
 from robot_bridge.gateway.fleet.outbox import RequestOutcome
 from robot_bridge.gateway.site.site_maps import AT_ONCE, SiteMaps
 from robot_bridge.gateway.storage.repositories import requests
@@ -155,7 +154,7 @@ async def test_the_whole_map_is_stored_for_those_alone_who_read_rows_themselves(
     async with start(maps) as yard:
         await yard.ready()
         await yard.send("a")
-        await send_map(yard.fleet, SendMap("r1"))
+        await yard.fleet.maps.send_asked(SendMap("r1"))
         await yard.send("b")
         assert yard.sql(sizes, "r1")[-1] == (None,)
         yard.ask("r1", Ready(1))
@@ -164,7 +163,7 @@ async def test_the_whole_map_is_stored_for_those_alone_who_read_rows_themselves(
             pass
         stored = [size for (size,) in yard.sql(sizes, "r1")]
         assert len(stored) > 1 and all(stored)
-        await send_map(yard.fleet, SendMap("r1"))
+        await yard.fleet.maps.send_asked(SendMap("r1"))
         assert (len(maps.whole_map()),) in yard.sql(sizes, "r1")
 
 
@@ -215,7 +214,7 @@ async def test_a_site_beyond_its_limit_is_never_sent_whole(start):
         await yard.ready()
         await yard.take()
         await yard.at(*FAR)
-        await send_map(yard.fleet, SendMap("r1"))
+        await yard.fleet.maps.send_asked(SendMap("r1"))
         (part,) = await maps_of(yard, 1)
     assert holds(part, FAR) and part.meta[PART_OF]
 

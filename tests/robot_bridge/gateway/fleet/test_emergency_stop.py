@@ -10,7 +10,13 @@ import uuid
 import pytest
 
 from robot_bridge.core.errors import RefusedError, StoreError
-from robot_bridge.core.messages import ClearEmergencyStop, EmergencyStop, MessageError, Send
+from robot_bridge.core.messages import (
+    ClearEmergencyStop,
+    EmergencyStop,
+    GetCommands,
+    MessageError,
+    Send,
+)
 from robot_bridge.gateway.fleet import emergency_stop
 
 
@@ -223,7 +229,7 @@ async def test_a_robot_that_says_ready_meanwhile_is_stopped_before_it_gets_its_m
     await two.take("r1")
     assert control.report.waiting == ["r2"]
     await two.ready("new", link="sql")
-    (told,) = await two.fleet.commands("new", 10)
+    (told,) = (await two.fleet.orders.newest(GetCommands("new", 10))).commands
     assert uuid.UUID(told.command)
     assert (told.steps[0].by, told.steps[0].reason) == ("Ada", "smoke")
     await two.ready("r1", magic=2)

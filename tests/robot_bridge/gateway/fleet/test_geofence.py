@@ -200,7 +200,7 @@ async def see(yard, object, place):
     """Let another robot see an object at ``place``; return the observation."""
     await yard.ready("r2")
     await yard.fleet.receive("r2", "websocket", SetObject(*place, object, label="cone"), None)
-    (seen,) = await yard.fleet.observations.newest(GetObservations(limit=1))
+    (seen,) = (await yard.fleet.observations.newest(GetObservations(limit=1))).observations
     return seen.observation
 
 

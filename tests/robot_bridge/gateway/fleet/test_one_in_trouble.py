@@ -8,8 +8,8 @@ from types import SimpleNamespace
 import pytest
 
 from robot_bridge.core.errors import DataRefusedError, StoreError
-from robot_bridge.core.messages import EmergencyStop, QueueTask, SetObject, SetQueue
-from robot_bridge.gateway.model.listeners import Listeners
+from robot_bridge.core.messages import AbortTask, EmergencyStop, QueueTask, SetObject, SetQueue
+from robot_bridge.gateway.model.events import CommandChanged, Listeners, ObservationChanged
 
 
 @pytest.fixture
@@ -19,6 +19,11 @@ async def two(roads):
         await roads.take(robot)
         await roads.at(20.0, y, robot=robot)
     return roads
+
+
+def subscribe_first(fleet, kind, handler):
+    """Let ``handler`` hear of events of a kind before all others."""
+    fleet.events._subscribers[kind].insert(0, handler)
 
 
 def fail_once(monkeypatch, owner, method, error, is_meant):
@@ -81,11 +86,8 @@ async def test_one_that_waits_in_trouble_holds_up_no_other_that_waits(
     assert said in caplog.text
 
 
-async def test_an_observation_that_cannot_be_told_of_is_stored_and_acknowledged(two, monkeypatch, caplog):
-    def fail(_report):
-        raise KeyError("nobody foresaw this")
-
-    monkeypatch.setattr(two.fleet.observations, "_changed", fail)
+async def test_an_observation_that_cannot_be_told_of_is_stored_and_acknowledged(two, caplog):
+    subscribe_first(two.fleet, ObservationChanged, fail)
     outcome = await two.fleet.receive("r1", "websocket", SetObject(100.0, 80.0, "cone-7"), 7)
     assert (outcome.ack.id, outcome.ack.ok) == (7, True)
     assert two.sql("select object from observations") == [("cone-7",)]
@@ -126,7 +128,7 @@ def no_operators(fleet):
 
 
 def no_command_told(fleet):
-    fleet._book._changed = fail
+    subscribe_first(fleet, CommandChanged, fail)
 
 
 @pytest.mark.parametrize(
@@ -183,3 +185,26 @@ async def test_a_late_acknowledgement_is_kept_while_the_database_is_away(two, mo
     with pytest.raises(StoreError, match="the disk is full"):
         await two.fleet.save()
     assert book._late == {("r1", 1)}
+
+
+HEAR_OF_STEPS = ["emergency.note_step", "driving.note_step", "roads.note_step"]
+
+
+@pytest.mark.parametrize("part", ["robots.assign", *HEAR_OF_STEPS])
+async def test_a_part_that_fails_at_an_event_keeps_it_from_no_other_and_stops_from_no_robot(
+    two, monkeypatch, caplog, part
+):
+    for name in HEAR_OF_STEPS:
+        owner, method = getattr(two.fleet, name.split(".")[0]), name.split(".")[1]
+        real = getattr(owner, method)
+        monkeypatch.setattr(owner, method, lambda report, n=name, real=real: (seen.add(n), real(report)))
+    seen = set()
+    owner, method = part.split(".")
+    monkeypatch.setattr(getattr(two.fleet, owner), method, fail)
+    two.told.clear()
+    report = await two.fleet.emergency.stop(EmergencyStop("stop-0001"), "Ada")
+    assert report.stored and two.told
+    assert seen | {part} >= set(HEAR_OF_STEPS)
+    await two.fleet.orders.abort(AbortTask("abort-0001", robot="r1"), "Ada")
+    assert (two.waiting("r1"), two.waiting("r2")) == (["Abort", "Abort"], ["Abort"])
+    assert re.search("telling of command .* failed; what comes after it is done all the same", caplog.text)

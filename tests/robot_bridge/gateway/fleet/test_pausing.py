@@ -400,7 +400,7 @@ async def test_a_task_of_its_queue_that_waits_for_another_robot_is_not_there_twi
     for share in (0.25, 0.5, 0.75, 1.0):
         await roads.at(16.0 + share * (hold.x - 16.0), 8.0 + share * (hold.y - 8.0), v=1.0 - share)
     await roads.fleet.driving.advance()
-    (before,) = await roads.fleet.queues.read(GetQueue("r1"))
+    (before,) = (await roads.fleet.queues.read(GetQueue("r1"))).queues
     assert [one.task for one in before.tasks] == ["task-0001"]
     report = await roads.fleet.pauses.pause(PauseRobot("r1"), "Eve")
     assert [one.task for one in report.tasks] == ["task-0001"]

@@ -131,11 +131,11 @@ async def test_it_waits_for_nobody_any_more(roads):
 
 async def test_its_queue_is_told_no_more_and_sends_nothing(stored):
     await stored.set(task("a", "place"))
-    assert len(await stored.queues.read(GetQueue())) == 1
+    assert len((await stored.queues.read(GetQueue())).queues) == 1
     remove(stored.yard)
     await stored.yard.fleet.save()
     await stored.go()
-    assert await stored.queues.read(GetQueue()) == []
+    assert (await stored.queues.read(GetQueue())).queues == []
     assert stored.yard.waiting() == []
 
 

@@ -11,11 +11,18 @@ from types import SimpleNamespace
 import pytest
 
 from robot_bridge.core.errors import DataRefusedError, StoreError
-from robot_bridge.core.messages import ClearEmergencyStop, EmergencyStop, OpAck, SendPos
+from robot_bridge.core.messages import (
+    ClearEmergencyStop,
+    EmergencyStop,
+    GetCommands,
+    OpAck,
+    SendPos,
+)
 from robot_bridge.gateway.api import robot_sql
 from robot_bridge.gateway.commands import service as book_module
 from robot_bridge.gateway.commands.persistence import write_late
 from robot_bridge.gateway.fleet import emergency_stop
+from robot_bridge.gateway.model.events import CommandChanged
 from robot_bridge.gateway.storage.repositories import emergency_stops, requests
 from robot_bridge.gateway.storage.repositories import requests as answers
 from robot_bridge.gateway.storage.repositories import robots as stored_robots
@@ -74,6 +81,11 @@ async def driven(yard, monkeypatch):
 
 async def stop(yard, id="stop-0001", by="Ada", reason=None):
     return await yard.fleet.emergency.stop(EmergencyStop(id, reason), by)
+
+
+async def ops_of(yard, robot):
+    """Return the operations of a robot's stored commands, newest first."""
+    return [c.op for c in (await yard.fleet.orders.newest(GetCommands(robot, 10))).commands]
 
 
 def outbox(yard, robot="r2"):
@@ -262,8 +274,7 @@ async def test_a_robot_whose_abort_cannot_be_stored_keeps_nobody_elses(driven, m
     for robot in ("r2", "r3"):
         assert outbox(driven, robot)[0] == "Abort"
         assert "SetPosEnd" not in outbox(driven, robot)
-        found = [c for c in await driven.fleet.commands(robot, 10) if c.op == "Abort"]
-        assert len(found) == 1
+        assert (await ops_of(driven, robot)).count("Abort") == 1
     # It is told by a row that no command follows, once, and is not tried again for ever.
     assert outbox(driven, "r1") == ["Abort"]
     assert "robot 'r1' is sent an Abort that no command follows" in caplog.text
@@ -279,10 +290,10 @@ async def test_a_robot_whose_rows_are_locked_has_an_abort_at_once_and_the_comman
         Trap(patch, StoreError("its rows are locked"))
         assert (await stop(driven)).stored
         assert outbox(driven, "r1") == ["Abort"]
-        assert [c.op for c in await driven.fleet.commands("r1", 10)] == ["SetPosEnd"]
+        assert await ops_of(driven, "r1") == ["SetPosEnd"]
         await driven.fleet.save()
     await driven.fleet.save()
-    assert [c.op for c in await driven.fleet.commands("r1", 10)] == ["Abort", "SetPosEnd"]
+    assert await ops_of(driven, "r1") == ["Abort", "SetPosEnd"]
     await driven.fleet.save()
     assert outbox(driven, "r1") == ["Abort", "Abort"]
 
@@ -627,12 +638,12 @@ async def test_a_robot_whose_removal_fails_keeps_no_other_in_the_fleet(driven, m
 
 
 @ON_ONE
-async def test_a_command_that_cannot_be_told_of_keeps_no_other_from_being_followed(driven, monkeypatch):
-    def fail_for_one(report):
-        if report.robot == "r1":
+async def test_a_command_that_cannot_be_told_of_keeps_no_other_from_being_followed(driven):
+    def fail_for_one(event):
+        if event.report.robot == "r1":
             raise ZeroDivisionError("unforeseen")
 
-    monkeypatch.setattr(driven.fleet._book, "_changed", fail_for_one)
+    driven.fleet.events._subscribers[CommandChanged].insert(0, fail_for_one)
     await stop(driven)
     assert all(driven.fleet._book.awaits_stop(robot) for robot in ("r1", "r2", "r3"))
 

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import random
 from dataclasses import asdict, replace
+from types import SimpleNamespace
 from typing import ClassVar
 
 from robot_bridge.core.errors import BridgeError
 from robot_bridge.core.messages import RobotState, SendPos
 from robot_bridge.core.sites.settings import SiteBounds, SiteSettings
 from robot_bridge.core.sites.settings_tables import LimitSettings
+from robot_bridge.gateway.model.events import EventBus, RobotReturned
 from robot_bridge.gateway.model.position_checks import PlaceChecks
 from robot_bridge.gateway.model.robots import Robots
 
@@ -28,10 +30,12 @@ class Side:
     )
 
     def __init__(self, names, *, batches):
-        self.robots, self.checks, self.batches = Robots(), PlaceChecks(lambda: SITE), batches
+        events = EventBus()
+        self.robots, self.batches = Robots(events=events), batches
+        self.checks = PlaceChecks(SimpleNamespace(settings=SITE))
         self.followed = 0
         self.back, self.unseen = [], []
-        self.robots.is_back = lambda name, seconds: self.back.append((name, round(seconds, 3)))
+        events.subscribe(RobotReturned, lambda one: self.back.append((one.robot, round(one.away_s, 3))))
         for number, name in enumerate(names):
             self.robots.ready(name, number + 1, LINK, 0.0)
 

@@ -7,8 +7,8 @@ import socket
 import pytest
 
 from robot_bridge.core.errors import FatalError, StoreError
-from robot_bridge.core.logs import notify, watchdog_interval
-from robot_bridge.gateway.monitoring import tasks
+from robot_bridge.core.systemd import notify, watchdog_interval
+from robot_bridge.gateway.monitoring import periodic_tasks as tasks
 from robot_bridge.gateway.monitoring.metrics import Counters
 
 

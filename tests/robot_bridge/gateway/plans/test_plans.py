@@ -3,10 +3,20 @@
 from __future__ import annotations
 
 import asyncio
+import threading
+from dataclasses import replace
 
 import pytest
 
-from robot_bridge.core.assignment.job import STAY, AssignmentJob, ConeTarget, PlanRobot, StraightTravel
+from robot_bridge.core.assignment.job import (
+    COLLECT,
+    STAY,
+    AssignmentJob,
+    ConeTarget,
+    PlanRobot,
+    Store,
+    StraightTravel,
+)
 from robot_bridge.core.assignment.plan import document_of
 from robot_bridge.core.assignment.solver import Objective, assign
 from robot_bridge.core.errors import OutdatedError, RefusedError
@@ -26,6 +36,7 @@ from robot_bridge.core.messages import (
     SubmitPlan,
     TaskState,
 )
+from robot_bridge.gateway.plans.service import PlanService
 
 CONES = {"c1": (30.0, 40.0), "c2": (40.0, 40.0), "c3": (50.0, 40.0), "c4": (60.0, 40.0)}
 LOST = 20.0
@@ -44,18 +55,23 @@ class Drive:
 
     def __init__(self, line):
         self.line, self.yard, self.pushed = line, line.yard, []
-        self.listen()
+        self.begin()
 
-    def listen(self):
-        self.yard.fleet.listeners.add(self)
+    def begin(self):
+        fleet = self.yard.fleet
+        fleet.listeners.add(self)
+        self.plans = PlanService(
+            fleet.queue_context, fleet.queues, fleet.roads.closures, fleet.emergency, fleet.listeners
+        )
+
+    async def restart(self):
+        await self.yard.restart()
+        self.begin()
+        await self.plans.restore()
 
     def notify(self, method, key, params):
         if method == "plan":
             self.pushed.append(params)
-
-    @property
-    def plans(self):
-        return self.yard.fleet.plans
 
     async def submit(self, plan=None, name="plan-1", **more):
         plan = plan or plan_of()
@@ -66,7 +82,7 @@ class Drive:
         return report
 
     async def seen(self, name="plan-1", **how):
-        (report,) = await self.plans.read(GetPlans(name, **how))
+        (report,) = (await self.plans.read(GetPlans(name, **how))).plans
         return report
 
     async def go(self, *, robots=("r1", "r2"), times=1):
@@ -203,8 +219,7 @@ async def test_a_gateway_that_is_started_again_goes_on_with_it(drive, state):
     tasks = [stop.task for stop in (await drive.seen()).stops]
     poses = {robot: drive.yard.fleet.robots.get(robot).pose for robot in ("r1", "r2")}
     places = {robot: (pose.x, pose.y) for robot, pose in poses.items()}
-    await drive.yard.restart()
-    drive.listen()
+    await drive.restart()
     report = await drive.seen()
     assert (report.state.value, report.done) == (state, len(before))
     assert [stop.task for stop in report.stops] == tasks
@@ -223,7 +238,7 @@ async def test_after_a_restart_robots_have_time_to_come_back_before_it_is_planne
     await drive.go(robots=["r1"])
     pose = drive.yard.fleet.robots.get("r1").pose
     drive.yard.now += 60.0
-    await drive.yard.restart()
+    await drive.restart()
     drive.yard.fleet.age()
     await drive.plans.watch()
     report = await drive.seen()
@@ -238,11 +253,36 @@ async def test_after_a_restart_robots_have_time_to_come_back_before_it_is_planne
     assert (await drive.seen()).robots == ["r1"]
 
 
+async def test_planning_that_counts_no_more_says_nothing_of_what_is_planned_instead(drive, monkeypatch):
+    begun, may_end = asyncio.Event(), threading.Event()
+    loop, counts = asyncio.get_running_loop(), [99, 0]
+
+    def count(_proposal, _ground):
+        meetings = counts.pop(0)
+        if meetings:
+            loop.call_soon_threadsafe(begun.set)
+            may_end.wait(60)
+        return meetings
+
+    monkeypatch.setattr("robot_bridge.gateway.plans.service.count_meetings", count)
+    await drive.submit()
+    await drive.plans.replan(Replan("plan-1", 1), "Ada")
+    await begun.wait()
+    (first,) = drive.plans._tasks
+    discarded = await drive.plans.discard(DiscardReplan("plan-1", (await drive.seen()).revision), "Ada")
+    await drive.plans.replan(Replan("plan-1", discarded.revision), "Ada")
+    await asyncio.gather(*(drive.plans._tasks - {first}))
+    may_end.set()
+    await first
+    report = await drive.seen()
+    assert (report.state, report.meetings) == (PlanState.PROPOSED, 0)
+
+
 async def test_planning_that_the_gateways_end_cut_short_begins_anew(drive):
     await drive.submit()
     await drive.plans.replan(Replan("plan-1", 1), "Ada")
     await drive.plans.finish()
-    await drive.yard.restart()
+    await drive.restart()
     assert (await drive.seen()).state is PlanState.REPLANNING
     await drive.planned()
     assert (await drive.seen()).state is PlanState.PROPOSED
@@ -304,6 +344,30 @@ async def test_planning_that_takes_too_long_leaves_the_robots_standing_and_says_
     await drive.planned()
     report = await drive.seen()
     assert report.state is PlanState.PAUSED and "could not be planned" in report.reason
+
+
+async def test_paths_that_are_led_round_what_stands_are_driven(drive):
+    plan = plan_of(["r1"])
+    (one,) = plan.robots
+    first, *others = one.stops
+    (x, y), end = first.path[0], first.path[-1]
+    bent = replace(first, path=((x, y), ((x + end[0]) / 2, y + 2.0), end))
+    trip = replace(one.trips[0], stops=(bent, *others))
+    await drive.submit(replace(plan, robots=(replace(one, trips=(trip,)),)))
+    assert (await drive.line.seen("r1", paths=True)).tasks[0].path[1][1] == y + 2.0
+
+
+async def test_a_stop_at_which_a_cone_is_collected_names_the_placed_cone(drive):
+    plan = plan_of(["r1"], ["c1"])
+    await drive.submit(plan)
+    await drive.go(robots=["r1"], times=2)
+    target = replace(plan.targets[0], kind=COLLECT)
+    store = Store("depot", 20.0, 40.0, 0.0)
+    job = AssignmentJob((target,), (PlanRobot("r1", 30.0, 40.0, 4),), (store,), STAY)
+    collecting = assign(job, StraightTravel(job), Objective(time_limit_s=0.2))
+    request = SubmitPlan("back", document_of(collecting), [PlanCone("c1", "c1", "row", 1, 0.0)], seconds=0.2)
+    report = await drive.plans.submit(request, "Ada")
+    assert {stop.id: stop.placement for stop in report.stops} == {"c1": 1, "depot": None}
 
 
 @pytest.fixture(params=["postgresql", "mariadb"])

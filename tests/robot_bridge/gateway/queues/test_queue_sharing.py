@@ -23,7 +23,7 @@ async def test_what_a_lost_robot_has_left_is_done_by_another_once(line):
     await line.go()
     revisions = [(await line.seen(robot)).revision for robot in ("r1", "r2")]
     request = TakeOver("r1", revisions[0], [share("r2", revisions[1], "b", "a", "c")], "battery")
-    reports = await line.queues.take_over(request, "Ada")
+    reports = (await line.queues.take_over(request, "Ada")).queues
     await line.go()
     assert [[one.task[-1] for one in report.tasks] for report in reports] == [[], ["d", "b", "a", "c"]]
     assert (await line.seen()).reason == "its tasks were taken over: battery"

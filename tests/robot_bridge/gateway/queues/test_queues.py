@@ -6,7 +6,14 @@ import asyncio
 
 import pytest
 
-from robot_bridge.core.messages import AbortTask, ClearEmergencyStop, EmergencyStop, MakeCurrent, PauseQueue
+from robot_bridge.core.messages import (
+    AbortAll,
+    AbortTask,
+    ClearEmergencyStop,
+    EmergencyStop,
+    MakeCurrent,
+    PauseQueue,
+)
 from tests.support.bridge.queue_line import PLACES, task
 
 
@@ -116,7 +123,7 @@ async def test_a_queue_made_during_an_emergency_stop_waits_to_be_resumed(line):
 async def test_abort_all_pauses_every_queue(line):
     await line.set(task("a"))
     await line.set(task("b"), robot="r2")
-    await line.yard.fleet.orders.abort_all("Ada")
+    await line.yard.fleet.orders.abort_all(AbortAll(), "Ada")
     await line.go()
     assert [(await line.seen(r)).state.value for r in ("r1", "r2")] == ["paused", "paused"]
 

@@ -37,7 +37,7 @@ async def set_off_with_a_queue(roads, **cone):
 
 
 async def queue_of(roads):
-    (queue,) = await roads.fleet.queues.read(GetQueue("r1", paths=True))
+    (queue,) = (await roads.fleet.queues.read(GetQueue("r1", paths=True))).queues
     return queue
 
 
@@ -64,7 +64,7 @@ async def test_the_task_of_a_queue_goes_on_by_another_way_when_its_road_is_close
     points = await each.new_path()
     assert highest(points) == pytest.approx(22.0, abs=0.5)
     await each.take()
-    (queue,) = await each.fleet.queues.read(GetQueue("r1"))
+    (queue,) = (await each.fleet.queues.read(GetQueue("r1"))).queues
     assert queue.state is QueueState.RUNNING
     assert [one.task for one in queue.tasks] == ["task-0001", "task-0002"]
     assert queue.tasks[0].command == robot.command

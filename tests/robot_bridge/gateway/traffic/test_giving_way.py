@@ -8,7 +8,12 @@ import math
 import pytest
 
 from robot_bridge.core.errors import RefusedError, StoreError
-from robot_bridge.core.messages import AbortTask, GetPath, ResolveConflict
+from robot_bridge.core.messages import (
+    AbortAll,
+    AbortTask,
+    GetPath,
+    ResolveConflict,
+)
 from robot_bridge.gateway.storage.repositories import closures as stored_closures
 from tests.support.bridge.road_places import highest
 
@@ -22,7 +27,7 @@ async def test_a_conflict_is_told_with_place_and_time(roads):
     assert (found["x"], found["y"]) == (60.0, 8.0)
     assert found["nearest_at"] == pytest.approx(roads.now + 40)
     await roads.at(20.0, 8.0)
-    await roads.fleet.orders.abort_all("Ada")
+    await roads.fleet.orders.abort_all(AbortAll(), "Ada")
     await roads.take("r1")
     await roads.take("r2")
     await asyncio.sleep(0.3)

@@ -20,6 +20,17 @@ from robot_bridge.core.sites.site import Site, read_site
 from robot_bridge.gateway.traffic.road_planning import RoadPlanner, RouteOptions
 
 
+class Served:
+    """A site, of which another may be published meanwhile."""
+
+    def __init__(self, find):
+        self._find = find
+
+    @property
+    def site(self):
+        return self._find()
+
+
 @pytest.fixture(scope="module")
 def sample() -> Site:
     return read_site(Path(__file__).parents[4] / "resources" / "sample_site")
@@ -27,7 +38,7 @@ def sample() -> Site:
 
 @pytest.fixture(scope="module")
 def planner(sample):
-    return RoadPlanner(lambda: sample)
+    return RoadPlanner(Served(lambda: sample))
 
 
 def surface_of(site: Site):
@@ -66,12 +77,12 @@ def test_off_the_roads_the_path_is_straight_and_says_so(planner):
 def test_the_last_metres_to_a_place_are_straight_and_lead_round_no_block(sample):
     block = [(0, 0), (50, 0), (50, 2), (0, 2)]
     roads = with_roads(sample, block[:2], block[1:3], block[2:])
-    planned = RoadPlanner(lambda: roads).path((1.0, 0.0), (1.0, 2.0))
+    planned = RoadPlanner(Served(lambda: roads)).path((1.0, 0.0), (1.0, 2.0))
     assert planned.points == [(1.0, 0.0), (1.0, 2.0)] and planned.note.endswith("the place is 2.0 m away")
-    assert len(RoadPlanner(lambda: roads).path((1.0, 0.0), (5.0, 2.0)).points) > 50
+    assert len(RoadPlanner(Served(lambda: roads)).path((1.0, 0.0), (5.0, 2.0)).points) > 50
     basin = [(0.0, 0.5), (3.0, 0.5), (3.0, 1.5), (0.0, 1.5), (0.0, 0.5)]
     fenced = with_roads(sample, block[:2], block[1:3], block[2:], keepouts=[basin])
-    assert len(RoadPlanner(lambda: fenced).path((1.0, 0.0), (1.0, 2.0)).points) > 50
+    assert len(RoadPlanner(Served(lambda: fenced)).path((1.0, 0.0), (1.0, 2.0)).points) > 50
 
 
 @pytest.mark.parametrize(
@@ -90,12 +101,12 @@ def test_nor_do_they_lead_through_an_obstacle(sample, line, is_straight):
     roads = with_roads(sample, block[:2], block[1:3], block[2:])
     wall = OutlineRow(np.array(line, float), ShapeType.OPEN_POLYGON, 2.0, "wall", "walls:1")
     walled = replace(roads, outlines=Outlines.from_rows([wall]))
-    planned = RoadPlanner(lambda: walled).path((1.0, 0.0), (1.0, 2.0))
+    planned = RoadPlanner(Served(lambda: walled)).path((1.0, 0.0), (1.0, 2.0))
     assert (len(planned.points) == 2) is is_straight
 
 
 def test_a_site_without_roads_has_straight_paths_and_no_note(sample):
-    planner = RoadPlanner(lambda: with_roads(sample))
+    planner = RoadPlanner(Served(lambda: with_roads(sample)))
     assert planner.path((0.0, 0.0), (5.0, 5.0)) == ([(0.0, 0.0), (5.0, 5.0)], "", False)
 
 
@@ -104,12 +115,12 @@ def test_keepouts_are_driven_round_and_where_no_way_is_left_the_question_is_refu
     sides = [loop[k : k + 2] for k in range(4)]
     south, north = ([(20, y - 2), (30, y - 2), (30, y + 2), (20, y + 2), (20, y - 2)] for y in (0, 50))
     there = (0.0, 0.0), (50.0, 0.0)
-    free = RoadPlanner(lambda: with_roads(sample, *sides)).path(*there)
+    free = RoadPlanner(Served(lambda: with_roads(sample, *sides))).path(*there)
     assert max(y for _, y in free.points) < 0.01
-    around = RoadPlanner(lambda: with_roads(sample, *sides, keepouts=[south])).path(*there)
+    around = RoadPlanner(Served(lambda: with_roads(sample, *sides, keepouts=[south]))).path(*there)
     assert max(y for _, y in around.points) == pytest.approx(50.0)
     with pytest.raises(RefusedError, match="GetPath: No way leads"):
-        RoadPlanner(lambda: with_roads(sample, *sides, keepouts=[south, north])).path(*there)
+        RoadPlanner(Served(lambda: with_roads(sample, *sides, keepouts=[south, north]))).path(*there)
 
 
 BASIN = [(20.0, -5.0), (30.0, -5.0), (30.0, 5.0), (20.0, 5.0), (20.0, -5.0)]
@@ -117,7 +128,7 @@ BASIN = [(20.0, -5.0), (30.0, -5.0), (30.0, 5.0), (20.0, 5.0), (20.0, -5.0)]
 
 @pytest.mark.parametrize("roads", [[], [[(0.0, 200.0), (50.0, 200.0)]]])
 def test_a_straight_line_through_a_keepout_is_refused_with_its_name(sample, roads):
-    planner = RoadPlanner(lambda: with_roads(sample, *roads, keepouts=[BASIN]))
+    planner = RoadPlanner(Served(lambda: with_roads(sample, *roads, keepouts=[BASIN])))
     says = r"^GetPath: the way to \(50\.00, 0\.00\) leads through the keepout 'keepout'"
     with pytest.raises(RefusedError, match=says):
         planner.path((0.0, 0.0), (50.0, 0.0))
@@ -125,20 +136,20 @@ def test_a_straight_line_through_a_keepout_is_refused_with_its_name(sample, road
 
 
 def test_the_way_from_a_road_to_a_place_beside_it_keeps_out_too(sample):
-    planner = RoadPlanner(lambda: with_roads(sample, [(0.0, -10.0), (50.0, -10.0)], keepouts=[BASIN]))
+    planner = RoadPlanner(Served(lambda: with_roads(sample, [(0.0, -10.0), (50.0, -10.0)], keepouts=[BASIN])))
     with pytest.raises(RefusedError, match="leads through the keepout"):
         planner.path((0.0, -10.0), (25.0, 6.0))
 
 
 @pytest.mark.parametrize("ends", [((25.0, 0.0), (50.0, 0.0)), ((0.0, 0.0), (25.0, 0.0))])
 def test_who_is_in_a_keepout_is_led_out_of_it_and_who_was_sent_there_in(sample, ends):
-    planner = RoadPlanner(lambda: with_roads(sample, keepouts=[BASIN]))
+    planner = RoadPlanner(Served(lambda: with_roads(sample, keepouts=[BASIN])))
     assert planner.path(*ends).points == list(ends)
 
 
 def test_a_new_publication_is_planned_on_at_once(sample):
     sites = [with_roads(sample, [(0, 0), (50, 0)])]
-    planner = RoadPlanner(lambda: sites[-1])
+    planner = RoadPlanner(Served(lambda: sites[-1]))
     assert max(y for _, y in planner.path((0.0, 0.0), (50.0, 0.0)).points) == 0.0
     sites.append(with_roads(sample, [(0, 0), (25, 25), (50, 0)]))
     assert max(y for _, y in planner.path((0.0, 0.0), (50.0, 0.0)).points) > 20.0
@@ -147,7 +158,7 @@ def test_a_new_publication_is_planned_on_at_once(sample):
 def test_who_stands_beside_the_middle_of_a_road_joins_it_aslant(sample):
     site = with_roads(sample, [(0, 0), (50, 0)])
     points = np.array(
-        RoadPlanner(lambda: site, Driving(turning_radius=0.0)).path((10.0, 2.0), (40.0, -2.0)).points
+        RoadPlanner(Served(lambda: site), Driving(turning_radius=0.0)).path((10.0, 2.0), (40.0, -2.0)).points
     )
     assert np.diff(points[:, 0]).min() > 0
     assert np.abs(points[:, 1]).max() == 2.0
@@ -162,10 +173,10 @@ def test_seconds_are_the_robots_and_not_the_roads(sample, setting, shown, second
     road = Centreline(np.array([(0, 0), (100, 0)], float), 6.0, "asphalt", speed_ms=13.9)
     routes = replace(sample.settings.routes, speed_ms=setting)
     site = replace(sample, centrelines=(road,), keepouts=(), settings=replace(sample.settings, routes=routes))
-    report = RoadPlanner(lambda: site).route((0.0, 0.0), (100.0, 0.0), RouteOptions(speed=shown))
+    report = RoadPlanner(Served(lambda: site)).route((0.0, 0.0), (100.0, 0.0), RouteOptions(speed=shown))
     assert report.metres == pytest.approx(100.0)
     assert report.seconds == pytest.approx(seconds, abs=0.1)
-    straight = RoadPlanner(lambda: replace(site, centrelines=())).route((0.0, 0.0), (100.0, 0.0))
+    straight = RoadPlanner(Served(lambda: replace(site, centrelines=()))).route((0.0, 0.0), (100.0, 0.0))
     assert straight.seconds == pytest.approx(100.0 / setting, abs=0.1)
 
 
@@ -180,7 +191,7 @@ def test_a_road_without_a_surface_has_that_of_the_area_that_it_lies_on(sample):
         )
     ]
     site = replace(sample, centrelines=tuple(roads), keepouts=(), surfaces=(yard,))
-    report = RoadPlanner(lambda: site).route((0.0, 0.0), (130.0, 0.0))
+    report = RoadPlanner(Served(lambda: site)).route((0.0, 0.0), (130.0, 0.0))
     assert [(one.surface, round(one.metres)) for one in report.surfaces] == [
         ("asphalt", 50),
         ("", 50),
@@ -191,7 +202,9 @@ def test_a_road_without_a_surface_has_that_of_the_area_that_it_lies_on(sample):
 @pytest.mark.parametrize("aside", [0.01, 0.08, 0.3, 1.0, 2.0])
 def test_a_place_beside_the_middle_of_a_straight_road_is_no_tight_corner(sample, aside):
     site = with_roads(sample, [(0, 0), (50, 0)])
-    report = RoadPlanner(lambda: site, Driving(turning_radius=3.0)).route((10.0, aside), (40.0, -aside))
+    report = RoadPlanner(Served(lambda: site), Driving(turning_radius=3.0)).route(
+        (10.0, aside), (40.0, -aside)
+    )
     assert report.tight == []
     assert report.points[0] == (10.0, aside)
     assert report.points[-1] == (40.0, -aside)
@@ -206,7 +219,7 @@ def test_directions_closures_and_bridges_of_the_published_roads_are_honoured(sam
             for k in range(4)
         ]
         site = replace(sample, centrelines=tuple(sides), keepouts=())
-        return max(y for _, y in RoadPlanner(lambda: site).path((0.0, 0.0), (50.0, 0.0)).points)
+        return max(y for _, y in RoadPlanner(Served(lambda: site)).path((0.0, 0.0), (50.0, 0.0)).points)
 
     assert highest() == pytest.approx(0.0)
     assert highest(direction=1) == pytest.approx(0.0)
@@ -219,7 +232,7 @@ def test_directions_closures_and_bridges_of_the_published_roads_are_honoured(sam
     ]
     site = replace(sample, centrelines=tuple(crossing), keepouts=())
     with pytest.raises(RefusedError, match="No way leads"):
-        RoadPlanner(lambda: site).path((0.0, 0.0), (25.0, 10.0))
+        RoadPlanner(Served(lambda: site)).path((0.0, 0.0), (25.0, 10.0))
 
 
 # --- what is wrong is refused with what to do, and no program's error ------------------------------------
@@ -237,12 +250,12 @@ WRONG = r"the roads of the site cannot be used: The width of road 0 is nan: .* p
 
 def test_a_planner_of_roads_that_are_wrong_says_which_and_what_to_do(broken):
     with pytest.raises(RefusedError, match=WRONG):
-        RoadPlanner(lambda: broken)
+        RoadPlanner(Served(lambda: broken))
 
 
 def test_a_publication_whose_roads_are_wrong_is_refused_and_the_one_before_is_gone_on_with(sample, broken):
     published = [sample]
-    planner = RoadPlanner(lambda: published[-1])
+    planner = RoadPlanner(Served(lambda: published[-1]))
     published.append(broken)
     for ask in (
         lambda: planner.path((20.0, 8.0), (60.0, 20.0)),
@@ -259,4 +272,4 @@ def test_a_missing_package_is_named_with_how_to_install_it(sample, monkeypatch):
     monkeypatch.setitem(sys.modules, "shapely", None)
     keepout = ((0.0, 0.0), (5.0, 0.0), (5.0, 5.0), (0.0, 0.0))
     with pytest.raises(RefusedError, match=r"lacks Python package shapely; .* pip install 'fleet-supervisor"):
-        RoadPlanner(lambda: with_roads(sample, ((0, 0), (50, 0)), keepouts=(keepout,)))
+        RoadPlanner(Served(lambda: with_roads(sample, ((0, 0), (50, 0)), keepouts=(keepout,))))

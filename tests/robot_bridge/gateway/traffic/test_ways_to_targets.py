@@ -13,6 +13,7 @@ import pytest
 from robot_bridge.core.errors import RefusedError
 from robot_bridge.core.messages import (
     CloseRoad,
+    GetCommands,
     GetPath,
     GetPlacements,
     GetPosEnd,
@@ -24,6 +25,7 @@ from robot_bridge.core.messages import (
     Send,
     SetPath,
     SetPosEnd,
+    SetPositions,
     SetQueue,
     TargetPosition,
     TaskKind,
@@ -55,7 +57,7 @@ async def stand(yard, place=START, **declared):
 
 
 async def queue_of(yard):
-    (queue,) = await yard.fleet.queues.read(GetQueue("r1", paths=True, ended=5))
+    (queue,) = (await yard.fleet.queues.read(GetQueue("r1", paths=True, ended=5))).queues
     return queue
 
 
@@ -85,7 +87,7 @@ async def test_a_robot_that_does_not_ask_is_sent_to_no_target_straight_through_a
     with pytest.raises(RefusedError, match=CROSSES):
         await roads.fleet.orders.send(cone_at(GOAL), "Ada")
     with pytest.raises(RefusedError, match=CROSSES):
-        await roads.fleet.orders.set_positions([TargetPosition("r1", *GOAL)], "Ada")
+        await roads.fleet.orders.set_positions(SetPositions([TargetPosition("r1", *GOAL)]), "Ada")
     assert await roads.states() == {}
     report = await roads.fleet.orders.send(cone_at(GOAL, override="drained"), "Ada")
     assert report.steps[0].reason == "override: drained"
@@ -144,7 +146,7 @@ async def test_what_robots_declare_is_told_and_forgotten_when_they_declare_nothi
     ):
         await roads.ready(**declared)
         assert [report.paths for report in roads.fleet.reports()] == [told]
-        (row,) = roads.fleet.rows()
+        (row,) = (await roads.fleet.snapshots.now()).values["robots"]
         assert row.paths == told
 
 
@@ -185,7 +187,7 @@ async def test_a_path_with_a_cone_is_followed_to_its_end(roads):
     assert (left.cone, left.points[-1]) == (True, GOAL)
     await drive(roads, points)
     assert await roads.states() == {"way": "reached"}
-    (report,) = await roads.fleet.commands("r1", 1)
+    (report,) = (await roads.fleet.orders.newest(GetCommands("r1", 1))).commands
     assert report.deviation == 0.0
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import dataclasses
 import threading
+from types import SimpleNamespace
 
 import pytest
 from sqlalchemy import select
@@ -41,6 +42,10 @@ def told(*times):
     return [trajectories.pack(Fix("r1", t, pose_at(t))) for t in times]
 
 
+def recorder_of(settings):
+    return TrajectoryRecorder(SimpleNamespace(settings=SimpleNamespace(trajectories=settings)))
+
+
 class Yard:
     """One robot whose positions are saved in ``database``."""
 
@@ -49,7 +54,7 @@ class Yard:
         self.robots = Robots()
         self.robots.ready("r1", 1, "sql", 0.0)
         self.saving = TrajectoryWriter(
-            database, self.robots, recorder or TrajectoryRecorder(lambda: EVERY), ManualClock(wall=100.0)
+            database, self.robots, recorder or recorder_of(EVERY), ManualClock(wall=100.0)
         )
 
     def tell(self, *times):
@@ -180,7 +185,7 @@ async def test_a_server_that_is_killed_while_it_stores_is_told_again_what_it_for
 
 
 async def test_a_store_that_hangs_keeps_no_more_than_may_wait_and_gets_the_newest(database, busy):
-    recorder = TrajectoryRecorder(lambda: dataclasses.replace(EVERY, largest_backlog=1000))
+    recorder = recorder_of(dataclasses.replace(EVERY, largest_backlog=1000))
     yard = Yard(database, recorder)
     yard.tell(0.0)
     saving = asyncio.ensure_future(yard.saving.save())

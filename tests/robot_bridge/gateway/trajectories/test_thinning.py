@@ -3,6 +3,7 @@
 import gc
 import math
 import sys
+from types import SimpleNamespace
 
 import pytest
 from hypothesis import given
@@ -90,7 +91,7 @@ def test_no_position_is_farther_from_a_stored_one_than_set_unless_it_is_too_soon
 
 @pytest.fixture
 def recorder():
-    return TrajectoryRecorder(lambda: SETTINGS)
+    return TrajectoryRecorder(SimpleNamespace(settings=SimpleNamespace(trajectories=SETTINGS)))
 
 
 def test_what_could_not_be_stored_waits_in_its_order(recorder):

@@ -6,14 +6,17 @@ import asyncio
 import json
 from types import SimpleNamespace
 
+import pytest
 from websockets.asyncio.server import serve
 
+from robot_bridge.core.messages import SetPosEnd
 from robot_bridge.core.messages.links import LINK_PROTOCOL
 from robot_bridge.links.base.client import LinkClient
+from robot_bridge.links.base.errors import CommandRefusedError
 from robot_bridge.links.base.linked_robots import OVERTAKEN, Commanding
 from robot_bridge.links.base.memory import LinkMemory
 from robot_bridge.protocol import jsonrpc
-from tests.support.bridge.adapter_on_the_line import LinkOnTheLine
+from tests.support.bridge.adapter_on_the_line import LinkOnTheLine, ObedientAdapter
 
 SITE = {
     "id": "s",
@@ -147,3 +150,91 @@ async def test_what_came_of_a_stop_is_told_before_all_else_that_waits(tmp_path):
         writing.cancel()
         link.end()
     assert sent == ["the stop is done", "a position"]
+
+
+async def test_an_emergency_stop_is_told_as_one_and_what_is_only_seen_answers_by_itself(tmp_path):
+    calls = [jsonrpc.call("Abort", {"robot": "phone"}, "phone/3")]
+    calls.append(jsonrpc.call("Abort", {"robot": "r1", "emergency": True}, "r1/9"))
+    gateway = NewerGateway(calls)
+    async with serve(gateway.speak, "127.0.0.1", 0) as server:
+        port = server.sockets[0].getsockname()[1]
+        link = LinkOnTheLine(SimpleNamespace(address=f"ws://127.0.0.1:{port}"), tmp_path)
+        try:
+            for name, can in (("phone", ()), ("r1", ("targets",))):
+                await asyncio.to_thread(link.do, "add", name, can)
+            async with asyncio.timeout(20):
+                while {"phone/3", "r1/9"} - {reply["id"] for reply in gateway.replies if "result" in reply}:
+                    await asyncio.sleep(0.01)
+        finally:
+            await asyncio.to_thread(link.end)
+    assert set(link.adapter.stops) == {("r1", True)}
+
+
+class Desk:
+    """Commands of one adapter, whose robots have ``answer_within`` seconds; ``said`` is what came of them."""
+
+    def __init__(self, adapter, folder, answer_within=0.05):
+        self.said = []
+        self._came = asyncio.Event()
+        self.memory = LinkMemory(folder / "link.state")
+        self.memory.use_database("d")
+        self.memory.magic("r1")
+        self.commanding = Commanding(adapter, self.memory, answer_within, self._post)
+
+    def _post(self, frame, *, urgent=False):
+        message = json.loads(frame)
+        self.said.append((message["id"], message.get("error", {}).get("message"), urgent))
+        self._came.set()
+
+    async def until(self, count):
+        async with asyncio.timeout(30):
+            while len(self.said) < count:
+                self._came.clear()
+                await self._came.wait()
+
+
+class Stubborn(ObedientAdapter):
+    """A robot that stops as the test says."""
+
+    def __init__(self, ending):
+        super().__init__()
+        self.ending = ending
+
+    async def stop(self, robot, *, emergency):
+        await super().stop(robot, emergency=emergency)
+        if isinstance(self.ending, Exception):
+            raise self.ending
+        await asyncio.sleep(self.ending)
+
+
+@pytest.mark.parametrize("emergency", [False, True])
+@pytest.mark.parametrize(
+    ("ending", "told"),
+    [
+        (0.0, None),
+        (CommandRefusedError("its server does not answer"), "its server does not answer"),
+        (3600.0, "no answer within 0.05 s"),
+        (ZeroDivisionError("nobody foresaw it"), "the link failed; its log says more"),
+    ],
+)
+async def test_what_comes_of_a_stop_is_told_whatever_it_is(tmp_path, ending, told, emergency):
+    adapter = Stubborn(ending)
+    desk = Desk(adapter, tmp_path)
+    desk.commanding.stop("r1", "r1/9", emergency=emergency)
+    await desk.until(1)
+    assert desk.said == [("r1/9", told, True)] and adapter.stops == [("r1", emergency)]
+
+
+async def test_a_command_is_waited_for_as_long_as_its_adapter_holds_one_and_done_once(tmp_path):
+    adapter = ObedientAdapter()
+    adapter.holds_s, adapter.during = 3600.0, lambda _command: asyncio.sleep(0.2)
+    desk = Desk(adapter, tmp_path)
+    for count in (1, 2):
+        desk.commanding.enqueue("r1", "r1/7", SetPosEnd(1.0, 2.0))
+        await desk.until(count)
+    adapter.holds_s, adapter.during = 0.0, lambda _command: asyncio.sleep(3600)
+    desk.commanding.enqueue("r1", "r1/8", SetPosEnd(1.0, 2.0))
+    await desk.until(3)
+    done, late = ("r1/7", None, False), ("r1/8", "the robot did not take it on within 0.05 s", False)
+    assert desk.said == [done, done, late]
+    assert [command.id for command in adapter.commands] == [7, 8]

@@ -8,7 +8,10 @@ from pathlib import Path
 
 import pytest
 
-from robot_bridge.links.replay.adapter import PlayClock, Player, ReplayPresence
+from robot_bridge.core.messages import SetPosEnd
+from robot_bridge.links.base.adapter import Command
+from robot_bridge.links.base.errors import CommandRefusedError
+from robot_bridge.links.replay.adapter import PlayClock, Player, ReplayAdapter, ReplayPresence, ReplaySettings
 from robot_bridge.recordings.samples import Remarks, Sample, Source
 from robot_bridge.recordings.tracks import gather
 
@@ -56,3 +59,13 @@ def test_a_robot_is_silent_in_a_gap_and_over_behind_its_end():
     presences = [next(player.advance(place)).presence for place in (4.9, 5.1, 60.0, 65.1)]
     assert presences == [ReplayPresence.HERE, ReplayPresence.SILENT, ReplayPresence.HERE, ReplayPresence.OVER]
     assert player.next_place() == math.inf
+
+
+async def test_a_recording_refuses_what_a_gateway_would_have_it_do(tmp_path):
+    file = tmp_path / "drive.toml"
+    file.write_text("[replay]", encoding="utf-8")
+    adapter = ReplayAdapter(
+        recording(("car", 0.0, 0.0), ("car", 1.0, 1.0)), ReplaySettings("drive.csv"), file
+    )
+    with pytest.raises(CommandRefusedError, match="it can be seen and not commanded"):
+        await adapter.command(Command("replay-car", 7, SetPosEnd(1.0, 2.0), False))

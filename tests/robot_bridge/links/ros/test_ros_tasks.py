@@ -189,6 +189,11 @@ def test_a_goal_that_an_earlier_process_sent_is_not_sent_again(tasks):
     assert statuses(tasks, GoalStatus.SUCCEEDED) == [Idle()]
 
 
+def test_a_goal_that_ended_while_nobody_led_the_robot_is_not_driven_again(tasks):
+    statuses(tasks, GoalStatus.SUCCEEDED)
+    assert tasks.order(7, TARGET, NAV2, 1.0, again=True) == [Answered(7), Idle()]
+
+
 def test_a_goal_of_an_earlier_process_that_fails_is_told(tasks):
     statuses(tasks, GoalStatus.EXECUTING)
     statuses(tasks, GoalStatus.ABORTED, now=1.0)

@@ -162,7 +162,7 @@ def test_a_map_is_served_to_nodes_on_cyclone_dds(here, types, framed):
     grid.info.width, grid.info.height = 3, 2
     names = service_names(f"/cyclone_{framed}/get_map".lower(), GET_MAP)
     server = ServiceServer(here, names)
-    server.reply = types.encode("nav_msgs/msg/OccupancyGrid", grid)
+    server.set_reply(types.encode("nav_msgs/msg/OccupancyGrid", grid))
     client = ServiceClient(here, types, names, GET_MAP, framed=framed)
     until(here, lambda: client.is_matched)
     client.call(types.make(f"{GET_MAP}_Request"))

@@ -46,6 +46,7 @@ def test_what_nobody_foresaw_concerns_one_robot_and_is_logged_once(adapter, capl
     adapter._report(link)
     assert len(caplog.records) == 1
     assert not link.said["ok"] and link.said["text"] == "r1: the link failed; its log says more"
+    assert link.said["reached"]
 
 
 def test_what_a_person_has_to_put_right_ends_the_process(adapter):

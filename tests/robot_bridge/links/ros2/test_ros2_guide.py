@@ -24,7 +24,7 @@ def test_the_guide_names_every_setting_and_its_default(guide):
     written = tomllib.loads(guide("all"))["ros2"]
     topics = written.pop("topics")
     assert set(topics) == set(TopicSettings.__struct_fields__)
-    assert {*written, "topics"} == set(Ros2Settings.__struct_fields__)
+    assert {*written, "topics", "security"} == set(Ros2Settings.__struct_fields__)
     read = msgspec.convert(written | {"topics": {}}, Ros2Settings)
     assert read == Ros2Settings()
     for key, default in msgspec.structs.asdict(TopicSettings()).items():

@@ -7,10 +7,9 @@ from pathlib import Path
 
 import pytest
 
-from tests.support.databases.database_server import free_port
 from tests.support.errors import StageError
 from tests.support.patience import START
-from tests.support.processes import Processes
+from tests.support.processes import Processes, free_port
 from tests.support.robots.ros_nodes import Nodes
 from tests.support.robots.ros_peer import ros_python
 from tests.support.robots.rosbridge_peer import rosbridge_command

@@ -10,11 +10,15 @@ import pytest
 from robot_bridge.core.messages import SetPosEnd
 from robot_bridge.links.base.adapter import Command
 from robot_bridge.links.base.errors import CommandRefusedError
-from robot_bridge.links.ros.effects import RosAction
+from robot_bridge.links.ros.effects import CancelGoals, RosAction
 from robot_bridge.links.ros.goals import goal_id
-from robot_bridge.links.rosbridge.adapter import RosbridgeAdapter
+from robot_bridge.links.ros.messages import TWIST
+from robot_bridge.links.ros.settings import TopicSettings
+from robot_bridge.links.rosbridge.adapter import RosbridgeActions, RosbridgeAdapter
 from robot_bridge.links.rosbridge.connection import MOST_ANSWERS_WAITING, MOST_WAITING, RosbridgeConnection
 from robot_bridge.links.rosbridge.decoding import ServiceCall
+from robot_bridge.links.rosbridge.goals import ActionGoals, GoalBook
+from robot_bridge.links.rosbridge.graph import Graph
 from robot_bridge.links.rosbridge.settings import RosbridgeSettings, Server
 from robot_bridge.protocol.credentials import ClientCredentials
 
@@ -47,7 +51,7 @@ async def test_a_command_without_the_server_is_refused_with_the_reason(adapter):
 def test_the_next_process_reads_which_goals_are_open(adapter, tmp_path):
     adapter._book("r1").add(RosAction.TO_POSE, goal_id(7), frozenset([bytes(16)])).real = bytes(range(16))
     adapter._book("r2").add(RosAction.TO_POSE, goal_id(8), frozenset()).is_over = True
-    adapter._note_goals()
+    adapter.note_goals()
     again = RosbridgeAdapter(RosbridgeSettings(), SERVER, tmp_path / "far.goals")
     assert again._book("r1").find(goal_id(7)).real == bytes(range(16))
     assert again._book("r2").entries == []
@@ -62,10 +66,10 @@ def test_a_file_of_goals_that_is_none_is_left_out(tmp_path, text, caplog):
 
 def test_a_file_of_goals_that_cannot_be_written_is_told_and_ends_nothing(tmp_path):
     adapter = RosbridgeAdapter(RosbridgeSettings(), SERVER, tmp_path / "nowhere" / "far.goals")
-    adapter._note_goals()
+    adapter.note_goals()
     assert "far.goals cannot be written" in adapter._notes.fault
     (tmp_path / "nowhere").mkdir()
-    adapter._note_goals()
+    adapter.note_goals()
     assert adapter._notes.fault is None
 
 
@@ -77,6 +81,28 @@ def test_a_cancel_comes_before_maps_and_never_before_the_goal_that_it_cancels(co
     said = [one["op"] for one in waiting(connection)]
     assert said == ["send_action_goal", "call_service", "publish", "publish"]
     assert waiting(connection)[-1]["topic"] == "/r1/map"
+
+
+def test_all_that_stops_a_robot_comes_before_the_maps_of_others(adapter, connection):
+    settings = RosbridgeSettings(topics=TopicSettings(stop="/{robot}/stop"))
+    goals = ActionGoals("r1", connection, GoalBook(), adapter)
+    acting = RosbridgeActions("r1", settings, connection, None, goals)
+    acting.connect(
+        Graph(
+            topics={"/r1/cmd_vel": TWIST},
+            services=frozenset({"/r1/stop"}),
+            actions=frozenset({"/r1/navigate_to_pose"}),
+            listeners={"/r1/cmd_vel": 1},
+        )
+    )
+    connection._commands.clear()
+    connection._others.clear()
+    connection.publish("/r9/map", {"data": [0]}, latched=True)
+    acting.cancel(CancelGoals(RosAction.TO_POSE))
+    acting.publish_zero()
+    acting.call("stop")
+    said = [one.get("topic") or one["service"] for one in waiting(connection)]
+    assert said == ["/r1/navigate_to_pose/_action/cancel_goal", "/r1/cmd_vel", "/r1/stop", "/r9/map"]
 
 
 def test_nothing_that_stops_a_robot_is_thrown_away_for_room(connection):

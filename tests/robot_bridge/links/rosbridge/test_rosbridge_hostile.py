@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import json
 import ssl
+from types import SimpleNamespace
 
 import cbor2
 import pytest
@@ -130,7 +131,7 @@ async def test_a_rosapi_that_lies_is_named():
     async with serve(lie, "127.0.0.1", 0) as liar:
         port = liar.sockets[0].getsockname()[1]
         async with Client(f"ws://127.0.0.1:{port}") as client:
-            watch = GraphWatch(client.connection, list, list)
+            watch = GraphWatch(client.connection, SimpleNamespace(written_topics=[], watched_topics=[]))
             await client.until(lambda: client.connection.session)
             watching = asyncio.create_task(watch.run())
             await client.until(lambda: watch.fault)

@@ -2,11 +2,21 @@
 
 from __future__ import annotations
 
+import asyncio
+import contextlib
+import os
+import termios
+
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robot_bridge.links.tracker.nmea import Receiver
+from robot_bridge.core.messages import SetPosEnd
+from robot_bridge.links.base.adapter import Command
+from robot_bridge.links.base.errors import CommandRefusedError
+from robot_bridge.links.tracker import nmea
+from robot_bridge.links.tracker.adapter import TrackerAdapter, TrackerSettings
+from robot_bridge.links.tracker.nmea import NmeaSources, Receiver
 from robot_bridge.links.tracker.osmand import ReportError
 
 
@@ -87,3 +97,51 @@ def test_nothing_that_a_receiver_says_does_more_than_be_refused(text, contents):
             receiver.feed(line)
         except ReportError:
             continue
+
+
+class SerialLine:
+    """A serial device under ``path``: one side is read as a device, the other one is a receiver's."""
+
+    def __init__(self, path):
+        self.receiver, self._device = os.openpty()
+        path.unlink(missing_ok=True)
+        path.symlink_to(os.ttyname(self._device))
+
+    @property
+    def baud(self):
+        return termios.tcgetattr(self._device)[5]
+
+    def pull_out(self):
+        os.close(self.receiver)
+        os.close(self._device)
+
+
+async def test_a_serial_device_is_read_and_once_more_when_it_is_back(tmp_path, monkeypatch):
+    monkeypatch.setattr(nmea, "OPEN_AGAIN", 0.01)
+    heard, refused = asyncio.Queue(), []
+    sources = NmeaSources(heard.put_nowait, lambda source, error: refused.append((source, str(error))))
+    device = tmp_path / "ttyUSB0"
+    watching = asyncio.create_task(sources.watch_serial(device, 4800))
+    try:
+        for lat in (46.8805, 46.8905):
+            line = SerialLine(device)
+            sentence = RMC.replace("4652.8300", f"46{(lat - 46) * 60:.4f}")
+            async with asyncio.timeout(30):
+                while line.baud != termios.B4800:
+                    await asyncio.sleep(0.01)
+                os.write(line.receiver, b"half of a sentence\r\n" + said(sentence).encode())
+                report = await heard.get()
+            assert (report.device, report.fix.lat) == (str(device), pytest.approx(lat))
+            assert len(refused) == 1 and refused.pop()[0] == str(device)
+            line.pull_out()
+        assert not watching.done()
+    finally:
+        watching.cancel()
+        with contextlib.suppress(asyncio.CancelledError):
+            await watching
+
+
+async def test_a_tracker_refuses_what_a_gateway_would_have_it_do():
+    adapter = TrackerAdapter(TrackerSettings(), "phones.toml: tracker")
+    with pytest.raises(CommandRefusedError, match="a tracker is seen and not commanded"):
+        await adapter.command(Command("anna", 7, SetPosEnd(1.0, 2.0), False))

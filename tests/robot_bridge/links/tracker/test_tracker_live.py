@@ -16,16 +16,11 @@ from tests.support.bridge.bridge_programs import wait_until
 from tests.support.bridge.bridge_wires import RefusedError
 from tests.support.bridge.command_line import run_command
 from tests.support.bridge.cut_line import CUT, CutLine
+from tests.support.processes import free_port
 
 GUIDE = (Path(__file__).parents[4] / "docs/links-tracker.md").read_text(encoding="utf-8")
 SETTINGS = re.findall(r"```toml\n(.*?)```", GUIDE, re.DOTALL)
 (CURL,) = re.findall(r"^    (curl .*)$", GUIDE, re.MULTILINE)
-
-
-def free_port():
-    with socket.socket() as one:
-        one.bind(("127.0.0.1", 0))
-        return one.getsockname()[1]
 
 
 @pytest.fixture(scope="module")

@@ -25,6 +25,17 @@ class ShiftedMap:
         return x - 100, y - 50, theta
 
 
+class CountedNames:
+    """action-1, action-2, and so on."""
+
+    def __init__(self) -> None:
+        self._counter = itertools.count(1)
+
+    def draw(self) -> str:
+        """Return the next one."""
+        return f"action-{next(self._counter)}"
+
+
 class Bench:
     """Time stands until a test lets it pass; the vehicle speaks ``version``."""
 
@@ -33,13 +44,12 @@ class Bench:
         self.now = 1000.0
         self.header = itertools.count(1)
         self.state = state()
-        ids = itertools.count(1)
         self.controller = VehicleController(
             VEHICLE,
             VehicleSettings(**settings, version=version),
             {"hall": ShiftedMap()},
             remembered,
-            lambda: f"action-{next(ids)}",
+            CountedNames(),
             self.now,
         )
         self.said: list[Request] = []

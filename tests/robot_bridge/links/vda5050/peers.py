@@ -13,10 +13,10 @@ from typing import Any
 import paho.mqtt.client as mqtt
 import pytest
 
-from tests.support.databases.database_server import find_program, free_port
+from tests.support.databases.database_server import find_program
 from tests.support.errors import StageError
 from tests.support.patience import START
-from tests.support.processes import Processes
+from tests.support.processes import Processes, free_port
 
 VEHICLE = Path(__file__).with_name("virtual_vehicle.js")
 SDK_VEHICLE = Path(__file__).with_name("sdk_vehicle.py")

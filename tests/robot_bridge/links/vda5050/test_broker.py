@@ -53,13 +53,13 @@ class Heard:
         self.changes: list[str | None] = []
         self.changed = asyncio.Event()
         subscriptions = Topics().subscriptions()
-        self.broker = Broker(broker_address(settings, own), subscriptions, self._hear, self._change)
+        self.broker = Broker(broker_address(settings, own), subscriptions, self)
 
-    def _hear(self, *message):
-        self.messages.append(message)
+    def receive(self, topic, payload, *, retained):
+        self.messages.append((topic, payload, retained))
         self.changed.set()
 
-    def _change(self, reason):
+    def broker_changed(self, reason):
         self.changes.append(reason)
         self.changed.set()
 

@@ -11,7 +11,10 @@ import pytest
 
 from robot_bridge.links.base.settings import read_settings
 from robot_bridge.links.vda5050.adapter import Vda5050Adapter
+from robot_bridge.links.vda5050.ledger import Keep, Publish
+from robot_bridge.links.vda5050.messages import Action, InstantActions, Order
 from robot_bridge.links.vda5050.settings import Vda5050Settings
+from robot_bridge.links.vda5050.tasks import Remembered
 from robot_bridge.links.vda5050.vehicle import VehicleController
 from tests.robot_bridge.links.vda5050.bench import state
 
@@ -139,3 +142,32 @@ async def test_what_nobody_foresaw_of_one_vehicle_keeps_no_other_from_its_turn(a
     ticking.cancel()
     assert turns[:4] == ["first", "second"] * 2
     assert "vehicle Acme/first" in caplog.text
+
+
+def carry_out(adapter, *messages):
+    """Have the adapter publish what its vehicle's controller says; return what waits, urgent first."""
+    (vehicle,) = adapter._vehicles.values()
+    vehicle.controller.drain()
+    vehicle.controller.drain = lambda: [Keep(Remembered()), *map(Publish, messages)]
+    adapter._broker._is_connected = True
+    adapter._carry_out(vehicle)
+    queues = adapter._broker._urgent, adapter._broker._outgoing
+    return [[topic.rpartition("/")[2] for topic, _ in queue] for queue in queues]
+
+
+ORDER = Order(order_id="7", order_update_id=0, nodes=[], edges=[])
+CANCEL = InstantActions(actions=[Action(action_type="cancelOrder", action_id="a")])
+
+
+def test_a_stop_comes_before_all_orders_and_takes_back_its_own_that_still_waits(adapter):
+    online(adapter, "1")
+    assert carry_out(adapter, ORDER) == [[], ["order"]]
+    assert carry_out(adapter, CANCEL) == [["instantActions"], []]
+
+
+def test_on_a_full_disk_no_order_is_published_and_every_stop_is(adapter, tmp_path, caplog):
+    online(adapter, "1")
+    (tmp_path / "yard.vehicles").write_text("no folder", encoding="utf-8")
+    assert carry_out(adapter, ORDER) == [[], []]
+    assert carry_out(adapter, CANCEL) == [["instantActions"], []]
+    assert "vehicle Acme/1" in caplog.text

@@ -18,8 +18,7 @@ from tests.robot_bridge.links.vda5050.driving import (
 )
 from tests.robot_bridge.links.vda5050.peers import Yard
 from tests.support.bridge.cut_line import CutLine
-from tests.support.databases.database_server import free_port
-from tests.support.processes import Processes
+from tests.support.processes import Processes, free_port
 
 CUT_S = 10.0
 

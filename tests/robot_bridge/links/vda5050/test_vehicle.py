@@ -399,9 +399,22 @@ def test_faults_are_the_status_the_worst_first(bench):
     assert bench.saying(SendPos)[-1].status == "FATAL orderError: motor; WARNING orderError: low battery"
 
 
+def test_errors_and_the_safety_state_are_an_alarm_and_warnings_are_none(bench):
+    bench.show(errors=[fault("low battery"), fault("motor", level="FATAL")])
+    assert bench.controller.alarm(bench.now) == "FATAL orderError: motor"
+    bench.show(errors=[fault("low battery")])
+    assert bench.controller.alarm(bench.now) is None
+    bench.show(errors=[], safetyState={"eStop": "MANUAL", "fieldViolation": True})
+    alarm = "emergency stop at the vehicle (MANUAL); protective field violated"
+    assert bench.controller.alarm(bench.now) == alarm
+    bench.show(safetyState={"eStop": "NONE", "fieldViolation": False})
+    assert bench.controller.alarm(bench.now) is None
+
+
 def test_two_vehicles_under_one_serial_number_are_said_and_sent_nowhere(bench):
     for number in (500, 3, 501, 4, 502, 5, 503):
         bench.hear("state", {**bench.state, "headerId": number})
+    assert "two vehicles speak" in bench.controller.alarm(bench.now)
     assert "two vehicles speak under this serial number" in bench.saying(SendPos)[-1].status
     bench.clear()
     bench.tell(TARGET, 7)

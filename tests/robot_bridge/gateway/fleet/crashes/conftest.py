@@ -1,7 +1,8 @@
 """Plays in which the gateway dies, a transaction fails, or links are cut: at each moment in turn.
 
 Moments are the transactions that a scenario takes, or its seconds. One that stops robots is played once for
-each of them, another one for every third, beginning with the next one from scenario to scenario. With
+each of them until all go on again, and a while longer; what is driven then, and every other scenario, for
+every third, beginning with the next one from scenario to scenario. With
 EVERY_CRASH=1 in the environment all are played at each, before and after the commit, with all that robots may
 do meanwhile.
 """
@@ -24,6 +25,8 @@ STOPS = {"paused", "aborted", "aborted_too_late", "halted", "continued_at_once",
 """Scenarios in which operators stop robots."""
 EVERY = 3
 """Of how many moments one is played, where no robot is stopped."""
+STILL_ALL = 20
+"""For how many transactions each is played after robots were told to go on."""
 
 
 @pytest.fixture
@@ -77,13 +80,14 @@ def play(crash, sqlite_url, quick_folder):
 
 @pytest.fixture
 def moments():
-    """Pair moments with what happens then: ``moments(scenario, all_moments, ways)``."""
+    """Pair moments with what happens then: ``moments(scenario, all_moments, ways, stopped_until)``."""
 
-    def moments(scenario, times, ways):
+    def moments(scenario, times, ways, until):
         if os.environ.get("EVERY_CRASH"):
             return list(itertools.product(times, ways))
         first = list(SCENARIOS).index(scenario)
-        some = times if scenario in STOPS else times[first % EVERY :: EVERY]
+        stopped = [at for at in times if scenario in STOPS and at <= until]
+        some = stopped + times[len(stopped) :][first % EVERY :: EVERY]
         return [(at, ways[number % len(ways)]) for number, at in enumerate(some, first)]
 
     return moments
@@ -91,12 +95,16 @@ def moments():
 
 @pytest.fixture
 def writing(play):
-    """Return the numbers of the transactions that a scenario takes when nothing happens."""
+    """Return the numbers of the transactions that a scenario takes when nothing happens.
+
+    Behind them the number of the last one at which each is worth a play: robots are stopped until then.
+    """
 
     async def writing(scenario):
         undisturbed = Death()
-        await play(scenario, undisturbed, DRIVE_ON)
+        played = await play(scenario, undisturbed, DRIVE_ON)
         assert len(undisturbed.writing) > 10
-        return sorted(undisturbed.writing)
+        assert played.resumed[0] or scenario not in STOPS
+        return sorted(undisturbed.writing), played.resumed[0] + STILL_ALL
 
     return writing

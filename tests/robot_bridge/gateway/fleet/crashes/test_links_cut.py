@@ -8,12 +8,16 @@ from tests.support.bridge.crash_play import DRIVE_ON, START_ANEW, Cut
 from tests.support.bridge.crash_scenarios import SCENARIOS
 from tests.support.bridge.mortal_database import Death
 
+STILL_ALL = 5
+"""For how many turns links are cut in each, after robots were told to go on."""
+
 WAYS_TO_BE_CUT = [(seconds, how) for how in (DRIVE_ON, START_ANEW) for seconds in (2.0, 15.0)]
 """For how many seconds links are cut, shorter than robots are lost in and longer, and what robots do then."""
 
 
 @pytest.mark.parametrize("scenario", SCENARIOS)
 async def test_everything_comes_to_its_end_whenever_links_are_cut(scenario, play, moments):
-    turns = (await play(scenario, Death(), DRIVE_ON)).turns
-    for turn, (seconds, how) in moments(scenario, range(1, turns + 1), WAYS_TO_BE_CUT):
+    undisturbed = await play(scenario, Death(), DRIVE_ON)
+    turns, stopped_until = list(range(1, undisturbed.turns + 1)), undisturbed.resumed[1] + STILL_ALL
+    for turn, (seconds, how) in moments(scenario, turns, WAYS_TO_BE_CUT, stopped_until):
         await play(scenario, Death(), how, Cut(turn, seconds))

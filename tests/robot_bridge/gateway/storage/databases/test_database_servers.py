@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
 import os
 import signal
 import subprocess
@@ -12,6 +11,7 @@ from pathlib import Path
 import pytest
 
 from tests.support.bridge.bridge_programs import wait_until
+from tests.support.processes import is_running
 
 ROOT = Path(__file__).resolve().parents[5]
 BOTH = pytest.mark.parametrize("kind", ["postgresql", "mariadb"])
@@ -43,13 +43,6 @@ def children_of(pid):
     return Path(f"/proc/{pid}/task/{pid}/children").read_text(encoding="ascii").split()
 
 
-def runs(pid):
-    # One that nobody has taken notice of yet is dead, too.
-    with contextlib.suppress(FileNotFoundError):
-        return Path(f"/proc/{pid}/stat").read_text(encoding="ascii").rsplit(")", 1)[1].split()[0] not in "ZX"
-    return False
-
-
 @BOTH
 def test_every_database_is_new_and_empty(kind, server):
     first, second = server.new_database(), server.new_database()
@@ -65,7 +58,7 @@ def test_a_killed_server_comes_back_on_its_port_with_what_was_committed(kind, se
     server.sql("create table t (i int); insert into t values (7)", name)
     workers = children_of(server.pid)
     server.kill()
-    assert [worker for worker in workers if runs(worker)] == []
+    assert [worker for worker in workers if is_running(worker)] == []
     server.start()
     assert server.port == port
     assert server.sql("select i from t", name) == "7"

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from sqlalchemy import func, select
+from sqlalchemy import create_engine, event, func, select
 
 from robot_bridge.core.messages import OpAck, SendPos, SetMap
 from robot_bridge.gateway.model.robots import Robot
@@ -12,6 +12,7 @@ from robot_bridge.gateway.storage.repositories import requests, robots, trajecto
 from robot_bridge.gateway.storage.repositories import requests as answers
 from robot_bridge.gateway.storage.repositories.trajectories import Fix, pack
 from robot_bridge.gateway.storage.rows import TOGETHER
+from robot_bridge.gateway.storage.schema import metadata
 from robot_bridge.gateway.storage.schema import trajectories as stored_positions
 
 NOW = 1_790_000_000.25
@@ -96,3 +97,17 @@ async def test_requests_are_read_as_they_were_written_and_go_when_they_were_deal
     assert sizes == [images.get(n) for n in range(120)]
     await database.run(requests.remove_requests, [row.id for row in found][:-1])
     assert [row.params for row in await database.read(requests.read_requests)] == ['{"n": 119}']
+
+
+def test_sqlite_is_asked_in_few_kinds_of_statements(tmp_path):
+    engine, texts = create_engine(f"sqlite:///{tmp_path}/fleet.db"), set()
+    metadata.create_all(engine)
+    event.listen(engine, "before_cursor_execute", lambda *call: texts.add(call[2]))
+    with engine.begin() as connection:
+        for size in range(1, 3 * TOGETHER):
+            trajectories.add(
+                connection, [pack(Fix(f"r{n}", NOW, SendPos(1.0, 2.0, 0.5, 0.0))) for n in range(size)]
+            )
+        found = connection.execute(select(func.count()).select_from(stored_positions)).scalar()
+    assert found == sum(range(1, 3 * TOGETHER))
+    assert len([text for text in texts if text.startswith("INSERT")]) <= TOGETHER.bit_length()

@@ -15,8 +15,6 @@ from ...robot_bridge.core.messages import Role
 from ..ui.errors import AddressError, GatewayLinkError
 from ..ui.language import tr
 
-# --- The gateway's URL, and what an operator brings to it ---
-
 DEFAULT_URL = "ws://127.0.0.1:8765/desk"
 DESK_PATH, ROBOTS_PATHS = "/desk", ("/robot", "/link")
 """The gateway's paths; a proxy may have put others in front of them."""
@@ -133,8 +131,6 @@ def _is_own(host: str) -> bool:
         return False
 
 
-# --- Operators' roles in the operator's language ---
-
 ROLES = {
     Role.VIEWER: tr("viewer"),
     Role.OPERATOR: tr("operator"),
@@ -145,9 +141,6 @@ ROLES = {
 def role_in_words(role: str) -> str:
     """Return a role by its name on the wire; one that is not known here as it is."""
     return next((words for known, words in ROLES.items() if known.value == role), role)
-
-
-# --- How the link to the gateway stands ---
 
 
 class ConnectionPhase(str, Enum):
@@ -185,11 +178,11 @@ class ConnectionStatus:
         return max(0.0, self.next_try - now) if self.next_try is not None else 0.0
 
 
-# --- What a failure to reach the gateway means, in the operator's words ---
-
 REVOKED = 4003
 ENDED = 4004
 """Close codes of the gateway: the token does not hold any more; a supervisor ended the session."""
+TOO_LARGE = 1009
+"""The close code of WebSocket for a message that is larger than the other side takes."""
 _UNKNOWN_AUTHORITY = {18, 19, 20, 21}
 _OTHER_NAME = {62, 64}
 _NOT_YET_VALID, _EXPIRED = 9, 10

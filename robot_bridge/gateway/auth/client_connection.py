@@ -1,4 +1,4 @@
-"""Connection of a client with its rate limits, and the fast path of its short messages."""
+"""Connection of a client, held to its limits, and the fast path of its short messages."""
 
 from __future__ import annotations
 
@@ -16,42 +16,10 @@ from websockets.asyncio.server import ServerConnection
 from websockets.frames import CloseCode, Frame, Opcode
 from websockets.protocol import OPEN
 
-from ...core.clock import SYSTEM_CLOCK, Clock
 from ...core.sites.settings_tables import LimitSettings
 from ...protocol import jsonrpc
 from .accounts import TokenKind
-
-# --- A token bucket: how often something may happen, with some room for bursts ---
-
-
-class RateLimit:
-    """Allows ``rate`` takings a second on average and up to ``burst`` at once."""
-
-    __slots__ = ("_at", "_burst", "_left", "_now", "_rate")
-
-    def __init__(self, rate: float, burst: float, clock: Clock = SYSTEM_CLOCK) -> None:
-        self._rate, self._burst, self._now = rate, burst, clock.steady
-        self._left, self._at = burst, self._now()
-
-    def consume(self) -> bool:
-        """Take one, if there is one to take."""
-        now = self._now()
-        self._left = min(self._burst, self._left + (now - self._at) * self._rate)
-        self._at = now
-        if self._left < 1.0:
-            return False
-        self._left -= 1.0
-        return True
-
-    def give_back(self) -> None:
-        """Undo a taking."""
-        self._left = min(self._burst, self._left + 1.0)
-
-    def wait(self) -> float:
-        """Return the seconds until the next one can be taken."""
-        missing = 1.0 - min(self._burst, self._left + (self._now() - self._at) * self._rate)
-        return max(0.0, missing / self._rate)
-
+from .rate_limit import RateLimit
 
 # --- Where the frames begin in what a client sends, and those that are a short message as they stand; no I/O
 # Frames are those of RFC 6455, section 5.2.
@@ -148,13 +116,17 @@ class FastPath:
 
     The parsing, the queue and the tasks that this saves take several times as long as a position does. Only
     what nothing is on the long way before goes here: messages are dealt with in the order they were sent.
-    ``handler`` deals with a message, or returns false and has done nothing.
+    The handler deals with a message, or returns false and has done nothing.
     """
 
     def __init__(self) -> None:
-        self.handler: Callable[[bytes], bool] | None = None
+        self._handler: Callable[[bytes], bool] | None = None
         self.on_the_long_way = 0
         self._edges: FrameParser | None = None
+
+    def set_handler(self, handler: Callable[[bytes], bool]) -> None:
+        """Give messages to ``handler`` from now on."""
+        self._handler = handler
 
     def begin(self, request: bytes) -> None:
         """Follow the frames from the end of the request on, whose last bytes these are."""
@@ -168,11 +140,11 @@ class FastPath:
         Return where that begins which has to go the long way; :meth:`pass_over` is to be called with it.
         """
         start, edges = 0, self._edges
-        if self.handler is None or edges is None or not edges.between or self.on_the_long_way:
+        if self._handler is None or edges is None or not edges.between or self.on_the_long_way:
             return 0
         while (found := short_text(data, start)) is not None and messages.consume():
             message, end = found
-            if not self.handler(message):
+            if not self._handler(message):
                 messages.give_back()
                 break
             start = end
@@ -276,6 +248,10 @@ class ClientConnection(ServerConnection):
         with contextlib.suppress(OSError):
             own.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, limits.send_buffer_bytes)
         self._silence = self.loop.call_later(limits.first_message_s, self._check_silence)
+
+    def handle_at_once(self, handler: Callable[[bytes], bool]) -> None:
+        """Give messages to ``handler`` as their bytes come in; one of which it returns false is queued."""
+        self.short_cut.set_handler(handler)
 
     async def expel(self, code: int, reason: str) -> None:
         """End the connection, whether the client agrees or not; what still comes in is passed over."""

@@ -10,6 +10,7 @@ import logging
 import time
 from collections import Counter
 from collections.abc import Iterator
+from dataclasses import asdict
 from functools import partial
 from typing import Any
 
@@ -57,6 +58,7 @@ class StatusPages:
             "site": {"id": site.id, "version": site.version},
             "database": {"ok": latency is not None, "latency_s": latency},
             "links": {one.link: {"ok": one.up, "text": one.text} for one in self._fleet.links.report().links},
+            "routes": self._routes(),
             **tasks,
         }
         status = http.HTTPStatus.OK if well else http.HTTPStatus.SERVICE_UNAVAILABLE
@@ -78,6 +80,12 @@ class StatusPages:
             return None
         self._database_up = True
         return round(time.perf_counter() - began, 4)
+
+    def _routes(self) -> dict[str, Any] | None:
+        """Return what finds ways; all is well without the fastest, which is started again."""
+        planner = self._fleet.roads.planner
+        report = None if planner is None else planner.engine_report
+        return None if report is None else asdict(report)
 
     def _task(self, name: str) -> dict[str, Any]:
         age = self._fleet.tally.age(name)

@@ -1,4 +1,4 @@
-"""The way that is left: from where a robot is to the end of its task, in straight lines or along its path.
+"""Remaining way: from where a robot is to the end of its task, in straight lines or along its path.
 
 A road planner plugs in as a :class:`Planner`.
 """

@@ -39,8 +39,8 @@ from ...robot_bridge.core.messages import (
     SiteReport,
 )
 from ...robot_bridge.core.sites.frame import SiteFrame
-from ..control.fleet_controller import FleetController
 from ..gateway_client.command_cache import DRIVE_OPERATIONS, place_of
+from ..gateway_client.fleet_state import FleetState
 from ..gateway_client.robot_states import RobotStates
 from ..gateway_client.robot_table import STATES
 from ..gateway_client.state_texts import ROBOT_STATES
@@ -58,8 +58,6 @@ from ..layers.site_transform import frame_of
 from ..ui.glyphs import STATE_COLOURS
 from ..ui.language import tr
 from ..ui.times import date_and_time, time_of_day
-
-# --- Robots as features: their attributes, geometries, and how they look unless the user styles them ---
 
 NAME = tr("Robots (live)")
 FIELDS = (
@@ -185,8 +183,6 @@ def _renderer() -> QgsCategorizedSymbolRenderer:
         categories.append(QgsRendererCategory(state.value, symbol, ROBOT_STATES[state]))
     return QgsCategorizedSymbolRenderer("state", categories)
 
-
-# --- The robots as an ordinary vector layer: attribute table, identify, labels, styling, printing ---
 
 KIND = "robots"
 AT_ONCE = 100
@@ -375,8 +371,6 @@ def _is_only_age(feature: RobotFeature, changed: Iterable[int]) -> bool:
     return feature.values[STATE_AT] == RobotState.FRESH.value and set(changed) == {AGE_AT}
 
 
-# --- Closed roads and conflicts as ordinary vector layers: identify, attribute table, labels, printing
-
 LABEL_MM = 1.5
 CLOSED_FIELDS = "closure:string,reason:string,closed_by:string,closed_at:string,until:string,edges:integer"
 CONFLICT_FIELDS = (
@@ -387,19 +381,19 @@ CONFLICT_FIELDS = (
 class RoadLayers(QObject):
     """A layer of each, made when there is something to show and taken out with the plugin."""
 
-    def __init__(self, desk: FleetController, parent: QObject | None = None):
+    def __init__(self, state: FleetState, project: QgsProject, parent: QObject | None = None):
         super().__init__(parent)
-        self._desk = desk
-        project = desk.project
+        self._state, self._project = state, project
+        project = project
         self._closures = RowLayer(
             project, "closed_roads", tr("Closed roads"), "LineString", CLOSED_FIELDS, _style_closures
         )
         self._conflicts = RowLayer(
             project, "conflicts", tr("Conflicts"), "Point", CONFLICT_FIELDS, _style_conflicts
         )
-        desk.roads.closures_changed.connect(self._show_closures)
-        desk.roads.conflicts_changed.connect(self._show_conflicts)
-        desk.site_changed.connect(self._show)
+        state.closures_changed.connect(self._show_closures)
+        state.conflicts_changed.connect(self._show_conflicts)
+        state.site_changed.connect(self._show)
 
     def remove(self) -> None:
         """Take both out of the project."""
@@ -411,13 +405,13 @@ class RoadLayers(QObject):
         self._show_conflicts()
 
     def _show_closures(self) -> None:
-        rows = [(closure.line, _closure_values(closure)) for closure in self._desk.roads.closures]
-        self._closures.show(rows, self._desk.site)
+        rows = [(closure.line, _closure_values(closure)) for closure in self._state.closures]
+        self._closures.show(rows, self._state.site)
 
     def _show_conflicts(self) -> None:
-        conflicts = self._desk.roads.conflicts.conflicts
+        conflicts = self._state.conflicts.conflicts
         rows = [([(one.x, one.y)], _conflict_values(one)) for one in conflicts]
-        self._conflicts.show(rows, self._desk.site)
+        self._conflicts.show(rows, self._state.site)
 
 
 def _closure_values(closure: ClosureReport) -> list[Any]:
@@ -461,8 +455,6 @@ def _style_conflicts(layer: QgsVectorLayer) -> None:
     label(layer, words, QgsPalLayerSettings.Placement.OrderedPositionsAroundPoint, LABEL_MM)
 
 
-# --- The cones that robots put down, as an ordinary layer: what was reached stays on the map ---
-
 PLACED_CONE_FIELDS = "robot:string,label:string,placed_at:string,deviation_m:double"
 MOST = 2000
 """Cones that are shown: of more the newest."""
@@ -473,16 +465,16 @@ class StandingCones(QObject):
     were reached, straight or along a path. :meth:`remove` takes it out of the project.
     """
 
-    def __init__(self, desk: FleetController, parent: QObject | None = None):
+    def __init__(self, state: FleetState, project: QgsProject, parent: QObject | None = None):
         super().__init__(parent)
-        self._desk = desk
+        self._state, self._project = state, project
         self._reached: dict[str, CommandReport] = {}
         self._layer = RowLayer(
-            desk.project, "standing_cones", tr("Cones put down"), "Point", PLACED_CONE_FIELDS, _style_cones
+            project, "standing_cones", tr("Cones put down"), "Point", PLACED_CONE_FIELDS, _style_cones
         )
-        desk.commands_changed.connect(self._add_reached)
-        desk.placements_changed.connect(self._show)
-        desk.site_changed.connect(self._site_changed)
+        state.commands_changed.connect(self._add_reached)
+        state.placed_cones_changed.connect(self._show)
+        state.site_changed.connect(self._site_changed)
 
     def remove(self) -> None:
         """Take the layer out of the project."""
@@ -498,15 +490,17 @@ class StandingCones(QObject):
 
     def _site_changed(self) -> None:
         # Another site's commands are out of the book by now.
-        self._reached = {command: one for command, one in self._reached.items() if command in self._desk.book}
+        self._reached = {
+            command: one for command, one in self._reached.items() if command in self._state.commands
+        }
         self._show()
 
     def _show(self, *_: object) -> None:
-        self._layer.show(list(self._rows())[-MOST:], self._desk.site)
+        self._layer.show(list(self._rows())[-MOST:], self._state.site)
 
     def _rows(self) -> Iterator[Row]:
         known = set()
-        for cone in self._desk.placements:
+        for cone in self._state.placed_cones:
             known.add(cone.command)
             if cone.collected_at is None:
                 values = [cone.robot, cone.label or cone.cone or "", date_and_time(cone.placed_at)]

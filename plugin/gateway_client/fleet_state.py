@@ -1,0 +1,426 @@
+"""FleetState: the one store of all that the gateway reports, with a signal for each topic."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from typing import Any, Protocol
+
+from qgis.PyQt.QtCore import QObject, QTimer, pyqtSignal
+
+from ...robot_bridge.core.clock import Clock
+from ...robot_bridge.core.messages import (
+    Closures,
+    CommandReport,
+    Conflicts,
+    EmergencyReport,
+    Geofence,
+    Links,
+    Nearness,
+    ObservationReport,
+    PlacementReport,
+    QueueReport,
+    ReplannedRobot,
+    RobotReport,
+    SiteReport,
+    Suspensions,
+)
+from ..ui.language import tr
+from ..ui.scheduling import PULL_EVERY_MS
+from .command_cache import CommandCache
+from .connection_status import ConnectionPhase, ConnectionStatus
+from .report_caches import (
+    GeofenceState,
+    KnownPlan,
+    NearnessState,
+    ObservationCache,
+    PlacedConeCache,
+    PlanCache,
+    QueueCache,
+    newer_plan,
+)
+from .requests import RequestResult
+from .robot_states import RobotStates, RobotView
+from .robot_table import RobotTable
+
+MOST_COMMANDS = 1000
+"""Commands that wait for the window."""
+KEYS = {"commands": "command", "queues": "robot", "placed_cones": "placement", "observations": "observation"}
+"""Topics of which the newest of each thing counts: the field that names the thing."""
+
+
+@dataclass
+class StateUpdate:
+    """What arrived since the window collected it last.
+
+    Only the newest of each thing is kept, so that a window that is busy for a while costs no memory and then
+    paints what is true now. ``site`` is set when a gateway said which site it serves; ``greeting_of`` names
+    its database where that was the first word on a link, empty where it does not say: it may be another
+    gateway than before. With ``are_all_queues`` there are no others, and with ``is_driving``, which says
+    whether the gateway drives cone plans, no other plans.
+    """
+
+    link: ConnectionStatus
+    site: SiteReport | None = None
+    greeting_of: str | None = None
+    robots: RobotTable = field(default_factory=RobotTable)
+    commands: dict[str, CommandReport] = field(default_factory=dict)
+    queues: dict[str, QueueReport] = field(default_factory=dict)
+    are_all_queues: bool = False
+    plans: dict[str, KnownPlan] = field(default_factory=dict)
+    is_driving: bool | None = None
+    placed_cones: dict[int, PlacementReport] = field(default_factory=dict)
+    observations: dict[int, ObservationReport] = field(default_factory=dict)
+    closures: Closures | None = None
+    conflicts: Conflicts | None = None
+    replanned: list[ReplannedRobot] = field(default_factory=list)
+    geofence: Geofence | None = None
+    nearness: Nearness | None = None
+    emergency: EmergencyReport | None = None
+    suspensions: Suspensions | None = None
+    links: Links | None = None
+    answers: list[RequestResult] = field(default_factory=list)
+
+    def add(self, **reports: Any) -> None:
+        """Take in reports by their topics."""
+        if reports.pop("are_all_queues", False):
+            self.queues.clear()
+            self.are_all_queues = True
+        if reports.get("is_driving") is not None:
+            self.plans.clear()
+        for topic, report in reports.items():
+            if topic == "robots":
+                self._add_robots(report)
+            elif topic == "plans":
+                self.plans.update({one.plan: newer_plan(self.plans.get(one.plan), one) for one in report})
+            elif topic in KEYS:
+                self._add_keyed(topic, report)
+            elif topic == "replanned":
+                self.replanned += report
+            elif topic == "is_driving" and report is None:
+                continue
+            else:
+                setattr(self, topic, report)
+
+    def _add_robots(self, table: RobotTable) -> None:
+        # Where the window keeps up there is nothing yet, and the table is merged once: by the store.
+        if self.robots.tells_nothing:
+            self.robots = table
+        else:
+            self.robots.merge(table)
+
+    def _add_keyed(self, topic: str, reports: Iterable[Any]) -> None:
+        known = getattr(self, topic)
+        for report in reports:
+            key = getattr(report, KEYS[topic])
+            # What changed last is at the end.
+            known.pop(key, None)
+            known[key] = report
+        while topic == "commands" and len(known) > MOST_COMMANDS:
+            del known[next(iter(known))]
+
+
+class UpdateBuffer:
+    """The update that the connection's thread fills and the window collects; safe to use from both."""
+
+    def __init__(self) -> None:
+        self._lock = threading.Lock()
+        self._update = StateUpdate(ConnectionStatus(ConnectionPhase.CLOSED))
+
+    def add(self, **reports: Any) -> None:
+        """Add reports by their topics, the fields of :class:`StateUpdate`, all at once.
+
+        ``commands``, ``queues``, ``plans``, ``placed_cones``, ``observations``, ``replanned`` take several.
+        """
+        with self._lock:
+            self._update.add(**reports)
+
+    def add_answer(self, answer: RequestResult) -> None:
+        """Add what became of a request; every one of them is kept."""
+        with self._lock:
+            self._update.answers.append(answer)
+
+    def collect(self) -> StateUpdate:
+        """Return all that arrived since the last call and begin again; the link's state stays."""
+        with self._lock:
+            update, self._update = self._update, StateUpdate(self._update.link)
+        return update
+
+
+class UpdateSource(Protocol):
+    """Where a store collects its updates: the connection's thread."""
+
+    def collect_updates(self) -> StateUpdate:
+        """Return what arrived since the last call, without waiting."""
+
+
+LATE_S = 0.1
+"""Seconds after which what was collected is not passed on without a look for what is newer."""
+CONFLICTS_SILENT_AFTER = 10.0
+"""Seconds without a word of them after which conflicts are not known any more."""
+
+
+class FleetState(QObject):
+    """Collects the newest reports twenty times a second; nothing in it waits for the network.
+
+    One timer alternates between collecting, which emits the signals of the topics, and ``updated``: the
+    window handles the operator's events in between.
+    """
+
+    updated = pyqtSignal()
+    """A twentieth of a second went by: positions, ages and countdowns may have changed."""
+    merged = pyqtSignal()
+    """An update was taken in; before ``updated``, in the same piece of work as the topics' signals."""
+    link_changed = pyqtSignal()
+    site_changed = pyqtSignal()
+    about_to_forget = pyqtSignal()
+    """The gateway's robots are others than before: what is known of those is forgotten next."""
+    forgotten = pyqtSignal()
+    """What was known of other robots is forgotten; ``site`` is still the one before."""
+    replaced = pyqtSignal(str)
+    """Another site or database is served than before: the text, which must not go unseen."""
+    robots_removed = pyqtSignal(object)
+    """Robots are there no more, and others have moved up into their rows: the RemovedRobots."""
+    commands_changed = pyqtSignal(list)
+    """The CommandReports that told something new."""
+    queues_changed = pyqtSignal(list)
+    """The robots of whose queues something new is known."""
+    plans_changed = pyqtSignal(list)
+    """The names of the cone plans of which something new is known."""
+    placed_cones_changed = pyqtSignal(list)
+    """The numbers of the placed cones of which something new is known."""
+    observations_changed = pyqtSignal(list)
+    """The numbers of the observations of which something new is known."""
+    closures_changed = pyqtSignal()
+    conflicts_changed = pyqtSignal()
+    replanned = pyqtSignal(object)
+    """A robot was sent another way or stopped: the ReplannedRobot."""
+    suspensions_changed = pyqtSignal()
+    links_changed = pyqtSignal()
+    emergency_changed = pyqtSignal()
+    """The gateway said how an emergency stop stands."""
+    answered = pyqtSignal(object)
+    """What became of a request: the RequestResult."""
+
+    def __init__(self, source: UpdateSource, clock: Clock, parent: QObject | None = None):
+        super().__init__(parent)
+        self._source = source
+        self.clock = clock
+        self.link = ConnectionStatus(ConnectionPhase.CLOSED)
+        self.site: SiteReport | None = None
+        self.robots = RobotStates()
+        self.commands = CommandCache()
+        self.queues = QueueCache()
+        self.plans = PlanCache()
+        self.placed_cones = PlacedConeCache()
+        self.observations = ObservationCache()
+        self.closures: tuple = ()
+        self.conflicts = Conflicts(0.0)
+        self.geofence = GeofenceState(clock)
+        self.nearness = NearnessState(clock)
+        self.suspensions = Suspensions()
+        self.links = Links()
+        self.emergency: EmergencyReport | None = None
+        self._conflicts_at = -CONFLICTS_SILENT_AFTER
+        self._url, self._is_other_gateway = "", False
+        self._database = ""
+        """What tells the gateway's database from every other; empty where it does not say."""
+        self._is_running = self._is_collected = False
+        self._collected_at = self._due = clock.steady()
+        self._timer = QTimer(self)
+        self._timer.setSingleShot(True)
+        self._timer.timeout.connect(self._next)
+
+    def start(self, url: str) -> None:
+        """Collect from now on what the gateway at ``url`` reports.
+
+        What another one reported is forgotten when this one says which site it serves.
+        """
+        self._is_other_gateway = self._is_other_gateway or url != self._url
+        self._url = url
+        self._is_running = True
+        self.pull()
+
+    def stop(self) -> None:
+        """Collect nothing more."""
+        self._is_running = self._is_collected = False
+        self._timer.stop()
+
+    def pull(self) -> None:
+        """Collect now; ``updated`` follows in a piece of work of its own."""
+        try:
+            self._collect()
+        finally:
+            # Whatever an update raises, the next one is collected.
+            self._is_collected = True
+            self._timer.start(0)
+
+    def robot(self, name: str) -> RobotView | None:
+        """Return robot ``name`` as it stands now, None if it is not known."""
+        return self.robots.view(name, self.clock.steady())
+
+    def report_of(self, name: str) -> RobotReport | None:
+        """Return the newest report of robot ``name``, None if it is not known."""
+        view = self.robot(name)
+        return None if view is None else view.report
+
+    def _next(self) -> None:
+        if not self._is_collected:
+            self.pull()
+            return
+        self._is_collected = False
+        now = self.clock.steady()
+        if self._is_running:
+            self._due = max(now, self._due + PULL_EVERY_MS / 1000)
+            self._timer.start(round((self._due - now) * 1000))
+        if now - self._collected_at > LATE_S:
+            # The window stood still meanwhile: what it shows first is what is so now.
+            self._collect()
+        self.updated.emit()
+
+    def _collect(self) -> None:
+        self._collected_at = self.clock.steady()
+        self.merge(self._source.collect_updates())
+
+    def merge(self, update: StateUpdate) -> None:
+        """Take in an update, and emit the signal of each topic that it tells something new of."""
+        try:
+            self._merge_reports(update)
+        finally:
+            # Whatever a report raises: what became of a stop or an abort is known.
+            for answer in update.answers:
+                self.answered.emit(answer)
+            self._merge_notices(update)
+            self.merged.emit()
+
+    def _merge_reports(self, update: StateUpdate) -> None:
+        self._merge_link(update.link)
+        if update.site is not None:
+            self.merge_site(update.site, update.greeting_of)
+        self._merge_robots(update.robots)
+        if changed := self.commands.merge(update.commands.values()):
+            self.commands_changed.emit(changed)
+        self._merge_roads(update)
+        if update.geofence is not None:
+            self.geofence.update(update.geofence)
+        if update.nearness is not None:
+            self.nearness.update(update.nearness)
+        if queues := self.queues.merge(update.queues, are_all=update.are_all_queues):
+            self.queues_changed.emit(queues)
+        plans = self.plans.merge(update.plans, update.is_driving)
+        if plans or update.is_driving is not None:
+            self.plans_changed.emit(plans)
+        if placed := self.placed_cones.merge(update.placed_cones):
+            self.placed_cones_changed.emit(placed)
+        if seen := self.observations.merge(update.observations):
+            self.observations_changed.emit(seen)
+
+    def _merge_link(self, link: ConnectionStatus) -> None:
+        if link == self.link:
+            return
+        self.link = link
+        if link.phase is ConnectionPhase.CONNECTED:
+            self.geofence.begin_link()
+        self.link_changed.emit()
+
+    def _merge_robots(self, table: RobotTable) -> None:
+        gone = self.robots.merge(table)
+        if gone.names:
+            self.queues.forget(gone.names)
+            self.robots_removed.emit(gone)
+            self.queues_changed.emit(sorted(gone.names))
+
+    def _merge_roads(self, update: StateUpdate) -> None:
+        if update.closures is not None and self.closures != tuple(update.closures.closures):
+            self.closures = tuple(update.closures.closures)
+            self.closures_changed.emit()
+        if update.conflicts is not None:
+            self._conflicts_at = self.clock.steady()
+            self._set_conflicts(update.conflicts)
+        elif self.clock.steady() - self._conflicts_at > CONFLICTS_SILENT_AFTER:
+            # A gateway tells of them every second for as long as there are any.
+            self._set_conflicts(Conflicts(self.conflicts.t))
+        for robot in update.replanned:
+            self.replanned.emit(robot)
+
+    def _set_conflicts(self, conflicts: Conflicts) -> None:
+        same = (conflicts.conflicts, conflicts.waiting) == (self.conflicts.conflicts, self.conflicts.waiting)
+        self.conflicts = conflicts
+        if not same:
+            self.conflicts_changed.emit()
+
+    def _merge_notices(self, update: StateUpdate) -> None:
+        if update.suspensions is not None:
+            self.suspensions = update.suspensions
+            self.suspensions_changed.emit()
+        if update.links is not None:
+            self.links = update.links
+            self.links_changed.emit()
+        if update.emergency is not None:
+            self.emergency = update.emergency
+            self.emergency_changed.emit()
+
+    def merge_site(self, site: SiteReport, greeting_of: str | None = None) -> None:
+        """Take in which site is served; ``greeting_of`` as in :class:`StateUpdate`."""
+        before, is_elsewhere = self.site, self._is_other_gateway
+        is_other_database = bool(greeting_of and self._database and greeting_of != self._database)
+        self._database = greeting_of or self._database
+        if site == before and not is_elsewhere and not is_other_database:
+            return
+        is_another = is_other_database or self._is_another(site, is_greeting=greeting_of is not None)
+        if before is not None and is_another:
+            self.about_to_forget.emit()
+        if not is_elsewhere and (text := _replacement(before, site, is_other_database)):
+            self.replaced.emit(text)
+        if is_another:
+            self._forget()
+        self.site, self._is_other_gateway = site, False
+        self.robots.set_limits(site.stale_after, site.lost_after)
+        self.site_changed.emit()
+
+    def _is_another(self, site: SiteReport, *, is_greeting: bool) -> bool:
+        """Tell whether other robots are on ``site`` than on the one before.
+
+        Two gateways may serve one site, for practice and for work, each with robots of its own. Chosen while
+        the link is up, a site is served to the same robots: commands, queues and an emergency stop go on.
+        """
+        was = self.site
+        if was is None or self._is_other_gateway or (is_greeting and site.id != was.id):
+            return True
+        return (site.crs, site.origin, site.rotation) != (was.crs, was.origin, was.rotation)
+
+    def _forget(self) -> None:
+        for part in (
+            self.robots, self.commands, self.queues, self.plans, self.placed_cones, self.observations,
+        ):  # fmt: skip
+            part.clear()
+        self.emergency = None
+        self.suspensions, self.links = Suspensions(), Links()
+        self.suspensions_changed.emit()
+        self.links_changed.emit()
+        self.closures = ()
+        self.closures_changed.emit()
+        self._set_conflicts(Conflicts(0.0))
+        self.geofence.clear()
+        self.nearness.clear()
+        self.forgotten.emit()
+
+
+def _replacement(before: SiteReport | None, site: SiteReport, is_other_database: bool) -> str:
+    """Return what to tell of a site that is served in place of another; empty for nothing.
+
+    Nobody at this desk asked for it, and it comes with alarms that would hide what goes by itself.
+    """
+    if before is not None and site.id != before.id:
+        return tr(
+            "Another site is served now: {site}, no longer {before}. Open its project.",
+            site=site.name,
+            before=before.name,
+        )
+    if is_other_database:
+        return tr(
+            "The gateway has another database than before: its robots and commands are others, "
+            "and those of before are not shown any more."
+        )
+    return ""

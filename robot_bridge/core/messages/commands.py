@@ -1,0 +1,204 @@
+"""Commands of operators to robots: sent, aborted and reported."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from enum import Enum
+from typing import Any
+
+from .operator_requests import DeskRequest, Done, Priority, Role
+from .safety import check_override, check_reason
+from .validation import (
+    MessageError,
+    check_command_id,
+    check_crs,
+    check_expires_in,
+    check_finite,
+    check_robot_name,
+)
+
+
+class CommandState(str, Enum):
+    """Where a command is in its life (see :mod:`.command_life`)."""
+
+    QUEUED = "queued"
+    DELIVERED = "delivered"
+    ACKNOWLEDGED = "acknowledged"
+    REACHED = "reached"
+    ABORTED = "aborted"
+    FAILED = "failed"
+    EXPIRED = "expired"
+    SUPERSEDED = "superseded"
+
+
+@dataclass(frozen=True)
+class CommandStep:
+    """One step in the life of a command: what it became, when, by whom, and why."""
+
+    state: CommandState
+    at: float
+    by: str
+    reason: str | None = None
+
+
+@dataclass(frozen=True)
+class CommandReport:
+    """A command with every step so far; ``deviation`` is metres between target and robot when reached.
+
+    ``stood`` is where the robot stood then: x, y in metres and theta in radians, site frame.
+    """
+
+    command: str
+    robot: str
+    op: str
+    params: dict[str, Any]
+    operator: str
+    state: CommandState
+    steps: list[CommandStep] = field(default_factory=list)
+    deviation: float | None = None
+    stood: tuple[float, float, float] | None = None
+
+
+@dataclass(frozen=True)
+class Commands:
+    """Commands with every step of their lives."""
+
+    commands: list[CommandReport]
+
+
+LONGEST_EXPIRY = 366 * 86400.0
+"""seconds."""
+
+
+@dataclass(frozen=True)
+class TargetPosition:
+    """One robot's target in SetPositions: metres in the site frame, or coordinates in the CRS ``crs``.
+
+    ``cone``: place one there; not unless it is asked for, as with SetPosEnd.
+
+    In a CRS such as ``EPSG:4326`` x (longitude, easting) comes before y whatever the CRS; ``theta`` is
+    counted from the x axis of the site frame all the same.
+    """
+
+    robot: str
+    x: float
+    y: float
+    theta: float | None = None
+    cone: bool = False
+    crs: str | None = None
+
+    def __post_init__(self) -> None:
+        check_crs(self.crs)
+        check_finite(x=self.x, y=self.y, theta=self.theta)
+
+
+@dataclass(frozen=True)
+class SetPositions(DeskRequest[Commands]):
+    """Send target positions (the second paper's ``set_positions``): all of them are accepted, or none."""
+
+    method = "set_positions"
+    least_role = Role.OPERATOR
+    priority = Priority.MOVE
+    positions: list[TargetPosition]
+
+
+@dataclass(frozen=True)
+class Send(DeskRequest[CommandReport]):
+    """Ask for one command. ``command`` is an id that the operator's side invents: sent twice, done once.
+
+    ``params`` are those of ``op``, with places in metres in the site frame, or with ``crs`` among them in
+    that CRS, such as ``EPSG:4326``: x (longitude, easting) before y. ``theta`` is the site frame's always.
+
+    It is given up when the robot has not fetched it within ``expires_in`` seconds, if that is given, else
+    within the time that the site's settings say. ``override`` says what speaks against it, and why it is
+    asked for all the same: it stands in the command's log, and takes the role that the site's settings say.
+    """
+
+    method = "send"
+    least_role = Role.OPERATOR
+    priority = Priority.MOVE
+    command: str
+    robot: str
+    op: str
+    params: dict[str, Any] = field(default_factory=dict)
+    expires_in: float | None = None
+    reason: str | None = None
+    override: str | None = None
+
+    def __post_init__(self) -> None:
+        check_command_id(self.command)
+        check_reason(self.reason)
+        check_override(self.override)
+        check_expires_in(self.expires_in, LONGEST_EXPIRY)
+
+
+@dataclass(frozen=True)
+class SendMap(DeskRequest[Done]):
+    """Have a robot sent the map of the whole site now, as it is sent one when it connects."""
+
+    method = "send_map"
+    least_role = Role.OPERATOR
+    robot: str
+
+    def __post_init__(self) -> None:
+        check_robot_name(self.robot)
+
+
+@dataclass(frozen=True)
+class AbortAll(DeskRequest[Commands]):
+    """Ask every robot to abort its task; answered with the commands that do it.
+
+    ``command`` is an id that the operator's side invents: sent twice, done once.
+    """
+
+    method = "abort_all"
+    least_role = Role.OPERATOR
+    priority = Priority.STOP
+    stops = True
+    command: str | None = None
+    reason: str | None = None
+
+    def __post_init__(self) -> None:
+        check_reason(self.reason)
+        if self.command is not None:
+            check_command_id(self.command)
+
+
+@dataclass(frozen=True)
+class GetCommands(DeskRequest[Commands]):
+    """Ask for the newest ``limit`` commands with their steps, newest first, of one robot or of all."""
+
+    method = "get_commands"
+    least_role = Role.VIEWER
+    robot: str | None = None
+    limit: int = 200
+
+    def __post_init__(self) -> None:
+        if not 1 <= self.limit <= 10_000:
+            raise MessageError(f"limit is {self.limit}; give a number from 1 to 10000")
+
+
+@dataclass(frozen=True)
+class AbortTask(DeskRequest[CommandReport]):
+    """Ask for the end of one command, named by ``aborts``, or of whatever ``robot`` is doing.
+
+    ``command`` is an id that the operator's side invents: sent twice, done once. A command that was
+    superseded or has ended in the meantime is not aborted, nor what came after it: that is refused.
+    """
+
+    method = "abort"
+    least_role = Role.OPERATOR
+    priority = Priority.STOP
+    stops = True
+    command: str
+    robot: str | None = None
+    aborts: str | None = None
+    reason: str | None = None
+
+    def __post_init__(self) -> None:
+        check_command_id(self.command)
+        check_reason(self.reason)
+        if (self.robot is None) == (self.aborts is None):
+            raise MessageError("give one of robot and aborts: whose task is to end, or which command")
+        if self.robot is not None:
+            check_robot_name(self.robot)

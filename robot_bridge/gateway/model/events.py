@@ -1,0 +1,123 @@
+"""Events of the fleet: what parts publish, who has subscribed, and the operators' sessions that are told."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any, Protocol, TypeVar
+
+from ...core.logs import log_and_continue
+from ...core.messages import CommandReport, ObservationReport
+
+log = logging.getLogger(__name__)
+
+# --- What happens inside the gateway ---
+
+
+@dataclass(frozen=True)
+class CommandChanged:
+    """A command has taken a step, which is stored."""
+
+    report: CommandReport
+
+    def __str__(self) -> str:
+        return f"command {self.report.command}"
+
+
+@dataclass(frozen=True)
+class OutboxChanged:
+    """There is something new to be delivered to a robot, or nothing of what was."""
+
+    robot: str
+
+    def __str__(self) -> str:
+        return f"the outbox of robot {self.robot!r}"
+
+
+@dataclass(frozen=True)
+class ObservationChanged:
+    """An observation is new, or was reviewed; that is stored."""
+
+    report: ObservationReport
+
+    def __str__(self) -> str:
+        return f"observation {self.report.observation}"
+
+
+@dataclass(frozen=True)
+class QueueChanged:
+    """A robot's queue may have something to send."""
+
+    robot: str
+
+    def __str__(self) -> str:
+        return f"the queue of robot {self.robot!r}"
+
+
+@dataclass(frozen=True)
+class RobotReturned:
+    """A robot is heard again that was lost or offline; nobody heard it for ``away_s`` seconds."""
+
+    robot: str
+    away_s: float
+
+    def __str__(self) -> str:
+        return f"the return of robot {self.robot!r}"
+
+
+Event = TypeVar("Event")
+
+
+class EventBus:
+    """Hands each event to those who subscribed to its class, at once and in the order of subscribing."""
+
+    def __init__(self) -> None:
+        self._subscribers: dict[type, list[Callable[[Any], None]]] = {}
+
+    def subscribe(self, kind: type[Event], handler: Callable[[Event], None]) -> None:
+        """Call ``handler``, which must not block, with each event of ``kind`` from now on."""
+        self._subscribers.setdefault(kind, []).append(handler)
+
+    def publish(self, event: object) -> None:
+        """Hand ``event`` on; a subscriber that fails keeps it from no other, and nobody hears of that."""
+        for handler in self._subscribers.get(type(event), ()):
+            with log_and_continue(log, f"telling of {event}"):
+                handler(event)
+
+
+# --- What operators are told ---
+
+
+class Listener(Protocol):
+    """An operator's session, which hears what happens."""
+
+    def notify(self, method: str, key: str, params: dict[str, Any]) -> None:
+        """Take note of news; of those with the same method and key only the last counts. Must not block."""
+
+
+class Listeners:
+    """The sessions that hear what happens, such as every step of every command."""
+
+    def __init__(self) -> None:
+        self._all: set[Listener] = set()
+
+    def __len__(self) -> int:
+        return len(self._all)
+
+    def add(self, listener: Listener) -> None:
+        """Have ``listener`` hear from now on what happens."""
+        self._all.add(listener)
+
+    def discard(self, listener: Listener) -> None:
+        """Have ``listener`` hear nothing more."""
+        self._all.discard(listener)
+
+    def announce(self, method: str, key: str, params: dict[str, Any]) -> None:
+        """Notify every session of what happened; one that fails keeps no other from hearing it.
+
+        See :meth:`Listener.notify`.
+        """
+        for listener in list(self._all):
+            with log_and_continue(log, f"telling an operator's session of {method}"):
+                listener.notify(method, key, params)
