@@ -13,6 +13,8 @@ from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import Any, NamedTuple
 
+import numpy as np
+
 FEW = 10
 """Below so many runs the least and the most are stated, from there on the quartiles."""
 
@@ -39,6 +41,22 @@ def spread(values: Iterable[float]) -> Spread:
         return Spread(statistics.median(found), found[0], found[-1])
     low, middle, high = statistics.quantiles(found, n=4, method="inclusive")
     return Spread(middle, low, high)
+
+
+class Growth(NamedTuple):
+    """The slope of a line through values, in an hour, and its standard error; NaN for too few to tell."""
+
+    slope: float
+    error: float
+
+
+def hourly_growth(seconds: Iterable[float], values: Iterable[float]) -> Growth:
+    """Return by how much ``values``, seen after so many ``seconds``, grew in an hour."""
+    hours, found = np.array([*seconds]) / 3600, np.array([*values])
+    if len(found) < 3:
+        return Growth(float("nan"), float("nan"))
+    line, covariance = np.polyfit(hours, found, 1, cov=True)
+    return Growth(float(line[0]), float(np.sqrt(covariance[0, 0])))
 
 
 class Times(NamedTuple):

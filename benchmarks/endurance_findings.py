@@ -9,7 +9,7 @@ from pathlib import Path
 from statistics import median
 from typing import Any
 
-import numpy as np
+from benchmarks.clock import Growth, hourly_growth
 
 WARM_UP = 60.0
 """Seconds that do not count."""
@@ -77,19 +77,15 @@ def complaints_in(log: Path) -> list[str]:
     return [line for line in lines if any(word in line for word in words)]
 
 
-def growth(samples: Sequence[Sample], seconds: float, what: str) -> tuple[float, float]:
+def growth(samples: Sequence[Sample], seconds: float, what: str) -> Growth:
     """Return by how much ``what`` grew in an hour over the last part of the time, and the error of that.
 
     It is the slope of a line and its standard error: pictures of maps come and go by tens of megabytes, and
     of half an hour a slope is not known better. NaN for too few samples to tell.
     """
     begin = max(WARM_UP, seconds * (1 - MEASURED))
-    counted = [(sample.at / 3600, getattr(sample, what)) for sample in samples if sample.at >= begin]
-    if len(counted) < 3:
-        return float("nan"), float("nan")
-    hours, values = np.array(counted).T
-    line, covariance = np.polyfit(hours, values, 1, cov=True)
-    return float(line[0]), float(np.sqrt(covariance[0, 0]))
+    counted = [sample for sample in samples if sample.at >= begin]
+    return hourly_growth((one.at for one in counted), (getattr(one, what) for one in counted))
 
 
 def grown(samples: Sequence[Sample], seconds: float) -> list[str]:

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from benchmarks.clock import spread, table
+from benchmarks.clock import hourly_growth, spread, table
 from benchmarks.link_ros2 import over_dds, over_rosbridge, publishing, rosbridge_server
 from benchmarks.link_vda5050 import driving
 from benchmarks.linked import Linked
@@ -75,9 +75,10 @@ def measure(_data: Path) -> Part:
         for one, expected in zip(watched, (ROBOTS, ROBOTS, VEHICLES), strict=True):
             one.link.wait_for(expected)
     names = [f"{one.name}: {which}" for one in watched for which in ("adapter", "gateway")]
+    counted = times >= times[-1] * (1 - MEASURED)
     rows, flat = [], True
     for name, megabytes in zip(names, samples.T, strict=True):
-        slope, error = _growth(times, megabytes)
+        slope, error = hourly_growth(times[counted], megabytes[counted])
         flat = flat and slope - error <= FLAT
         sixths = [f"{spread(part.tolist()).median:.1f}" for part in np.array_split(megabytes, 6)]
         rows.append([name, *sixths, f"{megabytes.max():.1f}", f"{slope:+.2f} ± {error:.2f}"])
@@ -107,10 +108,3 @@ def _samples(watched: Sequence[Watched], seconds: float) -> tuple[np.ndarray, np
         samples.append([megabytes for one in watched for megabytes in one.link.megabytes()])
         time.sleep(EVERY)
     return np.array(times), np.array(samples)
-
-
-def _growth(times: np.ndarray, megabytes: np.ndarray) -> tuple[float, float]:
-    """Return the slope in MB an hour over the last part of the time, and its standard error."""
-    counted = times >= times[-1] * (1 - MEASURED)
-    line, covariance = np.polyfit(times[counted] / 3600, megabytes[counted], 1, cov=True)
-    return float(line[0]), float(np.sqrt(covariance[0, 0]))

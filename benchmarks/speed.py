@@ -130,38 +130,45 @@ def _shapely(folder: Path) -> Any:
 
 
 def _gdal(folder: Path) -> Any:
-    source = ogr.Open(str(folder / "site.gpkg"))
-    layer = source.GetLayerByName(OBSTACLES)
+    features_in = _by_gdal(folder)
 
     def cut(window: Window) -> Any:
         box = _crs_box(window)
-        layer.SetSpatialFilterRect(*box)
-        layer.ResetReading()
-        wkb = [bytes(feature.GetGeometryRef().ExportToWkb()) for feature in layer]
-        return source and shapely.clip_by_rect(shapely.boundary(shapely.from_wkb(wkb)), *box)
+        wkb = [bytes(feature.GetGeometryRef().ExportToWkb()) for feature in features_in(box)]
+        return shapely.clip_by_rect(shapely.boundary(shapely.from_wkb(wkb)), *box)
 
     return cut
 
 
 def _gdal_by_feature(folder: Path) -> Any:
-    source = ogr.Open(str(folder / "site.gpkg"))
-    layer = source.GetLayerByName(OBSTACLES)
+    features_in = _by_gdal(folder)
 
     def cut(window: Window) -> Any:
         box = _crs_box(window)
-        layer.SetSpatialFilterRect(*box)
-        layer.ResetReading()
-        return source and [
+        return [
             (
                 shapely.clip_by_rect(
                     shapely.from_wkb(bytes(feature.GetGeometryRef().ExportToWkb())).boundary, *box
                 ),
                 *(feature[name] for name in ("height_m", "semantics", "outdoor")),
             )
-            for feature in layer
+            for feature in features_in(box)
         ]
 
     return cut
+
+
+def _by_gdal(folder: Path) -> Any:
+    """Return what reads the obstacles near a box, of a file that is open."""
+    source = ogr.Open(str(folder / "site.gpkg"))
+    layer = source.GetLayerByName(OBSTACLES)
+
+    def features_in(box: Any) -> Any:
+        layer.SetSpatialFilterRect(*box)
+        layer.ResetReading()
+        return source and layer  # a layer does not keep its source
+
+    return features_in
 
 
 def _pyogrio(folder: Path) -> Any:

@@ -17,7 +17,6 @@ import subprocess
 import sys
 import tempfile
 from pathlib import Path
-from urllib.parse import unquote, urlsplit
 
 from qgis.core import (
     Qgis,
@@ -31,6 +30,10 @@ from qgis.core import (
     QgsSymbolLayer,
     QgsVectorLayer,
 )
+from sqlalchemy import make_url
+
+from robot_bridge.gateway.storage.database import shown
+from robot_bridge.gateway.storage.map_views import SCHEMA
 
 ROOT = Path(__file__).resolve().parents[1]
 SAMPLE = ROOT / "resources" / "sample_site" / "sample_site.qgz"
@@ -45,6 +48,7 @@ FLEET = {
 """The views and the names of their layers, the lowest first."""
 KEYS = {"robots": "robot"}
 """Columns that tell rows of a view apart, where it is not the id."""
+POSTGRESQL = "postgresql://"
 WEB = ("EPSG:3857", "EPSG:4326")
 """CRSs that every client asks for, beside the project's own."""
 
@@ -125,24 +129,22 @@ def _application() -> QgsApplication:
 
 def _source(fleet: str, view: str, title: str) -> tuple[str, str, str]:
     """Return what a layer of ``view`` is opened by: source, name and provider."""
-    if not fleet.startswith("postgresql://"):
+    if not fleet.startswith(POSTGRESQL):
         return f"{Path(fleet).absolute()}|layername={view}", title, "ogr"
-    address = urlsplit(fleet)
-    uri = QgsDataSourceUri()
+    address, uri = make_url(fleet), QgsDataSourceUri()
     uri.setConnection(
-        address.hostname or "localhost",
+        address.host or "localhost",
         str(address.port or 5432),
-        address.path.lstrip("/"),
-        unquote(address.username or ""),
-        unquote(address.password or ""),
+        address.database or "",
+        address.username or "",
+        address.password or "",
     )
-    uri.setDataSource("fleet_map", view, "geom", "", KEYS.get(view, "id"))
+    uri.setDataSource(SCHEMA, view, "geom", "", KEYS.get(view, "id"))
     return uri.uri(False), title, "postgres"
 
 
 def _shown(fleet: str) -> str:
-    address = urlsplit(fleet)
-    return fleet.replace(f":{address.password}@", ":***@") if address.password else fleet
+    return shown(make_url(fleet)) if fleet.startswith(POSTGRESQL) else fleet
 
 
 def _style(view: str, layer: QgsVectorLayer) -> None:

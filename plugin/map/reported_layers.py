@@ -383,8 +383,7 @@ class RoadLayers(QObject):
 
     def __init__(self, state: FleetState, project: QgsProject, parent: QObject | None = None):
         super().__init__(parent)
-        self._state, self._project = state, project
-        project = project
+        self._state = state
         self._closures = RowLayer(
             project, "closed_roads", tr("Closed roads"), "LineString", CLOSED_FIELDS, _style_closures
         )
@@ -467,7 +466,7 @@ class StandingCones(QObject):
 
     def __init__(self, state: FleetState, project: QgsProject, parent: QObject | None = None):
         super().__init__(parent)
-        self._state, self._project = state, project
+        self._state = state
         self._reached: dict[str, CommandReport] = {}
         self._layer = RowLayer(
             project, "standing_cones", tr("Cones put down"), "Point", PLACED_CONE_FIELDS, _style_cones

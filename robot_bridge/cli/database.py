@@ -126,8 +126,14 @@ def views(
     )
     print(f"{shown(address)}: made {', '.join(names)}")
     if vrt is not None:
-        with replacement(vrt) as partial:
-            partial.write_text(virtual_layers(str(Path(address.database or "").absolute()), frame), "utf-8")
+        layers = virtual_layers(str(Path(address.database or "").absolute()), frame)
+        try:
+            with replacement(vrt) as partial:
+                partial.write_text(layers, "utf-8")
+        except OSError as error:
+            raise StoreError(
+                f"{vrt} cannot be written: {error.strerror or error}; check its folder"
+            ) from error
         print(f"{vrt}: open it in QGIS, or with ogrinfo")
 
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import Enum
+from types import GenericAlias
 from typing import Any, ClassVar, Generic, TypeVar, get_args
 
 
@@ -58,12 +59,20 @@ class DeskRequest(Generic[Result]):
     """Parameters that are not known are passed over: what stops or holds robots is never refused for them."""
     result: ClassVar[type]
 
+    def __class_getitem__(cls, result: Any) -> GenericAlias:
+        """Return what a subclass names as its base.
+
+        Not of typing, which keeps what was made: after a reload of the plugin no older class may live.
+        """
+        return GenericAlias(cls, result)
+
     def __init_subclass__(cls) -> None:
         """Check what the class declares, and make it known under its method."""
         super().__init_subclass__()
         for name in ("method", "least_role"):
             if not hasattr(cls, name):
                 raise TypeError(f"{cls.__name__} does not say its {name}")
+        # Python keeps the base as the class names it, DeskRequest[Result]; mypy does not know that.
         (cls.result,) = get_args(cls.__orig_bases__[0])  # type: ignore[attr-defined]
         if DESK_REQUESTS.setdefault(cls.method, cls) is not cls:
             taken = DESK_REQUESTS[cls.method].__name__

@@ -80,7 +80,7 @@ class EventBus:
         self._subscribers.setdefault(kind, []).append(handler)
 
     def publish(self, event: object) -> None:
-        """Hand ``event`` on; a subscriber that fails keeps it from no other, and nobody hears of that."""
+        """Hand ``event`` on; a subscriber that fails is logged, and keeps it from no other."""
         for handler in self._subscribers.get(type(event), ()):
             with log_and_continue(log, f"telling of {event}"):
                 handler(event)

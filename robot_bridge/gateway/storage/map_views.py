@@ -6,6 +6,7 @@ SQLite they are columns of coordinates, which GDAL's virtual format (VRT) makes 
 
 from __future__ import annotations
 
+import abc
 import json
 import math
 from collections.abc import Iterator, Mapping
@@ -101,7 +102,7 @@ _ROWS = {
 # --- PostGIS and SQLite ---
 
 
-class MapViews:
+class MapViews(abc.ABC):
     """The views of one database, over the connection of whoever owns its tables."""
 
     _PARAMS: Mapping[str, str]
@@ -130,12 +131,12 @@ class MapViews:
         found = decode_json(kept, SHORT)
         return SiteFrame(found["crs"], (found["origin"][0], found["origin"][1]), found["rotation"])
 
+    @abc.abstractmethod
     def remove(self) -> None:
         """Remove the views; where there are none it does nothing."""
-        raise NotImplementedError
 
-    def _make(self, frame: SiteFrame, srid: int) -> list[str]:
-        raise NotImplementedError
+    @abc.abstractmethod
+    def _make(self, frame: SiteFrame, srid: int) -> list[str]: ...
 
     def _axes(self, rows: PlacedRows) -> tuple[str, str]:
         """Return the expressions of x and y in the site frame."""
@@ -276,22 +277,24 @@ class SQLiteViews(MapViews):
         return [f"{PREFIX}{name}" for name in _ROWS]
 
 
+_KINDS: dict[str, type[MapViews]] = {"postgresql": PostGisViews, "sqlite": SQLiteViews}
+
+
 def map_views_on(connection: Connection) -> MapViews:
     """Return the views of the database behind ``connection``; raises MapViewError for MariaDB."""
-    if connection.dialect.name == "postgresql":
-        return PostGisViews(connection)
-    if connection.dialect.name == "sqlite":
-        return SQLiteViews(connection)
-    raise MapViewError(
-        "MariaDB has no views for GIS programs: its geometries do not know a CRS in metres. Use PostgreSQL "
-        "with PostGIS, or SQLite"
-    )
+    kind = _KINDS.get(connection.dialect.name)
+    if kind is None:
+        raise MapViewError(
+            "MariaDB has no views for GIS programs: its geometries do not know a CRS in metres. Use "
+            "PostgreSQL with PostGIS, or SQLite"
+        )
+    return kind(connection)
 
 
 @contextmanager
 def views_made_again(connection: Connection) -> Iterator[None]:
     """Remove the views while their tables are changed inside, and make them again behind that."""
-    known = inspect(connection).has_table(bridge.name) and connection.dialect.name in ("postgresql", "sqlite")
+    known = connection.dialect.name in _KINDS and inspect(connection).has_table(bridge.name)
     views = map_views_on(connection) if known else None
     frame = None if views is None else views.frame()
     if views is None or frame is None:

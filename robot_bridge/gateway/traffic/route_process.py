@@ -262,6 +262,7 @@ class ProcessEngine:
 
 
 def _program(handle: int) -> str:
+    # The path of the gateway: the child finds the same modules, however that was started.
     return f"import sys; sys.path = {sys.path!r}; from {__name__} import serve; serve({handle})"
 
 

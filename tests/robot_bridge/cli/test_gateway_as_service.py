@@ -388,8 +388,9 @@ def test_positions_wait_while_the_database_is_away_and_are_stored_later(bridge):
         robot.tell("SendPos", {"x": 1.0 + n, "y": 8.0, "theta": 0.0, "v": 1.0})
         # Of positions closer than min_interval_s (0.2 s) not each is stored.
         time.sleep(0.3)
-    lock.execute("rollback")
+    # Asked within the lock: as soon as it is gone, the gateway stores what waited.
     assert lock.execute("select count(*) from trajectories").fetchone() == (0,)
+    lock.execute("rollback")
     lock.close()
     wait_until(lambda: bridge.sql("select count(*) from trajectories") >= [(12,)], 20)
     assert bridge.sql("select x from trajectories order by received_at") == [(1.0 + n,) for n in range(12)]

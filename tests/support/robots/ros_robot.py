@@ -134,9 +134,11 @@ class Robot(Node):
             if self.newest is not goal:
                 goal.abort()
                 break
-            if not self.points:
-                if kind is FollowWaypoints and "misses" in self.options.odd:
-                    result.missed_waypoints = [WaypointStatus(waypoint_index=1)]
+            misses = kind is FollowWaypoints and "misses" in self.options.odd
+            # It leaves out the last point: where it stands nobody takes for the end of the route.
+            if len(self.points) <= int(misses):
+                if misses:
+                    result.missed_waypoints = [WaypointStatus(waypoint_index=2)]
                 goal.succeed()
                 break
             goal.publish_feedback(self.feedback(kind))

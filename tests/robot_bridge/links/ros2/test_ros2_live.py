@@ -165,7 +165,7 @@ def test_a_route_whose_points_were_missed_has_failed(desk, robot):
     name = robot(*FAST, "--actions", "follow_waypoints", "--odd", "misses")
     desk.send(f"path-{name}", name, "SetPath", points=[[20.0, 8.0], [22.0, 8.0], [22.0, 10.0]])
     desk.wait_for_step(f"path-{name}", "failed", 8)
-    assert "left out points of the path: 2" in steps(desk, f"path-{name}")[-1]["reason"]
+    assert "left out points of the path: 3" in steps(desk, f"path-{name}")[-1]["reason"]
 
 
 def test_an_image_is_one_observation_at_the_place_of_its_robot(desk, robot, adapter):

@@ -25,7 +25,7 @@ from robot_bridge.links.ros2.adapter import load
 from robot_bridge.links.ros2.dds import DdsSettings, Participant
 from robot_bridge.links.ros2.security import SecuritySettings
 
-ROBOT = Path(__file__).resolve().parents[4] / "scripts" / "stage" / "secure_robot.py"
+ROBOT = Path(__file__).resolve().parents[4] / "tests" / "support" / "secure_robot.py"
 DOMAIN = 101
 ENCLAVE = {
     "identity_ca": "identity_ca.cert.pem",

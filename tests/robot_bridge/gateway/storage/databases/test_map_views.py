@@ -270,3 +270,21 @@ def test_gdal_reads_sqlite_through_the_file_that_is_written(new_database, site, 
     with closing(sqlite3.connect(make_url(url).database)) as connection:
         heading = connection.execute("select heading from map_robots where robot = 'r2'").fetchone()[0]
     assert heading == pytest.approx((90 - math.degrees(-3.0 + FRAME.rotation)) % 360)
+
+
+def test_a_file_that_cannot_be_written_is_named(new_database, site, tmp_path):
+    vrt = tmp_path / "none" / "fleet.vrt"
+    words = (
+        "database",
+        "views",
+        "--site",
+        str(site),
+        "--vrt",
+        str(vrt),
+        "--database",
+        new_database("sqlite"),
+    )
+    done = run_command(*words)
+    assert done.returncode == 1
+    assert f"{vrt} cannot be written: No such file or directory" in done.stderr
+    assert "Traceback" not in done.stderr
