@@ -29,7 +29,7 @@ def lists(data: str, number: int) -> None:
     ground = importlib.import_module(f"{panel}.alarms.watch").RoadGround
     surfaces = importlib.import_module("fleet_supervisor.plugin.layers.road_surfaces").SurfaceStore
     situations = importlib.import_module(f"{panel}.alarms.watch").SnapshotBuilder
-    looking = situations(desk, ground(surfaces(desk.project)))
+    looking = situations(desk.state, desk.site_to_canvas, ground(surfaces(desk.project)))
 
     def look() -> None:
         now = time.monotonic()

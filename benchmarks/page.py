@@ -128,14 +128,22 @@ def _made_by(command: str) -> str:
 
 
 def _of_commit() -> str:
-    """Return which code is measured, nothing where git does not know."""
-    git = ["git", "-C", str(PAGE.parent), "describe", "--always", "--abbrev=8", "--exclude=*", "--dirty"]
+    """Return which code is measured, nothing where git does not know.
+
+    The page itself does not count: the parts of one run write it one after the other.
+    """
+    page = PAGE.relative_to(PAGE.parents[1])
     try:
-        said = subprocess.run(git, capture_output=True, text=True, check=True).stdout.strip()
+        name = _git("describe", "--always", "--abbrev=8", "--exclude=*")
+        changed = _git("status", "--porcelain", "--untracked-files=no", "--", ":/", f":(top,exclude){page}")
     except (OSError, subprocess.CalledProcessError):
         return ""
-    name, *changed = said.split("-")
     return f" of commit {name}{' with changes' if changed else ''}"
+
+
+def _git(*words: str) -> str:
+    git = ["git", "-C", str(PAGE.parents[1]), *words]
+    return subprocess.run(git, capture_output=True, text=True, check=True).stdout.strip()
 
 
 def _beside(began: Beginning) -> str:
