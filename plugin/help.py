@@ -162,8 +162,10 @@ class HelpActions(QObject):
 
     def remove(self) -> None:
         """Close what is open and take the entries out of the menus."""
-        for window in self._iface.mainWindow().findChildren(HelpWindow):
-            window.close()
+        # Not among all children of the main window, for each of which PyQt makes an object.
+        for window in QApplication.topLevelWidgets():
+            if isinstance(window, HelpWindow):
+                window.close()
         self._panel.removeEventFilter(self)
         self._iface.pluginHelpMenu().removeAction(self.action)
         self._iface.removePluginMenu(self._menu, self.action)

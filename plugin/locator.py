@@ -13,14 +13,14 @@ from qgis.PyQt.QtWidgets import QLineEdit
 
 from ..robot_bridge.core.messages import RobotState
 from .expressions.robot_snapshot import RobotSnapshot, SnapshotHolder
+from .gateway_client.robot_states import ROBOT_STATES
 from .gateway_client.robot_table import STATES
-from .gateway_client.state_texts import ROBOT_STATES
 from .ui.glyphs import state_icon
 from .ui.language import tr
 
 NAME = "fleet_robots"
 MOST = 50
-"""Results: nobody reads more, and the list is made anew with each letter."""
+"""Results: nobody reads more, and the list is made again with each letter."""
 
 
 @dataclass

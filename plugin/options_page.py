@@ -8,8 +8,8 @@ from qgis.PyQt.QtGui import QIcon
 from qgis.PyQt.QtWidgets import QHBoxLayout, QPushButton, QTabWidget, QVBoxLayout, QWidget
 
 from .help import OPTIONS, show_help
+from .panel.alarms.alarm_panel import ThresholdsForm
 from .panel.alarms.rules import Thresholds, read_thresholds
-from .panel.alarms.thresholds_form import ThresholdsForm
 from .panel.alarms.watch import AlarmWatch
 from .panel.window import FleetWindow
 from .settings.connections_widget import ConnectionsWidget

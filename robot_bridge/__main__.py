@@ -32,7 +32,9 @@ COMMANDS = {
     "robot": "Run the reference robot: a simulated body that speaks the protocol.",
     "experiment": "Drive a simulated robot that finds itself on its map, and tell how far it is off.",
 }
-"""The modules of ``cli`` with what each says of itself: a group ``app``, or a function of its name."""
+"""The commands with what each says of itself: a group or a function of its name in a module of ``cli``."""
+_IN_ACCOUNTS = ("operators", "links", "sessions")
+"""The commands that are in one module; every other one has a module of its name."""
 
 
 def command_line(arguments: Sequence[str]) -> typer.Typer:
@@ -63,11 +65,12 @@ def main() -> None:
 
 
 def _add(app: typer.Typer, name: str) -> None:
-    module = import_module(f"{__package__}.cli.{name}")
-    if hasattr(module, "app"):
-        app.add_typer(module.app, name=name)
+    module = import_module(f"{__package__}.cli.{'accounts' if name in _IN_ACCOUNTS else name}")
+    command = getattr(module, "app", None) or getattr(module, name)
+    if isinstance(command, typer.Typer):
+        app.add_typer(command, name=name)
     else:
-        app.command(name)(getattr(module, name))
+        app.command(name)(command)
 
 
 def _print_version(asked: bool) -> None:

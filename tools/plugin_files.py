@@ -17,7 +17,7 @@ VENDOR_NOTE = '"""Packages that come with the release, unchanged; each holds its
 
 KINDS = {
     "plugin": {".py"},
-    "robot_bridge": {".py", ".toml"},
+    "robot_bridge": {".css", ".html", ".js", ".py", ".svg", ".toml", ".txt"},
     "docs": {".md"},
     "resources": {".gpkg", ".png", ".qgz", ".qm", ".qml", ".svg", ".tif", ".toml"},
 }

@@ -25,6 +25,14 @@ ASIDE = ("robot_bridge.links", "robot_bridge.reference_robot.localisation")
 """What the first two figures leave out: adapters, and the robot that finds itself."""
 GENERIC_VERBS = frozenset({"take", "put", "look", "tell", "give", "see", "go"})
 
+OF_LIBRARIES = frozenset(
+    {
+        *("buffer_text", "CharacterDataHandler", "EndElementHandler", "StartDoctypeDeclHandler"),
+        *("StartElementHandler", "max_message_size", "max_sequence_length"),
+    }
+)
+"""Attributes that expat, websockets and rosbags have set from outside, and offer no other way to set."""
+
 Graph = dict[str, set[str]]
 
 
@@ -250,13 +258,18 @@ def _function_parameters(trees: dict[str, ast.Module]) -> Iterator[str]:
 
 
 def _set_from_outside(trees: dict[str, ast.Module]) -> Iterator[str]:
-    """Return assignments to an attribute of a part: ``self.part.attribute = ...``."""
+    """Return assignments to an attribute of a part: ``self.part.attribute = ...``.
+
+    A part is the project's own: what a library wants to be set from outside (OF_LIBRARIES) is its interface.
+    """
     for path, tree in trees.items():
         for node in ast.walk(tree):
             targets = node.targets if isinstance(node, ast.Assign) else []
             for target in targets:
                 holder = target.value if isinstance(target, ast.Attribute) else None
-                if isinstance(holder, ast.Attribute) and ast.unparse(holder).startswith("self."):
+                if not isinstance(holder, ast.Attribute) or target.attr in OF_LIBRARIES:
+                    continue
+                if ast.unparse(holder).startswith("self."):
                     yield f"{path}:{node.lineno}: {ast.unparse(target)}"
 
 

@@ -24,7 +24,7 @@ from ...robot_bridge.core.messages import Role
 from ..control.fleet_controller import FleetController
 from ..control.request_tracker import RequestTracker
 from ..gateway_client.connection_status import ConnectionPhase, ConnectionStatus, role_in_words
-from ..gateway_client.requests import RequestResult
+from ..gateway_client.fleet_state import RequestResult
 from ..help import HelpTopic, show_help
 from ..panel.connection_panel import ConnectionMenu
 from ..ui.actions import ICONS
@@ -160,7 +160,7 @@ class SupervisorDialog(QDialog):
         return self.model.rows[rows[0].row()] if rows else None
 
     def refresh(self) -> None:
-        """Ask for the rows anew, or say why that cannot be."""
+        """Ask for the rows again, or say why that cannot be."""
         why = why_not(self._desk.state.link)
         if why:
             self._show_rows([])
@@ -193,7 +193,7 @@ class SupervisorDialog(QDialog):
         for number, row in enumerate(rows):
             if before is not None and self._key(row) == self._key(before):
                 self.view.selectRow(number)
-        # A table that is filled anew does not tell that nothing is selected any more.
+        # A table that is filled again does not tell that nothing is selected any more.
         self._renew()
 
     def _say_once_known(self, text: str) -> None:

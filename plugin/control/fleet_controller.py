@@ -12,8 +12,7 @@ from ...robot_bridge.core.clock import Clock
 from ...robot_bridge.core.messages import CommandReport, PauseRobot, ReplannedRobot
 from ..gateway_client.connection import ConnectionThread
 from ..gateway_client.connection_status import ConnectionPhase, OperatorCredentials
-from ..gateway_client.fleet_state import FleetState
-from ..gateway_client.requests import RequestResult
+from ..gateway_client.fleet_state import FleetState, RequestResult
 from ..gateway_client.robot_table import RemovedRobots
 from ..layers.site_transform import SiteToCanvas
 from ..ui.errors import FleetError, NotSentError

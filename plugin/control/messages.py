@@ -24,8 +24,7 @@ from ...robot_bridge.core.messages import (
 )
 from ..gateway_client.fleet_state import FleetState
 from ..gateway_client.report_caches import is_pending
-from ..ui.language import tr
-from ..ui.times import time_of_day
+from ..ui.language import time_of_day, tr
 from .pending_command import PendingCommandModel
 
 # A message is posted with topics. When the condition that a topic names has ended, all messages with it are
@@ -395,7 +394,7 @@ class MessageLabel(QLabel):
         self._fit(max(200, bar.width() - BESIDE_TEXT))
 
     def show_text(self, text: str) -> None:
-        """Show ``text`` in place of the other one; laying out QGIS's bar anew takes time."""
+        """Show ``text`` in place of the other one; laying out QGIS's bar again takes time."""
         if self.text() == f"{TITLE}: {text}":
             return
         self.setText(f"{TITLE}: {text}")

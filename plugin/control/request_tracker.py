@@ -20,8 +20,7 @@ from ...robot_bridge.core.messages import (
 )
 from ..gateway_client.connection import ConnectionThread
 from ..gateway_client.connection_status import ConnectionPhase
-from ..gateway_client.fleet_state import FleetState
-from ..gateway_client.requests import OperatorRequest, RequestResult
+from ..gateway_client.fleet_state import FleetState, OperatorRequest, RequestResult
 from ..ui.errors import NotSentError
 from ..ui.language import tr, tr_count
 from .messages import Topic, conflict_topic, request_topic

@@ -15,8 +15,7 @@ from ...robot_bridge.core.messages import (
     ResolveConflict,
     to_json,
 )
-from ..gateway_client.fleet_state import FleetState
-from ..gateway_client.requests import OperatorRequest
+from ..gateway_client.fleet_state import FleetState, OperatorRequest
 from ..ui.dialogs import QuestionDialog
 from ..ui.language import tr
 from .pending_command import Point

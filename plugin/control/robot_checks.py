@@ -11,10 +11,8 @@ import numpy.typing as npt
 from ...robot_bridge.core.messages import Ability, CommandReport, RobotState, SetPath, SetPosEnd, TaskState
 from ..gateway_client.command_cache import CommandCache, command_in_words
 from ..gateway_client.report_caches import QueueCache
-from ..gateway_client.robot_states import RobotView
-from ..gateway_client.state_texts import ROBOT_STATES
-from ..ui.language import tr
-from ..ui.times import age_in_words
+from ..gateway_client.robot_states import ROBOT_STATES, RobotView
+from ..ui.language import age_in_words, tr
 from .pending_command import CONE, ROUTE, START, TARGETS, Findings, PendingCommand
 
 Ints = npt.NDArray[np.int64]
@@ -169,7 +167,7 @@ class OtherTarget(NamedTuple):
 
 
 class TargetCheck:
-    """Knows the targets of all robots, now and in their queues; reads anew only those of robots with news."""
+    """Knows the targets of all robots, now and in their queues; reads only those with news again."""
 
     def __init__(self, book: CommandCache, queues: QueueCache):
         self._book = book

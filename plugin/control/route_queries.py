@@ -17,8 +17,7 @@ from ...robot_bridge.core.messages import (
     route_report,
     to_json,
 )
-from ..gateway_client.fleet_state import FleetState
-from ..gateway_client.requests import OperatorRequest, RequestResult
+from ..gateway_client.fleet_state import FleetState, OperatorRequest, RequestResult
 from ..ui.errors import FleetError, NotSentError
 from ..ui.language import tr
 from .pending_command import CONE, ROUTE, Approach, ApproachKind, PendingCommand, PendingCommandModel, Point
@@ -299,7 +298,7 @@ class TargetRoutes(QObject):
             # What was looked at is what is sent.
             return
         if draft.kind == ROUTE and self._checks.is_under_way:
-            # Begun anew for each half metre, a long check would never end.
+            # Begun again for each half metre, a long check would never end.
             return
         if draft.way.kind is ApproachKind.SOUGHT:
             self._seek(draft)

@@ -74,7 +74,7 @@ class LayerCheck(QObject):
     """
 
     changed = pyqtSignal()
-    """A layer is not as it was: what is under way has to begin anew."""
+    """A layer is not as it was: what is under way has to begin again."""
 
     def __init__(self, project: QgsProject, parent: QObject | None = None):
         super().__init__(parent)
@@ -247,7 +247,7 @@ class CommandChecks(QObject):
     """Checks drafts against the project's layers, and against what the gateway reports of site and robots."""
 
     changed = pyqtSignal()
-    """A layer is not as it was: what is under way has to begin anew."""
+    """A layer is not as it was: what is under way has to begin again."""
 
     def __init__(
         self,

@@ -72,7 +72,23 @@ old; a layer shows them when it is drawn.</p>
 """)
 
 
-class DistanceToRobot(QgsExpressionFunction):
+class _RobotFunction(QgsExpressionFunction):
+    """Says something of robots, whatever the feature is."""
+
+    def isStatic(
+        self, _node: QgsExpressionNodeFunction, _parent: QgsExpression, _context: QgsExpressionContext
+    ):
+        # QGIS works out once what cannot change; robots do.
+        return False
+
+    def usesGeometry(self, _node: QgsExpressionNodeFunction):
+        return False
+
+    def referencedColumns(self, _node: QgsExpressionNodeFunction):
+        return set()
+
+
+class DistanceToRobot(_RobotFunction):
     """Measures from where a robot is now."""
 
     def __init__(self, fleet: SnapshotHolder):
@@ -84,16 +100,8 @@ class DistanceToRobot(QgsExpressionFunction):
         )
         self._fleet = fleet
 
-    def isStatic(
-        self, _node: QgsExpressionNodeFunction, _parent: QgsExpression, _context: QgsExpressionContext
-    ):
-        return False
-
     def usesGeometry(self, _node: QgsExpressionNodeFunction):
         return True
-
-    def referencedColumns(self, _node: QgsExpressionNodeFunction):
-        return set()
 
     def func(
         self,
@@ -322,7 +330,7 @@ drawn.</p>
 """)
 
 
-class RobotValue(QgsExpressionFunction):
+class RobotValue(_RobotFunction):
     """Tells one thing of a robot by its name."""
 
     def __init__(
@@ -330,18 +338,6 @@ class RobotValue(QgsExpressionFunction):
     ):
         super().__init__(name, [QgsExpressionFunction.Parameter("robot")], GROUP, help_text)
         self._fleet, self._value = fleet, value
-
-    def isStatic(
-        self, _node: QgsExpressionNodeFunction, _parent: QgsExpression, _context: QgsExpressionContext
-    ):
-        # QGIS works out once what cannot change; robots do.
-        return False
-
-    def usesGeometry(self, _node: QgsExpressionNodeFunction):
-        return False
-
-    def referencedColumns(self, _node: QgsExpressionNodeFunction):
-        return set()
 
     def func(
         self,

@@ -20,7 +20,7 @@ from ...robot_bridge.core.messages import (
     command_report,
 )
 from ..ui.language import tr
-from .state_texts import COMMAND_STATES
+from .robot_states import COMMAND_STATES
 
 UNDER_WAY = (CommandState.QUEUED, CommandState.DELIVERED, CommandState.ACKNOWLEDGED)
 MOST_COMMANDS = 2000

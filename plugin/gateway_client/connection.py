@@ -22,9 +22,8 @@ from .connection_status import (
     check_address,
     explain,
 )
-from .fleet_state import StateUpdate, UpdateBuffer
+from .fleet_state import OperatorRequest, StateUpdate, UpdateBuffer
 from .protocol import GatewayProtocol
-from .requests import OperatorRequest
 from .websocket_library import websocket_library
 
 

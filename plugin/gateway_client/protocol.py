@@ -41,9 +41,8 @@ from ..ui.errors import GatewayLinkError
 from ..ui.language import tr
 from .command_cache import command_in, commands_in
 from .connection_status import DEFAULT_URL
-from .fleet_state import UpdateBuffer
+from .fleet_state import OperatorRequest, RequestResult, UpdateBuffer
 from .report_caches import observations_in, placements_in, plan_in, plans_in, queues_in
-from .requests import OperatorRequest, RequestResult
 from .robot_table import table_from_frame, table_from_rows
 
 UNKNOWN_METHOD, WRONG_PARAMETERS = -32601, -32602

@@ -135,7 +135,7 @@ class RobotTable:
         numbers, received = newer._numbers[:, : len(newer)], AT["received"]
         self._say_in_own_words(numbers, newer._words)
         if newer.names == self.names and (numbers[received] >= self.column("received")).all():
-            # Everything anew, as when all robots drive: no need to look for each one's row.
+            # Everything again, as when all robots drive: no need to look for each one's row.
             self._numbers = numbers
         else:
             rows = self._rows_of(newer.names)

@@ -18,8 +18,8 @@ from qgis.core import (
 )
 
 from ...robot_bridge.core.sites.frame import SiteFrame, utm_zone_of
+from ..ui.errors import SiteCrsError
 from ..ui.language import tr
-from .errors import SiteCrsError
 
 # --- Whether anything is known of how two CRSs lie to one another ---
 

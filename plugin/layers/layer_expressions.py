@@ -22,8 +22,8 @@ from qgis.core import (
 )
 
 from ...robot_bridge.core.json_decoder import DecodingError, decode_json
+from ..ui.errors import ExpressionError
 from ..ui.language import tr
-from .errors import ExpressionError
 from .roles import RAMP, LayerExpressions, expressions_of
 
 # --- OpenStreetMap tags that a layer keeps together in one field, read as fields of their own ---

@@ -31,9 +31,9 @@ from qgis.core import (
 from qgis.PyQt import sip
 from qgis.PyQt.QtCore import QObject, pyqtSignal
 
+from ..ui.errors import LayerReadingError, LayerTypeError
 from ..ui.language import tr
 from .crs import stated_crs
-from .errors import LayerReadingError, LayerTypeError
 from .layer_expressions import FeatureFilter
 from .roles import EXPRESSIONS, FURNITURE, LayerExpressions, LayerSetup, setup_of
 from .site_transform import LayerToSiteTransform, SiteTransformError
@@ -238,7 +238,7 @@ def _quoted(column: str) -> str:
     return '"' + column.replace('"', '""') + '"'
 
 
-# --- Tells when what was read of layers has to be read anew ---
+# --- Tells when what was read of layers has to be read again ---
 
 _CHANGES = (
     "afterCommitChanges",

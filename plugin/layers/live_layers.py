@@ -82,7 +82,7 @@ class ProjectWatch(QObject):
 # --- Layers that the desk fills while it is connected: they are in the project, and never in its file ---
 
 MARK = "fleet/live"
-"""The custom property of a layer whose content comes anew with each connection."""
+"""The custom property of a layer whose content comes again with each connection."""
 SCOPE = "fleet_supervisor"
 NOT_A_LAYER = "fleet-live"
 
@@ -210,7 +210,7 @@ def fleet_group(project: QgsProject) -> QgsLayerTreeGroup:
 
 
 def leave_clean(project: QgsProject, was_dirty: bool) -> None:
-    """Have ``project`` as saved as it was: layers that come anew with each link are no change to save."""
+    """Have ``project`` as saved as it was: layers that come again with each link are no change to save."""
     if was_dirty:
         project.setDirty(True)
         return
@@ -239,7 +239,7 @@ AT_ONCE = 50
 class RowLayer:
     """A layer of one kind of geometry in the site's CRS; made when there is a row to show.
 
-    It goes with its project, and comes anew in the next one: what it shows is the desk's, not the project's.
+    It goes with its project, and comes again in the next one: what it shows is the desk's, not the project's.
     It is written in slices, between which the window looks for events.
     """
 
@@ -290,7 +290,7 @@ class RowLayer:
         self._writing.begin_soon(self._renewed())
 
     def _renewed(self) -> Steps[None]:
-        """Show what is to be shown; begin anew where the layer is taken out meanwhile."""
+        """Show what has to be shown; begin again where the layer is taken out meanwhile."""
         for share in self._steps(*self._shown):
             yield share
             if self.layer is None:

@@ -11,8 +11,8 @@ from typing import Any
 from qgis.core import QgsExpression, QgsMapLayer, QgsVectorLayer, QgsWkbTypes
 
 from ...robot_bridge.core.json_decoder import LARGEST_TOML, decode_json, toml_tables
+from ..ui.errors import ProfileError
 from ..ui.language import tr
-from .errors import ProfileError
 from .layer_source import names_of
 from .roles import EXPRESSIONS, ROLES, LayerExpressions, LayerSetup, setup_of
 

@@ -25,10 +25,9 @@ from qgis.PyQt.QtCore import QObject, QThread, pyqtSignal
 from ...robot_bridge.core.roads.centrelines import Surface
 from ...robot_bridge.core.roads.surface_index import NOWHERE, SurfaceIndex
 from ...robot_bridge.core.sites.frame import utm_zone_of
-from ..ui.errors import FleetError
+from ..ui.errors import FleetError, SiteCrsError
 from ..ui.language import tr
 from .crs import check_site_crs, transform_points_or_nan
-from .errors import SiteCrsError
 from .layer_source import LayerWatch, ObstacleSource, obstacle_sources
 from .road_layers import read_surfaces
 from .roles import ROAD_SURFACE, LayerExpressions, layers_with_role
@@ -149,7 +148,7 @@ class SurfaceStore(QObject):
     """
 
     forgotten = pyqtSignal()
-    """Something was thrown away: read it anew before it is told."""
+    """Something was thrown away: read it again before it is told."""
 
     def __init__(self, project: QgsProject, parent: QObject | None = None):
         super().__init__(parent)

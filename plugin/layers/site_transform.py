@@ -26,7 +26,7 @@ from qgis.PyQt.QtCore import QObject, pyqtSignal
 
 from ...robot_bridge.core.messages import SiteReport
 from ...robot_bridge.core.sites.frame import SiteFrame
-from ..ui.errors import MapTransformError
+from ..ui.errors import LayerCrsError, MapTransformError
 from ..ui.language import tr
 from .crs import (
     check_transform,
@@ -36,7 +36,6 @@ from .crs import (
     transform_points,
     transform_points_or_nan,
 )
-from .errors import LayerCrsError
 
 # --- From a layer's coordinates to metres in the site frame ---
 

@@ -44,14 +44,14 @@ class LiveView(QObject):
         """The generation and revision of the desk's picture that the overlay was given last."""
         self._last_frame = self._took = 0.0
         self._placement: SiteToMapTransform | None = None
-        """The desk's, None when it has to be asked anew, which copies all that the canvas has set."""
+        """The desk's, None when it has to be asked again, which copies all that the canvas has set."""
         self._placer = SceneTransformer()
         self._plans = TaskPaths()
         self._trails = Trails()
         self.following = FollowMode.NOBODY
         self._by_layer = False
         self.layer_every = EVERY_SECOND
-        """After how many pulls the layer of robots is written anew."""
+        """After how many pulls the layer of robots is written again."""
         self.overlay = FleetOverlay(desk.canvas, self._trails)
         self.layer = RobotLayer(desk.project, desk.canvas, self)
         self._project = ProjectWatch(desk.project, self)
@@ -186,7 +186,7 @@ class LiveView(QObject):
         self._frame.start()
 
     def _way_changed(self) -> None:
-        """Place everything anew: the map has another CRS, or coordinates come to it by other operations."""
+        """Place everything again: the map has another CRS, or coordinates come to it by other operations."""
         self._placement = None
         self._frame.start()
 

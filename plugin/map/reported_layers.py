@@ -41,9 +41,8 @@ from ...robot_bridge.core.messages import (
 from ...robot_bridge.core.sites.frame import SiteFrame
 from ..gateway_client.command_cache import DRIVE_OPERATIONS, place_of
 from ..gateway_client.fleet_state import FleetState
-from ..gateway_client.robot_states import RobotStates
+from ..gateway_client.robot_states import ROBOT_STATES, RobotStates
 from ..gateway_client.robot_table import STATES
-from ..gateway_client.state_texts import ROBOT_STATES
 from ..layers.live_layers import (
     Row,
     RowLayer,
@@ -56,8 +55,7 @@ from ..layers.live_layers import (
 )
 from ..layers.site_transform import frame_of
 from ..ui.glyphs import STATE_COLOURS
-from ..ui.language import tr
-from ..ui.times import date_and_time, time_of_day
+from ..ui.language import date_and_time, time_of_day, tr
 
 NAME = tr("Robots (live)")
 FIELDS = (
@@ -341,7 +339,7 @@ class RobotLayer(QObject):
         self.is_new = True
 
     def _show_written(self) -> None:
-        # A canvas that is still drawing would begin anew and, on a slow map, never come to its end.
+        # A canvas that is still drawing would begin again and, on a slow map, never come to its end.
         self._layer.triggerRepaint(self._canvas.isDrawing())
         # An attribute table learns of writes in no other way; to look whether one is open takes 40 ms.
         self._layer.dataChanged.emit()
@@ -367,7 +365,7 @@ class RobotLayer(QObject):
 
 
 def _is_only_age(feature: RobotFeature, changed: Iterable[int]) -> bool:
-    """Tell whether it is only the age of a robot that talks: not worth writing all of them anew."""
+    """Tell whether it is only the age of a robot that talks: not worth writing all of them again."""
     return feature.values[STATE_AT] == RobotState.FRESH.value and set(changed) == {AGE_AT}
 
 

@@ -14,7 +14,7 @@ from ..control.messages import MessageBar
 from ..gateway_client.fleet_state import FleetState
 from ..layers.crs import own_frame
 from ..layers.live_layers import ProjectWatch
-from ..layers.publishing.published_layers import LoadedSite, load_site, loaded_already, site_folder
+from ..layers.publishing.publication import LoadedSite, load_site, loaded_already, site_folder
 from ..layers.site_transform import frame_of
 from ..ui.errors import FleetError
 from ..ui.language import tr, tr_count

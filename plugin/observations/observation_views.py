@@ -32,13 +32,12 @@ from ...robot_bridge.core.messages import (
 )
 from ..control.fleet_controller import FleetController
 from ..gateway_client.connection_status import ConnectionPhase
+from ..gateway_client.fleet_state import RequestResult
 from ..gateway_client.report_caches import ObservationCache
-from ..gateway_client.requests import RequestResult
 from ..layers.live_layers import RowLayer
 from ..panel.robot_details import DecodeTask
 from ..ui.errors import FleetError
-from ..ui.language import tr
-from ..ui.times import date_and_time, time_of_day
+from ..ui.language import date_and_time, time_of_day, tr
 
 SIDE = 256
 """Pixels of the longer side of a picture."""
@@ -180,7 +179,7 @@ class ObservationFeed(QObject):
         try:
             self._pages.add(self._desk.orders.inquire(request))
         except FleetError:
-            # The link is down again: all is asked anew when it is back.
+            # The link is down again: all is asked again when it is back.
             self._pages.clear()
 
     def _answered(self, answer: RequestResult) -> None:
@@ -362,7 +361,7 @@ ICON = QSize(56, 42)
 
 
 class ObservationModel(QAbstractListModel):
-    """The observations in the order that they are to be looked at; ``reports`` are its rows."""
+    """The observations in the order that they have to be reviewed; ``reports`` are its rows."""
 
     def __init__(self, thumbnails: Thumbnails, parent: QObject | None = None):
         super().__init__(parent)

@@ -22,9 +22,8 @@ from ..control.messages import file_topic
 from ..control.request_tracker import SLOW_AFTER
 from ..gateway_client import command_cache
 from ..gateway_client.command_cache import asked_at, command_in_words, place_of
-from ..gateway_client.requests import RequestResult
-from ..gateway_client.robot_states import name_order
-from ..gateway_client.state_texts import COMMAND_STATES, longest_word
+from ..gateway_client.fleet_state import RequestResult
+from ..gateway_client.robot_states import COMMAND_STATES, longest_word, name_order
 from ..settings.preferences import export_path
 from ..ui.dialogs import file_to_write
 from ..ui.errors import FleetError
@@ -160,7 +159,7 @@ COMMAND_CHOICES = {
 }
 FILE = file_topic("command_log")
 MERGED = 500
-"""New commands that are sorted in one by one; of more of them all are listed anew."""
+"""New commands that are sorted in one by one; of more of them all are listed again."""
 
 
 class CommandLog(QWidget):
@@ -207,7 +206,7 @@ class CommandLog(QWidget):
         self._show_what_is_open()
 
     def refresh(self, *_what: object) -> None:
-        """List anew what the filters keep."""
+        """List again what the filters keep."""
         self._model.show_all(self._desk.state.commands, self.filter())
         self._opened = None
         self._open(self._model.index(0, 0))

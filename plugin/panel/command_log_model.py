@@ -13,11 +13,10 @@ from qgis.PyQt.QtGui import QFont
 
 from ...robot_bridge.core.messages import Abort, CommandReport, CommandState, CommandStep
 from ..gateway_client.command_cache import UNDER_WAY, asked_at, command_in_words, place_of, state_word
-from ..gateway_client.state_texts import COMMAND_STATES
+from ..gateway_client.robot_states import COMMAND_STATES
 from ..ui.glyphs import COMMAND_COLOURS, for_letters
-from ..ui.language import tr
+from ..ui.language import date_and_time, short_time, tr
 from ..ui.tables import iso_time
-from ..ui.times import date_and_time, short_time
 
 FAILED = (CommandState.ABORTED, CommandState.FAILED, CommandState.EXPIRED)
 CSV_HEAD = (
@@ -155,7 +154,7 @@ class LogModel(QAbstractItemModel):
         self._told = 0
         """How many of those a view is told of."""
         self._rows: dict[str, int] | None = {}
-        """The row of each command; None where it has to be counted anew."""
+        """The row of each command; None where it has to be counted again."""
         self._next_number = count(1)
         self._numbers: dict[str, int] = {}
         self._by_number: dict[int, str] = {}

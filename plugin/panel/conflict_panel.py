@@ -18,14 +18,12 @@ from qgis.PyQt.QtWidgets import (
 from ...robot_bridge.core.messages import ConflictReport, GetWaysOut, HoldReport, WayOut, ways_out_report
 from ..control.fleet_controller import FleetController
 from ..control.request_tracker import RequestTracker
-from ..gateway_client.fleet_state import FleetState
-from ..gateway_client.requests import RequestResult
-from ..gateway_client.state_texts import MEETINGS
+from ..gateway_client.fleet_state import FleetState, RequestResult
+from ..gateway_client.robot_states import MEETINGS
 from ..ui.errors import NotSentError
-from ..ui.language import tr
+from ..ui.language import time_of_day, tr
 from ..ui.steady_widgets import ElidedButton, ElidedText
 from ..ui.tables import shrink_view
-from ..ui.times import time_of_day
 
 Pair = tuple[str, str]
 
@@ -177,7 +175,7 @@ class ConflictPanel(QWidget):
 
     def hideEvent(self, event: QHideEvent) -> None:
         super().hideEvent(event)
-        # Nobody looks: the gateway need not reckon it.
+        # Nobody looks: the gateway need not compute it.
         self._ways.watch(None)
 
     def _button(self, pressed: Callable[[], None]) -> ElidedButton:

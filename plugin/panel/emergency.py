@@ -10,9 +10,8 @@ from ...robot_bridge.core.messages import EmergencyReport
 from ..control.fleet_controller import FleetController
 from ..gateway_client.connection_status import ConnectionPhase
 from ..ui.dialogs import QuestionDialog
-from ..ui.language import first_of, tr, tr_count
+from ..ui.language import first_of, time_of_day, tr, tr_count
 from ..ui.steady_widgets import ScrollingText
-from ..ui.times import time_of_day
 
 
 class EmergencyKey(QObject):
@@ -93,7 +92,7 @@ class EmergencyBanner(QFrame):
 
 
 def in_words(report: EmergencyReport | None, asked: bool, connected: bool) -> str:
-    """Return what is to be known of a stop: asked for and not confirmed, or in force, and by whom."""
+    """Return the state of a stop: asked for and not confirmed, or in force, and by whom."""
     lines = []
     if asked:
         lines.append(

@@ -37,8 +37,8 @@ from ...robot_bridge.core.messages import (
 from ..control.fleet_controller import FleetController
 from ..control.messages import QueueStand, Topic, draft_topic, queue_topic
 from ..control.pending_command import PendingCommand
-from ..gateway_client.requests import RequestResult
-from ..gateway_client.state_texts import (
+from ..gateway_client.fleet_state import RequestResult
+from ..gateway_client.robot_states import (
     last_ended_in_words,
     queue_in_words,
     task_in_words,

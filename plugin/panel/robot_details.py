@@ -34,16 +34,20 @@ from ...robot_bridge.core.messages import (
 from ..control.fleet_controller import FleetController
 from ..control.request_tracker import RequestTracker
 from ..gateway_client.command_cache import PathDeviations, asked_at, command_in_words, state_word
-from ..gateway_client.requests import RequestResult
-from ..gateway_client.robot_states import RobotView
-from ..gateway_client.state_texts import COMMAND_STATES, ROBOT_STATES, queue_in_words, task_in_words
-from ..gateway_client.state_texts import task_state_in_words as task_state
+from ..gateway_client.fleet_state import RequestResult
+from ..gateway_client.robot_states import (
+    COMMAND_STATES,
+    ROBOT_STATES,
+    RobotView,
+    queue_in_words,
+    task_in_words,
+)
+from ..gateway_client.robot_states import task_state_in_words as task_state
 from ..layers.site_transform import PositionCrs
 from ..ui.errors import FleetError, MapTransformError
-from ..ui.language import tr
+from ..ui.language import date_and_time, heard_in_words, time_of_day, tr
 from ..ui.steady_widgets import ElidedText
 from ..ui.tables import shrink_view
-from ..ui.times import date_and_time, heard_in_words, time_of_day
 from .alarms.board import AlarmBoard, alarm_state_in_words
 from .alarms.rules import Alarm
 

@@ -21,13 +21,11 @@ from ...robot_bridge.core.messages import (
 )
 from ..gateway_client.command_cache import CommandCache, PathDeviations, command_in_words
 from ..gateway_client.report_caches import QueueCache
-from ..gateway_client.robot_states import RobotStates
+from ..gateway_client.robot_states import COMMAND_STATES, ROBOT_STATES, RobotStates, longest_word
 from ..gateway_client.robot_table import STATES
-from ..gateway_client.state_texts import COMMAND_STATES, ROBOT_STATES, longest_word
 from ..ui.glyphs import STATE_COLOURS, for_letters, state_icon
-from ..ui.language import tr
+from ..ui.language import age_in_words, heard_in_words, tr
 from ..ui.tables import TO_THE_RIGHT
-from ..ui.times import age_in_words, heard_in_words
 
 
 @dataclass(frozen=True)

@@ -25,10 +25,9 @@ from ..layers.live_layers import MARK, live_layers
 from ..settings.preferences import export_path
 from ..ui.dialogs import file_to_write, push_button
 from ..ui.errors import FleetError
-from ..ui.language import tr, tr_count
+from ..ui.language import time_of_day, tr, tr_count
 from ..ui.steady_widgets import ScrollingText
 from ..ui.tables import fit_headers, write_csv
-from ..ui.times import time_of_day
 
 # --- The as-placed report: each cone with where it was to stand, where it stands, how far off, by whom, when
 

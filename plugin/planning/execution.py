@@ -33,8 +33,8 @@ from ..control.fleet_controller import STOPPED_BY, FleetController
 from ..control.messages import PLAN_SENT, Level, Topic, plan_topic
 from ..control.pending_command import in_brief
 from ..gateway_client.connection_status import ConnectionPhase
+from ..gateway_client.fleet_state import RequestResult
 from ..gateway_client.report_caches import MOST_ASKED, KnownPlan
-from ..gateway_client.requests import RequestResult
 from ..ui.errors import NotSentError
 from ..ui.language import first_of, tr
 from .plan_editor import PlanEditor, PlanningError
@@ -111,7 +111,7 @@ class PlanExecution(QObject):
 
     @property
     def shown_plan(self) -> ConePlan | None:
-        """What is to be looked at: a new plan of what is left, the plan that is driven, or the draft."""
+        """The plan to show: a new plan of what is left, the plan that is driven, or the draft."""
         known = self.known
         if known is None:
             return None if self._drafts.draft is None else self._drafts.draft.plan

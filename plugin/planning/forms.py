@@ -30,7 +30,7 @@ from ..ui.tables import CHECKED, TO_THE_RIGHT, UNCHECKED, number_of
 from .layouts.layout_layer import MARK
 from .plan_settings import PlanRobotSettings, PlanSettings, available_robots, point_layers
 
-# --- The form of what a plan is to be: which cones and stores, what is least, along what ---
+# --- The form of what a plan is made for: which cones and stores, what is minimised, along what ---
 
 
 class SettingsForm(QWidget):

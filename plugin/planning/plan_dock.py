@@ -420,7 +420,7 @@ class PlanDock(ActionDock):
         self.drafts.plan_with(replace(self.drafts.settings, by_itself=on))
 
     def _site_changed(self) -> None:
-        """Drop what belongs to other robots; a site that was published anew keeps its plan."""
+        """Drop what belongs to other robots; a site that was published again keeps its plan."""
         if self._generation != self._desk.state.robots.generation:
             self._generation = self._desk.state.robots.generation
             self._desk.messages.end(PLAN_ASKED)

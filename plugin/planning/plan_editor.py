@@ -21,7 +21,7 @@ from ...robot_bridge.core.errors import AssignmentError, MissingStoreError
 from ...robot_bridge.core.messages import ClosureReport, CollectLayout, MessageError, QueueTask, TaskKind
 from ...robot_bridge.core.sites.frame import SiteFrame
 from ..control.fleet_controller import FleetController
-from ..gateway_client.requests import RequestResult
+from ..gateway_client.fleet_state import RequestResult
 from ..ui.errors import FleetError, MapTransformError
 from ..ui.language import tr
 from .plan_settings import (
@@ -32,8 +32,7 @@ from .plan_settings import (
     read_settings,
     read_stores,
 )
-from .proposal import ClosureCheck, PlanProposal, PlanTask
-from .travel import PlanTravel
+from .proposal import ClosureCheck, PlanProposal, PlanTask, PlanTravel
 
 # --- The plan as it is planned and edited at the desk; nothing of it is known to any robot ---
 
@@ -147,7 +146,7 @@ class PlanEditor(QObject):
             task.left.wait(10.0)
 
     def look_at_closures(self) -> None:
-        """Find out anew what of the plan leads along closed roads."""
+        """Find out again what of the plan leads along closed roads."""
         draft = self.draft
         if draft is None:
             return
@@ -284,7 +283,7 @@ class CollectionPlanner(QObject):
         desk.orders.answered.connect(self._answered)
 
     def ask(self, request: CollectLayout) -> None:
-        """Ask what is to be collected; raises NotSentError when that cannot be asked."""
+        """Ask which cones to collect; raises NotSentError when that cannot be asked."""
         self._key = self._desk.orders.ask(request, tr("What is to be collected"))
 
     def _answered(self, answer: RequestResult) -> None:

@@ -166,7 +166,7 @@ def point_layers(project: QgsProject) -> list[QgsVectorLayer]:
 def read_cones(
     project: QgsProject, settings: PlanSettings, frame: SiteFrame
 ) -> tuple[tuple[ConeTarget, ...], dict[str, ConeFacts]]:
-    """Return what is to be placed, in the site frame, and what is written down of each, by the target's id.
+    """Return the cones to place, in the site frame, and what is written down of each, by the target's id.
 
     Fields: ``id``, ``heading`` (degrees clockwise from north), ``layout``, ``stage``, ``demand`` and
     ``service_s``.

@@ -38,13 +38,12 @@ from ...robot_bridge.core.messages import (
 from ...robot_bridge.core.sites.frame import SiteFrame
 from ..cone_texts import RESULT_QUALITY
 from ..control.fleet_controller import FleetController
-from ..gateway_client.state_texts import ROBOT_STATES
+from ..gateway_client.robot_states import ROBOT_STATES
 from ..layers.live_layers import Row, RowLayer, label
 from ..layers.site_transform import frame_of
 from ..ui.glyphs import WRONG, for_letters
-from ..ui.language import first_of, tr, tr_count
+from ..ui.language import first_of, time_of_day, tr, tr_count
 from ..ui.tables import fit_headers
-from ..ui.times import time_of_day
 from .as_placed import PLACED, utc_in_words
 from .progress import ReportedProgress
 from .proposal import PlanProposal, closed_in_words, meeting_in_words

@@ -22,7 +22,7 @@ from ...robot_bridge.core.messages import (
 )
 from ..control.request_tracker import RequestTracker
 from ..gateway_client.command_cache import UNDER_WAY, CommandCache, asked_at, command_in_words, state_word
-from ..gateway_client.requests import RequestResult
+from ..gateway_client.fleet_state import RequestResult
 from ..gateway_client.robot_states import RobotArrays
 from ..gateway_client.robot_table import STATES as HISTORY_STATES
 from ..ui.errors import FleetError

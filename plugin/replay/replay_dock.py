@@ -10,10 +10,9 @@ from ..control.fleet_controller import FleetController
 from ..control.messages import REPLAY, SELECTION, Level, Topic
 from ..ui.actions import ActionDock, DockAction
 from ..ui.errors import FleetError
-from ..ui.language import tr, tr_count
+from ..ui.language import date_and_time, tr, tr_count
 from ..ui.scheduling import ONE_STEP, CooperativeTask, Steps
 from ..ui.steady_widgets import ScrollingText
-from ..ui.times import date_and_time
 from .history import NO_MARKS, CommandSorter, HistoryDownload, PastCommands
 from .replay_map import ReplayLayer, ReplayMap
 from .time_controls import SPEEDS, ReplayClock, TimeLine, TimeRangeForm

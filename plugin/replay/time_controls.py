@@ -16,9 +16,8 @@ from qgis.PyQt.QtWidgets import QCheckBox, QComboBox, QDateTimeEdit, QGridLayout
 from ...robot_bridge.core.messages import CommandState
 from ..map.overlay.primitives import flat, lines
 from ..ui.glyphs import painting
-from ..ui.language import tr
+from ..ui.language import date_and_time, tr
 from ..ui.steady_widgets import SteadyPushButton
-from ..ui.times import date_and_time
 from .history import NO_MARKS, TimelineMark, TimelineMarks
 
 FRAMES_A_SECOND = 5.0
@@ -87,7 +86,7 @@ class ReplayClock(QObject):
             self.controller.setCurrentFrameNumber(min(max(0, frame), last))
 
     def play(self, on: bool) -> None:
-        """Let time go on, or hold it; at its end begin anew."""
+        """Let time go on, or hold it; at its end begin again."""
         if not on:
             self.controller.pause()
         elif self.is_set:

@@ -22,7 +22,7 @@ RANGES = {"positions_rate": (1.0, 20.0), "layer_seconds": (1.0, 60.0), "robot_si
 @dataclass(frozen=True)
 class Preferences:
     """``positions_rate`` is how many times a second positions are asked for at most, from the next connection
-    on; ``layer_seconds`` is after how many seconds the layer of robots is written anew; ``robot_size`` is how
+    on; ``layer_seconds`` are the seconds between two writes of the layer of robots; ``robot_size`` is how
     large robots are drawn, 1 as they come; ``drawn_by_layer`` is whether the layer of robots draws them, in
     its style, in place of the live map's arrows; ``folder`` is where files are written to unless another is
     chosen, empty for the user's documents.

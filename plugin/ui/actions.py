@@ -334,7 +334,7 @@ class PluginMenu:
 
     def remove(self) -> None:
         """Delete what QGIS has only taken off the list: each loading would add another one to the window."""
-        for menu in self._window.findChildren(QMenu):
+        for menu in self._window.findChildren(QMenu, options=Qt.FindChildOption.FindDirectChildrenOnly):
             if menu.title() == self._title and menu.isEmpty():
                 menu.deleteLater()
 
@@ -350,6 +350,7 @@ class MenuLetters(QObject):
         super().__init__(parent)
         self._actions = list(actions)
         self._plain: list[str] = []
+        self._is_renewing = False
         for action in self._actions:
             action.changed.connect(self._renew)
         self._renew()
@@ -362,12 +363,16 @@ class MenuLetters(QObject):
         self.deleteLater()
 
     def _renew(self) -> None:
+        if self._is_renewing:  # what changes are the letters
+            return
         plain = [action.text().replace("&", "") for action in self._actions]
         if plain == self._plain:
             return
         self._plain = plain
+        self._is_renewing = True
         for action, text in zip(self._actions, with_letters(plain), strict=True):
             action.setText(text)
+        self._is_renewing = False
 
 
 def with_letters(texts: Sequence[str]) -> list[str]:
@@ -472,6 +477,8 @@ class Shortcuts:
 
 def _keys_in(window: QWidget) -> set[str]:
     """Return the keys that something in ``window`` has."""
-    keys = [key for action in window.findChildren(QAction) for key in action.shortcuts()]
-    keys += [shortcut.key() for shortcut in window.findChildren(QShortcut)]
+    # Both at once: PyQt makes an object for each child that it passes.
+    having = window.findChildren((QAction, QShortcut))
+    keys = [key for one in having if isinstance(one, QAction) for key in one.shortcuts()]
+    keys += [one.key() for one in having if isinstance(one, QShortcut)]
     return {key.toString() for key in keys}

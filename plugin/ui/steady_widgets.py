@@ -142,7 +142,7 @@ class ElidedText(QLabel):
 
 
 def _width(widget: QWidget, text: str) -> int:
-    """Return the pixels that Qt reckons with for ``text``; to the pixel, it is not how far it is drawn."""
+    """Return the pixels that Qt measures for ``text``; to the pixel, it is not how far it is drawn."""
     return widget.fontMetrics().size(Qt.TextFlag.TextShowMnemonic, text).width()
 
 

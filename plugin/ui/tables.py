@@ -14,8 +14,7 @@ from qgis.PyQt.QtWidgets import QAbstractItemView, QHeaderView, QStyle, QTableVi
 
 from ...robot_bridge.core.files import replacement
 from .errors import FleetError
-from .language import tr
-from .times import short_time
+from .language import short_time, tr
 
 
 class RowModel(QAbstractTableModel):

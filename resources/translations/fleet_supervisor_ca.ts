@@ -2028,7 +2028,7 @@
             <translation>N'hi ha {more} més en zones prohibides o obstacles, sense llistar.</translation>
         </message>
         <message numerus="yes">
-            <location filename="../../plugin/gateway_client/state_texts.py" />
+            <location filename="../../plugin/gateway_client/robot_states.py" />
             <source>%n tasks</source>
             <translation>
                 <numerusform>%n tasca</numerusform>
@@ -2036,162 +2036,162 @@
             </translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/state_texts.py" />
+            <location filename="../../plugin/gateway_client/robot_states.py" />
             <source>, a path of {path_points} points</source>
             <translation>, un camí de {path_points} punts</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/state_texts.py" />
+            <location filename="../../plugin/gateway_client/robot_states.py" />
             <source>, {deviation:.2f} m off</source>
             <translation>, {deviation:.2f} m de desviació</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/state_texts.py" />
+            <location filename="../../plugin/gateway_client/robot_states.py" />
             <source>. The robot is {state}: it is sent nothing until it is heard again</source>
             <translation>. El robot és {state}: no se li envia res fins que se'n torni a saber</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/state_texts.py" />
+            <location filename="../../plugin/gateway_client/robot_states.py" />
             <source>Last: {task} {state} {time}{off}{why}</source>
             <translation>Última: {task} {state} {time}{off}{why}</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/state_texts.py" />
+            <location filename="../../plugin/gateway_client/robot_states.py" />
             <source>aborted</source>
             <translation>avortada</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/state_texts.py" />
+            <location filename="../../plugin/gateway_client/robot_states.py" />
             <source>acknowledged</source>
             <translation>reconeguda</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/state_texts.py" />
+            <location filename="../../plugin/gateway_client/robot_states.py" />
             <source>by {by}</source>
             <translation>per {by}</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/state_texts.py" />
+            <location filename="../../plugin/gateway_client/robot_states.py" />
             <source>collect cone</source>
             <translation>recull con</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/state_texts.py" />
+            <location filename="../../plugin/gateway_client/robot_states.py" />
             <source>crossing</source>
             <translation>encreuament</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/state_texts.py" />
+            <location filename="../../plugin/gateway_client/robot_states.py" />
             <source>delivered</source>
             <translation>lliurada</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/state_texts.py" />
+            <location filename="../../plugin/gateway_client/robot_states.py" />
             <source>drive</source>
             <translation>circula</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/state_texts.py" />
+            <location filename="../../plugin/gateway_client/robot_states.py" />
             <source>expired</source>
             <translation>caducada</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/state_texts.py" />
+            <location filename="../../plugin/gateway_client/robot_states.py" />
             <source>failed</source>
             <translation>fallida</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/state_texts.py" />
+            <location filename="../../plugin/gateway_client/robot_states.py" />
             <source>following</source>
             <translation>seguiment</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/state_texts.py" />
+            <location filename="../../plugin/gateway_client/robot_states.py" />
             <source>fresh</source>
             <translation>actual</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/state_texts.py" />
+            <location filename="../../plugin/gateway_client/robot_states.py" />
             <source>head-on</source>
             <translation>de cara</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/state_texts.py" />
+            <location filename="../../plugin/gateway_client/robot_states.py" />
             <source>lost</source>
             <translation>perdut</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/state_texts.py" />
+            <location filename="../../plugin/gateway_client/robot_states.py" />
             <source>nothing to do</source>
             <translation>res a fer</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/state_texts.py" />
+            <location filename="../../plugin/gateway_client/robot_states.py" />
             <source>now</source>
             <translation>ara</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/state_texts.py" />
+            <location filename="../../plugin/gateway_client/robot_states.py" />
             <source>offline</source>
             <translation>fora de línia</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/state_texts.py" />
+            <location filename="../../plugin/gateway_client/robot_states.py" />
             <source>place cone</source>
             <translation>col·loca con</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/state_texts.py" />
+            <location filename="../../plugin/gateway_client/robot_states.py" />
             <source>queued</source>
             <translation>en cua</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/state_texts.py" />
+            <location filename="../../plugin/gateway_client/robot_states.py" />
             <source>reached</source>
             <translation>assolida</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/state_texts.py" />
+            <location filename="../../plugin/gateway_client/robot_states.py" />
             <source>removed</source>
             <translation>treta</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/state_texts.py" />
+            <location filename="../../plugin/gateway_client/robot_states.py" />
             <source>running</source>
             <translation>en marxa</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/state_texts.py" />
+            <location filename="../../plugin/gateway_client/robot_states.py" />
             <source>skipped</source>
             <translation>omès</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/state_texts.py" />
+            <location filename="../../plugin/gateway_client/robot_states.py" />
             <source>stale</source>
             <translation>desactualitzat</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/state_texts.py" />
+            <location filename="../../plugin/gateway_client/robot_states.py" />
             <source>standing</source>
             <translation>aturat</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/state_texts.py" />
+            <location filename="../../plugin/gateway_client/robot_states.py" />
             <source>superseded</source>
             <translation>substituïda</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/state_texts.py" />
+            <location filename="../../plugin/gateway_client/robot_states.py" />
             <source>waiting</source>
             <translation>en espera</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/state_texts.py" />
+            <location filename="../../plugin/gateway_client/robot_states.py" />
             <source>{kind}{name} at {x:.2f}, {y:.2f}{way}</source>
             <translation>{kind}{name} a {x:.2f}, {y:.2f}{way}</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/state_texts.py" />
+            <location filename="../../plugin/gateway_client/robot_states.py" />
             <source>{robot}: {count}, PAUSED{when}{why}</source>
             <translation>{robot}: {count}, EN PAUSA{when}{why}</translation>
         </message>
@@ -3466,7 +3466,7 @@
             <translation>{told} a {where}</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/tools/target_tools.py" />
+            <location filename="../../plugin/map/tools/click_tools.py" />
             <source>{in_words} is still on the map. Send it (Enter) or cancel it (Esc) first.</source>
             <translation>{in_words} encara és al mapa. Envieu-ho (Retorn) o cancel·leu-ho (Esc) abans.</translation>
         </message>
@@ -6159,12 +6159,12 @@
             <translation>{robot} i {other} s'acosten a {metres:.1f} m a {x:.0f}, {y:.0f} m al cap de {minutes}:{seconds:02d}</translation>
         </message>
         <message>
-            <location filename="../../plugin/planning/travel.py" />
+            <location filename="../../plugin/planning/proposal.py" />
             <source>The assignment was cancelled.</source>
             <translation>S'ha cancel·lat l'assignació.</translation>
         </message>
         <message>
-            <location filename="../../plugin/planning/travel.py" />
+            <location filename="../../plugin/planning/proposal.py" />
             <source>{name}, straight within {nearby:g} m</source>
             <translation>{name}, recte dins de {nearby:g} m</translation>
         </message>
@@ -9625,7 +9625,7 @@
             <translation>{file} no s'ha escrit ({why}). Trieu una altra carpeta, o tanqueu el fitxer on sigui obert.</translation>
         </message>
         <message>
-            <location filename="../../plugin/ui/times.py" />
+            <location filename="../../plugin/ui/language.py" />
             <source>{state}, last heard {age} ago over {link}</source>
             <translation>{state}, últim missatge fa {age} per {link}</translation>
         </message>

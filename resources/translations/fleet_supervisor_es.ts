@@ -2028,7 +2028,7 @@
             <translation>Hay {more} más en zonas prohibidas u obstáculos, sin listar.</translation>
         </message>
         <message numerus="yes">
-            <location filename="../../plugin/gateway_client/state_texts.py" />
+            <location filename="../../plugin/gateway_client/robot_states.py" />
             <source>%n tasks</source>
             <translation>
                 <numerusform>%n tarea</numerusform>
@@ -2036,162 +2036,162 @@
             </translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/state_texts.py" />
+            <location filename="../../plugin/gateway_client/robot_states.py" />
             <source>, a path of {path_points} points</source>
             <translation>, un camino de {path_points} puntos</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/state_texts.py" />
+            <location filename="../../plugin/gateway_client/robot_states.py" />
             <source>, {deviation:.2f} m off</source>
             <translation>, {deviation:.2f} m de desvío</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/state_texts.py" />
+            <location filename="../../plugin/gateway_client/robot_states.py" />
             <source>. The robot is {state}: it is sent nothing until it is heard again</source>
             <translation>. El robot está {state}: no se le envía nada hasta que se vuelva a saber de él</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/state_texts.py" />
+            <location filename="../../plugin/gateway_client/robot_states.py" />
             <source>Last: {task} {state} {time}{off}{why}</source>
             <translation>Última: {task} {state} {time}{off}{why}</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/state_texts.py" />
+            <location filename="../../plugin/gateway_client/robot_states.py" />
             <source>aborted</source>
             <translation>abortada</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/state_texts.py" />
+            <location filename="../../plugin/gateway_client/robot_states.py" />
             <source>acknowledged</source>
             <translation>reconocida</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/state_texts.py" />
+            <location filename="../../plugin/gateway_client/robot_states.py" />
             <source>by {by}</source>
             <translation>por {by}</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/state_texts.py" />
+            <location filename="../../plugin/gateway_client/robot_states.py" />
             <source>collect cone</source>
             <translation>recoger cono</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/state_texts.py" />
+            <location filename="../../plugin/gateway_client/robot_states.py" />
             <source>crossing</source>
             <translation>cruce</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/state_texts.py" />
+            <location filename="../../plugin/gateway_client/robot_states.py" />
             <source>delivered</source>
             <translation>entregada</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/state_texts.py" />
+            <location filename="../../plugin/gateway_client/robot_states.py" />
             <source>drive</source>
             <translation>circular</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/state_texts.py" />
+            <location filename="../../plugin/gateway_client/robot_states.py" />
             <source>expired</source>
             <translation>caducada</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/state_texts.py" />
+            <location filename="../../plugin/gateway_client/robot_states.py" />
             <source>failed</source>
             <translation>fallida</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/state_texts.py" />
+            <location filename="../../plugin/gateway_client/robot_states.py" />
             <source>following</source>
             <translation>seguimiento</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/state_texts.py" />
+            <location filename="../../plugin/gateway_client/robot_states.py" />
             <source>fresh</source>
             <translation>actual</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/state_texts.py" />
+            <location filename="../../plugin/gateway_client/robot_states.py" />
             <source>head-on</source>
             <translation>de frente</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/state_texts.py" />
+            <location filename="../../plugin/gateway_client/robot_states.py" />
             <source>lost</source>
             <translation>perdido</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/state_texts.py" />
+            <location filename="../../plugin/gateway_client/robot_states.py" />
             <source>nothing to do</source>
             <translation>nada que hacer</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/state_texts.py" />
+            <location filename="../../plugin/gateway_client/robot_states.py" />
             <source>now</source>
             <translation>ahora</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/state_texts.py" />
+            <location filename="../../plugin/gateway_client/robot_states.py" />
             <source>offline</source>
             <translation>fuera de línea</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/state_texts.py" />
+            <location filename="../../plugin/gateway_client/robot_states.py" />
             <source>place cone</source>
             <translation>colocar cono</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/state_texts.py" />
+            <location filename="../../plugin/gateway_client/robot_states.py" />
             <source>queued</source>
             <translation>en cola</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/state_texts.py" />
+            <location filename="../../plugin/gateway_client/robot_states.py" />
             <source>reached</source>
             <translation>alcanzada</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/state_texts.py" />
+            <location filename="../../plugin/gateway_client/robot_states.py" />
             <source>removed</source>
             <translation>quitada</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/state_texts.py" />
+            <location filename="../../plugin/gateway_client/robot_states.py" />
             <source>running</source>
             <translation>en marcha</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/state_texts.py" />
+            <location filename="../../plugin/gateway_client/robot_states.py" />
             <source>skipped</source>
             <translation>omitido</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/state_texts.py" />
+            <location filename="../../plugin/gateway_client/robot_states.py" />
             <source>stale</source>
             <translation>desactualizado</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/state_texts.py" />
+            <location filename="../../plugin/gateway_client/robot_states.py" />
             <source>standing</source>
             <translation>parado</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/state_texts.py" />
+            <location filename="../../plugin/gateway_client/robot_states.py" />
             <source>superseded</source>
             <translation>sustituida</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/state_texts.py" />
+            <location filename="../../plugin/gateway_client/robot_states.py" />
             <source>waiting</source>
             <translation>en espera</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/state_texts.py" />
+            <location filename="../../plugin/gateway_client/robot_states.py" />
             <source>{kind}{name} at {x:.2f}, {y:.2f}{way}</source>
             <translation>{kind}{name} en {x:.2f}, {y:.2f}{way}</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/state_texts.py" />
+            <location filename="../../plugin/gateway_client/robot_states.py" />
             <source>{robot}: {count}, PAUSED{when}{why}</source>
             <translation>{robot}: {count}, EN PAUSA{when}{why}</translation>
         </message>
@@ -3466,7 +3466,7 @@
             <translation>{told} en {where}</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/tools/target_tools.py" />
+            <location filename="../../plugin/map/tools/click_tools.py" />
             <source>{in_words} is still on the map. Send it (Enter) or cancel it (Esc) first.</source>
             <translation>{in_words} sigue en el mapa. Envíelo (Intro) o cancélelo (Esc) antes.</translation>
         </message>
@@ -6159,12 +6159,12 @@
             <translation>{robot} y {other} se acercan a {metres:.1f} m en {x:.0f}, {y:.0f} m al cabo de {minutes}:{seconds:02d}</translation>
         </message>
         <message>
-            <location filename="../../plugin/planning/travel.py" />
+            <location filename="../../plugin/planning/proposal.py" />
             <source>The assignment was cancelled.</source>
             <translation>Se canceló la asignación.</translation>
         </message>
         <message>
-            <location filename="../../plugin/planning/travel.py" />
+            <location filename="../../plugin/planning/proposal.py" />
             <source>{name}, straight within {nearby:g} m</source>
             <translation>{name}, recto dentro de {nearby:g} m</translation>
         </message>
@@ -9625,7 +9625,7 @@
             <translation>{file} no se escribió ({why}). Elija otra carpeta, o cierre el archivo donde esté abierto.</translation>
         </message>
         <message>
-            <location filename="../../plugin/ui/times.py" />
+            <location filename="../../plugin/ui/language.py" />
             <source>{state}, last heard {age} ago over {link}</source>
             <translation>{state}, último mensaje hace {age} por {link}</translation>
         </message>

@@ -2020,169 +2020,169 @@
             <translation>További {more} van tiltott területen vagy akadálynál, felsorolás nélkül.</translation>
         </message>
         <message numerus="yes">
-            <location filename="../../plugin/gateway_client/state_texts.py" />
+            <location filename="../../plugin/gateway_client/robot_states.py" />
             <source>%n tasks</source>
             <translation>
                 <numerusform>%n feladat</numerusform>
             </translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/state_texts.py" />
+            <location filename="../../plugin/gateway_client/robot_states.py" />
             <source>, a path of {path_points} points</source>
             <translation>, {path_points} pontos pálya</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/state_texts.py" />
+            <location filename="../../plugin/gateway_client/robot_states.py" />
             <source>, {deviation:.2f} m off</source>
             <translation>, {deviation:.2f} m eltérés</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/state_texts.py" />
+            <location filename="../../plugin/gateway_client/robot_states.py" />
             <source>. The robot is {state}: it is sent nothing until it is heard again</source>
             <translation>. A robot állapota {state}: semmit sem kap, amíg újra nem hallani róla</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/state_texts.py" />
+            <location filename="../../plugin/gateway_client/robot_states.py" />
             <source>Last: {task} {state} {time}{off}{why}</source>
             <translation>Utolsó: {task} {state} {time}{off}{why}</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/state_texts.py" />
+            <location filename="../../plugin/gateway_client/robot_states.py" />
             <source>aborted</source>
             <translation>megszakítva</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/state_texts.py" />
+            <location filename="../../plugin/gateway_client/robot_states.py" />
             <source>acknowledged</source>
             <translation>nyugtázva</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/state_texts.py" />
+            <location filename="../../plugin/gateway_client/robot_states.py" />
             <source>by {by}</source>
             <translation>{by}</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/state_texts.py" />
+            <location filename="../../plugin/gateway_client/robot_states.py" />
             <source>collect cone</source>
             <translation>bója begyűjtése</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/state_texts.py" />
+            <location filename="../../plugin/gateway_client/robot_states.py" />
             <source>crossing</source>
             <translation>keresztezés</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/state_texts.py" />
+            <location filename="../../plugin/gateway_client/robot_states.py" />
             <source>delivered</source>
             <translation>kézbesítve</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/state_texts.py" />
+            <location filename="../../plugin/gateway_client/robot_states.py" />
             <source>drive</source>
             <translation>menet</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/state_texts.py" />
+            <location filename="../../plugin/gateway_client/robot_states.py" />
             <source>expired</source>
             <translation>lejárt</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/state_texts.py" />
+            <location filename="../../plugin/gateway_client/robot_states.py" />
             <source>failed</source>
             <translation>sikertelen</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/state_texts.py" />
+            <location filename="../../plugin/gateway_client/robot_states.py" />
             <source>following</source>
             <translation>követés</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/state_texts.py" />
+            <location filename="../../plugin/gateway_client/robot_states.py" />
             <source>fresh</source>
             <translation>friss</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/state_texts.py" />
+            <location filename="../../plugin/gateway_client/robot_states.py" />
             <source>head-on</source>
             <translation>szemből</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/state_texts.py" />
+            <location filename="../../plugin/gateway_client/robot_states.py" />
             <source>lost</source>
             <translation>elveszett</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/state_texts.py" />
+            <location filename="../../plugin/gateway_client/robot_states.py" />
             <source>nothing to do</source>
             <translation>nincs dolga</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/state_texts.py" />
+            <location filename="../../plugin/gateway_client/robot_states.py" />
             <source>now</source>
             <translation>most</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/state_texts.py" />
+            <location filename="../../plugin/gateway_client/robot_states.py" />
             <source>offline</source>
             <translation>offline</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/state_texts.py" />
+            <location filename="../../plugin/gateway_client/robot_states.py" />
             <source>place cone</source>
             <translation>bója kihelyezése</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/state_texts.py" />
+            <location filename="../../plugin/gateway_client/robot_states.py" />
             <source>queued</source>
             <translation>sorban</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/state_texts.py" />
+            <location filename="../../plugin/gateway_client/robot_states.py" />
             <source>reached</source>
             <translation>elérve</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/state_texts.py" />
+            <location filename="../../plugin/gateway_client/robot_states.py" />
             <source>removed</source>
             <translation>eltávolítva</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/state_texts.py" />
+            <location filename="../../plugin/gateway_client/robot_states.py" />
             <source>running</source>
             <translation>fut</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/state_texts.py" />
+            <location filename="../../plugin/gateway_client/robot_states.py" />
             <source>skipped</source>
             <translation>kihagyva</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/state_texts.py" />
+            <location filename="../../plugin/gateway_client/robot_states.py" />
             <source>stale</source>
             <translation>elavult</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/state_texts.py" />
+            <location filename="../../plugin/gateway_client/robot_states.py" />
             <source>standing</source>
             <translation>álló robot</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/state_texts.py" />
+            <location filename="../../plugin/gateway_client/robot_states.py" />
             <source>superseded</source>
             <translation>felülírva</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/state_texts.py" />
+            <location filename="../../plugin/gateway_client/robot_states.py" />
             <source>waiting</source>
             <translation>vár</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/state_texts.py" />
+            <location filename="../../plugin/gateway_client/robot_states.py" />
             <source>{kind}{name} at {x:.2f}, {y:.2f}{way}</source>
             <translation>{kind}{name} itt: {x:.2f}, {y:.2f}{way}</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/state_texts.py" />
+            <location filename="../../plugin/gateway_client/robot_states.py" />
             <source>{robot}: {count}, PAUSED{when}{why}</source>
             <translation>{robot}: {count}, SZÜNETEL{when}{why}</translation>
         </message>
@@ -3445,7 +3445,7 @@
             <translation>{told} itt: {where}</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/tools/target_tools.py" />
+            <location filename="../../plugin/map/tools/click_tools.py" />
             <source>{in_words} is still on the map. Send it (Enter) or cancel it (Esc) first.</source>
             <translation>{in_words} még a térképen van. Előbb küldje el (Enter) vagy vesse el (Esc).</translation>
         </message>
@@ -6119,12 +6119,12 @@
             <translation>{robot} és {other} {metres:.1f} m-re közelítik meg egymást itt: {x:.0f}, {y:.0f} m, {minutes}:{seconds:02d} után</translation>
         </message>
         <message>
-            <location filename="../../plugin/planning/travel.py" />
+            <location filename="../../plugin/planning/proposal.py" />
             <source>The assignment was cancelled.</source>
             <translation>A kiosztást megszakították.</translation>
         </message>
         <message>
-            <location filename="../../plugin/planning/travel.py" />
+            <location filename="../../plugin/planning/proposal.py" />
             <source>{name}, straight within {nearby:g} m</source>
             <translation>{name}, {nearby:g} m-en belül egyenesen</translation>
         </message>
@@ -9563,7 +9563,7 @@
             <translation>{file} nem lett kiírva ({why}). Válasszon másik mappát, vagy zárja be a fájlt, ahol nyitva van.</translation>
         </message>
         <message>
-            <location filename="../../plugin/ui/times.py" />
+            <location filename="../../plugin/ui/language.py" />
             <source>{state}, last heard {age} ago over {link}</source>
             <translation>{state}, utolsó hír {age} óta, ezen: {link}</translation>
         </message>

@@ -22,9 +22,9 @@ from ..gateway.storage.dialects import SQLite
 from ..gateway.storage.map_views import map_views_on, views_made_again, virtual_layers
 from ..gateway.storage.roles.choice import has_accounts, map_readers_on, role_manager_on
 from ..gateway.storage.singleton_lock import no_gateway
-from .audited import act_audited, audited
+from .accounts import NewPasswordOption, new_password
+from .audit import act_audited, audited
 from .options import DEFAULT, DatabaseOption, PasswordFileOption, database_address
-from .tokens import NewPasswordOption, new_password
 
 # --- ``robot-bridge database backup`` and ``restore`` ---
 

@@ -15,9 +15,9 @@ from ..gateway.storage.database import shown
 from ..gateway.storage.repositories import robots as stored_robots
 from ..gateway.storage.roles.choice import has_accounts, role_manager_on
 from ..protocol.credentials import AccessError
-from .audited import act_audited, read_database
+from .accounts import NewPasswordOption, issuing, new_password, revoking, state_of
+from .audit import act_audited, read_database
 from .options import DEFAULT, DatabaseOption, PasswordFileOption, database_address
-from .tokens import NewPasswordOption, issuing, new_password, revoking, state_of
 
 # --- ``robot-bridge robots token|revoke|tokens``: which robots may connect over WebSocket ---
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import gc
 import logging
 import os
 import signal
@@ -73,11 +74,15 @@ def serve(
 
     What is not given is taken from table gateway of site.toml. SIGHUP reads the site anew.
     """
+    gc.disable()
     from ..core.sites.settings import SETTINGS_FILE, read_settings
     from ..core.sites.settings_tables import GatewayOptions
     from ..gateway.app import GatewaySettings
     from ..gateway.auth.tls import server_files
 
+    # All of that stays. To look again and again for what does not took a seventh of the start.
+    gc.freeze()
+    gc.enable()
     set_up_log(log_format, log_level)
     # A folder that is not there is named by whoever reads the whole site.
     given = read_settings(site / SETTINGS_FILE).gateway if site.is_dir() else GatewayOptions()

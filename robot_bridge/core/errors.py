@@ -62,7 +62,7 @@ class BusyError(RefusedError):
 
 
 class FatalError(BridgeError):
-    """The gateway cannot go on: its process ends with this text, to be started anew."""
+    """The gateway cannot go on: its process ends with this text, to be started again."""
 
 
 class NotReadyError(BridgeError):

@@ -20,7 +20,7 @@ def notify(*states: str) -> None:
 
 
 def watchdog_interval() -> float | None:
-    """Return after how many seconds systemd is to be told WATCHDOG=1: half its limit; None for never."""
+    """Return after how many seconds systemd is sent WATCHDOG=1: half its limit; None for never."""
     limit, process = os.environ.get("WATCHDOG_USEC", ""), os.environ.get("WATCHDOG_PID", "")
     if not limit.isdigit() or process not in ("", str(os.getpid())):
         return None

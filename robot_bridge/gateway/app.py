@@ -34,6 +34,7 @@ from .auth.client_connection import ClientConnection
 from .auth.gate import PATHS, AuthGate
 from .auth.port import check_reach, host_fault, is_loopback, listen
 from .auth.tls import ServerFiles, ServerTls
+from .field.page import SITE, FieldPage
 from .fleet.emergency_persistence import StopJournal, journal_file
 from .fleet.link_supervision import LinkProcesses
 from .fleet.service import Fleet
@@ -112,7 +113,7 @@ class GatewaySettings:
     """What a gateway is started with; port 0 takes any free one.
 
     ``state`` is the folder for what it notes on this computer, None for the one that the site's lies in.
-    A site that a supervisor chose goes before ``site``, unless it is to be served ``site_as_given``.
+    A site that a supervisor chose goes before ``site``, unless it has to be served ``site_as_given``.
     """
 
     site: Path
@@ -126,7 +127,7 @@ class GatewaySettings:
 
 @dataclass
 class Signals:
-    """What a gateway is told from outside while it runs: to end, and to read its settings anew."""
+    """What a gateway is told from outside while it runs: to end, and to read its settings again."""
 
     stop: asyncio.Event = field(default_factory=asyncio.Event)
     reload: asyncio.Event = field(default_factory=asyncio.Event)
@@ -141,9 +142,11 @@ class Gateway:
         gate: AuthGate,
         links: LinkProcesses,
         handlers: RequestHandlers,
+        field_page: FieldPage,
         tls: ServerTls | None = None,
     ) -> None:
         self._fleet = fleet
+        self._field = field_page
         self._handlers = handlers
         self._links = links
         self._gate = gate
@@ -205,13 +208,16 @@ class Gateway:
         fleet.links.update(self._robots.links(), self._links.states)
 
     async def _admit(self, visitor: ClientConnection, request: Request) -> Response | None:
-        if (refusal := self._gate.refuse_page(visitor, request)) is not None:
-            return refusal
         path = urlsplit(request.path).path
+        own = self._own_origin(request, path)
+        if (refusal := self._gate.refuse_page(visitor, request, own)) is not None:
+            return refusal
         if path not in ENDPOINTS and (fault := self._host_fault(request)) is not None:
             return visitor.respond(http.HTTPStatus.MISDIRECTED_REQUEST, f"{fault}.\n")
         if path in (HEALTH, METRICS):
             return await self._status_page(visitor, request, path)
+        if self._field.serves(path):
+            return await self._field_page(visitor, request, path)
         if (document := served(path)) is not None:
             response = visitor.respond(http.HTTPStatus.OK, document)
             del response.headers["Content-Type"]
@@ -226,6 +232,21 @@ class Gateway:
             return visitor.respond(http.HTTPStatus.BAD_REQUEST, f"{error}\n")
         kind = ENDPOINTS[path]
         return await self._gate.admit(visitor, request, kind, name, self._largest_message(kind))
+
+    def _own_origin(self, request: Request, path: str) -> str | None:
+        """Return the origin of the field page, of a request that it may make."""
+        host = request.headers.get("Host") if len(request.headers.get_all("Host")) == 1 else None
+        may = path == PATHS[TokenKind.OPERATOR] or self._field.serves(path)
+        if host is None or not may or self._host_fault(request) is not None:
+            return None
+        return f"{'http' if self._tls is None else 'https'}://{host}"
+
+    async def _field_page(self, visitor: ClientConnection, request: Request, path: str) -> Response:
+        if path != SITE:
+            return self._field.file(request)
+        if told := await self._gate.may_read(visitor, request):
+            return told
+        return await self._field.site(request)
 
     def _host_fault(self, request: Request) -> str | None:
         """Return why a page is not asked for by a name of this gateway, None where it is."""
@@ -327,7 +348,8 @@ async def run(settings: GatewaySettings, signals: Signals, started: Callable[[st
         stack.push_async_callback(_save_last, fleet, plans, gate)
         links = LinkProcesses(site.settings.links, folder)
         watch = SiteWatch(folder, stamp, maps, fleet, signals.reload)
-        gateway = Gateway(fleet, gate, links, request_handlers(fleet, plans, database, watch), tls)
+        handlers = request_handlers(fleet, plans, database, watch)
+        gateway = Gateway(fleet, gate, links, handlers, FieldPage(maps), tls)
         if doubt is not None:
             log.warning("%s", doubt.text)
             if doubt.may_be_ahead:

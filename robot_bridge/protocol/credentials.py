@@ -34,7 +34,7 @@ class ClientCredentials:
     ca: Path | None = None
 
     def options(self, url: str) -> dict[str, Any]:
-        """Return what ``websockets`` is to connect to ``url`` with; the files are read anew each time.
+        """Return what ``websockets`` is to connect to ``url`` with; the files are read again each time.
 
         :raises AccessError: when a file cannot be used, or the token would travel for everybody to read.
         """

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import IO
 
-from .samples import (
+from .tracks import (
     MOST_SAMPLES,
     NOTHING,
     SPEED_BOUNDS,

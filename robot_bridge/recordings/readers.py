@@ -15,23 +15,24 @@ from ..core.errors import CrsError
 from ..core.sites.frame import crs_of, projections
 from .bags.reading import read_bag
 from .csv_table import TableForm, read_csv
-from .samples import (
+from .tracks import (
     LATEST,
     LATITUDE,
     LONGITUDE,
     NOTHING,
     SPEED_BOUNDS,
     WGS84,
+    Recording,
     RecordingError,
     Remarks,
     Sample,
     Source,
     ValueRefusedError,
+    gather,
     number,
     place_bounds,
     seconds_of,
 )
-from .tracks import Recording, gather
 
 # --- Positions out of GPX: each track is a robot's, its segments one after the other ---
 
@@ -270,7 +271,7 @@ def _finite(value: Any, column: str, bounds: tuple[float, float]) -> float:
 
 @dataclass(frozen=True)
 class ReadingOptions:
-    """How a file is to be read; ``table`` concerns CSV, ``topics`` bags."""
+    """How a file is read; ``table`` concerns CSV, ``topics`` bags."""
 
     table: TableForm = field(default_factory=lambda: TableForm({}))
     topics: Sequence[str] = ()

@@ -40,7 +40,7 @@ from websockets.asyncio.server import serve
 from websockets.exceptions import ConnectionClosed
 
 from tests.support.inside_qgis.mouse import move_mouse
-from tests.support.patience import BUSY
+from tests.support.patience import BUSY, START
 
 ORIGIN = (488000.0, 5190000.0)
 BAR_SIZE = (600, 40)
@@ -109,14 +109,14 @@ class SmallGateway:
         ready = threading.Event()
         self._thread = threading.Thread(target=self._run, args=(ready,), daemon=True)
         self._thread.start()
-        assert ready.wait(5)
+        assert ready.wait(START)
 
     def stop(self) -> None:
         """Vanish as a killed process does: sockets reset, nothing said."""
         if not self._loop.is_running():
             return
         self._loop.call_soon_threadsafe(self._stop.set)
-        self._thread.join(5)
+        self._thread.join(START)
 
     def asked(self, method: str) -> list[dict]:
         return [params for name, params in self.requests if name == method]
@@ -141,7 +141,7 @@ class SmallGateway:
         """Send every desk a notification."""
         text = json.dumps({"jsonrpc": "2.0", "method": method, "params": params})
         for socket in list(self._sockets):
-            asyncio.run_coroutine_threadsafe(socket.send(text), self._loop).result(5)
+            asyncio.run_coroutine_threadsafe(socket.send(text), self._loop).result(START)
 
     def _run(self, ready: threading.Event) -> None:
         asyncio.set_event_loop(self._loop)

@@ -33,8 +33,8 @@ from ....robot_bridge.core.sites.geopackage import (
 from ....robot_bridge.core.sites.settings import SiteSettings
 from ....robot_bridge.core.sites.site_cache import CacheWriter
 from ....robot_bridge.core.sites.site_layers import outline_groups
+from ...ui.errors import PublicationError
 from ...ui.language import tr
-from ..errors import PublicationError
 from ..geometry import line_wkb, multi_line_wkb, polygon_wkb
 from ..layer_source import ObstacleSource
 from ..obstacle_layers import ObstacleReader, check_sources

@@ -69,7 +69,7 @@ from .role_table import (
 # --- Keeps the counts and the picture up with the table, without the GUI thread ever waiting ---
 
 DELAY_MS = 250
-"""How long the table must be left alone before layers are read anew."""
+"""How long the table must be left alone before layers are read again."""
 
 GIVE_UP_S = 5.0
 

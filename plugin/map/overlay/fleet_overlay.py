@@ -17,8 +17,7 @@ from ....robot_bridge.core.geometry import heading_of
 from ....robot_bridge.core.messages import CommandReport
 from ....robot_bridge.core.sites.frame import SiteFrame
 from ...gateway_client.command_cache import command_in_words
-from ...gateway_client.robot_states import RobotView
-from ...gateway_client.state_texts import COMMAND_STATES, ROBOT_STATES
+from ...gateway_client.robot_states import COMMAND_STATES, ROBOT_STATES, RobotView
 from ...ui.glyphs import STATE_COLOURS
 from ...ui.language import tr
 from .labels import Labels, NamesPainter, age_in_words
@@ -82,7 +81,7 @@ class ScenePainter:
         self._borders.paint(painter, placed, screen)
 
     def _view(self, placed: MapScene, screen: Screen) -> InView:
-        """Return what of the robots is on ``screen``, reckoned once for each scene and screen."""
+        """Return what of the robots is on ``screen``, computed once for each scene and screen."""
         if self._viewed is None or self._viewed[0] is not placed or self._viewed[1] != screen:
             self._viewed = placed, screen, in_view(placed, screen)
         return self._viewed[2]

@@ -11,9 +11,8 @@ from qgis.PyQt.QtCore import QPointF, Qt
 from qgis.PyQt.QtGui import QColor, QFont, QFontMetricsF, QPainter, QPixmap, QStaticText
 
 from ....robot_bridge.core.messages import RobotState
-from ...gateway_client.robot_states import RobotArrays
+from ...gateway_client.robot_states import ROBOT_STATES, RobotArrays
 from ...gateway_client.robot_table import STATES
-from ...gateway_client.state_texts import ROBOT_STATES
 from ...ui.glyphs import PAPER, painting
 from ...ui.language import tr
 from .scene import InView, MapScene, Screen
@@ -35,7 +34,7 @@ HEIGHT = 18
 
 
 class Labels:
-    """Makes each picture once; painting text anew for each robot and frame would cost more than all else."""
+    """Makes each picture once; painting text again for each robot and frame would cost more than all else."""
 
     def __init__(self) -> None:
         self._pictures: dict[tuple[str, float], QPixmap] = {}

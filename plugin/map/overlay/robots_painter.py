@@ -308,7 +308,7 @@ class BorderHints:
         self._found_at = -np.inf
         self.hints: list[Hint] = []
         self._chosen: tuple[str, ...] | None = None
-        """For which selection it was made ready what is painted; None when it has to be made anew."""
+        """For which selection it was made ready what is painted; None when it has to be made again."""
         self._arrows: list[tuple[Sprites, Points, Rows]] = []
         self._texts: list[tuple[QPointF, QPixmap]] = []
 

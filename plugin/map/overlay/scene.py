@@ -173,7 +173,7 @@ BACK = 5.0
 class TaskPath:
     """One robot's task: (n, 2) ``points`` in metres of the site frame, the last one the target.
 
-    A target without a way has one point. What is reckoned along a way is so when it is first asked for: of
+    A target without a way has one point. What is computed along a way is so when it is first asked for: of
     many plans only those of selected robots are.
     """
 

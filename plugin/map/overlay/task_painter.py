@@ -212,7 +212,7 @@ MANY_LEGS, FAR_PX = 2000, 10000.0
 
 
 class PendingCommandPainter:
-    """Keeps an image of a large draft: to stroke a thousand legs anew for each frame takes seconds."""
+    """Keeps an image of a large draft: to stroke a thousand legs again for each frame takes seconds."""
 
     def __init__(self) -> None:
         self._image: QImage | None = None

@@ -199,7 +199,7 @@ class TrailSheet:
         else:
             self._go_on(self._here, here[: len(self._here)], now)
         self._here = here
-        # What is filled in this frame is to be seen in this frame.
+        # What is filled in this frame is visible in this frame.
         bands = 1 if self.filled else BANDS
         self._fill()
         self._fade(now, bands)
@@ -251,7 +251,7 @@ class TrailSheet:
             self._argb[np.clip(y + dy, 0, height - 1), np.clip(x + dx, 0, width - 1)] = self._core[0]
 
     def _fade(self, now: float, bands: int) -> None:
-        """Colour the next ``bands`` anew."""
+        """Colour the next ``bands`` again."""
         height = len(self._times)
         rows = -(-height // BANDS)
         for _ in range(bands):

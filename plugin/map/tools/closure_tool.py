@@ -17,8 +17,7 @@ from ...control.fleet_controller import FleetController
 from ...control.pending_command import Point
 from ...ui.dialogs import QuestionDialog, confirm
 from ...ui.errors import FleetError
-from ...ui.language import tr
-from ...ui.times import time_of_day
+from ...ui.language import time_of_day, tr
 
 TIMES = (
     (tr("until it is opened"), None),
@@ -148,7 +147,7 @@ class ClosureTool(QgsMapTool):
 
 
 class ClosureDialog(QuestionDialog):
-    """Asks why a road is to be closed and for how long.
+    """Asks why a road is closed and for how long.
 
     ``confirmed`` carries the reason and the seconds, None for no end.
     """

@@ -163,7 +163,7 @@ class RoadRouteTool(RouteTool):
         desk.preview.refused.connect(self._refused)
 
     def lead_so(self, wishes: RoutePreferences) -> None:
-        """Lead legs by ``wishes`` from now on; what is shown to the mouse is asked for anew."""
+        """Lead legs by ``wishes`` from now on; what is shown to the mouse is asked for again."""
         self.wishes = wishes
         self._way.clear()
 

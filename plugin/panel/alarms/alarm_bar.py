@@ -129,7 +129,7 @@ class AlarmBar(QObject):
             self._label.setToolTip(tip)
 
     def _bring_to_front(self, level: Qgis.MessageLevel) -> None:
-        """Let it hang there with this level, in front; it is hung up anew only behind another notice, since
+        """Let it hang there with this level, in front; it is hung up again only behind another notice, since
         that takes QGIS as long as a frame of the map."""
         if self._item is None:
             self._hang_up(level)

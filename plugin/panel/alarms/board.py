@@ -261,7 +261,7 @@ class AlarmBoard:
     def alarms(self) -> list[Alarm]:
         """Return those to be shown: new ones first, what holds before what is over, pressing ones first."""
         if self._ordered is None:
-            # Bar, panel, table and details ask at each change: with a thousand alarms that is to be felt.
+            # Bar, panel, table and details ask at each change: with a thousand alarms that is noticeable.
             self._ordered = sorted(self._alarms.values(), key=_order)
         return self._ordered.copy()
 

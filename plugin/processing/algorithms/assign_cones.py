@@ -97,7 +97,7 @@ _NUMBERS = {
 
 
 def job_parameters() -> list[QgsProcessingParameterDefinition]:
-    """Return the parameters that say what is to be done and by whom."""
+    """Return the parameters of the work to do, and of who does it."""
     points = [QgsProcessing.SourceType.TypeVectorPoint]
     return [
         QgsProcessingParameterFeatureSource(CONES, tr("Cones"), points),
@@ -141,7 +141,7 @@ class JobSource:
         return source
 
     def read(self, crs: QgsCoordinateReferenceSystem) -> AssignmentJob:
-        """Return what is to be done, with coordinates in ``crs``.
+        """Return the work to do, with coordinates in ``crs``.
 
         :raises ParameterError: when a layer cannot be opened; LayerReadingError naming layer, feature and
             field that cannot be used; JobError when what they say cannot be planned for.

@@ -145,7 +145,7 @@ class BuildRoadSurfaces(FleetAlgorithm):
     ) -> GroundReading[Surface] | None:
         site = SiteGeoreference.in_crs(reading.crs, context.transformContext())
         drawn = read_surfaces(self._drawn, site, _Quiet(feedback))
-        # What an earlier run generated is made anew.
+        # What an earlier run generated is made again.
         old = [one for one in drawn.items if one.origin == GENERATED]
         drawn.items = [one for one in drawn.items if one.origin != GENERATED]
         if old:

@@ -245,7 +245,7 @@ class ExportRoadNetwork(FleetAlgorithm):
     def _plan(
         self, parameters: Parameters, context: QgsProcessingContext, feedback: QgsProcessingFeedback
     ) -> RoadNetworkExport | None:
-        """Return what is to be written; None after a cancel."""
+        """Return what will be written; None after a cancel."""
         words = {name: self.parameterAsString(parameters, name, context).strip() for name in _WORDS}
         for name, word in words.items():
             if not word or (name == NAME and (Path(word).name != word or word.startswith("."))):

@@ -133,11 +133,12 @@ class ExportRobotMap(FleetAlgorithm):
         with shown_by_processing(feedback):
             plan = self._plan
             border = plan.window.border
-            found = obstacle_outlines(plan, border, feedback)
+            found = obstacle_outlines(plan, plan.window, feedback)
             if found is None:
                 return {}
-            reading, outlines = found
-            robot_map = build_map(outlines, plan.window, plan.meta)
+            reading, outlines, robot_map = found
+            if robot_map is None:
+                robot_map = build_map(outlines, plan.window, plan.meta)
             text, content = plan.format.written(robot_map)
             if feedback.isCanceled():
                 return {}

@@ -22,6 +22,7 @@ from qgis.core import (
 )
 
 from ....robot_bridge.core.errors import RobotMapError
+from ....robot_bridge.core.robotmap.model import Window
 from ....robot_bridge.core.robotmap.window_index import OutlineIndex
 from ...ui.errors import FleetError
 from ...ui.language import tr, tr_count, tr_page
@@ -162,10 +163,10 @@ class ExportRobotMapTiles(FleetAlgorithm):
         with shown_by_processing(feedback), WholeFolder(plan.folder, tr("The set of tiles")) as folder:
             if feedback.isCanceled():
                 return {}
-            found = obstacle_outlines(plan, area_of(plan.tiles), steps)
+            found = obstacle_outlines(plan, Window.from_bounds(*area_of(plan.tiles)), steps)
             if found is None:
                 return {}
-            reading, outlines = found
+            reading, outlines, _ = found
             steps.setCurrentStep(1)
             skip_empty = self.parameterAsBool(parameters, SKIP_EMPTY, context)
             maker = _TileMaker(plan, [*plan.warnings, *reading.warnings], skip_empty)

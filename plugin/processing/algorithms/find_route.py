@@ -47,7 +47,7 @@ from ..common.road_sources import (
 
 
 class GraphEngine:
-    """Finds ways by QgsGraphAnalyzer on a graph that is kept; it is made anew when costs have changed."""
+    """Finds ways by QgsGraphAnalyzer on a graph that is kept; it is made again when costs have changed."""
 
     name = "QGIS (QgsGraphAnalyzer)"
 

@@ -29,7 +29,6 @@ from qgis.core import (
 from ....robot_bridge.core.sites.settings import SETTINGS_FILE, SiteBounds, SiteSettings, earlier_settings
 from ....robot_bridge.core.sites.settings_tables import LivenessLimits, value_text
 from ...layers.crs import crs_name, is_engineering
-from ...layers.errors import LayerTypeError
 from ...layers.layer_source import Setups, obstacle_sources
 from ...layers.publishing.publication import (
     check_publication_values,
@@ -41,7 +40,7 @@ from ...layers.publishing.site_file import SiteContent, SiteSources, check_conte
 from ...layers.road_layers import DEFAULT_WIDTH_M
 from ...layers.roles import KEEPOUT, OBSTACLE_ROLES, ROAD_CENTRELINE, ROAD_SURFACE, LayerExpressions
 from ...layers.site_transform import SiteGeoreference
-from ...ui.errors import FleetError
+from ...ui.errors import FleetError, LayerTypeError
 from ...ui.language import tr, tr_count, tr_page
 from ..common.algorithm import FleetAlgorithm, ParameterError, Parameters, shown_by_processing
 from ..common.export_parameters import DEFAULT_HEIGHT, default_height
@@ -393,7 +392,7 @@ class PublishSite(FleetAlgorithm):
     ):
         plan = self._plan
         with shown_by_processing(feedback), exclusive_publication(plan.folder):
-            # Anew: another publication may have ended since the plan was made.
+            # Again: another publication may have ended since the plan was made.
             settings = next_version(plan.settings, plan.folder, replace_other=plan.replace_other)
             content = _content(plan)
             with new_publication(plan.folder) as publication:

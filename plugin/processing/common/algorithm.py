@@ -88,8 +88,7 @@ def shortened_label(text: str, room: int) -> tuple[str, list[str]]:
     """
     notes: list[str] = []
     for pattern in (_IN_BRACKETS, _AFTER_COLON, _AFTER_COMMA):
-        found = pattern.match(text)
-        if len(text) > room and found:
+        if len(text) > room and (found := pattern.match(text)):
             note = found["note"]
             notes.insert(0, f"{note[0].upper()}{note[1:]}.")
             text = found["label"] + (found.groupdict().get("unit") or "")

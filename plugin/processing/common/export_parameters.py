@@ -26,15 +26,15 @@ from qgis.core import (
 
 from ....robot_bridge.core.errors import MapCancelledError
 from ....robot_bridge.core.robotmap.builder import build_map
-from ....robot_bridge.core.robotmap.model import Border, Window
+from ....robot_bridge.core.robotmap.model import Border, RobotMap, Window
 from ....robot_bridge.core.robotmap.outlines import Outlines
 from ....robot_bridge.core.robotmap.shaping import Shaping, shaped
-from ...layers.errors import LayerTypeError
 from ...layers.geometry import shapes_of
 from ...layers.layer_source import FeatureReader, ObstacleSource, obstacle_sources
 from ...layers.obstacle_layers import ObstacleReading, check_sources, read_outlines
 from ...layers.roles import OBSTACLE_ROLES, LayerExpressions
 from ...layers.site_transform import SiteGeoreference
+from ...ui.errors import LayerTypeError
 from ...ui.language import tr
 from .algorithm import ParameterError, Parameters
 from .map_files import obstacles_in_words
@@ -211,48 +211,49 @@ def _target(algorithm: QgsProcessingAlgorithm, parameters: Parameters, context: 
 
 
 def obstacle_outlines(
-    plan: ObstacleParameters, area: Border, feedback: QgsProcessingFeedback
-) -> tuple[ObstacleReading, Outlines] | None:
+    plan: ObstacleParameters, area: Window, feedback: QgsProcessingFeedback
+) -> tuple[ObstacleReading, Outlines, RobotMap | None] | None:
     """Return what was read in ``area`` and the outlines of which maps are built; None after a cancel.
+
+    Last comes the map of ``area``, where it was built to say how much is reduced.
 
     :raises LayerReadingError: when a layer cannot be read.
     :raises MissingGeometryError: when a package is missing.
     """
     steps = QgsProcessingMultiStepFeedback(1 if plan.shaping is None else 2, feedback)
-    reading = read_outlines(plan.sources, plan.site, area, plan.default_height, steps)
+    reading = read_outlines(plan.sources, plan.site, area.border, plan.default_height, steps)
     if not reading.complete:
         return None
     if plan.shaping is None:
-        return reading, reading.outlines()
+        return reading, reading.outlines(), None
     steps.setCurrentStep(1)
-    outlines = _reduced(reading.outlines(), plan.shaping, Window.from_bounds(*area), steps)
-    return None if outlines is None else (reading, outlines)
+    made = _reduced(reading.outlines(), plan, plan.shaping, area, steps)
+    return None if made is None else (reading, *made)
 
 
 def _reduced(
-    outlines: Outlines, shaping: Shaping, area: Window, feedback: QgsProcessingFeedback
-) -> Outlines | None:
-    """Return the reduced outlines, None after a cancel; say what is other in ``area`` for it."""
+    outlines: Outlines,
+    plan: ObstacleParameters,
+    shaping: Shaping,
+    area: Window,
+    feedback: QgsProcessingFeedback,
+) -> tuple[Outlines, RobotMap] | None:
+    """Return the reduced outlines and their map of ``area``, None after a cancel; say what is other there."""
     feedback.setProgressText(tr("Reducing obstacles"))
     try:
         made = shaped(outlines, shaping, lambda share: feedback.setProgress(100 * share), feedback.isCanceled)
     except MapCancelledError:
         return None
-    before, after = (_counts(some, area) for some in (outlines, made))
+    before, after = build_map(outlines, area), build_map(made, area, plan.meta)
     # Fewer walls can be more obstacles: what is left of a ring is open chains.
     feedback.pushInfo(
         tr(
             "{before} became {after}",
-            before=obstacles_in_words(*before),
-            after=obstacles_in_words(*after),
+            before=obstacles_in_words(len(before.obstacles), before.segment_count),
+            after=obstacles_in_words(len(after.obstacles), after.segment_count),
         )
     )
-    return made
-
-
-def _counts(outlines: Outlines, area: Window) -> tuple[int, int]:
-    robot_map = build_map(outlines, area)
-    return len(robot_map.obstacles), robot_map.segment_count
+    return made, after
 
 
 # --- Where the tiles of a map lie: in a grid, or along a route ---
@@ -390,7 +391,7 @@ FOLDER, INDEX, SKIP_EMPTY = "OUTPUT", "INDEX", "SKIP_EMPTY"
 class TileParameters(ObstacleParameters):
     """Everything that is needed of the parameters and layers to export tiles.
 
-    ``index`` is the file that the index is to be, None where it is none; ``warnings`` are about the route.
+    ``index`` is the file of the index, None where it is none; ``warnings`` are about the route.
     """
 
     tiles: list[Tile]
@@ -441,7 +442,7 @@ def read_tile_parameters(
 
 
 def _index_file(parameters: Parameters) -> Path | None:
-    """Return the file that the index is to be, None where it is none."""
+    """Return the file of the index, None where it is none."""
     value = parameters.get(INDEX)
     if isinstance(value, QgsProcessingOutputLayerDefinition):
         value = value.sink.staticValue()

@@ -30,11 +30,11 @@ from qgis.core import (
 )
 
 from ...layers.crs import check_transform, crs_name, site_crs_for, stated_crs
-from ...layers.errors import LayerTypeError
 from ...layers.layer_expressions import FeatureFilter
 from ...layers.layer_source import Setups
 from ...layers.profiles import SUFFIXES, find_profile, read_profile
 from ...layers.roles import setup_of
+from ...ui.errors import LayerTypeError
 from ...ui.language import tr
 from .algorithm import ParameterError, Parameters
 

@@ -242,7 +242,7 @@ def time_in_words(at: float) -> str:
 
 @dataclass(frozen=True)
 class ReportContent:
-    """What is to be told: ``cones`` in the table's order, ``background`` from the top."""
+    """The content of the report: ``cones`` in the table's order, ``background`` from the top."""
 
     title: str
     cones: Sequence[PlacedCone]

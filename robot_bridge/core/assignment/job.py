@@ -16,7 +16,7 @@ from ..roads.cost_matrix import road_matrix
 from ..roads.path_smoothing import Driving, dense_path
 from ..roads.routes import REACH, Restrictions, Router
 
-# --- What is to be done: targets, the robots that may do it, and the stores where cones are kept ---
+# --- The work to do: targets, the robots that may do it, and the stores where cones are kept ---
 
 Floats = NDArray[np.float64]
 

@@ -28,7 +28,7 @@ class PlanStop:
     """A place where a robot stops; ``id`` is that of the cone, the store, or, at home, the robot.
 
     ``path`` leads there from the stop before, (x, y) in metres in the site frame, ``metres`` long on the
-    ground. The robot arrives, begins what is to be done, and has done it, in seconds from the plan's begin.
+    ground. The robot arrives, begins its work, and has done it, in seconds from the plan's begin.
     ``aboard`` cones to place and ``collected`` ones are on it afterwards.
     """
 

@@ -14,7 +14,7 @@ from .pyvrp_search import Progress
 from .schedules import Schedule, ScheduleEvaluator, plan_of
 from .solver import Objective, assign
 
-# --- Plans changed by hand: every change gives another plan with its loads, times and paths made anew ---
+# --- Plans changed by hand: every change gives another plan with its loads, times and paths made again ---
 
 TravelOf = Callable[[AssignmentJob], Travel]
 """Makes the ways between the places of a job, by roads or straight."""
@@ -200,7 +200,7 @@ def _check_ways(job: AssignmentJob, days: ScheduleEvaluator, rows: Sequence[Sche
             )
 
 
-# --- Plans made anew while they are driven: what is done stays, the rest is shared out again ---
+# --- Plans made again while they are driven: what is done stays, the rest is shared out again ---
 
 
 def replan(

@@ -268,7 +268,7 @@ def loaded_days_by_pyvrp(
 ) -> list[Schedule]:
     """Return days as good as the time of ``clock`` allows, found from ``plan``.
 
-    ``before`` are the days without what is to be shared out, ``plan`` those with it: each target follows, on
+    ``before`` are the days without the targets to share out, ``plan`` those with it: each target follows, on
     the first trip of some robot, what is in ``before``.
 
     :raises MissingSolverError: where PyVRP is not installed.

@@ -143,7 +143,7 @@ Score = tuple[float, float]
 
 @dataclass(frozen=True)
 class StageObjective:
-    """What is to be least; ``last`` says that the robots' way home counts, as it does in the last stage."""
+    """The objective to minimise; ``last`` says that robots' ways home count, as in the last stage."""
 
     objective: str = BALANCED
     last: bool = True

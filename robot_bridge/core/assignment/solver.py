@@ -238,7 +238,7 @@ METHODS = (AUTOMATIC, PYVRP, PREVIEW)
 
 @dataclass(frozen=True)
 class Objective:
-    """What is to be least, by which method, and how many seconds it may take.
+    """The objective to minimise, by which method, and how many seconds it may take.
 
     :raises JobError: when one of them is none.
     """

@@ -332,7 +332,7 @@ def _check_columns(head: Sequence[str], columns: ConeColumns) -> None:
 def _wanted(
     rows: list[tuple[int, Mapping[str, Any]]], columns: ConeColumns
 ) -> list[tuple[int, Mapping[str, Any]]]:
-    """Return the rows of the layout that is to be taken, all without one; each with its number."""
+    """Return the rows of the layout to read, all without one; each with its number."""
     if not rows:
         raise ConeTableError("There is no row, so there is nothing to place.")
     if not columns.only:

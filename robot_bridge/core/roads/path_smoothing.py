@@ -23,7 +23,7 @@ _WOBBLE = 0.05
 
 @dataclass(frozen=True)
 class Driving:
-    """How a path is to be driven: metres between points at most, the robot's turning radius and width."""
+    """The limits of a path: metres between points at most, the robot's turning radius and width."""
 
     spacing: float = 0.5
     turning_radius: float = 1.0

@@ -428,7 +428,7 @@ Stage = Callable[[Sequence[OutlineRow], ProgressMonitor], Sequence[OutlineRow]]
 
 
 def _stages(shaping: Shaping) -> list[Stage]:
-    """Return what is to be done, in its order."""
+    """Return the work to do, in its order."""
     plane, step = shaping.plane, shaping.height_step
     shortest, tolerance = shaping.shortest, shaping.tolerance
     stages: list[Stage] = []

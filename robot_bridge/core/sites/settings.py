@@ -18,6 +18,7 @@ from .settings_tables import (
     CommandSettings,
     ConeSettings,
     FenceAction,
+    FieldPageOptions,
     GatewayOptions,
     GeofenceSettings,
     LimitSettings,
@@ -40,6 +41,7 @@ __all__ = [
     "CommandSettings",
     "ConeSettings",
     "FenceAction",
+    "FieldPageOptions",
     "GatewayOptions",
     "GeofenceSettings",
     "LimitSettings",
@@ -102,6 +104,7 @@ class SiteSettings:
     cones: ConeSettings = field(default_factory=ConeSettings)
     geofence: GeofenceSettings = field(default_factory=GeofenceSettings)
     nearness: NearnessSettings = field(default_factory=NearnessSettings)
+    field_page: FieldPageOptions = field(default_factory=FieldPageOptions)
     gateway: GatewayOptions = field(default_factory=GatewayOptions)
     limits: LimitSettings = field(default_factory=LimitSettings)
     links: LinkOptions = field(default_factory=LinkOptions)
@@ -194,6 +197,7 @@ TABLES: dict[str, type[Any]] = {
     "cones": ConeSettings,
     "geofence": GeofenceSettings,
     "nearness": NearnessSettings,
+    "field_page": FieldPageOptions,
     "gateway": GatewayOptions,
     "limits": LimitSettings,
     "links": LinkOptions,
@@ -262,6 +266,12 @@ def _broken_rules(settings: SiteSettings) -> list[str]:
             all(re.fullmatch(r"https?://[^/\s]+", origin) for origin in settings.limits.origins),
             f"limits.origins = {list(settings.limits.origins)}: write each like https://host or "
             "https://host:port, without a path.",
+        ),
+        (
+            settings.field_page.tiles == ""
+            or re.fullmatch(r"https?://[A-Za-z0-9.:\[\]-]+/[!-~]*", settings.field_page.tiles) is not None,
+            f"field_page.tiles = {settings.field_page.tiles!r} is no address: write it like "
+            "https://maps.example.org/tiles/{z}/{x}/{y}.png.",
         ),
     )
     return [text for right, text in rules if not right]

@@ -9,7 +9,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, fields
 from typing import Any, Literal
 
-# --- The text of a ``site.toml``: written anew, or changed in place with every other line left as it was
+# --- The text of a ``site.toml``: written whole, or changed in place with every other line left as it was
 # Python before 3.11, which some QGIS come with, reads no TOML: tables and keys are found by their shape.
 
 _HEADER = re.compile(r"""^[ \t]*\[{1,2}[ \t]*(["'\w.\- \t]+?)[ \t]*\]{1,2}[ \t]*(?:#.*)?$""")
@@ -181,7 +181,7 @@ class AuditSettings:
 
 @dataclass(frozen=True)
 class MapSettings:
-    """What maps robots are sent without asking: after Ready, and when the site was published anew.
+    """What maps robots are sent without asking: after Ready, and when the site was published again.
 
     The map of the whole site where it has at most ``largest_whole_bytes`` in the binary format; else that of
     a square of ``window_m`` metres around the robot, or less where much stands there.
@@ -193,7 +193,7 @@ class MapSettings:
 
 @dataclass(frozen=True)
 class RouteSettings:
-    """How robots drive along roads, and what is reckoned with where several do.
+    """How robots drive along roads, and the margins where several do.
 
     Paths have points ``spacing_m`` apart at most and arcs of ``turning_radius_m``. A robot is
     ``robot_width_m`` wide and ``robot_length_m`` long, drives at ``speed_ms`` where it does not show another
@@ -263,6 +263,20 @@ class NearnessSettings:
 
     metres: float = _number(5.0, most=1000.0)
     within_s: float = _number(10.0, most=600.0)
+
+
+@dataclass(frozen=True)
+class FieldPageOptions:
+    """The field page for phones, at ``/field``, unless it is not ``served``.
+
+    ``tiles`` is the address of its background map in Web Mercator, with {z}, {x} and {y}, such as that of a
+    WMTS; none is drawn where it is empty. ``attribution`` names whose map that is.
+    """
+
+    served: bool = True
+    tiles: str = ""
+    attribution: str = ""
+    largest_zoom: int = _number(22, most=30)
 
 
 @dataclass(frozen=True)

@@ -93,7 +93,7 @@ class Delivery:
 
     @property
     def reader(self) -> Reader:
-        """What is to be read for the robot: what comes behind what it was sent."""
+        """The answers to read for the robot: what comes behind what it was sent."""
         return self._robot, self._last[False], self._last[True]
 
     def begin(self) -> None:

@@ -100,16 +100,11 @@ class RobotSession:
 
     @property
     def is_replaced(self) -> bool:
-        """Whether the robot has connected anew elsewhere: what still comes in is passed over."""
+        """Whether the robot has connected again elsewhere: what still comes in is passed over."""
         return self._closing is not None
 
-    @property
-    def is_admitted(self) -> bool:
-        """Whether the robot has said Ready on this channel, and was let in."""
-        return self._admitted
-
     def replace(self) -> None:
-        """Carry nothing more, because the robot has connected anew."""
+        """Carry nothing more, because the robot has connected again."""
         self._delivery.end()
         # A connection whose robot is gone takes seconds to close, and the new one must not wait for it.
         self._closing = asyncio.create_task(self._channel.release(ANEW))
@@ -239,7 +234,7 @@ class RobotSession:
                     f"robot {self.robot!r} has not said Ready on this connection; send Ready first"
                 )
             return await self._fleet.receive(self.robot, self._channel.name, request, id)
-        # A robot that starts anew inside its own connection is no second one.
+        # A robot that starts again inside its own connection is no second one.
         self._fleet.reception.holds.free(self.robot, self)
         outcome = await self._fleet.receive(self.robot, self._channel.name, request, id)
         if outcome.admitted:
@@ -300,7 +295,7 @@ FRAME_PIECE = 1 << 18
 PING_TIMEOUT = 1.0
 """seconds after which a robot counts as gone when another one comes under its name."""
 REPLACED = 4001
-"""Close code for a connection whose robot has connected anew."""
+"""Close code for a connection whose robot has connected again."""
 
 
 class RobotChannel:

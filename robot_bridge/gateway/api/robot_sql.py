@@ -69,7 +69,7 @@ class SqlInterface:
     async def poll(self) -> bool:
         """Look once whether robots wrote or deleted something, and deal with it; tell whether they did.
 
-        Raises StoreError; what waits is then looked at anew.
+        Raises StoreError; what waits is then looked at again.
         """
         try:
             return await self._poll()

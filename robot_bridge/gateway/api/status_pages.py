@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import asyncio
 import http
-import importlib.metadata
 import json
 import logging
 import time
@@ -21,7 +20,7 @@ from websockets.http11 import Response
 from ...core.errors import BridgeError
 from ...core.messages import RobotState
 from ..fleet.service import Fleet
-from ..monitoring.metrics import CONTENT_TYPE, MetricReading, Metrics, Values
+from ..monitoring.metrics import CONTENT_TYPE, MetricReading, Metrics, Values, gateway_version
 from ..storage.schema import rr, sa
 
 log = logging.getLogger(__name__)
@@ -54,7 +53,7 @@ class StatusPages:
         well = latency is not None and all(task["ok"] for task in tasks.values())
         found = {
             "status": "ok" if well else "failing",
-            "version": _version(),
+            "version": gateway_version(),
             "site": {"id": site.id, "version": site.version},
             "database": {"ok": latency is not None, "latency_s": latency},
             "links": {one.link: {"ok": one.up, "text": one.text} for one in self._fleet.links.report().links},
@@ -137,7 +136,7 @@ class StatusPages:
 
     def _info(self) -> Values:
         site = self._fleet.site.report
-        return {(_version(), site.id, str(site.version)): 1.0}
+        return {(gateway_version(), site.id, str(site.version)): 1.0}
 
     def _robots(self) -> Values:
         found = Counter(report.state for report in self._fleet.reports())
@@ -176,10 +175,3 @@ def _page(status: http.HTTPStatus, kind: str, body: bytes) -> Response:
         }
     )
     return Response(status.value, status.phrase, headers, body)
-
-
-def _version() -> str:
-    try:
-        return importlib.metadata.version("fleet-supervisor-robot-bridge")
-    except importlib.metadata.PackageNotFoundError:
-        return "unknown"

@@ -137,7 +137,7 @@ class FastPath:
     def handle_messages(self, data: bytes, messages: RateLimit) -> int:
         """Deal with the messages at the beginning of ``data``, each one of ``messages``.
 
-        Return where that begins which has to go the long way; :meth:`pass_over` is to be called with it.
+        Return where that begins which has to go the long way; :meth:`pass_over` has to be called with it.
         """
         start, edges = 0, self._edges
         if self._handler is None or edges is None or not edges.between or self.on_the_long_way:

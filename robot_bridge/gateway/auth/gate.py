@@ -292,9 +292,15 @@ class AuthGate:
 
     # --- who is let in --------------------------------------------------------------------------------
 
-    def refuse_page(self, visitor: ClientConnection, request: Request) -> Response | None:
-        """Return what a script of a web page that may not connect is told, None for everybody else."""
-        if all(origin in self.limits.origins for origin in request.headers.get_all("Origin")):
+    def refuse_page(
+        self, visitor: ClientConnection, request: Request, own: str | None = None
+    ) -> Response | None:
+        """Return what a script of a web page that may not connect is told, None for everybody else.
+
+        ``own`` is the origin of the gateway's own page, which may.
+        """
+        allowed = {*self.limits.origins, own}
+        if all(origin in allowed for origin in request.headers.get_all("Origin")):
             return None
         return visitor.respond(
             http.HTTPStatus.FORBIDDEN,

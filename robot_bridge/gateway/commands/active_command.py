@@ -244,7 +244,7 @@ def _replaces(message: Command, command: ActiveCommand) -> bool:
     return isinstance(command.message, type(message))
 
 
-# --- What comes of a robot's commands when it answers to one, or starts anew and may have forgotten; no I/O
+# --- What comes of a robot's commands when it answers to one, or starts again and may have forgotten; no I/O
 
 ABORTED = "the robot acknowledged the Abort"
 
@@ -296,7 +296,7 @@ def restart_commands(
     expire_after: float,
     seen: Callable[[str], SendPos | None],
 ) -> RestartedCommands:
-    """Return what becomes of the commands of a robot that starts anew.
+    """Return what becomes of the commands of a robot that starts again.
 
     What was never fetched is written again too, behind the map; but for an Abort that nothing waits before,
     which needs none. What is older than ``expire_after`` seconds is not sent again. ``seen`` tells where a

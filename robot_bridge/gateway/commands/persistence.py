@@ -49,7 +49,7 @@ class WrittenCommands(NamedTuple):
 
 
 FORGOTTEN = ("Start", "OpAck", "SetMap")
-"""What waits for a robot that starts anew, and is void."""
+"""What waits for a robot that starts again, and is void."""
 Also = Callable[[Connection], None]
 """More to be written in the same transaction."""
 AlsoOf = Callable[[str], Also]
@@ -141,7 +141,7 @@ def write_again(
     ended: Sequence[ActiveCommand],
     note_run: Callable[[Connection], bool],
 ) -> list[ActiveCommand]:
-    """Write ``welcome`` for a robot that starts anew, then the messages of its commands; return those.
+    """Write ``welcome`` for a robot that starts again, then the messages of its commands; return those.
 
     All that is done once for each run of a robot: ``note_run`` notes that, and returns false where it was
     noted before, by a transaction of which nobody heard that it was done. The messages keep the order in

@@ -193,10 +193,10 @@ class CommandService(CommandReader):
         welcome: Sequence[Answer],
         note_run: Callable[[Connection], bool],
     ) -> None:
-        """Send once more what a robot that started anew may have forgotten, unless it is too old.
+        """Send once more what a robot that started again may have forgotten, unless it is too old.
 
         All that waits for it, too, comes behind ``welcome``: it must not drive before it has its map.
-        ``note_run`` notes in the same transaction that it has started anew, and returns false where that is
+        ``note_run`` notes in the same transaction that it has started again, and returns false where that is
         noted: then all is sent.
         """
         await to_its_end(self._deliver_again(robot, reason, expire_after, welcome, note_run))

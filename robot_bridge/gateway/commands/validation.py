@@ -105,7 +105,7 @@ class CommandReader:
         return {command.report.robot for command in self._open}
 
 
-# --- Orders made into what is to be stored of them, or why they are refused ---
+# --- Orders made into what has to be stored of them, or why they are refused ---
 
 _NEEDED: dict[str, Ability] = {"SetPosEnd": "targets", "SetPath": "paths", "SetPosIni": "start"}
 """What a robot has to be able to do for each message."""
@@ -197,7 +197,7 @@ class CommandValidator(CommandReader):
         return CommandInsert(order, command, ended, recalls, refusal, order.robot in self._waiting)
 
     async def consider_way(self, way: Command) -> None:
-        """Find out what takes long about a way that a robot is to be told."""
+        """Find out what takes long about a way that a robot will be sent."""
         await self._rules.consider(way)
 
     def check_way(self, robot: str, task: str, way: Command) -> None:

@@ -67,7 +67,7 @@ class StopAnswers:
         self._answers = dict.fromkeys(robots, StopAnswer.NONE)
 
     def told(self, robot: str) -> None:
-        """Count one robot from nought: it is new, or started anew."""
+        """Count one robot from nought: it is new, or started again."""
         self._answers[robot] = StopAnswer.NONE
 
     def forget(self, robot: str) -> bool:

@@ -120,7 +120,7 @@ MOST_ALARMS = 300
 SLOWEST_MS = 0.3
 """m/s below which somebody stands: receivers report some decimetres a second of who does not move."""
 FASTEST_MS = 40.0
-"""m/s that is reckoned with at most when it is sorted out who can meet at all."""
+"""m/s that is assumed at most when it is sorted out who can meet at all."""
 REPLAY = "replay"
 """The kind of links whose robots were there once, and can be near to nobody."""
 HEARD = (RobotState.FRESH, RobotState.STALE)

@@ -209,7 +209,7 @@ def _occasion(robot: Robot, link: str, told: Observed, id: int | None) -> str:
     """Return on what occasion a robot told something: its own source, else the message that it came with."""
     if told.source is None and link == "sql":
         return f"row {id}"
-    # The ids of calls, and most sources, begin anew with each run of a robot.
+    # The ids of calls, and most sources, begin again with each run of a robot.
     return f"run {robot.magic}" if told.source is not None else f"run {robot.magic} call {id}"
 
 

@@ -54,7 +54,7 @@ class RequestOutcome:
         return self.ack is not None and self.ack.ok and self.ack.magic is not None
 
     def rows(self, *, acks: bool) -> list[tuple[str, Answer]]:
-        """Return what is to be written into SA, the OpAck first."""
+        """Return what will be written into SA, the OpAck first."""
         if self.written:
             return []
         messages: list[Answer | None] = [self.ack if acks else None, self.answer]
@@ -69,7 +69,7 @@ class RequestOutcome:
 
 
 def answer_rows(outcomes: Sequence[RequestOutcome], *, acks: bool) -> list[tuple[str, Answer]]:
-    """Return what is to be written into SA; left out is what a later Ready of the same robot makes void.
+    """Return what will be written into SA; left out is what a later Ready of the same robot makes void.
 
     A robot that said Ready again and again while nobody read it is given the map of the whole site once.
     """

@@ -142,13 +142,13 @@ class Registration:
             return RequestOutcome(robot, ack, content, void=("Start", "OpAck"), part=part)
 
     async def _let_in(self, robot: str, link: str, ready: Ready, welcome: list[Answer]) -> bool:
-        """Let a robot in; tell whether it starts anew, and ``welcome`` is written before all else for it."""
+        """Let a robot in; tell whether it starts again, and ``welcome`` is written before all else for it."""
         if starts_anew := self._robots.starts_anew(robot, ready.magic):
-            # Before it is known by its new number: after a failure it must be seen to start anew once more.
+            # Before it is known by its new number: after a failure it must be seen to start again once more.
             await self._mailboxes.delivered_by_deletion(self._robots.get(robot).link)
             reason = f"robot {robot} started anew; sent once more"
             expire_after = self._site.settings.commands.expire_after_s
-            # In one transaction: a gateway that dies next must not take it for one that starts anew again,
+            # In one transaction: a gateway that dies next must not take it for another new start,
             # and send it once more what it is doing by then.
             note_run = partial(stored_robots.note_run, robot=self._robots.get(robot), magic=ready.magic)
             await self._commands.deliver_again(robot, reason, expire_after, welcome, note_run)

@@ -30,8 +30,8 @@ from ...core.roads.centrelines import Surface
 from ...core.robotmap.model import Border, EncodedMap
 from ...protocol.codec import decode_answer
 from ..commands.service import CommandService
+from ..model.arrival import Planner, remaining_path
 from ..model.command_states import is_open
-from ..model.remaining_way import Planner, remaining_path
 from ..model.request_handlers import handles
 from ..model.robots import Robots
 from ..site.places import ServedSite
@@ -221,7 +221,7 @@ class MapSender:
 
     async def whole_or_around(self, robot: str) -> bytes:
         """Return the map of the whole site, or of what is around ``robot``; raises StoreError."""
-        # While it is made anew all robots may wait for it, but in one thread: others have work for the rest.
+        # While it is made again all robots may wait for it, but in one thread: others have work for the rest.
         async with self._making:
             content = await asyncio.to_thread(self._site.whole_map)
         return (await self._offer(robot)).content if content is None else content

@@ -34,6 +34,7 @@ from ...core.messages.validation import LONGEST_REFUSAL, one_line
 from ..commands.requests import CommandRequests
 from ..commands.service import CommandService
 from ..commands.validation import CommandRules, WaitingRobots
+from ..model.arrival import Planner, StraightPlanner
 from ..model.events import (
     CommandChanged,
     EventBus,
@@ -44,7 +45,6 @@ from ..model.events import (
     RobotReturned,
 )
 from ..model.position_checks import NO_FIX, GroundTracks, PlaceChecks
-from ..model.remaining_way import Planner, StraightPlanner
 from ..model.robots import Robot, RobotPose, Robots
 from ..monitoring.metrics import Counters
 from ..monitoring.periodic_tasks import Steps
@@ -70,7 +70,7 @@ from .robot_answers import MapSender, RobotAnswers
 log = logging.getLogger(__name__)
 
 Rest = tuple[str, Coroutine[Any, Any, None] | Exception]
-"""A robot, and what is to be stored since it said where it is, or what is wrong with that."""
+"""A robot, and what has to be stored since it said where it is, or what is wrong with that."""
 
 
 class Fleet:

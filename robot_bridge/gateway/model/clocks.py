@@ -57,7 +57,7 @@ class PoseOrder:
         return True
 
     def restarted(self) -> None:
-        """Forget the robot's own clock: a robot that started anew may count from nought."""
+        """Forget the robot's own clock: a robot that started again may count from nought."""
         self.t = self._late = None
 
     def _late_by(self, fix_t: float | None, t: float | None) -> float | None:

@@ -157,7 +157,7 @@ class GroundTracks:
         # Until two fixes tell how fast it is it goes as it did: one that drove has not been seen to stand.
         track = self._tracks.setdefault(robot, GroundTrack(x, y, at, v=0.0 if last is None else last.v))
         if at < track.at:
-            # A clock that was set back tells no speed; the track begins anew.
+            # A clock that was set back tells no speed; the track begins again.
             track = self._tracks[robot] = GroundTrack(x, y, at, track.theta)
         track.follow(x, y, at, fix.accuracy)
         turned, source = (theta, None) if theta is not None else _direction(track, last)

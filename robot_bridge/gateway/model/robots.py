@@ -221,7 +221,7 @@ class Robots:
         robot = self._robots.setdefault(name, Robot(name, magic, link, now))
         self._removed.pop(name, None)
         if anew and robot.pose is not None:
-            # A robot that started anew may have a clock that did so too.
+            # A robot that started again may have a clock that did so too.
             robot.pose = replace(robot.pose, t=None)
             robot.order.restarted()
         robot.magic, robot.link, robot.located, robot.says_magic = magic, link, False, False

@@ -235,14 +235,14 @@ def resume_queue(queue: Queue, by: str, at: float) -> Queue:
 
 
 def return_task(task: QueuedTask, reason: str | None = None) -> QueuedTask:
-    """Return a current task as one that waits to be begun anew; others are returned as they are."""
+    """Return a current task as one that waits to be begun again; others are returned as they are."""
     if not task.is_current:
         return task
     return dataclasses.replace(task, state=TaskState.WAITING, leg=0, reason=reason)
 
 
 def _renewed(waiting: QueuedTask, task: QueueTask) -> QueuedTask:
-    """Return a waiting task as it is wanted now; with another path or place it is begun anew."""
+    """Return a waiting task as it is wanted now; with another path or place it is begun again."""
     if waiting.task == task:
         return waiting
     return dataclasses.replace(waiting, task=task, state=TaskState.WAITING, command=None, reason=None)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib.metadata
 import time
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping
@@ -37,6 +38,14 @@ class Counters:
         """Return the seconds since ``task`` did its work, None if it never did."""
         last = self.beats.get(task)
         return None if last is None else time.monotonic() - last
+
+
+def gateway_version() -> str:
+    """Return the version of the installed gateway, ``unknown`` where it runs from a folder."""
+    try:
+        return importlib.metadata.version("fleet-supervisor-robot-bridge")
+    except importlib.metadata.PackageNotFoundError:
+        return "unknown"
 
 
 # --- What the gateway has to say in numbers, in the format that Prometheus reads ---

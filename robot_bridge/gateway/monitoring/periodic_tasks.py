@@ -23,7 +23,7 @@ FIRST_PAUSE, LONGEST_PAUSE = 0.25, 2.0
 """seconds before something foreseen, such as a database that is away, is tried again."""
 LONGEST_PAUSE_UNFORESEEN = 30.0
 LAST_ATTEMPT = 20
-"""failures in a row that nobody foresaw, after which the process had better be started anew."""
+"""failures in a row that nobody foresaw, after which the process had better be started again."""
 SOUND = 60.0
 """seconds of work without a failure after which earlier ones no longer count."""
 SAY_AGAIN_AFTER = 60.0

@@ -59,15 +59,18 @@ from .model import (
     LONGEST_PAUSE_REASON,
     DrivenPlan,
     PlanTerms,
+    ReplanGround,
+    Replanning,
     check_proposal,
+    count_meetings,
     plan_report,
     problem_in_words,
     progress_from,
     stops_of,
     superseded,
+    ways_along_closed_roads,
 )
 from .persistence import find_plan, load_open, load_stops, newest_ended_plans, save_plan
-from .replanning import ReplanGround, Replanning, count_meetings, ways_along_closed_roads
 
 log = logging.getLogger(__name__)
 

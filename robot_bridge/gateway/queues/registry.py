@@ -13,8 +13,8 @@ from ...core.errors import OutdatedError
 from ...core.messages import PlacementReport, QueueReport, to_json
 from ..commands.service import CommandService
 from ..commands.validation import WaitingRobots
+from ..model.arrival import Planner, StraightPlanner
 from ..model.events import EventBus, Listeners, QueueChanged
-from ..model.remaining_way import Planner, StraightPlanner
 from ..model.robots import Robots
 from ..model.task_queue import Queue, QueuedTask, queue_report
 from ..site.places import ServedSite

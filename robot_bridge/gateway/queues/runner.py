@@ -214,7 +214,7 @@ def _gone(id: str, found: Whereabouts | None) -> str:
 
 
 # --- Sends robots the tasks of their queues, one after the other ---
-# What is to be done is seen from what is stored, never from what was heard: so a gateway that was killed
+# The work to do is seen from what is stored, never from what was heard: so a gateway that was killed
 # goes
 # on where it stopped, and a task that was sent is known as sent. A task and the command that drives it are
 # written in one transaction.
@@ -317,7 +317,7 @@ class QueueRunner:
     async def stop_over(self, robot: str, first: Path, rest: Path, other: str, by: str, also: AlsoOf) -> str:
         """Send the robot along ``first`` only, as a task of its own; the task that it does waits behind that.
 
-        It is begun anew along ``rest`` as soon as it need not wait any more. ``also`` is written in the same
+        It is begun again along ``rest`` as soon as it need not wait any more. ``also`` is written in the same
         transaction. Return the id of the command. Raises MessageError for a ``rest`` that ends elsewhere,
         RefusedError for a robot that does no task of its queue any more, and StoreError.
         """

@@ -55,7 +55,7 @@ def abort_id(task: QueuedTask) -> str:
 
 
 def mark_sent(queue: Queue, at: float) -> Queue:
-    """Return the queue with its head as the current task, with the command that is to be sent."""
+    """Return the queue with its head as the current task, with the command to send."""
     head = queue.tasks[0]
     anew = not head.is_current
     head = dataclasses.replace(
@@ -142,7 +142,7 @@ def with_deviation(task: QueuedTask, deviation: float) -> QueuedTask:
 def split_at_stop(queue: Queue, first: Path, rest: Path, label: str, by: str, at: float) -> Queue:
     """Return the queue whose current task's path is driven in two parts, the first as a task of its own.
 
-    The task itself waits behind that, to be begun anew along ``rest``.
+    The task itself waits behind that, to be begun again along ``rest``.
     """
     x, y = first[-1]
     stop = QueuedTask(QueueTask(str(uuid.uuid4()), x, y, path=first, label=label), by, at)
@@ -152,7 +152,7 @@ def split_at_stop(queue: Queue, first: Path, rest: Path, label: str, by: str, at
 
 
 def redirect_task(queue: Queue, path: Path) -> Queue:
-    """Return the queue whose current task is driven anew, along another path to the same place."""
+    """Return the queue whose current task is driven again, along another path to the same place."""
     head = queue.tasks[0]
     task = dataclasses.replace(head.task, path=path)
     head = dataclasses.replace(head, task=task, leg=0, attempts=head.attempts + 1)
@@ -213,7 +213,7 @@ def _with_share(queue: Queue, share: Share, pool: Mapping[str, tuple[str, Queued
 
 
 def _adopted(task: QueuedTask, path: list[tuple[float, float]] | None, *, moves: bool) -> QueuedTask:
-    """Return a task with its new path; one that comes from another robot is begun anew."""
+    """Return a task with its new path; one that comes from another robot is begun again."""
     if path is not None:
         check_path(task.id, path, (task.task.x, task.task.y))
     if path is None and (not moves or task.task.kind is TaskKind.DRIVE):

@@ -341,7 +341,7 @@ class SiteMaps:
         """Draw accepted objects, and no others, on the maps from now on."""
         site = self._site
         shown = list(objects), site.settings.observations.object_radius_m
-        # The map of a large site takes long to be made anew.
+        # The map of a large site takes long to be made again.
         if shown != self._shown:
             self._shown = shown
             self._drawn = MapContent(site, ObservedObjects(*shown))

@@ -314,7 +314,7 @@ class SqliteBackups:
     def write(self, partial: Path, revision: str) -> None:
         """Copy the database into ``partial``."""
         with _connected(self._file()) as source, _connected(partial) as target:
-            # All in one step: one in several begins anew whenever somebody has written in between, and a
+            # All in one step: one in several begins again whenever somebody has written in between, and a
             # gateway always does. With its log SQLite lets others write meanwhile.
             source.backup(target)
             # A file of its own: what would wait in a log beside it could be left behind.

@@ -402,7 +402,7 @@ class _Opened(NamedTuple):
 def _prepare(connection: Any, record: Any) -> None:
     # The driver would begin transactions late, when a reader can no longer become a writer.
     connection.isolation_level = None
-    # Anyone may write anything into RR: text that is no UTF-8 is to be refused row by row, not by the driver.
+    # Anyone may write anything into RR: text that is no UTF-8 is refused row by row, not by the driver.
     connection.text_factory = _decode_leniently
     cursor = connection.cursor()
     cursor.execute("PRAGMA journal_mode = WAL")

@@ -40,7 +40,7 @@ class RevisionReport:
 
     @property
     def advice(self) -> str:
-        """What is to be done."""
+        """The work to do."""
         if self.found == NEEDED and self.differences:
             return "somebody changed the tables: put them back, or restore a backup"
         return _advice(self.found)
@@ -59,7 +59,7 @@ def current(connection: Connection) -> str | None:
 
 
 def must_create(connection: Connection, where: str, made_by_serve: bool) -> bool:
-    """Tell whether the tables are to be made; raises StoreError when somebody has to decide."""
+    """Tell whether the tables have to be made; raises StoreError when somebody has to decide."""
     found = current(connection)
     if found == NEEDED:
         return False

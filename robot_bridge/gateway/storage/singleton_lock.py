@@ -303,7 +303,7 @@ def _run_in(text: str | None) -> dict[str, Any]:
 
 
 def _taken(does: str, other: dict[str, Any]) -> str:
-    """Return in words who has the database, and what is to be done by whoever ``does`` something there."""
+    """Return in words who has the database, and what has to be done by whoever ``does`` something there."""
     found = other.get("does", GATEWAY)
     if found != GATEWAY:
         return f"'{found}' is under way on it{_named(other)}; wait for its end, then try again"

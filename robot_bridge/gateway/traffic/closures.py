@@ -39,8 +39,8 @@ from ..commands.active_command import NOTHING, CommandOrder, because
 from ..commands.persistence import Also, AlsoOf
 from ..commands.requests import CommandRequests
 from ..commands.service import CommandService
+from ..model.arrival import Point
 from ..model.events import Listeners
-from ..model.remaining_way import Point
 from ..model.request_handlers import handles
 from ..site.places import ServedSite
 from ..storage.database import Database

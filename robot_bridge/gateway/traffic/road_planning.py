@@ -18,7 +18,7 @@ from ...core.roads.centrelines import Floats
 from ...core.roads.path_smoothing import DensePath, Driving, dense_path
 from ...core.roads.routes import Restrictions, Route, Router, with_ends
 from ...core.sites.site import Site
-from ..model.remaining_way import PlannedPath, Point
+from ..model.arrival import PlannedPath, Point
 from ..model.robots import Robots
 from .robot_paths import RobotPaths
 from .route_process import EngineReport, ProcessEngines

@@ -13,7 +13,7 @@ from ...core.geometry import Polyline
 from ...core.messages import ConflictReport, HoldReport, SetPath, SetPosEnd
 from ...core.sites.settings_tables import RouteSettings
 from ..commands.service import CommandService
-from ..model.remaining_way import Floats, Point, remaining_line
+from ..model.arrival import Floats, Point, remaining_line
 from ..model.robots import Robots
 from ..storage.repositories.closures import HoldRow
 from .conflicts import Conflict, Movement, driving_movement, standing_movement

@@ -11,6 +11,8 @@ import importlib.util
 import itertools
 import logging
 import signal
+import socket
+import struct
 import subprocess
 import sys
 import threading
@@ -31,12 +33,18 @@ log = logging.getLogger(__name__)
 LEAST_ARCS = 4000
 """Arcs of a graph from which a process is started: SciPy finds a way on fewer in about 1 ms."""
 ANSWER_WITHIN_S = 5.0
-"""Seconds after which a process that owes a way counts as stuck, and is killed."""
+"""Seconds after which a process that owes a way, or neither reads nor writes, is killed as stuck."""
+LAID_WITHIN_S = 60.0
+"""Seconds that it may take to lay one set of costs over the graph."""
 READY_WITHIN_S = 600.0
-"""Seconds that it may take to order a graph, or to lay costs over it."""
+"""Seconds that it may take to order a graph. Nothing waits for that."""
+BUSY_S = 0.05
+"""Seconds that a question waits for the process to have done with another one, before it is answered here."""
 FIRST_WAIT_S, LONGEST_WAIT_S = 1.0, 300.0
 """Seconds until a process that ended is started again; twice as long each time that it ends soon."""
 _SOON_S = 60.0
+_LARGEST_ANSWER = 1 << 26
+_NO_WAY = b"-"
 
 
 @dataclass(frozen=True)
@@ -54,8 +62,9 @@ class EngineReport:
 class ProcessEngines:
     """Makes engines on ``graph``: RoutingKit's in a process, and behind each one that runs in this process.
 
-    The latter finds ways on small graphs, where RoutingKit is not installed, until the process is ready, and
-    whenever it has ended. Safe to use from several threads.
+    The latter finds ways on small graphs, where RoutingKit is not installed, until the process has the costs,
+    while it is busy, and whenever it has ended. Safe to use from several threads. ``_lock`` guards costs and
+    engines and is never held while the process is waited for.
     """
 
     def __init__(self, graph: RouteGraph) -> None:
@@ -64,8 +73,7 @@ class ProcessEngines:
         self._lock = threading.Lock()
         self._engines: weakref.WeakValueDictionary[int, ProcessEngine] = weakref.WeakValueDictionary()
         self._numbers = itertools.count()
-        self._connection: Connection | None = None
-        self._process: subprocess.Popen[bytes] | None = None
+        self._child: _Child | None = None
         self._closed = threading.Event()
         self._starts = 0
         self._wanted = (
@@ -75,66 +83,100 @@ class ProcessEngines:
             threading.Thread(target=self._keep, name="routes", daemon=True).start()
 
     def __call__(self, costs: Floats) -> ProcessEngine:
-        """Return an engine that finds ways under ``costs``."""
+        """Return an engine that finds ways under ``costs``; the process gets them in the background."""
         engine = ProcessEngine(self, next(self._numbers), self._local(costs), costs)
         with self._lock:
             self._local_name = engine.local.name
             self._engines[engine.number] = engine
-            if self._connection is not None:
-                with contextlib.suppress(_GoneError):
-                    self._make(self._connection, engine)
+            child = self._child
+            ready = child is not None and child.ready
+        if child is not None and ready:
+            threading.Thread(target=self._lay_if_there, args=(child, engine), daemon=True).start()
         return engine
 
     @property
     def report(self) -> EngineReport:
         """How ways are found now."""
-        ready = self._connection is not None
+        ready = self._ready_child() is not None
         name = ContractionEngines.name if ready else self._local_name
         return EngineReport(name, ready or not self._wanted, self._starts)
 
     @property
     def process_id(self) -> int | None:
         """The id of the process that is ready to find ways, None where none is."""
-        process = self._process
-        return process.pid if process is not None and self._connection is not None else None
+        child = self._ready_child()
+        return None if child is None else child.process.pid
 
     def close(self) -> None:
         """End the process. Engines go on finding ways, in this process."""
         self._closed.set()
         with self._lock:
             self._wanted = False
-            if self._process is not None:
-                self._process.kill()
+            if self._child is not None:
+                self._child.process.kill()
 
-    def way(self, number: int, starts: Ends, goals: Ends) -> list[int] | None:
-        """Return the arcs of the cheapest way under the costs of engine ``number``.
+    def way(self, engine: ProcessEngine, starts: Ends, goals: Ends) -> list[int] | None:
+        """Return the arcs of the cheapest way, as the process finds it.
 
-        :raises LookupError: when there is no process that can tell.
+        :raises LookupError: when there is no process that can say it now.
         """
-        with self._lock:
-            if self._connection is None:
-                raise _GoneError
-            self._send(self._connection, ("way", number, list(starts), list(goals)))
-            way: list[int] | None = self._receive(self._connection, ANSWER_WITHIN_S)
-            return way
+        child = self._ready_child()
+        if child is None or not child.lock.acquire(timeout=BUSY_S):
+            raise _GoneError
+        try:
+            with self._lock:
+                if engine.number not in child.unsent:
+                    raise _GoneError
+                arcs = np.array(sorted(child.unsent[engine.number]), np.int64)
+                costs = engine.costs[arcs]
+                child.unsent[engine.number].clear()
+            if len(arcs):
+                child.send(("costs", engine.number, arcs, costs))
+            answer = child.ask(("way", engine.number, list(starts), list(goals)), ANSWER_WITHIN_S)
+            if answer == _NO_WAY:
+                return None
+            if not self._leads(answer, starts, goals):
+                raise child.fail(f"answered {len(answer)} bytes that are no way")
+        finally:
+            child.lock.release()
+        way: list[int] = np.frombuffer(answer, np.int64).tolist()
+        return way
 
     def way_here(self, engine: ProcessEngine, starts: Ends, goals: Ends) -> list[int] | None:
         """Return the arcs of the cheapest way as ``engine`` finds it in this process."""
-        with self._lock:
-            if engine.changed:
+        with engine.lock:
+            with self._lock:
                 arcs = np.array(sorted(engine.changed), np.int64)
-                engine.local.set_costs(arcs, engine.costs[arcs])
+                costs = engine.costs[arcs]
                 engine.changed.clear()
+            if len(arcs):
+                engine.local.set_costs(arcs, costs)
             return engine.local.way(starts, goals)
 
     def set_costs(self, engine: ProcessEngine, arcs: Ints, costs: Floats) -> None:
-        """Give ``arcs`` of ``engine`` other costs, here as soon as they are needed here."""
+        """Set the costs of ``arcs`` of ``engine``; they are passed on with the next question for a way."""
         with self._lock:
             engine.costs[arcs] = costs
             engine.changed.update(arcs.tolist())
-            if self._connection is not None:
-                with contextlib.suppress(_GoneError):
-                    self._send(self._connection, ("costs", engine.number, arcs, costs))
+            if self._child is not None and engine.number in self._child.unsent:
+                self._child.unsent[engine.number].update(arcs.tolist())
+
+    def _ready_child(self) -> _Child | None:
+        child = self._child
+        return child if child is not None and child.ready and not child.failed else None
+
+    def _leads(self, answer: bytes, starts: Ends, goals: Ends) -> bool:
+        """Return whether ``answer`` is arcs of the graph, end to end, from one of ``starts`` to a goal."""
+        if len(answer) % 8:
+            return False
+        way, graph = np.frombuffer(answer, np.int64), self._graph
+        if not len(way):
+            return not {node for node, _ in starts}.isdisjoint(node for node, _ in goals)
+        if way.min() < 0 or way.max() >= len(graph.tail):
+            return False
+        tail, head = graph.tail[way], graph.head[way]
+        ends = any(node == tail[0] for node, _ in starts) and any(node == head[-1] for node, _ in goals)
+        return ends and bool((tail[1:] == head[:-1]).all())
 
     def _keep(self) -> None:
         """Start the process, and again whenever it has ended, until all is closed."""
@@ -165,71 +207,133 @@ class ProcessEngines:
 
     def _run(self) -> str:
         """Run one process to its end, and return what became of it; raises ImportError without RoutingKit."""
-        ours, theirs = Pipe()
-        with contextlib.closing(ours):
-            with contextlib.closing(theirs):
-                process = subprocess.Popen(
+        child = _Child()
+        try:
+            with self._lock:
+                self._child, self._starts = child, self._starts + 1
+                closed = self._closed.is_set()
+            if not closed:
+                self._prepare(child)
+                child.process.wait()
+        except _GoneError:
+            pass
+        finally:
+            with self._lock:
+                self._child = None
+            status = child.end()
+        because = f" because it {child.fault}" if child.fault else ""
+        return f"({child.process.pid}) ended with status {status}{because}"
+
+    def _prepare(self, child: _Child) -> None:
+        """Have the graph ordered and the costs laid over it; nothing waits for that."""
+        child.hear(READY_WITHIN_S)  # it has started, so that it reads what it is sent
+        missing = child.ask((self._graph.nodes, self._graph.tail, self._graph.head), READY_WITHIN_S)
+        if missing:
+            raise ImportError(missing.decode(errors="replace"))
+        while not child.ready:
+            with self._lock:
+                left = [engine for number, engine in self._engines.items() if number not in child.unsent]
+                child.ready = not left
+            for engine in left:
+                self._lay(child, engine)
+        log.info("routes: %s finds ways in process %d", ContractionEngines.name, child.process.pid)
+
+    def _lay(self, child: _Child, engine: ProcessEngine) -> None:
+        with child.lock:
+            with self._lock:
+                child.unsent[engine.number] = set()
+                message = ("engine", engine.number, engine.costs.copy(), list(self._engines))
+            child.ask(message, LAID_WITHIN_S)
+
+    def _lay_if_there(self, child: _Child, engine: ProcessEngine) -> None:
+        with contextlib.suppress(_GoneError):
+            self._lay(child, engine)
+
+
+class _Child:
+    """The process, and the gateway's end of its pipe: one question at a time, by whoever holds ``lock``.
+
+    Whatever goes wrong with it kills it, is kept in ``fault`` and raised as _GoneError.
+
+    :raises OSError: when the process cannot be started.
+    """
+
+    def __init__(self) -> None:
+        self.lock = threading.Lock()
+        self.ready = self.failed = False
+        self.fault = ""
+        self.unsent: dict[int, set[int]] = {}
+        """Of each engine whose costs it has, the arcs whose costs have changed since."""
+        self._connection, theirs = Pipe()
+        with contextlib.closing(theirs):
+            try:
+                _limit_waits(self._connection.fileno())
+                self.process = subprocess.Popen(
                     [sys.executable, "-c", _program(theirs.fileno())],
                     stdin=subprocess.DEVNULL,
                     stdout=subprocess.DEVNULL,
                     pass_fds=[theirs.fileno()],
                 )
-            try:
-                with self._lock:
-                    self._process, self._starts = process, self._starts + 1
-                    closed = self._closed.is_set()
-                if not closed:
-                    self._prepare(ours, process.pid)
-                    process.wait()
-            except _GoneError:
-                process.kill()
-            finally:
-                with self._lock:
-                    self._connection = self._process = None
-                process.kill()
-                status = process.wait()
-        return f"({process.pid}) ended with status {status}"
+            except OSError:
+                self._connection.close()
+                raise
 
-    def _prepare(self, connection: Connection, pid: int) -> None:
-        """Have the graph ordered, which other threads do not wait for, and the costs laid over it."""
-        self._send(connection, (self._graph.nodes, self._graph.tail, self._graph.head))
-        missing = self._receive(connection, READY_WITHIN_S)
-        if missing:
-            raise ImportError(missing)
-        with self._lock:
-            for engine in list(self._engines.values()):
-                self._make(connection, engine)
-            self._connection = connection
-        log.info("routes: %s finds ways in process %d", ContractionEngines.name, pid)
-
-    def _make(self, connection: Connection, engine: ProcessEngine) -> None:
-        self._send(connection, ("engine", engine.number, engine.costs, list(self._engines)))
-        self._receive(connection, READY_WITHIN_S)
-
-    def _send(self, connection: Connection, message: Any) -> None:
+    def send(self, message: Any) -> None:
+        """Send a message that has no answer."""
+        if self.failed:
+            # What it still says may answer an earlier question.
+            raise _GoneError(self.fault)
         try:
-            connection.send(message)
+            self._connection.send(message)
         except OSError as error:
-            raise self._gone() from error
+            raise self.fail(f"did not read a message ({error})") from error
 
-    def _receive(self, connection: Connection, within: float) -> Any:
+    def ask(self, message: Any, within: float) -> bytes:
+        """Return the answer to a message, which has to begin within so many seconds."""
+        self.send(message)
+        return self.hear(within)
+
+    def hear(self, within: float) -> bytes:
+        """Return what it says next."""
         try:
-            if connection.poll(within):
-                return connection.recv()
-        except (OSError, EOFError) as error:
-            raise self._gone() from error
-        log.warning("routes: the process of RoutingKit said nothing for %g s and is ended", within)
-        raise self._gone()
+            if self._connection.poll(within):
+                return self._connection.recv_bytes(_LARGEST_ANSWER)
+        except EOFError as error:
+            raise self.fail("broke off") from error
+        except OSError as error:
+            raise self.fail(f"sent no whole answer ({error})") from error
+        raise self.fail(f"said nothing for {within:g} s")
 
-    def _gone(self) -> _GoneError:
-        self._connection = None
-        if self._process is not None:
-            self._process.kill()
-        return _GoneError()
+    def fail(self, fault: str) -> _GoneError:
+        """Kill the process, and return the error to raise."""
+        self.failed, self.fault = True, self.fault or fault
+        self.process.kill()
+        return _GoneError(fault)
+
+    def end(self) -> int:
+        """End the process and return its status, when nobody waits for it any more."""
+        self.failed = True
+        self.process.kill()
+        status = self.process.wait()
+        with self.lock:
+            self._connection.close()
+        return status
+
+
+def _limit_waits(handle: int) -> None:
+    """Bound each wait of a socket for the other end to read on or write on: poll bounds but the first one."""
+    whole, part = divmod(ANSWER_WITHIN_S, 1)
+    limit = struct.pack("ll", int(whole), int(part * 1e6))
+    with socket.socket(fileno=handle) as pipe:
+        try:
+            pipe.setsockopt(socket.SOL_SOCKET, socket.SO_SNDTIMEO, limit)
+            pipe.setsockopt(socket.SOL_SOCKET, socket.SO_RCVTIMEO, limit)
+        finally:
+            pipe.detach()
 
 
 class _GoneError(LookupError):
-    """There is no process that could find a way."""
+    """There is no process that could find a way now."""
 
 
 class ProcessEngine:
@@ -238,19 +342,22 @@ class ProcessEngine:
     def __init__(self, made_by: ProcessEngines, number: int, local: Engine, costs: Floats) -> None:
         self.number = number
         self.local = local
+        self.lock = threading.Lock()
+        """Held while ``local`` is used."""
         self.costs = costs.copy()
         self.changed: set[int] = set()
+        """The arcs whose costs ``local`` does not have yet."""
         self.name = local.name
         self._made_by = made_by
 
     def set_costs(self, arcs: Ints, costs: Floats) -> None:
-        """Give ``arcs`` other costs."""
+        """Set the costs of ``arcs``."""
         self._made_by.set_costs(self, arcs, costs)
 
     def way(self, starts: Ends, goals: Ends) -> list[int] | None:
         """Return the arcs of the cheapest way, None for none."""
         try:
-            way = self._made_by.way(self.number, starts, goals)
+            way = self._made_by.way(self, starts, goals)
         except _GoneError:
             self.name = self.local.name
             return self._made_by.way_here(self, starts, goals)
@@ -273,13 +380,14 @@ def serve(handle: int) -> None:
         signal.signal(number, signal.SIG_IGN)
     connection = Connection(handle)
     with contextlib.suppress(EOFError, BrokenPipeError):
+        connection.send_bytes(b"")
         graph = RouteGraph(*connection.recv())
         try:
             factory = ContractionEngines(graph)
         except ImportError as error:
-            connection.send(str(error))
+            connection.send_bytes(str(error).encode())
             return
-        connection.send("")
+        connection.send_bytes(b"")
         _answer(connection, factory)
 
 
@@ -291,8 +399,9 @@ def _answer(connection: Connection, factory: Callable[[Floats], Engine]) -> None
             costs, in_use = given
             engines = {one: engine for one, engine in engines.items() if one in in_use}
             engines[number] = factory(costs)
-            connection.send(None)
+            connection.send_bytes(b"")
         elif what == "costs":
             engines[number].set_costs(*given)
         else:
-            connection.send(engines[number].way(*given))
+            way = engines[number].way(*given)
+            connection.send_bytes(_NO_WAY if way is None else np.array(way, np.int64).tobytes())

@@ -31,8 +31,8 @@ from ...core.sites.site import Site
 from ..commands.requests import CommandRequests
 from ..commands.service import CommandService
 from ..commands.validation import WaitingRobots
+from ..model.arrival import Point
 from ..model.events import Listeners
-from ..model.remaining_way import Point
 from ..model.request_handlers import handles
 from ..model.robots import Robots
 from ..monitoring.periodic_tasks import Steps

@@ -22,7 +22,7 @@ from ..commands.active_command import NOTHING
 from ..commands.persistence import Also, AlsoOf
 from ..commands.service import CommandService
 from ..commands.validation import WaitingRobots
-from ..model.remaining_way import Floats, Point
+from ..model.arrival import Floats, Point
 from ..storage.database import Database
 from ..storage.repositories import closures as stored
 from ..storage.repositories.closures import HoldRow

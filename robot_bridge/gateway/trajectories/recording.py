@@ -202,7 +202,7 @@ class TrajectoryWriter:
         self._recorder.observe([Fix(robot, now, pose) for robot, pose in poses])
 
     def touch(self, robot: str) -> None:
-        """Have what is known of a robot stored anew."""
+        """Have what is known of a robot stored again."""
         self._unsaved.add(robot)
 
     async def save(self, *robots: str) -> None:
@@ -321,7 +321,7 @@ def _write(
 ) -> set[str]:
     """Write robots and positions; return those of the robots ``stored`` that are there no more.
 
-    They are not written anew: somebody has removed them.
+    They are not written again: somebody has removed them.
     """
     removed = stored_robots.missing(connection, stored)
     stored_robots.save(connection, [row for row in robots if row[0] not in removed])

@@ -23,8 +23,7 @@ from ...core.messages.validation import SPEED
 from ...core.sites.frame import SiteFrame
 from ...recordings.csv_table import TableForm
 from ...recordings.readers import ReadingOptions, read_recording
-from ...recordings.samples import RecordingError
-from ...recordings.tracks import ORIGINS, Recording, Track
+from ...recordings.tracks import ORIGINS, Recording, RecordingError, Track
 from ..base.adapter import Adapter, Command, Link
 from ..base.errors import CommandRefusedError, LinkError
 from ..base.frames import FrameSettings, LinkFrame

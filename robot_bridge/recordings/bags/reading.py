@@ -17,7 +17,7 @@ from pathlib import Path
 from typing import IO, Any, NamedTuple
 
 from ...core.messages.validation import COORDINATE
-from ..samples import (
+from ..tracks import (
     LATITUDE,
     LONGITUDE,
     SPEED_BOUNDS,

@@ -5,7 +5,7 @@ from __future__ import annotations
 from types import SimpleNamespace
 
 import pytest
-from fleet_supervisor.plugin.gateway_client.requests import RequestResult
+from fleet_supervisor.plugin.gateway_client.fleet_state import RequestResult
 from pyproj import Transformer
 from qgis.PyQt.QtCore import Qt
 from qgis.PyQt.QtWidgets import QApplication

@@ -12,7 +12,7 @@ import warnings
 import pytest
 from fleet_supervisor.plugin.gateway_client.connection import ConnectionThread
 from fleet_supervisor.plugin.gateway_client.connection_status import ConnectionPhase
-from fleet_supervisor.plugin.gateway_client.requests import OperatorRequest
+from fleet_supervisor.plugin.gateway_client.fleet_state import OperatorRequest
 from fleet_supervisor.plugin.ui.errors import AddressError, NotSentError
 from fleet_supervisor.robot_bridge.core.clock import steady_time
 from qgis.PyQt.QtCore import QThread

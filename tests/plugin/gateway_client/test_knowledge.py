@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from fleet_supervisor.plugin.gateway_client.command_cache import CommandCache, command_in_words
 from fleet_supervisor.plugin.gateway_client.connection import Backoff
-from fleet_supervisor.plugin.gateway_client.fleet_state import MOST_COMMANDS, UpdateBuffer
+from fleet_supervisor.plugin.gateway_client.fleet_state import MOST_COMMANDS, OperatorRequest, UpdateBuffer
 from fleet_supervisor.plugin.gateway_client.protocol import GatewayProtocol, RequestOutbox
 from fleet_supervisor.plugin.gateway_client.report_caches import (
     PlacedConeCache,
@@ -18,7 +18,6 @@ from fleet_supervisor.plugin.gateway_client.report_caches import (
     QueueCache,
     plan_in,
 )
-from fleet_supervisor.plugin.gateway_client.requests import OperatorRequest
 from fleet_supervisor.plugin.gateway_client.robot_states import RobotStates
 from fleet_supervisor.plugin.gateway_client.robot_table import STATES, table_from_rows
 from fleet_supervisor.plugin.ui.errors import GatewayLinkError

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import pytest
-from fleet_supervisor.plugin.layers.errors import ExpressionError
 from fleet_supervisor.plugin.layers.layer_source import obstacle_sources
 from fleet_supervisor.plugin.layers.road_layers import check_ground_sources, read_areas, read_centrelines
 from fleet_supervisor.plugin.layers.roles import (
@@ -14,6 +13,7 @@ from fleet_supervisor.plugin.layers.roles import (
     set_expressions,
 )
 from fleet_supervisor.plugin.layers.site_transform import SiteGeoreference
+from fleet_supervisor.plugin.ui.errors import ExpressionError
 from fleet_supervisor.robot_bridge.core.sites.frame import SiteFrame
 from qgis.core import (
     NULL,

@@ -7,8 +7,8 @@ import math
 import numpy as np
 import pyproj
 import pytest
-from fleet_supervisor.plugin.layers.errors import LayerCrsError
 from fleet_supervisor.plugin.layers.site_transform import SiteGeoreference
+from fleet_supervisor.plugin.ui.errors import LayerCrsError
 from fleet_supervisor.robot_bridge.core.sites.frame import SiteFrame
 from osgeo import ogr
 from qgis.core import QgsCoordinateReferenceSystem, QgsCoordinateTransformContext, QgsVectorLayer

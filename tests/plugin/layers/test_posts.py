@@ -7,8 +7,8 @@ import math
 import numpy as np
 import pytest
 import shapely
-from fleet_supervisor.plugin.layers.errors import ExpressionError
 from fleet_supervisor.plugin.layers.roles import FURNITURE, LayerExpressions, LayerSetup, keep_setup
+from fleet_supervisor.plugin.ui.errors import ExpressionError
 from fleet_supervisor.robot_bridge.core.robotmap.parametric_shapes import template
 
 FIELDS = "&field=height:double&field=shape:string&field=way:string&field=across:double"

@@ -6,7 +6,6 @@ import math
 
 import pytest
 import shapely
-from fleet_supervisor.plugin.layers.errors import ExpressionError, LayerTypeError
 from fleet_supervisor.plugin.layers.layer_source import subset_without_geometry
 from fleet_supervisor.plugin.layers.roles import (
     KEEPOUT,
@@ -16,6 +15,7 @@ from fleet_supervisor.plugin.layers.roles import (
     set_expressions,
     set_role,
 )
+from fleet_supervisor.plugin.ui.errors import ExpressionError, LayerTypeError
 from fleet_supervisor.robot_bridge.core.robotmap.model import ShapeType
 from qgis.core import (
     NULL,

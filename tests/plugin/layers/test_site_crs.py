@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 from fleet_supervisor.plugin.layers.crs import check_site_crs, is_engineering, site_crs_for, stated_crs
-from fleet_supervisor.plugin.layers.errors import SiteCrsError
+from fleet_supervisor.plugin.ui.errors import SiteCrsError
 from fleet_supervisor.robot_bridge.core.errors import CrsError
 from fleet_supervisor.robot_bridge.core.sites.frame import check_site_crs as check_in_bridge
 from osgeo import ogr

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from fleet_supervisor.plugin.layers.publishing.published_layers import PLAIN, PLAIN_EDGE
+from fleet_supervisor.plugin.layers.publishing.publication import PLAIN, PLAIN_EDGE
 from fleet_supervisor.robot_bridge.core.robotmap.model import ShapeType
 from fleet_supervisor.robot_bridge.core.robotmap.outlines import OutlineRow, Outlines
 from fleet_supervisor.robot_bridge.core.sites.settings import SiteBounds, SiteSettings

@@ -3,7 +3,7 @@
 import time
 
 from fleet_supervisor.plugin.panel.emergency import in_words
-from fleet_supervisor.plugin.ui.times import date_and_time, short_time, time_of_day
+from fleet_supervisor.plugin.ui.language import date_and_time, short_time, time_of_day
 from fleet_supervisor.robot_bridge.core.messages import EmergencyReport
 
 NOON = time.mktime((2026, 11, 22, 12, 0, 0, 0, 0, -1))

@@ -6,7 +6,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from fleet_supervisor.robot_bridge.core.assignment.detours import ClearTravel, detour, obstacle_distances
+from fleet_supervisor.robot_bridge.core.assignment.clearance import ClearTravel, detour, obstacle_distances
 from fleet_supervisor.robot_bridge.core.assignment.job import (
     AssignmentJob,
     ConeTarget,

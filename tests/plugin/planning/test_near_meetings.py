@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from fleet_supervisor.plugin.planning.proposal import meeting_in_words
+from fleet_supervisor.robot_bridge.core.assignment.clearance import meetings, robot_positions
 from fleet_supervisor.robot_bridge.core.assignment.job import PlanRobot
-from fleet_supervisor.robot_bridge.core.assignment.meetings import meetings, robot_positions
 from fleet_supervisor.robot_bridge.core.assignment.plan import ConePlan, PlannedTrip, PlanStop, RobotPlan
 
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import pytest
 from fleet_supervisor.plugin.layers.roles import ROAD_CENTRELINE, set_role
-from fleet_supervisor.plugin.planning import travel as plan_ways
+from fleet_supervisor.plugin.planning import proposal as plan_ways
 from fleet_supervisor.plugin.planning.plan_settings import PlanSettings
-from fleet_supervisor.plugin.planning.travel import PlanTravel
+from fleet_supervisor.plugin.planning.proposal import PlanTravel
 from fleet_supervisor.robot_bridge.core.assignment.job import STAY, AssignmentJob, ConeTarget, PlanRobot
 from fleet_supervisor.robot_bridge.core.errors import AssignmentCancelledError
 from fleet_supervisor.robot_bridge.core.sites.frame import SiteFrame

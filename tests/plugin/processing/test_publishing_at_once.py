@@ -8,8 +8,8 @@ import sys
 from concurrent.futures import ThreadPoolExecutor
 
 import pytest
-from fleet_supervisor.plugin.layers.errors import PublicationError
 from fleet_supervisor.plugin.layers.publishing.publication import LOCK_FILE, exclusive_publication
+from fleet_supervisor.plugin.ui.errors import PublicationError
 from fleet_supervisor.robot_bridge.core.sites.site import read_site
 
 HOLD = """

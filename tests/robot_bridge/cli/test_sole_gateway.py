@@ -14,6 +14,7 @@ from robot_bridge.gateway.storage import singleton_lock
 from robot_bridge.gateway.storage.database import Database, read_address, run_once
 from robot_bridge.gateway.storage.schema import bridge
 from robot_bridge.gateway.storage.singleton_lock import SingletonLock, no_gateway
+from tests.support.patience import START
 
 HOLDER = """
 import asyncio, sys
@@ -130,7 +131,7 @@ async def test_a_gateway_that_another_replaced_while_it_was_cut_off_ends(address
     )
     await run_once_async
     with pytest.raises(FatalError, match="another gateway: process 7 on elsewhere, since 1970-01-01"):
-        await asyncio.wait_for(hold, 10)
+        await asyncio.wait_for(hold, START)
     await gateway.release()
 
 

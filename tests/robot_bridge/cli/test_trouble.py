@@ -20,7 +20,7 @@ from robot_bridge.gateway.storage.database import read_address, run_once
 from robot_bridge.gateway.storage.roles.choice import role_manager_on
 from tests.support.bridge.bridge_programs import wait_until
 from tests.support.bridge.command_line import run_command
-from tests.support.patience import BUSY
+from tests.support.patience import BUSY, START
 
 DAY = 86400.0
 
@@ -134,7 +134,7 @@ def test_the_gateways_own_account_runs_it_and_backs_it_up_and_no_secret_is_logge
     server.start()
     wait_until(lambda: healthy(bridge), 30)
     bridge.gateway.send_signal(signal.SIGTERM)
-    assert bridge.gateway.wait(6) == 0
+    assert bridge.gateway.wait(START) == 0
     output = bridge.output()
     for secret in (password, token):
         assert secret not in output
@@ -208,6 +208,6 @@ def test_numbers_are_for_those_who_have_a_token_and_tokens_are_not_logged(
     assert ask("/healthz") == 200
     assert (ask("/metrics"), ask("/metrics", wrong), ask("/metrics", token)) == (401, 401, 200)
     bridge.gateway.send_signal(signal.SIGTERM)
-    assert bridge.gateway.wait(6) == 0
+    assert bridge.gateway.wait(START) == 0
     for secret in (token, wrong):
         assert secret not in bridge.output() and secret[-16:] not in bridge.output()

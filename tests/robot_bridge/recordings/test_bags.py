@@ -12,7 +12,7 @@ import pytest
 import zstandard
 
 from robot_bridge.recordings.readers import ReadingOptions, read_recording
-from robot_bridge.recordings.samples import RecordingError
+from robot_bridge.recordings.tracks import RecordingError
 
 pytest.importorskip("rosbags.highlevel")
 from rosbags.rosbag1 import Writer as Writer1

@@ -11,8 +11,7 @@ import pytest
 from robot_bridge.recordings import csv_table
 from robot_bridge.recordings.csv_table import TableForm
 from robot_bridge.recordings.readers import ReadingOptions, read_recording
-from robot_bridge.recordings.samples import RecordingError, Remarks
-from robot_bridge.recordings.tracks import longest_rising
+from robot_bridge.recordings.tracks import RecordingError, Remarks, longest_rising
 
 HEAD = "time,robot,x,y,theta,v\n"
 GPX = '<gpx xmlns="http://www.topografix.com/GPX/1/1" version="1.1"><trk><name>car</name>{}</trk></gpx>'

@@ -25,7 +25,7 @@ class ChangedError(RefusedError):
 
 
 class QueueHold(NamedTuple):
-    """Why a robot's queue is to be paused, by whom and when."""
+    """Why a robot's queue has to be paused, by whom and when."""
 
     robot: str
     reason: str
@@ -93,7 +93,7 @@ def whereabouts(connection: Connection, tasks: Sequence[str]) -> dict[str, Where
 def save(connection: Connection, before: Queue, after: Queue, ended: Iterable[QueuedTask] = ()) -> None:
     """Write what ``after`` and the tasks that ``ended`` have other than ``before``.
 
-    :raises ChangedError: when the stored queue is not ``before`` any more; nothing is to be written then.
+    :raises ChangedError: when the stored queue is not ``before`` any more; nothing may be written then.
     """
     _save_queue(connection, before, after)
     old = {task.id: task for task in before.tasks}
@@ -101,7 +101,7 @@ def save(connection: Connection, before: Queue, after: Queue, ended: Iterable[Qu
 
 
 def save_each(connection: Connection, changes: Sequence[tuple[Queue, Queue, Sequence[QueuedTask]]]) -> None:
-    """Write several queues, each as :func:`save` does; raises ChangedError, and nothing is to be written."""
+    """Write several queues, each as :func:`save` does; raises ChangedError, and nothing may be written."""
     for before, after, ended in changes:
         save(connection, before, after, ended)
 

@@ -38,7 +38,7 @@ def save(connection: Connection, rows: Sequence[Row]) -> None:
 
 
 def note_run(connection: Connection, robot: Robot, magic: int) -> bool:
-    """Write that a robot starts anew as ``magic``; return false where it is stored with that number already.
+    """Write that a robot starts again as ``magic``; return false where it is stored with that number already.
 
     Its pose stays as it is stored: positions that are earlier may wait to be stored still.
     """

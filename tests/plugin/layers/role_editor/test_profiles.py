@@ -7,7 +7,6 @@ from collections import Counter
 
 import numpy as np
 import pytest
-from fleet_supervisor.plugin.layers.errors import ProfileError
 from fleet_supervisor.plugin.layers.layer_expressions import LayerRules, as_metres
 from fleet_supervisor.plugin.layers.layer_source import names_of, obstacle_sources
 from fleet_supervisor.plugin.layers.obstacle_layers import read_outlines
@@ -20,6 +19,7 @@ from fleet_supervisor.plugin.layers.profiles import (
 )
 from fleet_supervisor.plugin.layers.roles import LayerExpressions, LayerSetup, keep_setup
 from fleet_supervisor.plugin.layers.site_transform import SiteGeoreference
+from fleet_supervisor.plugin.ui.errors import ProfileError
 from fleet_supervisor.robot_bridge.core.robotmap.model import ShapeType
 from fleet_supervisor.robot_bridge.core.sites.frame import SiteFrame
 from qgis.core import (

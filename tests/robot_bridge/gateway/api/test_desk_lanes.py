@@ -23,8 +23,8 @@ from robot_bridge.core.messages import (
     TakeOver,
     TargetPosition,
 )
-from robot_bridge.gateway.api import request_scheduler
-from robot_bridge.gateway.api.request_scheduler import (
+from robot_bridge.gateway.api import operator_server
+from robot_bridge.gateway.api.operator_server import (
     MOST_ASIDE,
     MOST_BYTES,
     MOST_STOPPING,
@@ -169,8 +169,8 @@ async def test_an_emergency_stop_is_never_one_too_many_and_any_other_stop_is():
 async def test_of_emergency_stops_that_are_not_done_so_many_are_begun_and_then_the_connection_waits(
     monkeypatch,
 ):
-    monkeypatch.setattr(request_scheduler, "MOST_STOPPING", 2)
-    monkeypatch.setattr(request_scheduler, "MOST_EMERGENCIES", 3)
+    monkeypatch.setattr(operator_server, "MOST_STOPPING", 2)
+    monkeypatch.setattr(operator_server, "MOST_EMERGENCIES", 3)
     operator = Operator(held=(EmergencyStop,))
     stops = [EmergencyStop(f"stop-{k:04}") for k in range(5)]
     await operator.ask(*stops[:4])
@@ -184,8 +184,8 @@ async def test_of_emergency_stops_that_are_not_done_so_many_are_begun_and_then_t
 
 
 async def test_the_connection_goes_on_as_soon_as_one_of_them_is_done(monkeypatch):
-    monkeypatch.setattr(request_scheduler, "MOST_STOPPING", 0)
-    monkeypatch.setattr(request_scheduler, "MOST_EMERGENCIES", 2)
+    monkeypatch.setattr(operator_server, "MOST_STOPPING", 0)
+    monkeypatch.setattr(operator_server, "MOST_EMERGENCIES", 2)
     gates = {f"stop-{k:04}": asyncio.Event() for k in range(2)}
 
     async def settle(asked, _refusal):
@@ -203,7 +203,7 @@ async def test_the_connection_goes_on_as_soon_as_one_of_them_is_done(monkeypatch
 
 
 async def test_a_pause_beside_many_stops_holds_no_connection_up(monkeypatch):
-    monkeypatch.setattr(request_scheduler, "MOST_EMERGENCIES", -MOST_STOPPING)
+    monkeypatch.setattr(operator_server, "MOST_EMERGENCIES", -MOST_STOPPING)
     operator = Operator(held=(PauseRobot,))
     await operator.ask(PauseRobot("r1"), PauseRobot("r1"))
     assert operator.begun == [PauseRobot("r1")] * 2

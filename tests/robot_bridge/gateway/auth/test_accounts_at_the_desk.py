@@ -64,11 +64,11 @@ def test_a_token_expires_when_it_was_said_to(bridge, ada, close_code):
     assert state_of(ada, "Ben")["token"] == "expired"
 
 
-@pytest.mark.parametrize("seconds", [0, -1, 1e12])
-def test_a_validity_that_is_none_is_refused_and_makes_no_account(ada, seconds):
-    with pytest.raises(RefusedError, match="expires_in is"):
-        make(ada, "Ben", "viewer", expires_in=seconds)
-    assert [o["operator"] for o in ada.ask("get_operators")["operators"]] == ["Ada"]
+def test_a_validity_that_is_none_is_refused_and_makes_no_account(ada):
+    for seconds in (0, -1, 1e12):
+        with pytest.raises(RefusedError, match="expires_in is"):
+            make(ada, "Ben", "viewer", expires_in=seconds)
+        assert [o["operator"] for o in ada.ask("get_operators")["operators"]] == ["Ada"]
 
 
 def test_the_last_supervisor_can_be_taken_away_by_nobody_at_the_desk(bridge, ada):

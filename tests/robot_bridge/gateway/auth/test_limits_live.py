@@ -17,6 +17,7 @@ from robot_bridge.protocol.jsonrpc import TOO_MANY
 from tests.support.bridge.bridge_programs import wait_until
 from tests.support.bridge.bridge_sockets import frame, plain_socket
 from tests.support.bridge.bridge_wires import RefusedError
+from tests.support.patience import START
 
 LIMITS = """
 [limits]
@@ -87,8 +88,8 @@ def test_too_many_messages_are_refused_and_then_the_connection_is_closed(bridge,
             for id in range(200):
                 wire.send(json.dumps({"jsonrpc": "2.0", "id": id, "method": method}))
                 if path == "/robot" and id == 0:
-                    wire.recv(5)
-                answer = json.loads(wire.recv(5))
+                    wire.recv(START)
+                answer = json.loads(wire.recv(START))
                 codes.append(answer.get("error", {}).get("code"))
         assert TOO_MANY in codes
         assert codes.index(TOO_MANY) >= 20
@@ -147,11 +148,11 @@ def test_an_emergency_stop_is_taken_from_whoever_has_talked_too_much(bridge):
 def test_a_message_has_a_largest_size_and_only_an_image_may_be_larger(bridge, path, fits, too_large):
     with connect(f"{bridge.address}{path}") as wire:
         wire.send(json.dumps({"jsonrpc": "2.0", "id": 1, "method": "x" * fits}))
-        told = next(text for text in iter(lambda: wire.recv(5), "") if '"id":1' in text)
+        told = next(text for text in iter(lambda: wire.recv(START), "") if '"id":1' in text)
         assert "x" * 40 in told and ("but for SendImage" in told) == (path == "/robot")
         wire.send(json.dumps({"jsonrpc": "2.0", "id": 2, "method": "x" * too_large}))
         with pytest.raises(ConnectionClosed) as caught:
-            wire.recv(5)
+            wire.recv(START)
         assert caught.value.rcvd.code == 1009
 
 

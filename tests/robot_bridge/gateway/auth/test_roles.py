@@ -134,6 +134,15 @@ def test_a_name_given_in_hello_changes_neither_account_nor_role(bridge, desks):
 
 
 def test_the_audit_log_tells_what_was_done_and_what_was_refused(bridge, desks):
+    desks[OPERATOR].ask("abort_all", {"command": "told-in-audit"})
+    for role, method, asked in (
+        (VIEWER, "abort_all", {"command": "told-in-audit"}),
+        (VIEWER, "get_audit", {}),
+        (VIEWER, "send", {"command": "told-in-audit-2", "robot": "r1", "op": "Abort"}),
+        (OPERATOR, "clear_emergency_stop", {}),
+    ):
+        with pytest.raises(RefusedError):
+            desks[role].ask(method, asked)
     entries = desks[SUPERVISOR].ask("get_audit", {"limit": 10_000})["entries"]
     told = {(e["who"], e["action"], e["done"]) for e in entries}
     assert ("Viewer", "abort_all", False) in told

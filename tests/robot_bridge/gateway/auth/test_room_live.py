@@ -13,6 +13,7 @@ from websockets.exceptions import ConnectionClosed
 from websockets.sync.client import connect
 
 from tests.support.bridge.bridge_programs import wait_until
+from tests.support.patience import START
 
 LIMITS = """
 [limits]
@@ -82,7 +83,7 @@ def silent_flood(port, threads=2):
 def last_heard(silent):
     """Wait until a desk's connection is closed, past what all desks hear; return code and reason."""
     with pytest.raises(ConnectionClosed) as caught:
-        while silent.recv(10):
+        while silent.recv(START):
             pass
     return caught.value.rcvd.code, caught.value.rcvd.reason
 
@@ -119,9 +120,9 @@ def test_desks_that_say_nothing_make_room_the_oldest_first(bridge):
             1013,
             "it said nothing, and others need its place",
         )
-        assert newcomer.connection.ping().wait(10)
+        assert newcomer.connection.ping().wait(START)
     for one in silent[2:]:
-        assert one.ping().wait(10)
+        assert one.ping().wait(START)
         one.close()
 
 

@@ -10,6 +10,7 @@ from websockets.sync.client import connect
 from robot_bridge.gateway.auth.accounts import TokenKind, chosen_protocol, new_token, token_in
 from robot_bridge.protocol.credentials import AccessError
 from tests.support.bridge.bridge_accounts import bearing
+from tests.support.patience import START
 
 PAGE = "https://fleet.example.org"
 OTHER = "https://evil.example.org"
@@ -45,7 +46,7 @@ def test_a_page_comes_in_with_its_token_as_a_subprotocol_and_is_not_sent_it_back
         assert (result["operator"], result["role"]) == ("Ada", "supervisor")
     with open_page(bridge, "/robot", f"token.{robot}", "robot-bridge") as page:
         assert page.subprotocol == "robot-bridge"
-        assert json.loads(page.recv(5))["method"] == "Start"
+        assert json.loads(page.recv(START))["method"] == "Start"
 
 
 def test_who_offers_other_protocols_is_answered_with_none(bridge, tokens):

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from robot_bridge.core.errors import RefusedError
 from robot_bridge.core.geometry import Polyline
 from robot_bridge.core.messages import SetPath, SetPosEnd
-from robot_bridge.gateway.model.remaining_way import PlannedPath, StraightPlanner, remaining_path
+from robot_bridge.gateway.model.arrival import PlannedPath, StraightPlanner, remaining_path
 
 STRAIGHT = StraightPlanner()
 metres = st.floats(-500, 500)

@@ -17,6 +17,7 @@ from robot_bridge.gateway.monitoring.periodic_tasks import (
     freeze_permanent_objects,
 )
 from robot_bridge.gateway.storage.repositories.trajectories import Fix
+from tests.support.bridge.command_line import run_command
 
 
 class Ring:
@@ -60,6 +61,11 @@ def test_what_holds_itself_is_found(looks):
 
 def test_what_was_loaded_is_not_looked_at(looks):
     assert gc.get_freeze_count() > 10_000
+
+
+def test_a_gateway_that_has_loaded_its_modules_goes_on_to_look(tmp_path):
+    assert run_command("serve", "--site", tmp_path / "none").returncode == 1
+    assert gc.isenabled()
 
 
 def test_what_many_connections_left_is_looked_for_at_once_and_only_once(looks):

@@ -187,6 +187,19 @@ async def test_the_cones_of_a_lost_robot_are_placed_by_another_by_itself(drive):
     assert (await drive.line.seen("r2")).tasks == []
 
 
+async def test_a_new_plan_by_which_robots_come_too_near_is_not_sent_by_itself(drive):
+    # r2 is lost 10 m from its next cone: whoever places that one stands closer to r2 than is allowed.
+    await drive.submit(by_itself=True, apart_m=25.0)
+    await drive.go(robots=["r1"])
+    await drive.lose()
+    await drive.planned()
+    report = await drive.seen()
+    assert report.state is PlanState.PROPOSED and report.meetings
+    assert (await drive.line.seen("r1")).state.value == "paused"
+    await drive.plans.confirm(ConfirmReplan("plan-1", report.revision), "Bob")
+    assert (await drive.seen()).state is PlanState.DRIVEN
+
+
 async def test_unless_that_was_chosen_somebody_has_to_ask_and_to_confirm(drive):
     await drive.submit()
     await drive.go(robots=["r1"])
@@ -338,7 +351,7 @@ def test_bounds_of_a_submission(wrong):
 
 
 async def test_planning_that_takes_too_long_leaves_the_robots_standing_and_says_so(drive, monkeypatch):
-    monkeypatch.setattr("robot_bridge.gateway.plans.replanning.PATIENCE", 0.0)
+    monkeypatch.setattr("robot_bridge.gateway.plans.model.PATIENCE", 0.0)
     await drive.submit()
     await drive.plans.replan(Replan("plan-1", 1), "Ada")
     await drive.planned()

@@ -12,8 +12,7 @@ from robot_bridge.core.messages import SetPosEnd
 from robot_bridge.links.base.adapter import Command
 from robot_bridge.links.base.errors import CommandRefusedError
 from robot_bridge.links.replay.adapter import PlayClock, Player, ReplayAdapter, ReplayPresence, ReplaySettings
-from robot_bridge.recordings.samples import Remarks, Sample, Source
-from robot_bridge.recordings.tracks import gather
+from robot_bridge.recordings.tracks import Remarks, Sample, Source, gather
 
 
 def recording(*samples):

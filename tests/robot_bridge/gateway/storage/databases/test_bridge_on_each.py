@@ -9,6 +9,7 @@ import pytest
 from tests.robot_bridge.gateway.storage.databases.accounts import Accounts
 from tests.support.bridge.bridge_programs import wait_until
 from tests.support.bridge.bridge_wires import RefusedError
+from tests.support.patience import START
 
 FULL_LIFE = ["queued", "delivered", "acknowledged", "reached"]
 SERVERS = pytest.mark.parametrize("kind", ["postgresql", "mariadb"], indirect=True)
@@ -147,7 +148,7 @@ def test_requests_and_answers_on_postgresql_do_not_wait_for_a_poll(bridge, accou
             list(robot.notifies(timeout=0))
             began = time.perf_counter()
             robot.execute(insert, (name, "Stopped", None))
-            (notice,) = robot.notifies(timeout=3, stop_after=1)
+            (notice,) = robot.notifies(timeout=START, stop_after=1)
             times.append(time.perf_counter() - began)
             assert notice.payload == ""
             assert robot.execute("select op from sa").fetchall() == [("OpAck",)]

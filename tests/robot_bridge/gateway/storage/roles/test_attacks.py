@@ -17,6 +17,7 @@ from robot_bridge.gateway.storage.roles.role_manager import (
     MOST_WAITING,
 )
 from tests.robot_bridge.gateway.storage.roles.yards import GATEWAY, MINE, OTHER, SECRET, RefusedError
+from tests.support.patience import START
 
 POSTGRESQL = [
     "select * from rr",
@@ -266,7 +267,7 @@ def test_what_a_robot_notifies_wakes_the_gateway_and_tells_it_nothing(postgresql
         session.run("select pg_notify('rr', 'delete everything')")
         session.run("listen rr")
         session.run("insert into rr (op) values ('Alive')")
-        (heard,) = session._connection.notifies(timeout=2, stop_after=1)
+        (heard,) = session._connection.notifies(timeout=START, stop_after=1)
     assert heard.payload == ""
 
 

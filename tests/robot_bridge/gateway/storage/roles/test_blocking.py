@@ -18,6 +18,7 @@ from robot_bridge.gateway.storage.repositories import requests as answers
 from robot_bridge.gateway.storage.roles.blocking_sessions import end_blocking_sessions
 from robot_bridge.gateway.storage.roles.choice import role_manager_on
 from tests.robot_bridge.gateway.storage.roles.yards import GATEWAY, MINE, OTHER, RefusedError
+from tests.support.patience import START
 
 NO_LIMITS = {
     "postgresql": [
@@ -233,7 +234,7 @@ def test_a_robots_statement_ends_when_it_takes_too_long(yard):
         time.sleep(2.1)
         run_once(yard.address(GATEWAY), end_blocking_sessions, 2)
         with pytest.raises(RefusedError):
-            sleeping.result(timeout=5)
+            sleeping.result(timeout=START)
 
 
 def test_others_transactions_are_left_alone(yard):

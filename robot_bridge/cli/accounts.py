@@ -1,0 +1,268 @@
+"""``robot-bridge operators``, ``links`` and ``sessions``: who may connect, and who is connected."""
+
+from __future__ import annotations
+
+import secrets
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from sqlalchemy import Connection
+
+from ..core.messages import Role
+from ..gateway.auth import accounts, audit
+from ..gateway.storage.database import read_password
+from .audit import act_audited, after_days, local_time, read_database
+from .options import DEFAULT, DatabaseOption, PasswordFileOption, database_address
+
+# --- The password of an account that a command makes: out of a file, or a random one that is shown once
+
+RANDOM_BYTES = 24
+
+NewPasswordOption = Annotated[
+    Path | None,
+    typer.Option(
+        "--password-file",
+        help="File whose first line becomes the password; without it one is made and shown.",
+    ),
+]
+
+
+def new_password(file: Path | None) -> str:
+    """Return the password in ``file``, or a random one; raises StoreError when the file cannot be used."""
+    return secrets.token_urlsafe(RANDOM_BYTES) if file is None else read_password(file)
+
+
+# --- The two commands that operators and robots have in common: a new token, and none any more ---
+
+Name = Annotated[str, typer.Argument(help="Its name, as it stands in every log.")]
+Expires = Annotated[float | None, typer.Option(help="Days until the token expires.", min=0.0)]
+
+
+def issuing(
+    kind: str, action: str, issue: Callable[[Connection, str, float, float | None], str]
+) -> Callable[..., None]:
+    """Return the command ``action`` that prints a new token of an account of ``kind``.
+
+    ``issue(connection, name, now, until)`` makes it in place of the old one, times in seconds since 1970.
+    """
+
+    def command(
+        name: Name,
+        expires_days: Expires = None,
+        database: DatabaseOption = DEFAULT,
+        database_password_file: PasswordFileOption = None,
+    ) -> None:
+        until = after_days(expires_days)
+        address = database_address(database, database_password_file)
+        token = act_audited(
+            address, action, name, None, lambda connection: issue(connection, name, time.time(), until)
+        )
+        show_token(token, f"{kind} {name}")
+
+    return command
+
+
+def revoking(
+    kind: str, action: str, revoke: Callable[[Connection, str, float], object], renewing: str
+) -> Callable[..., None]:
+    """Return the command ``action`` that takes an account's token away; ``renewing`` gives a new one.
+
+    ``revoke(connection, name, now)`` does it, now in seconds since 1970.
+    """
+
+    def command(
+        name: Name, database: DatabaseOption = DEFAULT, database_password_file: PasswordFileOption = None
+    ) -> None:
+        address = database_address(database, database_password_file)
+        act_audited(address, action, name, None, lambda connection: revoke(connection, name, time.time()))
+        typer.echo(f"{kind} {name} is revoked; 'robot-bridge {renewing}' gives a new token")
+
+    return command
+
+
+def show_token(token: str, of: str) -> None:
+    """Print a token, alone on standard output so that it can be written into a file."""
+    typer.echo(f"The token of {of}; it is shown this once:", err=True)
+    typer.echo(token)
+
+
+def state_of(token: accounts.Grant | None) -> str:
+    """Return in words how a token stands."""
+    if token is None:
+        return "no token"
+    if token.revoked_at is not None:
+        return f"revoked {local_time(token.revoked_at)}"
+    expires = f", expires {local_time(token.expires_at)}" if token.expires_at is not None else ""
+    fault = token.fault(time.time())
+    return f"{'expired' if fault else 'valid'}{expires}, last used {local_time(token.used_at)}"
+
+
+# --- Operators: who may connect to the desk, and what they may do ---
+
+operators = typer.Typer(help="Accounts of operators: their roles and tokens.", no_args_is_help=True)
+
+RoleOption = Annotated[
+    Role, typer.Option(help="viewer sees, operator sends, supervisor clears stops and manages accounts.")
+]
+
+
+@operators.command("add")
+def add_operator(
+    name: Name,
+    role: RoleOption,
+    expires_days: Expires = None,
+    database: DatabaseOption = DEFAULT,
+    database_password_file: PasswordFileOption = None,
+) -> None:
+    """Make an account and print its token, which is kept nowhere and shown this once."""
+    until = after_days(expires_days)
+    address = database_address(database, database_password_file)
+    token = act_audited(
+        address,
+        "operators add",
+        name,
+        role.value,
+        lambda connection: accounts.add_operator(connection, name, role, time.time(), until),
+    )
+    show_token(token, f"operator {name}, {role.value}")
+
+
+operators.command(
+    "rotate", help="Print a new token in place of the operator's old one, whose connections end."
+)(issuing("operator", "operators rotate", accounts.rotate_operator))
+operators.command("revoke", help="Revoke the operator's token; open connections end within a second.")(
+    revoking("operator", "operators revoke", accounts.revoke_operator, "operators rotate")
+)
+
+
+@operators.command("role")
+def set_role(
+    name: Name,
+    role: Annotated[Role, typer.Argument(help="The new role.")],
+    database: DatabaseOption = DEFAULT,
+    database_password_file: PasswordFileOption = None,
+) -> None:
+    """Give the operator another role; it holds within a second, also for open connections."""
+    address = database_address(database, database_password_file)
+    act_audited(
+        address,
+        "operators role",
+        name,
+        role.value,
+        lambda connection: accounts.set_role(connection, name, role),
+    )
+    typer.echo(f"operator {name} is {role.value} now")
+
+
+@operators.command("list")
+def list_operators(
+    database: DatabaseOption = DEFAULT, database_password_file: PasswordFileOption = None
+) -> None:
+    """List the operators."""
+    address = database_address(database, database_password_file)
+    for operator in read_database(address, accounts.all_operators):
+        typer.echo(f"{operator.name}\t{operator.role.value}\t{state_of(operator.token)}")
+
+
+# --- Links: which adapters may connect, and the robots that each may speak for ---
+
+links = typer.Typer(help="Accounts of links, which speak for many robots.", no_args_is_help=True)
+
+RobotsOption = Annotated[
+    list[str], typer.Option("--robots", help="Pattern of robots' names, as 'agv-*'; may be given again.")
+]
+
+
+@links.command("add")
+def add_link(
+    name: Name,
+    robots: RobotsOption,
+    expires_days: Expires = None,
+    database: DatabaseOption = DEFAULT,
+    database_password_file: PasswordFileOption = None,
+) -> None:
+    """Make an account and print its token, which is kept nowhere and shown this once."""
+    until = after_days(expires_days)
+    token = act_audited(
+        database_address(database, database_password_file),
+        "links add",
+        name,
+        " ".join(robots),
+        lambda connection: accounts.add_link(connection, name, robots, time.time(), until),
+    )
+    show_token(token, f"link {name}, for {' '.join(robots)}")
+
+
+@links.command("robots")
+def set_robots(
+    name: Name,
+    robots: RobotsOption,
+    database: DatabaseOption = DEFAULT,
+    database_password_file: PasswordFileOption = None,
+) -> None:
+    """Let the link speak for these robots and no others; it holds within a second."""
+    act_audited(
+        database_address(database, database_password_file),
+        "links robots",
+        name,
+        " ".join(robots),
+        lambda connection: accounts.set_robots(connection, name, robots),
+    )
+    typer.echo(f"link {name} speaks for {' '.join(robots)} now")
+
+
+links.command("rotate", help="Print a new token in place of the link's old one, whose connection ends.")(
+    issuing("link", "links rotate", accounts.rotate_link)
+)
+links.command("revoke", help="Revoke the link's token; its connection ends within a second.")(
+    revoking("link", "links revoke", accounts.revoke_link, "links rotate")
+)
+
+
+@links.command("list")
+def list_links(database: DatabaseOption = DEFAULT, database_password_file: PasswordFileOption = None) -> None:
+    """List the links."""
+    address = database_address(database, database_password_file)
+    for link in read_database(address, accounts.all_links):
+        typer.echo(f"{link.name}\t{' '.join(link.robots)}\t{state_of(link.token)}")
+
+
+# --- Sessions: which operators are connected ---
+
+sessions = typer.Typer(help="Connections of operators to the desk.", no_args_is_help=True)
+
+
+@sessions.command("list")
+def list_sessions(
+    everything: Annotated[bool, typer.Option("--all", help="Also those that have ended.")] = False,
+    limit: Annotated[int, typer.Option(help="How many at most.", min=1)] = 200,
+    database: DatabaseOption = DEFAULT,
+    database_password_file: PasswordFileOption = None,
+) -> None:
+    """List the open sessions, newest first."""
+    address = database_address(database, database_password_file)
+    found = read_database(address, lambda c: audit.list_sessions(c, everything=everything, limit=limit))
+    for session in found:
+        ended = ""
+        if session.ended_at is not None:
+            ended = f"\tended {local_time(session.ended_at)}: {session.reason or 'no reason given'}"
+        row = (session.id, session.operator, session.role, session.address, local_time(session.began_at))
+        typer.echo("\t".join(row) + ended)
+
+
+@sessions.command("end")
+def end_session(
+    session: Annotated[str, typer.Argument(help="The session's id, or how it begins.")],
+    reason: Annotated[str, typer.Option(help="Why; the operator is told.")] = "ended by the site",
+    database: DatabaseOption = DEFAULT,
+    database_password_file: PasswordFileOption = None,
+) -> None:
+    """End a session within a second; the token stays valid."""
+    address = database_address(database, database_password_file)
+    ended = act_audited(
+        address, "sessions end", session, reason, lambda c: audit.end_session(c, session, time.time(), reason)
+    )
+    typer.echo(f"session {ended.id} of {ended.operator} is ended")

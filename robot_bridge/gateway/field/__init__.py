@@ -1,0 +1,1 @@
+"""The field page: the site and its robots on a phone, with the emergency stop."""

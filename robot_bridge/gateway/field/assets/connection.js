@@ -1,0 +1,252 @@
+/** The link to the gateway: JSON-RPC over one WebSocket, connected again for as long as the page is open. */
+
+export const ASK_EVERY_MS = 1000;
+/** Milliseconds without any answer after which the gateway counts as silent. */
+export const SILENT_AFTER_MS = 3000;
+const ANSWER_WITHIN_MS = 10000;
+const FIRST_WAIT_MS = 500;
+const LONGEST_WAIT_MS = 8000;
+/** Close codes that say that the token, or the session, does not hold any more. */
+const ENDED = new Set([4003, 4004]);
+
+/** An error that the gateway answered with, or the absence of an answer (`silent`). */
+export class AnswerError extends Error {
+  constructor(message, { silent = false, sent = true } = {}) {
+    super(message);
+    this.silent = silent;
+    this.sent = sent;
+  }
+}
+
+/** Return an id that nobody else has; crypto.randomUUID is there for pages with https only. */
+export function newId() {
+  const bytes = crypto.getRandomValues(new Uint8Array(16));
+  return Array.from(bytes, (byte) => byte.toString(16).padStart(2, "0")).join("");
+}
+
+function address() {
+  return `${location.protocol === "https:" ? "wss" : "ws"}://${location.host}/desk`;
+}
+
+function openSocket(token) {
+  const socket = new WebSocket(address(), token ? ["robot-bridge", `token.${token}`] : []);
+  socket.binaryType = "arraybuffer";
+  return socket;
+}
+
+/**
+ * Events: `up` (detail: the answer to hello), `down`, `ended` (detail: why the session is over), `notice`
+ * (detail: {method, params}), `positions` (detail: {robots: rows by name, everything, removed}).
+ */
+export class Connection extends EventTarget {
+  constructor() {
+    super();
+    this.token = "";
+    this.isUp = false;
+    this.byPolling = false;
+    this.received = 0;
+    this.heardAt = null;
+    this._socket = null;
+    this._waiting = new Map();
+    this._nextId = 1;
+    this._wait = FIRST_WAIT_MS;
+    this._timer = null;
+    this._wanted = false;
+    setInterval(() => this._watch(), ASK_EVERY_MS);
+    window.addEventListener("online", () => this._retryNow());
+    document.addEventListener("visibilitychange", () => document.hidden || this._retryNow());
+  }
+
+  start(token) {
+    this.stop();
+    this.token = token;
+    this._wanted = true;
+    this._wait = FIRST_WAIT_MS;
+    this._open();
+  }
+
+  stop() {
+    this._wanted = false;
+    clearTimeout(this._timer);
+    this._drop();
+  }
+
+  /** Seconds since the gateway was heard last, null before it was. */
+  silence() {
+    return this.heardAt === null ? null : (performance.now() - this.heardAt) / 1000;
+  }
+
+  /** Ask for something; rejects with AnswerError when it is refused, not sent or not answered. */
+  ask(method, params, within = ANSWER_WITHIN_MS) {
+    const socket = this._socket;
+    if (!socket || socket.readyState !== WebSocket.OPEN) {
+      return Promise.reject(new AnswerError("not connected", { silent: true, sent: false }));
+    }
+    const id = this._nextId++;
+    return new Promise((resolve, reject) => {
+      const timer = setTimeout(() => {
+        this._waiting.delete(id);
+        reject(new AnswerError("no answer", { silent: true }));
+      }, within);
+      this._waiting.set(id, { resolve, reject, timer });
+      socket.send(JSON.stringify({ jsonrpc: "2.0", id, method, params }));
+    });
+  }
+
+  /** Ask on a socket of its own, past whatever is the matter with the other one. */
+  askAside(method, params, within) {
+    return new Promise((resolve, reject) => {
+      const socket = openSocket(this.token);
+      const end = (then, value) => {
+        clearTimeout(timer);
+        socket.onclose = socket.onmessage = null;
+        socket.close();
+        then(value);
+      };
+      const timer = setTimeout(() => end(reject, new AnswerError("no answer", { silent: true })), within);
+      socket.onopen = () => socket.send(JSON.stringify({ jsonrpc: "2.0", id: 1, method, params }));
+      socket.onclose = () => end(reject, new AnswerError("not connected", { silent: true, sent: false }));
+      socket.onmessage = ({ data }) => {
+        const answer = typeof data === "string" ? JSON.parse(data) : {};
+        if (answer.id !== 1) return;
+        if (answer.error) end(reject, new AnswerError(answer.error.message));
+        else end(resolve, answer.result);
+      };
+    });
+  }
+
+  /** Choose how positions come: told when they change, or asked for every 600 ms. */
+  choosePositions(byPolling, rate) {
+    this.byPolling = byPolling;
+    clearInterval(this._polling);
+    if (!this.isUp) return;
+    if (!byPolling) {
+      this.ask("subscribe", { rate, form: "columns" }).catch(() => {});
+      return;
+    }
+    // The rate of a subscription cannot be 0: one in a hundred seconds, and the rest is asked for.
+    this.ask("subscribe", { rate: 0.01, form: "columns" }).catch(() => {});
+    this._polling = setInterval(() => {
+      this.ask("get_positions", {}).then((answer) => this._tell("positions", rowsOf(answer)), () => {});
+    }, 600);
+  }
+
+  _open() {
+    const socket = openSocket(this.token);
+    this._socket = socket;
+    socket.onopen = async () => {
+      try {
+        const hello = await this.ask("hello", { operator: "field page", protocol: 1 }, SILENT_AFTER_MS);
+        this.isUp = true;
+        this._wait = FIRST_WAIT_MS;
+        this._tell("up", hello);
+      } catch (error) {
+        if (!error.silent) this._tell("refused", error.message);
+        this._drop();
+      }
+    };
+    socket.onmessage = ({ data }) => this._read(data);
+    socket.onclose = ({ code, reason }) => this._closed(socket, code, reason);
+  }
+
+  _read(data) {
+    this.heardAt = performance.now();
+    this.received += data.byteLength ?? data.length;
+    if (typeof data !== "string") {
+      this._tell("positions", tableOf(data));
+      return;
+    }
+    const message = JSON.parse(data);
+    if (message.id === undefined || message.id === null) {
+      if (message.method === "positions") this._tell("positions", rowsOf(message.params));
+      else if (message.method) this._tell("notice", message);
+      return;
+    }
+    const one = this._waiting.get(message.id);
+    if (!one) return;
+    this._waiting.delete(message.id);
+    clearTimeout(one.timer);
+    if (message.error) one.reject(new AnswerError(message.error.message));
+    else one.resolve(message.result);
+  }
+
+  _closed(socket, code, reason) {
+    if (socket !== this._socket) return;
+    this._drop();
+    if (ENDED.has(code)) {
+      this._wanted = false;
+      this._tell("ended", reason);
+    }
+    if (!this._wanted) return;
+    // Not all phones at once when the gateway is back.
+    this._timer = setTimeout(() => this._open(), this._wait * (0.5 + Math.random() / 2));
+    this._wait = Math.min(2 * this._wait, LONGEST_WAIT_MS);
+  }
+
+  _drop() {
+    const socket = this._socket, wasUp = this.isUp;
+    this._socket = null;
+    this.isUp = false;
+    clearInterval(this._polling);
+    for (const { reject, timer } of this._waiting.values()) {
+      clearTimeout(timer);
+      reject(new AnswerError("no answer", { silent: true }));
+    }
+    this._waiting.clear();
+    if (socket) {
+      socket.onopen = socket.onmessage = socket.onclose = null;
+      socket.close();
+    }
+    if (wasUp) this._tell("down", null);
+  }
+
+  _watch() {
+    if (!this.isUp) return;
+    if (this.silence() * 1000 > SILENT_AFTER_MS + ASK_EVERY_MS) {
+      this._drop();
+      this._wait = FIRST_WAIT_MS;
+      this._retryNow();
+      return;
+    }
+    this.ask("hello", { operator: "field page", protocol: 1 }).then(
+      (hello) => this._tell("hello", hello),
+      () => {},
+    );
+  }
+
+  _retryNow() {
+    if (!this._wanted || this._socket) return;
+    clearTimeout(this._timer);
+    this._open();
+  }
+
+  _tell(type, detail) {
+    this.dispatchEvent(new CustomEvent(type, { detail }));
+  }
+}
+
+/** Read positions that came as rows. */
+function rowsOf(params) {
+  const robots = new Map(params.robots.map((one) => [one.robot, one]));
+  return { robots, everything: params.everything === true, removed: params.removed ?? [] };
+}
+
+const WORDS = new Set(["state", "link", "status", "command", "theta_from", "paths", "abilities"]);
+
+/** Read positions that came as a table of numbers behind a JSON head (docs/integrator.md, "The desk"). */
+export function tableOf(buffer) {
+  const begin = 4 + new DataView(buffer).getUint32(0, true);
+  const head = JSON.parse(new TextDecoder().decode(new Uint8Array(buffer, 4, begin - 4))).params;
+  const numbers = new DataView(buffer, Math.ceil(begin / 8) * 8);
+  const robots = new Map();
+  head.robots.forEach((robot, row) => {
+    const found = { robot };
+    head.columns.forEach((name, column) => {
+      const value = numbers.getFloat64(8 * (column * head.robots.length + row), true);
+      if (Number.isNaN(value)) return;
+      found[name] = WORDS.has(name) ? head.words[value] : name === "stopped" ? value === 1 : value;
+    });
+    robots.set(robot, found);
+  });
+  return { robots, everything: head.everything === true, removed: head.removed ?? [] };
+}

@@ -1,0 +1,536 @@
+/** The field page: wires the connection, the map, the emergency stop and what is said of robots. */
+
+import { Connection, newId, SILENT_AFTER_MS } from "/field/connection.js";
+import { SiteMap } from "/field/map.js";
+import { EmergencyStop } from "/field/stop.js";
+import { firstLanguage, LANGUAGES, setLanguage, tr, translatePage } from "/field/texts.js";
+
+const TOKEN = "fleet-field-token", LANGUAGE = "fleet-field-language";
+/** Bytes a minute that positions may take on a phone's contract, and the rates that are chosen from. */
+const BUDGET = 900_000;
+const RATES = [1, 0.5, 0.25, 0.1, 0.05];
+const LISTED = 50;
+const by = (id) => document.getElementById(id);
+
+class Field {
+  constructor() {
+    this.robots = new Map();
+    this.tasks = new Map();
+    this.alarms = { geofence: [], nearness: [], links: [], suspensions: [] };
+    this.account = null;
+    this.selected = null;
+    this.place = null;
+    this.site = null;
+    this.traffic = [];
+    this.rate = RATES[0];
+    this.connection = new Connection();
+    this.map = new SiteMap(by("map"));
+    this.stop = new EmergencyStop(
+      this.connection,
+      { button: by("stop"), state: by("stop-state"), clear: by("clear") },
+      () => this.account?.role ?? null,
+    );
+    this.banners = new Map();
+    this._listenToGateway();
+    this._listenToPage();
+    setInterval(() => this._tick(), 1000);
+  }
+
+  async begin() {
+    this._chooseLanguage(firstLanguage(stored(LANGUAGE), navigator.languages ?? []));
+    const given = new URLSearchParams(location.hash.slice(1)).get("token");
+    const misplaced = new URLSearchParams(location.search).has("token");
+    // A token is neither to stay in the address nor in the history.
+    if (given !== null || misplaced) history.replaceState(null, "", location.pathname);
+    if (misplaced) {
+      this._showLogin(tr("A token in the address is in logs and histories. Have it replaced, and sign in below."));
+      return;
+    }
+    await this._signIn(given ?? stored(TOKEN) ?? "", { quietly: given === null });
+  }
+
+  // --- the account
+
+  async _signIn(token, { remember = false, quietly = false } = {}) {
+    this._setConnection("connecting");
+    let answer;
+    try {
+      answer = await fetch("/field/site.json", { headers: token ? { Authorization: `Bearer ${token}` } : {} });
+    } catch {
+      // Not reached: the page tries on, and signs in when there is a network again.
+      this._retry = setTimeout(() => this._signIn(token, { remember, quietly }), 2000);
+      this._setConnection("none");
+      return;
+    }
+    if (answer.status === 401 || answer.status === 403 || answer.status === 429) {
+      const reason = await answer.text();
+      this._showLogin(quietly && !token ? "" : reason);
+      return;
+    }
+    keep(TOKEN, token, remember || localStorage.getItem(TOKEN) === token);
+    by("login").hidden = true;
+    this.token = token;
+    await this._readSite(answer);
+    this.connection.start(token);
+  }
+
+  _showLogin(reason) {
+    this.account = null;
+    by("login-reason").textContent = reason;
+    by("login").hidden = false;
+    this._setConnection("out");
+    by("token").focus();
+  }
+
+  _signOut(reason = "") {
+    keep(TOKEN, "", false);
+    this.connection.stop();
+    this._close("menu");
+    this._showLogin(reason);
+  }
+
+  async _readSite(answer) {
+    if (!answer.ok) {
+      this._banner("site", tr("The site is not drawn: {reason}", { reason: await answer.text() }));
+      return;
+    }
+    const site = await answer.json();
+    this._banner("site", "");
+    this.site = site;
+    by("site").textContent = document.title = site.name;
+    this.map.showSite(site);
+    if (site.left_out.length) this._banner("left-out", tr("Too much to draw: {what} are not all shown.", { what: site.left_out.join(", ") }));
+    const mine = document.querySelector('meta[name="gateway"]').content;
+    if (site.gateway !== mine) this._offerReload(mine, site.gateway);
+  }
+
+  _offerReload(old, fresh) {
+    const button = element("button", tr("Load the new page"));
+    button.type = "button";
+    button.onclick = () => location.reload();
+    this._banner("upgrade", tr("The gateway has been upgraded from {old} to {new}.", { old, new: fresh }), button);
+  }
+
+  // --- what the gateway tells
+
+  _listenToGateway() {
+    const gateway = this.connection, on = (type, act) => gateway.addEventListener(type, ({ detail }) => act(detail));
+    on("up", (hello) => {
+      this._greeted(hello);
+      gateway.choosePositions(by("updates").value === "poll", this.rate);
+      gateway.ask("get_commands", { limit: 200 }).then(({ commands }) => commands.reverse().forEach((one) => this._task(one)), () => {});
+      // The site may be another publication, or the gateway another version, than before the link was lost.
+      fetch("/field/site.json", { headers: this.token ? { Authorization: `Bearer ${this.token}` } : {}, method: "GET" })
+        .then(async (answer) => {
+          const site = answer.ok ? await answer.json() : null;
+          if (site && (site.version !== this.site?.version || site.gateway !== document.querySelector('meta[name="gateway"]').content)) {
+            await this._readSite(new Response(JSON.stringify(site)));
+          }
+        }, () => {});
+    });
+    on("hello", (hello) => this._greeted(hello));
+    on("down", () => this._tick());
+    on("ended", (reason) => this._signOut(reason));
+    on("refused", (reason) => this._banner("refused", reason));
+    on("positions", (positions) => this._positions(positions));
+    on("notice", (notice) => this._notice(notice));
+  }
+
+  _greeted(hello) {
+    const before = this.account?.role;
+    this.account = { name: hello.operator, role: hello.role };
+    this._banner("refused", "");
+    this.stop.update(hello.emergency);
+    by("account").textContent = tr("{name}, {role}", this.account);
+    if (before !== hello.role) this._showRobot();
+    this._setConnection("up");
+  }
+
+  _positions({ robots, everything, removed }) {
+    if (everything) this.robots.clear();
+    for (const name of removed) this.robots.delete(name);
+    const at = performance.now();
+    for (const [name, one] of robots) this.robots.set(name, { ...one, at });
+    this._draw();
+  }
+
+  _notice({ method, params }) {
+    if (method === "emergency") this.stop.update(params);
+    else if (method === "command") this._task(params);
+    else if (method === "geofence") this.alarms.geofence = params.alarms.filter((one) => one.current);
+    else if (method === "nearness") this.alarms.nearness = params.alarms;
+    else if (method === "links") this.alarms.links = params.links.filter((one) => !one.up);
+    else if (method === "suspensions") this.alarms.suspensions = params.robots;
+    else if (method === "site") this._newSite();
+    this._showAlarms();
+  }
+
+  _newSite() {
+    fetch("/field/site.json", { headers: this.token ? { Authorization: `Bearer ${this.token}` } : {} })
+      .then((answer) => this._readSite(answer), () => {});
+  }
+
+  _task(report) {
+    this.tasks.set(report.robot, report);
+    if (report.robot === this.selected) this._showRobot();
+  }
+
+  // --- what is shown
+
+  _tick() {
+    const silent = this.connection.silence(), isSilent = this.connection.isUp ? silent > SILENT_AFTER_MS / 1000 : true;
+    if (this.account) this._setConnection(isSilent ? "silent" : "up");
+    const seconds = Math.round(silent ?? 0);
+    this._banner(
+      "network",
+      !navigator.onLine
+        ? tr("This phone has no network.")
+        : this.account && isSilent
+          ? tr("The gateway does not answer. Robots are shown where they were {s} s ago.", { s: seconds })
+          : "",
+      null,
+      "bad",
+    );
+    this._measure();
+    if (this.selected) this._showRobot();
+    this._draw();
+    this.stop.show();
+  }
+
+  /** Keep to the budget of a phone's contract: fewer positions where there are many robots. */
+  _measure() {
+    this.traffic.push(this.connection.received);
+    if (this.traffic.length > 61) this.traffic.shift();
+    const minute = this.traffic.at(-1) - this.traffic[0];
+    by("traffic").textContent = tr("{kb} kB in the last minute", { kb: Math.round(minute / 1000) });
+    if (this.traffic.length < 6 || this.connection.byPolling) return;
+    const recent = ((this.traffic.at(-1) - this.traffic.at(-6)) / 5) * 60;
+    const slower = RATES[RATES.indexOf(this.rate) + 1];
+    if (recent > BUDGET && slower) {
+      this.rate = slower;
+      this.traffic = [this.connection.received];
+      this.connection.choosePositions(false, this.rate);
+    }
+  }
+
+  _setConnection(state) {
+    const seconds = Math.round(this.connection.silence() ?? 0);
+    const text = {
+      up: () => tr("connected"),
+      connecting: () => tr("connecting"),
+      none: () => tr("no answer for {s} s", { s: seconds }),
+      silent: () => tr("no answer for {s} s", { s: seconds }),
+      out: () => tr("not signed in"),
+    }[state]();
+    by("connection").textContent = text;
+    by("connection").className = state === "up" ? "up" : "down";
+  }
+
+  _draw() {
+    this.map.showRobots(this.robots.values(), this.selected, !this.connection.isUp);
+    if (!by("menu").hidden) this._list();
+    this._showAlarms();
+  }
+
+  _list() {
+    const wanted = by("search").value.trim().toLowerCase();
+    const names = [...this.robots.keys()].filter((name) => name.toLowerCase().includes(wanted)).sort();
+    const shown = names.slice(0, LISTED), list = by("robots");
+    while (list.children.length > shown.length) list.lastChild.remove();
+    shown.forEach((name, k) => {
+      const one = this.robots.get(name);
+      let button = list.children[k]?.firstChild;
+      if (!button) {
+        button = element("button");
+        button.type = "button";
+        button.onclick = () => this._select(button.dataset.robot, { close: true });
+        const item = element("li");
+        item.append(button);
+        list.append(item);
+      }
+      button.dataset.robot = name;
+      const text = `${name}: ${tr(one.state)}`;
+      if (button.textContent !== text) button.textContent = text;
+    });
+    const more = names.length - shown.length;
+    by("robots-more").textContent = more > 0 ? tr("{n} more: search for them", { n: more }) : names.length ? "" : tr("no robots");
+  }
+
+  _showAlarms() {
+    const { geofence, nearness, links, suspensions } = this.alarms;
+    const texts = [
+      ...[...this.robots.values()].filter((one) => one.state === "lost").map(({ robot }) => tr("{robot} is lost", { robot })),
+      ...geofence.map((one) => tr("{robot} is in {name}", one)),
+      ...nearness.map((one) => tr("{seen} is {m} m from {robot}", { ...one, m: one.metres.toFixed(1) })),
+      ...links.map((one) => tr("link {link}: {text}", one)),
+      ...suspensions.map((one) => tr("robot {robot} is kept out: {text}", { robot: one.robot, text: one.reason })),
+    ];
+    const text = texts.length ? `${tr("Menu")} (${texts.length} !)` : tr("Menu");
+    if (by("menu").hidden && by("menu-button").textContent !== text) by("menu-button").textContent = text;
+    const list = by("alarms"), said = texts.length ? texts.slice(0, LISTED) : [tr("none")];
+    if (list.dataset.said === said.join("\n")) return;
+    list.dataset.said = said.join("\n");
+    list.replaceChildren(...said.map((one) => element("li", one)));
+  }
+
+  // --- one robot
+
+  _select(name, { close = false } = {}) {
+    this.selected = name;
+    by("robot-answer").textContent = "";
+    this._endTarget();
+    if (close) this._close("menu");
+    by("robot").hidden = name === null;
+    if (name !== null) {
+      this._showRobot();
+      this.map.lookAt(name, by("robot").offsetHeight);
+      if (close) by("robot-close").focus();
+    }
+    this._draw();
+  }
+
+  _showRobot() {
+    const name = this.selected;
+    if (name === null || !by("target-panel").hidden) return;
+    const one = this.robots.get(name), task = this.tasks.get(name), role = this.account?.role ?? "viewer";
+    by("robot-name").textContent = name;
+    const since = one ? (performance.now() - one.at) / 1000 : 0, facts = [];
+    if (one) {
+      facts.push(tr(one.state), tr("heard {s} s ago", { s: Math.round(one.age + since) }));
+      if (one.x === undefined) facts.push(tr("has not said where it is"));
+      else facts.push(`${(one.v ?? 0).toFixed(1)} m/s`, tr("position {s} s old", { s: Math.round((one.pose_age ?? 0) + since) }));
+      if (one.battery !== undefined) facts.push(tr("battery {n} %", { n: Math.round(one.battery) }));
+      if (one.status) facts.push(one.status);
+    }
+    by("robot-facts").textContent = facts.join(" · ");
+    const step = task?.steps?.at(-1);
+    by("robot-task").textContent = task
+      ? tr("Last task: {task}", { task: [task.op, task.state, step?.reason].filter(Boolean).join(", ") })
+      : "";
+    const may = role !== "viewer";
+    for (const id of ["abort", "pause", "resume", "target", "coordinates"]) by(id).disabled = !may;
+    if (!may) this._answer("robot-answer", tr("Your role, {role}, may only look.", { role }), true);
+  }
+
+  async _do(method, params, into = "robot-answer") {
+    this._answer(into, "…");
+    try {
+      const result = await this.connection.ask(method, params);
+      this._answer(into, tr("sent"));
+      return result;
+    } catch (error) {
+      this._answer(into, failure(error), true);
+      return null;
+    }
+  }
+
+  _answer(id, text, refused = false) {
+    by(id).textContent = text;
+    by(id).classList.toggle("refused", refused);
+  }
+
+  async _resume() {
+    const robot = this.selected, queue = await this._do("get_queue", { robot });
+    const found = queue?.queues?.[0];
+    if (found) await this._do("resume_queue", { robot, revision: found.revision });
+  }
+
+  // --- a target
+
+  _beginTarget(byCoordinates) {
+    this.place = null;
+    this.map.markTarget(null);
+    this.map.isChoosing = !byCoordinates;
+    by("map").classList.toggle("choosing", !byCoordinates);
+    by("place-form").hidden = !byCoordinates;
+    by("cone").checked = false;
+    by("robot").hidden = true;
+    by("target-panel").hidden = false;
+    by("target-title").textContent = tr("Target of {robot}", { robot: this.selected });
+    by("target-help").textContent = tr(byCoordinates ? "Enter the coordinates, then send." : "Tap the place on the map.");
+    by("send").disabled = !byCoordinates;
+    this._answer("target-answer", "");
+    this._labelPlace();
+    this.map.lookAt(this.selected, by("target-panel").offsetHeight);
+  }
+
+  _endTarget() {
+    this.map.isChoosing = false;
+    by("map").classList.remove("choosing");
+    this.map.markTarget(null);
+    by("target-panel").hidden = true;
+    by("robot").hidden = this.selected === null;
+  }
+
+  _choose(place) {
+    this.place = place;
+    this.map.markTarget(place);
+    by("target-help").textContent = tr("To {place}. Tap elsewhere to change it, then send.", {
+      place: `${place.lat.toFixed(6)}, ${place.lng.toFixed(6)}`,
+    });
+    by("send").disabled = false;
+  }
+
+  _labelPlace() {
+    const geographic = by("place-crs").value === "EPSG:4326";
+    by("place-x-label").textContent = tr(geographic ? "Longitude, degrees" : "x (easting), metres");
+    by("place-y-label").textContent = tr(geographic ? "Latitude, degrees" : "y (northing), metres");
+  }
+
+  _entered() {
+    const numbers = [by("place-x"), by("place-y")].map((input) => {
+      const text = input.value.trim().replace(",", ".");
+      if (text === "" || !Number.isFinite(Number(text))) throw new Error(tr("{text} is not a number", { text: text || "–" }));
+      return Number(text);
+    });
+    return { x: numbers[0], y: numbers[1], crs: by("place-crs").value };
+  }
+
+  async _send() {
+    let where;
+    try {
+      where = by("place-form").hidden ? { x: this.place.lng, y: this.place.lat, crs: "EPSG:4326" } : this._entered();
+    } catch (error) {
+      this._answer("target-answer", error.message, true);
+      return;
+    }
+    by("send").disabled = true;
+    const params = { positions: [{ robot: this.selected, ...where, cone: by("cone").checked }] };
+    const sent = await this._do("set_positions", params, "target-answer");
+    by("send").disabled = false;
+    if (sent) {
+      sent.commands.forEach((one) => this._task(one));
+      this._endTarget();
+      this._answer("robot-answer", tr("sent"));
+      this._showRobot();
+    }
+  }
+
+  // --- the page itself
+
+  _listenToPage() {
+    const on = (id, type, act) => by(id).addEventListener(type, act);
+    on("menu-button", "click", () => (by("menu").hidden ? this._openMenu() : this._close("menu")));
+    on("search", "input", () => this._list());
+    on("robot-close", "click", () => this._select(null));
+    on("abort", "click", () => this._do("abort", { command: newId(), robot: this.selected, reason: "field page" }));
+    on("pause", "click", () => this._do("pause_robot", { robot: this.selected, reason: "field page" }));
+    on("resume", "click", () => this._resume());
+    on("target", "click", () => this._beginTarget(false));
+    on("coordinates", "click", () => this._beginTarget(true));
+    on("place-crs", "change", () => this._labelPlace());
+    on("place-form", "submit", (event) => event.preventDefault());
+    on("send", "click", () => this._send());
+    on("cancel", "click", () => (this._endTarget(), this._showRobot()));
+    on("whole", "click", () => this.map.showWhole());
+    on("here", "click", () => this._findMe());
+    on("sign-out", "click", () => this._signOut());
+    on("language", "change", () => this._chooseLanguage(by("language").value));
+    on("updates", "change", () => this.connection.choosePositions(by("updates").value === "poll", this.rate));
+    on("login-form", "submit", (event) => {
+      event.preventDefault();
+      this._signIn(by("token").value.trim(), { remember: by("remember").checked });
+      by("token").value = "";
+    });
+    this.map.addEventListener("robot", ({ detail }) => this._select(detail));
+    this.map.addEventListener("place", ({ detail }) => this._choose(detail));
+    this.map.addEventListener("tiles-failed", () => this._banner("tiles", tr("The background map does not answer; everything else works.")));
+    this.map.addEventListener("tiles-came", () => this._banner("tiles", ""));
+    new ResizeObserver(() => this.map.resized()).observe(by("map"));
+    window.addEventListener("hashchange", () => location.hash.includes("token=") && this.begin());
+    for (const [code, name] of Object.entries(LANGUAGES)) {
+      const option = element("option", name);
+      option.value = code;
+      option.lang = code;
+      by("language").append(option);
+    }
+  }
+
+  _openMenu() {
+    by("menu").hidden = false;
+    by("menu-button").textContent = tr("Map");
+    by("menu-button").setAttribute("aria-expanded", "true");
+    this._list();
+  }
+
+  _close(id) {
+    by(id).hidden = true;
+    by("menu-button").setAttribute("aria-expanded", "false");
+    this._showAlarms();
+  }
+
+  _chooseLanguage(language) {
+    setLanguage(language);
+    keep(LANGUAGE, language, true);
+    by("language").value = language;
+    translatePage();
+    this._labelPlace();
+    by("alarms").dataset.said = "";
+    this._showAlarms();
+    this._showRobot();
+    this.stop.show();
+  }
+
+  _findMe() {
+    if (!window.isSecureContext) {
+      this._banner("me", tr("The position of a phone is given to pages with https only."));
+      return;
+    }
+    let first = true;
+    if (this._watching !== undefined) navigator.geolocation.clearWatch(this._watching);
+    this._watching = navigator.geolocation.watchPosition(
+      ({ coords }) => {
+        const place = [coords.latitude, coords.longitude];
+        this.map.showMe(place, coords.accuracy);
+        this._banner("me", tr("You are here, within {m} m", { m: Math.round(coords.accuracy) }));
+        if (first) this.map.centreOn(place);
+        first = false;
+      },
+      (error) => this._banner("me", tr("This phone does not say where it is: {reason}", { reason: error.message })),
+      { enableHighAccuracy: true },
+    );
+  }
+
+  _banner(id, text, more = null, kind = "") {
+    let one = this.banners.get(id);
+    if (!text) {
+      one?.remove();
+      this.banners.delete(id);
+      return;
+    }
+    if (!one) {
+      one = element("p");
+      by("banners").append(one);
+      this.banners.set(id, one);
+    }
+    one.className = kind;
+    if (one.firstChild?.textContent === text && !more) return;
+    one.replaceChildren(text, ...(more ? [more] : []));
+  }
+}
+
+function failure(error) {
+  if (!error.silent) return tr("Refused: {reason}", { reason: error.message });
+  return error.sent
+    ? tr("No answer: it is not known whether this was done. Look at the last task.")
+    : tr("Not sent: the gateway does not answer.");
+}
+
+function element(name, text = "") {
+  const made = document.createElement(name);
+  made.textContent = text;
+  return made;
+}
+
+/** Return what is kept in this tab, or on this phone. */
+function stored(key) {
+  return sessionStorage.getItem(key) ?? localStorage.getItem(key);
+}
+
+function keep(key, value, onPhone) {
+  sessionStorage.removeItem(key);
+  localStorage.removeItem(key);
+  if (value) (onPhone ? localStorage : sessionStorage).setItem(key, value);
+}
+
+new Field().begin();

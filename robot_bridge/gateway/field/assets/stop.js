@@ -1,0 +1,144 @@
+/** The emergency stop: sent at the touch, again until it is answered, and never silent about it. */
+
+import { newId } from "/field/connection.js";
+import { tr } from "/field/texts.js";
+
+const FIRST_TRY_MS = 900;
+const NEXT_TRY_MS = 2000;
+const BETWEEN_MS = 300;
+/** Shown as many names as fit. */
+const NAMES = 5;
+
+export class EmergencyStop {
+  /** `who` returns the role of this phone, null where it is not signed in. */
+  constructor(connection, { button, state, clear }, who) {
+    this._connection = connection;
+    this._button = button;
+    this._state = state;
+    this._clear = clear;
+    this._who = who;
+    this._trying = null;
+    this._report = null;
+    this._failure = "";
+    this._armed = null;
+    // At the touch, and for a second thumb on the glass as well, for which there is no click.
+    button.addEventListener("pointerdown", (event) => {
+      event.preventDefault();
+      button.classList.add("pressed");
+      this.press();
+    });
+    for (const type of ["pointerup", "pointercancel", "pointerleave"]) {
+      button.addEventListener(type, () => button.classList.remove("pressed"));
+    }
+    button.addEventListener("keydown", (event) => {
+      if ((event.key === "Enter" || event.key === " ") && !event.repeat) this.press();
+    });
+    // Assistive programs send a click alone.
+    button.addEventListener("click", (event) => event.detail === 0 && event.pointerType === "" && this.press());
+    clear.addEventListener("click", () => this._pressedClear());
+    setInterval(() => this._trying && this.show(), 200);
+  }
+
+  /** Stop every robot. What was begun goes on until it is answered. */
+  press() {
+    navigator.vibrate?.(80);
+    const role = this._who();
+    this._failure = "";
+    if (role === null) {
+      this._failure = tr("NOT STOPPED: {reason}", { reason: tr("this phone is not signed in. Use the robots' own stop buttons.") });
+    } else if (role === "viewer") {
+      this._failure = tr("NOT STOPPED: {reason}", {
+        reason: tr("your role, {role}, may not stop robots. Use the robots' own stop buttons.", { role }),
+      });
+    } else if (!this._trying) {
+      this._trying = { command: newId(), since: performance.now() };
+      this._try(this._trying);
+    }
+    this.show();
+  }
+
+  /** Take over what the gateway says of the stop. */
+  update(report) {
+    this._report = report;
+    this.show();
+  }
+
+  show() {
+    const lines = [], waited = this._trying ? (performance.now() - this._trying.since) / 1000 : 0;
+    if (this._trying) {
+      lines.push(
+        waited < FIRST_TRY_MS / 1000
+          ? tr("Sending the stop…")
+          : tr("NOT CONFIRMED for {s} s: the gateway does not answer. Use the robots' own stop buttons. It is tried again.", { s: waited.toFixed(0) || 1 }),
+      );
+    }
+    if (this._failure) lines.push(this._failure);
+    const stop = this._report;
+    if (stop?.in_force) {
+      lines.push(
+        tr("STOP IN FORCE, by {who}: {acknowledged} of {robots} robots have answered, {standing} stand.", { ...stop, who: stop.by }),
+      );
+      if (stop.waiting.length) lines.push(tr("Not answered: {robots}", { robots: named(stop.waiting) }));
+      if (stop.refused.length) lines.push(tr("Refused: {robots}", { robots: named(stop.refused) }));
+      if (!stop.stored) lines.push(tr("It is not in the database yet; it holds all the same."));
+    }
+    const text = lines.join(" ");
+    if (this._state.textContent !== text) this._state.textContent = text;
+    this._state.classList.toggle("bad", Boolean(this._trying || this._failure || stop?.in_force));
+    this._button.textContent = tr("EMERGENCY STOP");
+    this._clear.hidden = !(stop?.in_force && this._who() === "supervisor" && this._connection.isUp);
+    this._clear.textContent = tr(this._armed ? "Press again to clear it: robots may drive" : "Clear the emergency stop");
+  }
+
+  async _try(stop) {
+    for (let within = FIRST_TRY_MS, aside = false; this._trying === stop; within = NEXT_TRY_MS, aside = true) {
+      const params = { command: stop.command, reason: "field page" };
+      try {
+        const report = aside
+          ? await this._connection.askAside("emergency_stop", params, within)
+          : await this._connection.ask("emergency_stop", params, within);
+        this._trying = null;
+        this.update(report);
+      } catch (error) {
+        if (!error.silent) {
+          this._trying = null;
+          this._failure = tr("NOT STOPPED: {reason}", { reason: error.message });
+          this.show();
+        } else if (this._who() === null) {
+          this._trying = null;
+          this.press();
+        } else {
+          this.show();
+          await new Promise((resolve) => setTimeout(resolve, BETWEEN_MS));
+        }
+      }
+    }
+  }
+
+  _pressedClear() {
+    if (!this._armed) {
+      this._armed = setTimeout(() => this._disarm(), 4000);
+      this.show();
+      return;
+    }
+    this._disarm();
+    const { stop } = this._report;
+    this._connection.ask("clear_emergency_stop", { reason: "cleared at the field page", stop }).then(
+      (report) => this.update(report),
+      (error) => {
+        this._failure = tr("Refused: {reason}", { reason: error.message });
+        this.show();
+      },
+    );
+  }
+
+  _disarm() {
+    clearTimeout(this._armed);
+    this._armed = null;
+    this.show();
+  }
+}
+
+function named(robots) {
+  return robots.slice(0, NAMES).join(", ") + (robots.length > NAMES ? ` +${robots.length - NAMES}` : "");
+}
