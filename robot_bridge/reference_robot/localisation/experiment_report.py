@@ -31,6 +31,7 @@ _HEADS = {
     "odometry_end_m": "odometry alone, at the end [m]",
     "lost": "scans lost",
     "wrong": "scans wrong, unsaid",
+    "within": "within twice its accuracy",
     "found_m": "found after [m]",
     "update_ms": "update [ms]",
     "end_m": "end, off by [m]",
@@ -46,10 +47,12 @@ _HEADS = {
 class Figures:
     """One row of the table.
 
-    Errors count the scans at which the robot does not say that it is lost; ``lost`` are the others, ``wrong``
-    those at which it is more than :data:`WRONG` away and does not say so. ``found_m`` are metres from where
-    it was switched on or carried to until it was within :data:`FOUND` for good. ``update_ms`` is the median
-    of the processor's time. ``end_m`` and ``end_deg`` tell how far from its goal it really stood in the end.
+    Errors count the scans at which the robot does not say that it is lost; ``lost`` are the others,
+    ``wrong`` those at which it is more than :data:`WRONG` away and does not say so. ``within`` is the
+    share of scans at which it is at most twice as far away as the accuracy that it states, which is a
+    standard deviation: of a normal distribution 0.95. ``found_m`` are metres from where it was switched
+    on or carried to until it was within :data:`FOUND` for good. ``update_ms`` is the median of the
+    processor's time. ``end_m`` and ``end_deg`` tell how far from its goal it really stood in the end.
     What is None was not measured.
     """
 
@@ -64,6 +67,7 @@ class Figures:
     odometry_end_m: float
     lost: int
     wrong: int
+    within: float
     found_m: float
     update_ms: float
     end_m: float | None = None
@@ -98,6 +102,8 @@ def _figures(name: str, records: Sequence[Record]) -> Figures:
     turned = np.concatenate([heading_errors(record) for record in records])
     lost = np.concatenate([record.lost for record in records])
     sure, sure_turned = away[~lost], turned[~lost]
+    accuracy = np.concatenate([record.accuracy for record in records])[~lost]
+    within = float((sure <= 2 * accuracy).mean()) if len(sure) else math.nan
     if not len(sure):
         sure = sure_turned = np.array([math.nan])
     odometry = [math.dist(record.odometry[-1, :2], record.truth[-1, :2]) for record in records]
@@ -113,6 +119,7 @@ def _figures(name: str, records: Sequence[Record]) -> Figures:
         odometry_end_m=float(np.mean(odometry)),
         lost=int(lost.sum()),
         wrong=int((sure > WRONG).sum()),
+        within=within,
         found_m=max(_found_after(record) for record in records),
         update_ms=float(np.median(np.concatenate([record.seconds for record in records]))) * 1e3,
         **_measured(records),

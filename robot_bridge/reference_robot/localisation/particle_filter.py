@@ -35,10 +35,11 @@ from .world import walls_of
 class Belief:
     """Where the robot takes itself to be.
 
-    ``covariance`` is (3, 3) of x, y and theta, m² and rad²; ``share`` of the particles' weight is near
-    ``pose``; ``lost`` says that the robot does not know its place, or not
-    for sure yet; ``agreement`` is the share of the last scan's beams that are where the map has something;
-    ``spread`` is how far all particles are from ``pose``, metres (root mean square).
+    ``covariance`` is (3, 3) of x, y and theta, m² and rad²: the particles' own, and what wheels that are
+    wrong the same way all along would make of it; ``share`` of the particles' weight is near ``pose``;
+    ``lost`` says that the robot does not know its place, not for sure yet, or not well enough;
+    ``agreement`` is the share of the last scan's beams that are where the map has something; ``spread`` is
+    how far all particles are from ``pose``, metres (root mean square).
     """
 
     pose: TruePose
@@ -51,7 +52,7 @@ class Belief:
     @property
     def accuracy(self) -> float:
         """The standard deviation of the position along the axis on which it is largest, metres."""
-        return math.sqrt(max(float(np.linalg.eigvalsh(self.covariance[:2, :2])[-1]), 0.0))
+        return _largest_deviation(self.covariance)
 
 
 class ParticleFilter:
@@ -82,6 +83,10 @@ class ParticleFilter:
         """(N,), of sum 1."""
         self._slow = self._fast = 0.0
         self._agreement = 0.0
+        self._since_scan = math.inf
+        """Metres driven, and radians turned, since a scan was weighed."""
+        self._by_scale: NDArray[Any] = np.zeros(2)
+        """By how many metres the belief is off for each 1 that the wheels' scale is off, (2,)."""
         self._unsettled = 0.0
         """metres to drive until the place counts as found."""
         self._since_look = (math.inf, 0)
@@ -89,6 +94,8 @@ class ParticleFilter:
         self._since_fix = 0.0
         self._against: deque[bool] = deque(maxlen=settings.gps.of)
         """Which of the newest GPS positions are far from the belief."""
+        self._rival = False
+        """Whether another place had weight left when the robot, which is lost, looked for others last."""
         self._place: TruePose | None = None
         """The one place that the particles have been at while it counts as lost, moved on by the wheels."""
 
@@ -134,25 +141,30 @@ class ParticleFilter:
         """Move all particles as the odometry says, each a little otherwise."""
         settings, rng, count = self._settings, self._rng, len(self.particles)
         far = abs(motion.distance)
+        root = math.sqrt(far)
         if self._place is not None:
             self._unsettled = max(0.0, self._unsettled - far)
             self._place = moved(self._place, motion)
         self._since_fix += far
+        # Turned by a radian it sees as much else as driven by a metre.
+        self._since_scan += far + abs(motion.turn)
         self._since_look = self._since_look[0] + far, self._since_look[1]
         drift = math.radians(settings.drift_deg)
-        distance = rng.normal(motion.distance, settings.distance_noise * far + 1e-9, count)
-        turn_noise = math.hypot(settings.turn_noise * motion.turn, drift * math.sqrt(far)) + 1e-9
+        distance = rng.normal(motion.distance, settings.distance_noise * root + 1e-9, count)
+        turn_noise = math.hypot(settings.turn_noise * motion.turn, drift * root) + 1e-9
         turn = rng.normal(motion.turn, turn_noise, count)
-        side = rng.normal(0, settings.slip * far + 1e-9, count)
+        side = rng.normal(0, settings.slip * root + 1e-9, count)
         x, y, theta = self.particles.T
         middle = theta + turn / 2
         cos, sin = np.cos(middle), np.sin(middle)
+        self._by_scale = self._by_scale + motion.distance * np.array([self.weights @ cos, self.weights @ sin])
         self.particles = np.column_stack(
             [x + distance * cos - side * sin, y + distance * sin + side * cos, theta + turn]
         )
 
     def jitter(self, metres: float, radians: float) -> None:
         """Spread all particles a little (standard deviations), as moving does."""
+        self._since_scan += self._settings.standing.scan_worth
         spread = self._rng.normal(0, (metres, metres, radians), self.particles.shape)
         self.particles = self.particles + spread
 
@@ -162,7 +174,8 @@ class ParticleFilter:
 
     def settle(self, metres: float) -> None:
         """Count as much as ``metres`` of driving towards a place that is known for sure."""
-        self._unsettled = max(0.0, self._unsettled - metres)
+        if self._place is not None:
+            self._unsettled = max(0.0, self._unsettled - metres)
 
     def observe(self, ranges: NDArray[Any]) -> None:
         """Weigh all particles by a scan, (B,) metres: NaN without reading, infinite without echo.
@@ -175,11 +188,9 @@ class ParticleFilter:
             return
         fit, agreement = self._model.log_likelihood(self.particles, self._bearings[used], ranges[used])
         average = float(self.weights @ agreement)
-        worth = min(self._settings.beams_of_worth, len(used))
-        worth *= self._settings.recovery.scan_worth if self._unsettled else 1.0
+        worth = min(self._settings.beams_of_worth, len(used)) * self._scan_worth()
         logs = np.log(np.maximum(self.weights, 1e-300)) + worth * fit
-        weights = np.exp(logs - logs.max())
-        self.weights = weights / weights.sum()
+        self._weigh(np.exp(logs - logs.max()))
         self._agreement = float(self.weights @ agreement)
         self._fast += self._settings.fast * (average - self._fast) if self._fast else average
         if not self._unsettled:
@@ -201,8 +212,7 @@ class ParticleFilter:
             raise ReferenceRobotError(f"GPS position ({x}, {y}) is not finite; check the receiver")
         self._fix, self._since_fix = (x, y, deviation), 0.0
         squares = np.square(self.particles[:, :2] - (x, y)).sum(axis=1) / deviation**2
-        weights = self.weights * (np.exp(-0.5 * squares) + self._settings.gps.wrong)
-        self.weights = weights / weights.sum()
+        self._weigh(self.weights * (np.exp(-0.5 * squares) + self._settings.gps.wrong))
         believed_x, believed_y, _ = self.belief.pose
         away = math.hypot(believed_x - x, believed_y - y)
         self._against.append(away > self._settings.gps.far * deviation)
@@ -221,11 +231,41 @@ class ParticleFilter:
         place = weights @ poses[:, :2]
         off = np.column_stack([poses[:, :2] - place, _wrapped(poses[:, 2] - theta)])
         covariance = (weights[:, None] * off).T @ off
+        by_scale = self._settings.wheel_scale * self._by_scale
+        covariance[:2, :2] += np.outer(by_scale, by_scale)
         lost = self._unsettled > 0 or not share >= self._settings.recovery.share
+        lost = lost or _largest_deviation(covariance) >= self._settings.standing.lost_accuracy
         apart = self.particles[:, :2] - place
         spread = math.sqrt(float(self.weights @ np.square(apart).sum(axis=1)))
         pose = float(place[0]), float(place[1]), theta
         return Belief(pose, covariance, share, lost, self._agreement, spread)
+
+    def _scan_worth(self) -> float:
+        """Return how much of a scan's weight counts: scans of the same walls are wrong the same way."""
+        far, self._since_scan = self._since_scan, 0.0
+        if self._unsettled:
+            return self._settings.recovery.scan_worth
+        return min(1.0, far / self._settings.same_walls)
+
+    def _weigh(self, weights: NDArray[Any]) -> None:
+        """Give the particles other weights, (N,), of any sum.
+
+        The closer together the particles are then, the less of what the wheels' scale made of the place is
+        left: the gain of a Schmidt-Kalman filter, which knows of an error that it does not estimate.
+        """
+        before = self._place_covariance()
+        self.weights = weights / weights.sum()
+        if self._unsettled:
+            # Its place is found by scans and not by wheels.
+            self._by_scale = np.zeros(2)
+            return
+        self._by_scale = self._place_covariance() @ np.linalg.solve(before, self._by_scale)
+
+    def _place_covariance(self) -> NDArray[Any]:
+        off = self.particles[:, :2] - self.weights @ self.particles[:, :2]
+        # A millimetre, so that particles in one place have an inverse.
+        covariance: NDArray[Any] = (self.weights[:, None] * off).T @ off + 1e-6 * np.eye(2)
+        return covariance
 
     def _compare_places(self) -> None:
         """Begin to count again when the robot that is lost is most likely at another place than before."""
@@ -234,7 +274,8 @@ class ParticleFilter:
             return
         belief = self.belief
         recovery = self._settings.recovery
-        before, self._place = self._place, belief.pose if belief.share >= recovery.share else None
+        alone = belief.share >= recovery.share and not self._rival
+        before, self._place = self._place, belief.pose if alone else None
         if self._place is None:
             return
         if before is None or math.dist(before[:2], self._place[:2]) > recovery.place_m:
@@ -251,7 +292,8 @@ class ParticleFilter:
         self.particles = particles
         self.weights = np.full(len(particles), 1 / len(particles))
         self._slow = self._fast = 0.0
-        self._unsettled, self._place = 0.0, None
+        self._since_scan, self._by_scale = math.inf, np.zeros(2)
+        self._unsettled, self._place, self._rival = 0.0, None, False
         self._against.clear()
 
     def _together(self) -> NDArray[Any]:
@@ -285,6 +327,8 @@ class ParticleFilter:
         crowd = 1 / float(self.weights @ self.weights)
         if not looks and crowd > len(self.weights) / 2:
             return
+        if looks:
+            self._rival = self.belief.share < 1 - recovery.rival
         drawn = self.particles[low_variance(self.weights, len(self.weights), rng)]
         count = particles_for(occupied_bins(drawn, settings), settings)
         new = int(rng.binomial(count, max(lost, recovery.new_particles))) if looks else 0
@@ -315,7 +359,7 @@ class ParticleFilter:
         """Return poses where the scan fits, (count, 3)."""
         if self._search is None:
             walls = walls_of(self._map).higher_than(self._laser.height)
-            self._search = PlaceSearch(self._map, walls, self._laser, self._settings)
+            self._search = PlaceSearch(self._map, walls, self._laser, self._settings, self._model)
         near = self._near
         if near is not None:
             near = near[0], near[1], near[2] + self._since_fix
@@ -329,3 +373,7 @@ class ParticleFilter:
 def _wrapped(angle: NDArray[Any]) -> NDArray[Any]:
     wrapped: NDArray[Any] = (angle + np.pi) % (2 * np.pi) - np.pi
     return wrapped
+
+
+def _largest_deviation(covariance: NDArray[Any]) -> float:
+    return math.sqrt(max(float(np.linalg.eigvalsh(covariance[:2, :2])[-1]), 0.0))

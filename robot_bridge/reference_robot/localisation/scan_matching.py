@@ -213,15 +213,27 @@ def particles_for(bins: int, settings: FilterSettings) -> int:
 
 AT_ONCE = 4_000
 """poses: so few that their arrays stay in the processor's cache."""
+_PER_BIN = 20
+"""poses for each one that is kept are looked through: as many may be in one bin."""
 
 
 class PlaceSearch:
-    """Finds poses on ``robot_map`` at which a scan fits, by likelihood fields of its ``walls``."""
+    """Finds poses on ``robot_map`` at which a scan fits, by likelihood fields of its ``walls``.
+
+    Which of them are drawn is by ``model``, the one of the filter: a field does not know that walls hide
+    others.
+    """
 
     def __init__(
-        self, robot_map: RobotMap, walls: Walls, laser: LaserSettings, settings: FilterSettings
+        self,
+        robot_map: RobotMap,
+        walls: Walls,
+        laser: LaserSettings,
+        settings: FilterSettings,
+        model: BeamModel | FieldModel,
     ) -> None:
         self._map = robot_map
+        self._model = model
         self._settings = settings.search
         self._worth = settings.beams_of_worth
         self._wide = FieldModel(
@@ -250,22 +262,35 @@ class PlaceSearch:
         fit = np.concatenate(
             [self._wide.log_likelihood(part, bearings[few], ranges[few])[0] for part in parts]
         )
+        best = poses[self._best_apart(poses, fit)]
         more = _spread(len(ranges), settings.more_beams)
-        bearings, ranges = bearings[more], ranges[more]
-        tries, kept = settings.tries, min(settings.kept, looked_at)
-        best = poses[np.argpartition(-fit, kept - 1)[:kept]]
+        tries, kept = settings.tries, len(best)
         metres = radians = 0.0
         for metres, degrees in zip(settings.rounds_m, settings.rounds_deg, strict=True):
             radians = math.radians(degrees)
             around = np.repeat(best[:, None], tries, axis=1)
             around[:, 1:] += rng.normal(0, (metres, metres, radians), (kept, tries - 1, 3))
-            fit, _ = self._narrow.log_likelihood(around.reshape(-1, 3), bearings, ranges)
-            fit = fit.reshape(kept, tries)
-            best, fit = around[np.arange(kept), fit.argmax(axis=1)], fit.max(axis=1)
+            fit, _ = self._narrow.log_likelihood(around.reshape(-1, 3), bearings[more], ranges[more])
+            best = around[np.arange(kept), fit.reshape(kept, tries).argmax(axis=1)]
+        fit, _ = self._model.log_likelihood(best, bearings, ranges)
         weights = np.exp((fit - fit.max()) * min(self._worth, len(ranges)))
         found = best[low_variance(weights / weights.sum(), count, rng)]
         spread: NDArray[Any] = found + rng.normal(0, (metres / 2, metres / 2, radians / 2), found.shape)
         return spread
+
+    def _best_apart(self, poses: NDArray[Any], fit: NDArray[Any]) -> NDArray[Any]:
+        """Return the rows of the poses that fit best, no two of them in one bin.
+
+        Else a façade that fits a little better takes all of them, and the robot's place has none.
+        """
+        settings = self._settings
+        most = min(settings.kept * _PER_BIN, len(poses))
+        rows = np.argpartition(-fit, most - 1)[:most]
+        rows = rows[np.argsort(-fit[rows])]
+        bins = bins_of(poses[rows], settings.apart_m, math.radians(settings.apart_deg))
+        _, first = np.unique(bins, return_index=True)
+        found: NDArray[Any] = rows[np.sort(first)[: settings.kept]]
+        return found
 
     def free(
         self, count: int, rng: np.random.Generator, near: tuple[float, float, float] | None = None

@@ -95,8 +95,9 @@ class SearchSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     with ``again_per_area`` for each m² and ``again_most``: fewer, because it does so every metre.
     ``near_fix`` poses are compared around a GPS position. ``few_beams`` of a scan are enough to notice a
     place, by a likelihood field of ``wide_sigma`` metres: a pose beside the right one must be noticed, too.
-    The ``kept`` best are tried ``tries`` times around, in two rounds, with standard deviations of
-    ``rounds_m`` metres and ``rounds_deg`` degrees, by ``more_beams``.
+    The ``kept`` best, one of each bin of ``apart_m`` metres and ``apart_deg`` degrees, are tried ``tries``
+    times around, in two rounds, with standard deviations of ``rounds_m`` metres and ``rounds_deg`` degrees,
+    by ``more_beams``. Of these poses are drawn by the filter's model of all beams.
     """
 
     per_area: Positive = 85.0
@@ -108,6 +109,8 @@ class SearchSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     more_beams: Count = 40
     wide_sigma: Positive = 0.5
     kept: Count = 500
+    apart_m: Positive = 2.0
+    apart_deg: Angle = 45.0
     tries: Count = 16
     rounds_m: tuple[Metres, Metres] = (0.3, 0.1)
     rounds_deg: tuple[Degrees, Degrees] = (6.0, 2.0)
@@ -120,20 +123,23 @@ class RecoverySettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     fit by chance for some metres, and façades repeat every few. It is at one place when ``share`` of the
     particles' weight is within ``place_m`` metres and ``place_deg`` degrees of the middle. Every
     ``look_every_m`` metres or ``look_every_scans`` scans it looks for other places, and puts
-    ``new_particles`` of its particles there. A scan counts for ``scan_worth`` of what it does otherwise: in
-    each place the same walls are wrong scan after scan. Particles of one bin of ``group_m`` metres and
-    ``group_deg`` degrees are resampled apart from others, ``group_least`` of each, in the ``most_groups``
-    heaviest, down to ``group_share`` of the weight: none of several that look alike dies out by chance.
+    ``new_particles`` of its particles there. Where more than ``rival`` of the weight is at other places when
+    it looks again, another one fits as well, and it is at none: ``accuracy`` must hold at 95 % of the scans.
+    A scan counts for ``scan_worth`` of what it does otherwise: in each place the same walls are wrong scan
+    after scan. Particles of one bin of ``group_m`` metres and ``group_deg`` degrees are resampled apart from
+    others, ``group_least`` of each, in the ``most_groups`` heaviest, down to ``group_share`` of the weight:
+    none of several that look alike dies out by chance.
     """
 
     settled: Metres = 15.0
     share: Share = 0.8
+    rival: Share = 0.05
     place_m: Positive = 2.0
     place_deg: Angle = 30.0
     look_every_m: Metres = 1.0
     look_every_scans: Count = 10
     new_particles: Share = 0.1
-    scan_worth: Share = 0.25
+    scan_worth: Share = 0.15
     group_m: Positive = 4.0
     group_deg: Angle = 45.0
     group_least: Count = 20
@@ -169,12 +175,13 @@ class StandingSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     Less than ``still_m`` metres and ``still_rad`` radians between two scans is standing. Of a robot that
     stands and knows its place every ``scans`` scans one is weighed, for they all see the same, with the
     particles spread by ``jitter_m`` and ``jitter_rad`` before. One that is lost counts each scan as
-    ``scan_worth`` metres of driving, within ``expected`` metres of where its wheels or GPS have it: elsewhere
-    it may be in any of several places that look alike. It says that its accuracy is ``lost_accuracy`` metres
-    at least, as wide as one place. It sees nothing of its map where ``few_echoes`` beams or fewer have an
-    echo. It stands ``border`` metres from the border of a map of a part of the site, when the filter is
-    ``late`` seconds behind the sensors, and after a pause of more than ``pause`` seconds between readings or
-    a motion ``jump`` metres or radians beyond what its body can do: the noise of sensors is less.
+    ``scan_worth`` metres of driving, within ``expected`` metres of where its wheels or GPS have it:
+    elsewhere it may be in any of several places that look alike. It says that its accuracy is
+    ``lost_accuracy`` metres at least, as wide as one place, and is lost where it knows its place no
+    better. It sees nothing of its map where ``few_echoes`` beams or fewer have an echo. It stands
+    ``border`` metres from the border of a map of a part of the site, when the filter is ``late`` seconds
+    behind the sensors, and after a pause of more than ``pause`` seconds between readings or a motion
+    ``jump`` metres or radians beyond what its body can do: the noise of sensors is less.
     """
 
     still_m: Metres = 1e-3
@@ -195,32 +202,37 @@ class StandingSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 class FilterSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """The particle filter: motion, beams, number of particles, and when scans do not fit any more.
 
-    ``distance_noise`` is of the distance, ``turn_noise`` of the turn, ``drift_deg`` degrees for each
-    metre, ``slip`` metres sideways for each metre: standard deviations by which particles are spread.
-    ``sigma`` is how far a beam may be from the map, metres, the map's own errors included; ``hit``,
-    ``short``, ``far`` and ``random`` are the weights of the beam model's parts. ``beams_of_worth`` is how
-    many independent beams a scan counts for: neighbouring beams see the same wall, whose place in the map is
-    wrong for all of them. ``least`` to ``most`` particles, so many that with a probability of 99 % their
-    error (Kullback-Leibler) is below ``kld_error`` over bins of ``bin_size`` metres and ``bin_turn_deg``
+    ``distance_noise`` and ``slip`` are metres ahead and sideways, ``drift_deg`` degrees, for the square
+    root of a metre, ``turn_noise`` is of the turn: standard deviations by which particles are spread.
+    ``wheel_scale`` is by how much of the distance the wheels are wrong the same way all along (a standard
+    deviation): no particle tries it, but the covariance has what it makes of the place. ``sigma`` is how
+    far a beam may be from the map, metres, the map's own errors included; ``hit``, ``short``, ``far`` and
+    ``random`` are the weights of the beam model's parts. ``beams_of_worth`` is how many independent beams
+    a scan counts for: neighbouring beams see the same wall, whose place in the map is wrong for all of
+    them. For the same reason the scans of ``same_walls`` metres of driving count for one together.
+    ``least`` to ``most`` particles, so many that with a probability of 99 % their error
+    (Kullback-Leibler) is below ``kld_error`` over bins of ``bin_size`` metres and ``bin_turn_deg``
     degrees. ``slow`` and ``fast`` are the rates at which the agreement of scans and map is averaged;
-    particles are put where a scan fits once the fast average is below ``recover`` times the slow one. Below
-    ``least_agreement`` the place is not known, whatever is usual. A beam agrees when it is within ``agrees``
-    times ``sigma`` of what the map has there. A likelihood field has cells of ``field_cell`` metres, larger
-    ones where it would have more than ``field_cells``, and is even farther than ``field_sigmas`` times
-    ``sigma`` from all walls, where hardly any beam that sees one ends.
+    particles are put where a scan fits once the fast average is below ``recover`` times the slow one.
+    Below ``least_agreement`` the place is not known, whatever is usual. A beam agrees when it is within
+    ``agrees`` times ``sigma`` of what the map has there. A likelihood field has cells of ``field_cell``
+    metres, larger ones where it would have more than ``field_cells``, and is even farther than
+    ``field_sigmas`` times ``sigma`` from all walls, where hardly any beam that sees one ends.
     """
 
     model: Literal["beam", "field"] = "beam"
-    distance_noise: Share = 0.05
+    distance_noise: Metres = 0.036
     turn_noise: Share = 0.05
     drift_deg: Degrees = 0.3
-    slip: Share = 0.02
+    slip: Metres = 0.01
+    wheel_scale: Share = 0.01
     sigma: Positive = 0.15
     hit: Share = 0.6
     short: Share = 0.25
     far: Share = 0.05
     random: Share = 0.1
     beams_of_worth: Positive = 12.0
+    same_walls: Positive = 2.0
     least: Annotated[int, msgspec.Meta(ge=10, le=100_000)] = 500
     most: Annotated[int, msgspec.Meta(ge=10, le=100_000)] = 10_000
     kld_error: Annotated[float, msgspec.Meta(gt=0, le=1)] = 0.05

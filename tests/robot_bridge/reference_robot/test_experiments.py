@@ -81,12 +81,15 @@ def test_figures_are_those_of_the_scans_at_which_it_does_not_say_that_it_is_lost
     belief = np.array([[0.1, 0, 0.02], [0, 0.3, -0.04], [50, 0, 3], [2, 0, 2 * np.pi]])
     record = Record(
         seed=5, carried=1, truth=truth, odometry=np.full((4, 3), (3, 4, 0)), belief=belief,
-        driven=np.array([1.0, 2, 3, 4]), accuracy=np.ones(4), lost=np.array([False, False, True, False]),
+        driven=np.array([1.0, 2, 3, 4]), accuracy=np.array([0.05, 0.1, 1, 1]),
+        lost=np.array([False, False, True, False]),
         seconds=np.array([0.001, 0.002, 0.003, 0.004]), particles=np.full(4, 500),
     )  # fmt: skip
     (row,) = figures([record])
     assert row.mean_m == pytest.approx((0.1 + 0.3 + 2) / 3)
     assert row.max_m == 2 and row.lost == 1 and row.wrong == 1
+    # 0.1 m at an accuracy of 0.05 m and 2 m at one of 1 m, but not 0.3 m at one of 0.1 m.
+    assert row.within == pytest.approx(2 / 3)
     turned = np.degrees([0.02, 0.04, 0.0])
     assert row.heading_mean_deg == pytest.approx(turned.mean())
     assert row.heading_p95_deg == pytest.approx(np.percentile(turned, 95))

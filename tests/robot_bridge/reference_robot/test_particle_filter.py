@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import math
 
+import msgspec
 import numpy as np
 import pytest
 
 from robot_bridge.core.robotmap.builder import build_map
-from robot_bridge.core.robotmap.model import Window
-from robot_bridge.core.robotmap.outlines import Outlines
+from robot_bridge.core.robotmap.model import ShapeType, Window
+from robot_bridge.core.robotmap.outlines import OutlineRow, Outlines
 from robot_bridge.reference_robot.localisation.particle_filter import ParticleFilter
 from robot_bridge.reference_robot.localisation.sensors import (
     Motion,
@@ -163,20 +164,65 @@ def test_what_it_drove_at_another_place_does_not_count_towards_this_one(yard):
     assert not run.filter.belief.lost
 
 
-def test_what_it_drives_while_it_may_be_in_two_places_does_not_count(yard):
+# The second: most likely at one place, and another that fits has kept a tenth of the weight.
+@pytest.mark.parametrize("every", [2, 10])
+def test_what_it_drives_while_it_may_be_in_two_places_does_not_count(yard, every):
     run = Run(yard)
     run.filter.place(CIRCLE[0], (0.1, 0.05))
     run.filter.doubt()
     together = run.filter.particles
     apart = together.copy()
-    apart[::2, 0] += 5.0
+    apart[::every, 0] += 5.0
     run.filter.particles = apart
     one_beam = np.full(LASER.beams, np.nan)
     one_beam[0] = 2.0
     run.filter.observe(one_beam)
     run.filter.move(Motion(20.0, 0.0))
+    run.filter.settle(20.0)
     run.filter.particles, run.filter.weights = together, np.full(len(together), 1 / len(together))
     assert run.filter.belief.lost
+
+
+def along_a_corridor(wheels, seed, settings=SETTINGS, end=140):
+    """Drive 60 m between two plain walls, closed at ``end``; return errors, accuracy and beliefs."""
+    walls = [(-60, 0), (end, 0), (end, 4), (-60, 4)]
+    rows = [OutlineRow(walls, ShapeType.OPEN_POLYGON, 3.0, "wall", "walls:1")]
+    corridor = build_map(Outlines.from_rows(rows), Window.from_bounds(-60, -1, 140, 5), {"id": "corridor"})
+    run, path = Run(corridor, seed, settings), [(0.4 * k, 2.0, 0.0) for k in range(150)]
+    run.wheels = SimulatedOdometry(wheels, np.random.default_rng(seed))
+    run.filter.place(path[0], (0.05, 0.02))
+    errors, beliefs = [], []
+    for away, _ in run.drive(path):
+        errors.append(away)
+        beliefs.append(run.filter.belief)
+    return np.array(errors), np.array([one.accuracy for one in beliefs]), beliefs
+
+
+def test_between_plain_walls_its_accuracy_grows_along_them_and_covers_what_it_is_off():
+    # Wheels that are wrong by 1 % all along, as a standard deviation, and nothing that shows it.
+    drives = [along_a_corridor(OdometrySettings(drift_deg=0.0), seed) for seed in range(1, 5)]
+    for errors, accuracy, beliefs in drives:
+        assert accuracy[-1] > 0.4 and accuracy[-1] > 2 * accuracy[len(accuracy) // 4]
+        along, across = np.sqrt(np.diag(beliefs[-1].covariance)[:2])
+        assert along > 0.4 and across < 0.12
+        assert not beliefs[-1].lost
+        assert (errors < 3 * accuracy + 0.1).all()
+    within = np.concatenate([errors <= 2 * accuracy for errors, accuracy, _ in drives])
+    assert within.mean() >= 0.95
+
+
+def test_the_end_of_a_corridor_tells_how_far_it_came():
+    errors, accuracy, _ = along_a_corridor(OdometrySettings(drift_deg=0.0), 3, end=66)
+    assert accuracy.max() > 0.4 and errors.max() > 0.5
+    assert accuracy[-1] < 0.2 and errors[-1] <= 2 * accuracy[-1]
+
+
+def test_of_wheels_that_may_be_very_wrong_between_plain_walls_it_says_in_time_that_it_is_lost():
+    settings = msgspec.structs.replace(SETTINGS, wheel_scale=0.05)
+    _, accuracy, beliefs = along_a_corridor(OdometrySettings(drift_deg=0.0), 1, settings=settings)
+    told = [belief.lost for belief in beliefs]
+    assert not any(told[: len(told) // 3]) and all(told[-10:])
+    assert accuracy[told.index(True)] == pytest.approx(SETTINGS.standing.lost_accuracy, abs=0.1)
 
 
 def test_another_map_of_the_same_frame_changes_nothing_of_the_belief(yard):

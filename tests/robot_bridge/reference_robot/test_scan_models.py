@@ -4,12 +4,21 @@ from __future__ import annotations
 
 import math
 
+import msgspec
 import numpy as np
 import pytest
 import shapely
 
+from robot_bridge.core.robotmap.builder import build_map
+from robot_bridge.core.robotmap.model import ShapeType, Window
+from robot_bridge.core.robotmap.outlines import OutlineRow, Outlines
 from robot_bridge.reference_robot.localisation.particle_filter import ParticleFilter
-from robot_bridge.reference_robot.localisation.scan_matching import BeamModel, FieldModel, usable_beams
+from robot_bridge.reference_robot.localisation.scan_matching import (
+    BeamModel,
+    FieldModel,
+    PlaceSearch,
+    usable_beams,
+)
 from robot_bridge.reference_robot.localisation.sensors import SimulatedLaser, bearings_of
 from robot_bridge.reference_robot.localisation.settings import FilterSettings, LaserSettings
 from robot_bridge.reference_robot.localisation.world import walls_of
@@ -106,3 +115,36 @@ def test_weights_after_a_scan_are_prior_times_likelihood(yard, walls, scan):
 def test_beams_without_a_reading_are_left_out():
     ranges = np.array([1.0, np.nan, np.inf, -1.0, 0.0, 5.0])
     assert usable_beams(ranges).tolist() == [0, 2, 4, 5]
+
+
+ROOM = [(0, 0), (10, 0), (10, 5), (7, 5), (7, 8), (0, 8), (0, 0)]
+SCREEN = [(3, 2), (3, 4)]
+
+
+def drawn_in_rooms(screen, settings, seed):
+    """Return how many of 400 poses are drawn in each of two equal rooms, for a scan made in the first.
+
+    With ``screen`` there is a wall before others in the second room, which the scan did not meet.
+    """
+    lines = [ROOM, [(x + 20, y) for x, y in ROOM]] + ([[(x + 20, y) for x, y in SCREEN]] if screen else [])
+    rows = [OutlineRow(line, ShapeType.OPEN_POLYGON, 3.0, "wall", f"w:{n}") for n, line in enumerate(lines)]
+    rooms = build_map(Outlines.from_rows(rows), Window.from_bounds(0, 0, 30, 8), {"id": "rooms"})
+    walls, rng = walls_of(rooms).higher_than(LASER.height), np.random.default_rng(seed)
+    laser = msgspec.structs.replace(LASER, short=0.0, dropout=0.0)
+    ranges = SimulatedLaser(walls, laser, rng).scan((5.0, 3.0, math.pi))
+    model = BeamModel(walls, laser, settings)
+    search = PlaceSearch(rooms, walls, laser, settings, model)
+    x = search.likely(400, 20_000, bearings_of(laser), ranges, rng)[:, 0]
+    return int((x < 15).sum()), int((x > 15).sum())
+
+
+def test_a_search_draws_no_place_where_a_wall_hides_what_the_scan_met():
+    here, there = drawn_in_rooms(True, SETTINGS, 1)
+    assert here > 0.95 * (here + there)
+
+
+def test_a_search_keeps_the_best_of_each_bin_so_that_no_place_is_left_out():
+    few = msgspec.structs.replace(SETTINGS.search, kept=2, apart_m=20.0, apart_deg=360.0)
+    # By one beam only: how near the two that are kept come to their places does not decide.
+    settings = msgspec.structs.replace(SETTINGS, search=few, beams_of_worth=1.0)
+    assert all(min(drawn_in_rooms(False, settings, seed)) > 0 for seed in range(6))
