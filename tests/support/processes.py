@@ -16,8 +16,10 @@ from collections.abc import Collection, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from types import FrameType
+from typing import Any
 
 from tests.support.errors import StageError
+from tests.support.forked_programs import start_forked
 
 PATIENCE_S = 5.0
 """How long a process may take to end after SIGTERM before it is killed."""
@@ -64,6 +66,15 @@ class Processes:
                 stderr=subprocess.STDOUT,
                 env={**os.environ, "PYTHONUNBUFFERED": "1", **(env or {})},
             )
+        self._running[name] = process
+        return process
+
+    def start_bridge(
+        self, name: str, words: Sequence[Any], *, env: Mapping[str, str] | None = None
+    ) -> subprocess.Popen[bytes]:
+        """Start ``robot-bridge`` with ``words``, as :meth:`start` does, and without loading its modules."""
+        with self.log(name).open("wb") as log:
+            process = start_forked(words, log, {**os.environ, "PYTHONUNBUFFERED": "1", **(env or {})})
         self._running[name] = process
         return process
 

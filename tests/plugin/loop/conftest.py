@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import shutil
 import sqlite3
-import sys
 from contextlib import closing
 
 import pytest
@@ -32,9 +31,7 @@ class Loop:
     def start_gateway(self, port=0):
         self._runs += 1
         options = ["--site", self._site, "--port", str(port), "--database", self._database]
-        self.gateway = self._processes.start(
-            f"gateway-{self._runs}", [sys.executable, "-m", "robot_bridge", "serve", *options]
-        )
+        self.gateway = self._processes.start_bridge(f"gateway-{self._runs}", ["serve", *options])
         found = self._processes.wait_for_line(f"gateway-{self._runs}", r"listening on (ws://\S+:(\d+))", 30)
         self.address, self.port = found.group(1), int(found.group(2))
 
@@ -43,7 +40,7 @@ class Loop:
         where = ",".join(str(number) for number in pose)
         nimble = ["--speed", str(speed), "--turn-rate", "6", "--acceleration", "8", "--rate", "10"]
         options = ["--name", name, f"--pose={where}", *nimble, *more]
-        return self._processes.start(name, [sys.executable, "-m", "robot_bridge", "robot", *way, *options])
+        return self._processes.start_bridge(name, ["robot", *way, *options])
 
 
 @pytest.fixture(scope="session")

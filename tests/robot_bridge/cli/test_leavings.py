@@ -13,6 +13,7 @@ from robot_bridge.core.sites.site import read_site
 from robot_bridge.gateway import app
 from robot_bridge.gateway.auth.client_connection import ClientConnection
 from robot_bridge.gateway.auth.gate import AuthGate
+from robot_bridge.gateway.field.page import FieldPage
 from robot_bridge.gateway.fleet.link_supervision import LinkProcesses
 from robot_bridge.gateway.fleet.service import Fleet
 from robot_bridge.gateway.model.request_handlers import RequestHandlers
@@ -29,8 +30,9 @@ async def running(sample_site, tmp_path):
     database = Database(f"sqlite:///{tmp_path}/fleet.db")
     await database.open()
     gate = AuthGate(database, LimitSettings(), may_be_open=True)
-    fleet = Fleet(SiteMaps(read_site(sample_site)), database)
-    made = app.Gateway(fleet, gate, LinkProcesses(LinkOptions(), sample_site), RequestHandlers())
+    maps = SiteMaps(read_site(sample_site))
+    links = LinkProcesses(LinkOptions(), sample_site)
+    made = app.Gateway(Fleet(maps, database), gate, links, RequestHandlers(), FieldPage(maps))
     server = await made.serve("127.0.0.1", 0)
     yield made, server.sockets[0].getsockname()[1]
     server.close()

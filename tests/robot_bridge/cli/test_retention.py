@@ -19,6 +19,7 @@ from robot_bridge.core.sites.settings_tables import (
 from robot_bridge.core.sites.site import read_site
 from robot_bridge.gateway import app, retention
 from robot_bridge.gateway.auth.gate import AuthGate
+from robot_bridge.gateway.field.page import FieldPage
 from robot_bridge.gateway.fleet.link_supervision import LinkProcesses
 from robot_bridge.gateway.fleet.service import Fleet
 from robot_bridge.gateway.model.request_handlers import RequestHandlers
@@ -283,7 +284,9 @@ async def test_the_gateway_does_it_by_the_settings_of_its_site(
         AuthGate(database, LimitSettings(), may_be_open=True),
         LinkProcesses(settings.links, tmp_path),
     )
-    work = app.Gateway(fleet, gate, links, RequestHandlers()).works("ws://127.0.0.1:1")["prune"]
+    work = app.Gateway(fleet, gate, links, RequestHandlers(), FieldPage(maps)).works("ws://127.0.0.1:1")[
+        "prune"
+    ]
     pruning = asyncio.create_task(work())
     async with asyncio.timeout(10):
         while "prune" not in fleet.tally.beats:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import contextlib
 import itertools
-import sys
 import time
 from collections.abc import Callable, Sequence
 from pathlib import Path
@@ -84,7 +83,7 @@ class Bridge:
 
     def _run(self, name: str, command: list[Any]) -> None:
         unique = self._unique(name)
-        self.process = self._processes.start(unique, [sys.executable, "-m", "robot_bridge", *command])
+        self.process = self._processes.start_bridge(unique, command)
 
     def _unique(self, name: str) -> str:
         self._names.append(f"{name}-{next(RUNS)}")

@@ -1,0 +1,121 @@
+"""The bridge's programs, forked off a process that has loaded its modules: a start costs no imports.
+
+A test session starts hundreds of gateways and robots, and most of what each costs is the loading of modules.
+Each is a process of its own all the same, a child of the test's, that is signalled, killed and waited for.
+What is to be shown of a start itself is started as a user does, with ``python -m robot_bridge``.
+
+Run as a program this is the process that forks: it takes orders on the socket whose number it is given.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import functools
+import gc
+import importlib
+import json
+import os
+import signal
+import socket
+import subprocess
+import sys
+import threading
+import time
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import IO, Any
+
+PR_SET_PDEATHSIG, PR_SET_CHILD_SUBREAPER = 1, 36
+MODULES = (
+    "robot_bridge.__main__",
+    "robot_bridge.cli.robot",
+    "robot_bridge.cli.serve",
+    "robot_bridge.gateway.app",
+    "sqlalchemy.dialects.sqlite",
+)
+LARGEST_ORDER = 1 << 20
+_libc = ctypes.CDLL(None, use_errno=True)
+
+
+class ForkedProcess(subprocess.Popen[bytes]):
+    """A process that somebody else started as a child of this one."""
+
+    def __init__(self, pid: int, args: Sequence[str]) -> None:
+        self.args = list(args)
+        self.pid = pid
+        self.returncode: int | None = None
+        self.stdin = self.stdout = self.stderr = None
+        self._child_created = True
+        self._waitpid_lock = threading.Lock()
+
+
+@functools.cache
+def _forking() -> tuple[socket.socket, threading.Lock]:
+    """Return the way to this session's forking process, which ends with the session."""
+    if _libc.prctl(PR_SET_CHILD_SUBREAPER, 1, 0, 0, 0):
+        raise OSError(ctypes.get_errno(), "this system has no subreaper of processes")
+    ours, its = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+    with its:
+        subprocess.Popen(
+            [sys.executable, "-m", __name__, str(its.fileno())],
+            pass_fds=[its.fileno()],
+            env={**os.environ, "PYTHONUNBUFFERED": "1"},
+        )
+    return ours, threading.Lock()
+
+
+def start_forked(words: Sequence[Any], log: IO[bytes], env: Mapping[str, str]) -> ForkedProcess:
+    """Start ``robot-bridge`` with ``words``; it prints into ``log``, and is killed when this process ends."""
+    ours, lock = _forking()
+    command = [str(word) for word in words]
+    order = {"words": command, "env": dict(env), "folder": str(Path.cwd()), "parent": os.getpid()}
+    with lock:
+        socket.send_fds(ours, [json.dumps(order).encode()], [log.fileno()])
+        pid = int(ours.recv(64))
+    return ForkedProcess(pid, ["robot-bridge", *command])
+
+
+def _serve(orders: socket.socket) -> None:
+    """Fork a program for each order; return in the forked one, and end with the other side of the socket."""
+    for name in MODULES:
+        importlib.import_module(name)
+    gc.collect()
+    gc.freeze()
+    while True:
+        text, files, _, _ = socket.recv_fds(orders, LARGEST_ORDER, 1)
+        if not text:
+            sys.exit()
+        between = os.fork()
+        if between:
+            os.waitpid(between, 0)
+            os.close(files[0])
+            continue
+        if os.fork():
+            os._exit(0)
+        _become(json.loads(text), files[0], orders)
+        return
+
+
+def _become(order: dict[str, Any], output: int, orders: socket.socket) -> None:
+    """Make of this process what it would be if it had been started with ``order``."""
+    while os.getppid() != order["parent"]:
+        time.sleep(0.0005)
+    _libc.prctl(PR_SET_PDEATHSIG, signal.SIGKILL, 0, 0, 0)
+    # Not before: whoever waits for a process that is not its child yet is told that there is none.
+    orders.send(str(os.getpid()).encode())
+    orders.close()
+    for number in (1, 2):
+        os.dup2(output, number)
+    os.close(output)
+    with open(os.devnull) as nothing:  # noqa: PTH123
+        os.dup2(nothing.fileno(), 0)
+    os.chdir(order["folder"])
+    os.environ.clear()
+    os.environ.update(order["env"])
+    time.tzset()
+    sys.argv = [importlib.import_module("robot_bridge.__main__").__file__ or "", *order["words"]]
+
+
+if __name__ == "__main__":
+    _serve(socket.socket(fileno=int(sys.argv[1])))
+    importlib.import_module("robot_bridge.__main__").main()
