@@ -41,3 +41,12 @@ def test_of_a_robot_that_wrote_thousands_some_are_decoded_and_of_others_all(conn
     write(connection, '{"id": 3}', '{"id": 4}', robot="r2")
     assert requests.acknowledged(connection, ["r1", "r2"]) == {"r1": set(), "r2": {3, 4}}
     assert len(decoded) == requests.MOST_ACKS + 2
+
+
+def test_the_backlog_ends_with_the_newest_request_of_anybody(connection):
+    assert requests.backlog(connection, ["r1"]) == (0, {"r1": set()})
+    write(connection, '{"id": 3}')
+    requests.add_requests(connection, [("r2", "Alive", "{}", None)])
+    assert requests.backlog(connection, ["r1"]) == (2, {"r1": {3}})
+    write(connection, '{"id": 4}')
+    assert requests.acknowledged(connection, ["r1"], newest=2) == {"r1": {3}}

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from sqlalchemy import event, select
+from sqlalchemy import event, insert, select
 
 from robot_bridge.core.messages import Abort, SetMap, SetPosEnd, Start
 from robot_bridge.gateway.storage.repositories import requests
@@ -132,3 +132,39 @@ def test_which_still_wait_is_told(connection):
     requests.add_numbered(connection, [("r1", TARGET)] * 2)
     assert requests.waiting(connection, [2, 9]) == {2}
     assert requests.waiting(connection, []) == set()
+
+
+def test_what_a_robot_asked_reads_as_it_was_written_with_its_payload_in_bytes(connection):
+    rows = [("r1", "SendImage", '{"object": "o"}', b"\x89PNG\x00"), ("r2", "Alive", "{}", None)]
+    requests.add_requests(connection, rows)
+    first, second = requests.read_requests(connection)
+    assert (first.robot, first.op, first.params) == rows[0][:3]
+    assert (second.robot, second.op, second.params) == rows[1][:3]
+    sizes = []
+    assert requests.payload(connection, first.id, sizes.append) == b"\x89PNG\x00"
+    assert requests.payload(connection, second.id, sizes.append) is None
+    assert sizes == [5]
+
+
+def test_a_payload_that_is_too_large_is_not_read(connection):
+    def refuse(size):
+        raise ValueError(size)
+
+    requests.add_requests(connection, [("r1", "SendImage", "{}", b"x" * 9)])
+    read = []
+    event.listen(connection.engine, "before_cursor_execute", lambda *told: read.append(told[2]))
+    with pytest.raises(ValueError, match="9"):
+        requests.payload(connection, 1, refuse)
+    assert len(read) == 1
+
+
+def test_maps_that_say_only_that_they_are_the_whole_site_are_filled_and_no_others(connection):
+    whole = insert(sa).values(op="SetMap", params="{}", payload=None, urgent=0)
+    for robot in ("r1", "r1", "r2"):
+        connection.execute(whole.values(robot=robot))
+    requests.add(connection, "r1", SetMap(b"a window"))
+    requests.add(connection, "r1", TARGET)
+    requests.fill_maps(connection, "r1", b"all of it")
+    told = [row.payload for row in requests.read_answers(connection, "r1")]
+    assert told == [b"all of it", b"all of it", b"a window", None]
+    assert [row.payload for row in requests.read_answers(connection, "r2")] == [None]
