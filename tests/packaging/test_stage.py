@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import copy
 import os
+import re
 import select
 import signal
 import subprocess
@@ -87,6 +88,46 @@ def test_a_killed_program_leaves_no_process_behind(tmp_path, root):
         with contextlib.suppress(ProcessLookupError):
             signal.pidfd_send_signal(ended, signal.SIGKILL)
         os.close(ended)
+
+
+FORKING = """\
+import sys, time
+from pathlib import Path
+from tests.support.processes import Processes
+processes = Processes(Path(sys.argv[1]))
+processes.__enter__()
+robot = processes.start_bridge("robot", ["robot", "--url", "ws://127.0.0.1:1/robot", "--name", "r1"])
+processes.wait_for_line("robot", "127.0.0.1:1", 60)
+print(robot.pid, flush=True)
+time.sleep(60)
+"""
+
+
+def test_a_forked_program_is_a_child_that_ends_with_its_status(tmp_path):
+    with Processes(tmp_path) as processes:
+        assert processes.start_bridge("version", ["--version"]).wait(60) == 0
+        assert re.fullmatch(r"\d+\.\d+\S*\n", processes.log("version").read_text())
+        assert processes.start_bridge("wrong", ["serve", "--site", tmp_path / "none"]).wait(60) == 1
+        assert processes.log("wrong").read_text().startswith(f"robot-bridge: {tmp_path}/none is no folder")
+        killed = processes.start_bridge("robot", ["robot", "--url", "ws://127.0.0.1:1/robot", "--name", "r1"])
+        processes.wait_for_line("robot", "127.0.0.1:1", 60)
+        os.kill(killed.pid, signal.SIGKILL)
+        assert killed.wait(60) == -signal.SIGKILL
+
+
+def test_a_forked_program_dies_with_the_program_that_asked_for_it(tmp_path, root):
+    asking = subprocess.Popen(
+        [sys.executable, "-c", FORKING, tmp_path], cwd=root, stdout=subprocess.PIPE, text=True
+    )
+    pid = int(asking.stdout.readline())
+    assert is_running(pid)
+    asking.kill()
+    asking.wait(60)
+    asking.stdout.close()
+    until = time.monotonic() + 60
+    while is_running(pid) and time.monotonic() < until:
+        time.sleep(0.05)
+    assert not is_running(pid)
 
 
 def test_a_process_that_ends_too_early_is_told_with_its_last_words(tmp_path):
