@@ -9,6 +9,7 @@ Run as a program this is the process that forks: it takes orders on the socket w
 
 from __future__ import annotations
 
+import contextlib
 import ctypes
 import functools
 import gc
@@ -21,7 +22,7 @@ import subprocess
 import sys
 import threading
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import IO, Any
 
@@ -52,8 +53,6 @@ class ForkedProcess(subprocess.Popen[bytes]):
 @functools.cache
 def _forking() -> tuple[socket.socket, threading.Lock]:
     """Return the way to this session's forking process, which ends with the session."""
-    if _libc.prctl(PR_SET_CHILD_SUBREAPER, 1, 0, 0, 0):
-        raise OSError(ctypes.get_errno(), "this system has no subreaper of processes")
     ours, its = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
     with its:
         subprocess.Popen(
@@ -64,12 +63,26 @@ def _forking() -> tuple[socket.socket, threading.Lock]:
     return ours, threading.Lock()
 
 
+@contextlib.contextmanager
+def _adopting() -> Iterator[None]:
+    """Let the processes that lose their parent become children of this one; only for as long as it takes.
+
+    Others that lose theirs would stay as zombies, since nobody here waits for them.
+    """
+    if _libc.prctl(PR_SET_CHILD_SUBREAPER, 1, 0, 0, 0):
+        raise OSError(ctypes.get_errno(), "this system has no subreaper of processes")
+    try:
+        yield
+    finally:
+        _libc.prctl(PR_SET_CHILD_SUBREAPER, 0, 0, 0, 0)
+
+
 def start_forked(words: Sequence[Any], log: IO[bytes], env: Mapping[str, str]) -> ForkedProcess:
     """Start ``robot-bridge`` with ``words``; it prints into ``log``, and is killed when this process ends."""
     ours, lock = _forking()
     command = [str(word) for word in words]
     order = {"words": command, "env": dict(env), "folder": str(Path.cwd()), "parent": os.getpid()}
-    with lock:
+    with lock, _adopting():
         socket.send_fds(ours, [json.dumps(order).encode()], [log.fileno()])
         pid = int(ours.recv(64))
     return ForkedProcess(pid, ["robot-bridge", *command])
