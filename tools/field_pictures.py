@@ -2,31 +2,21 @@
 
 from __future__ import annotations
 
-import shutil
-import sys
 import tempfile
 from pathlib import Path
-
-from playwright.sync_api import Page, sync_playwright
+from typing import Any
 
 from tests.support.bridge.bridge_programs import Bridge
+from tests.support.phone import PHONE, chromium
 from tests.support.processes import Processes
 from tools.plugin_files import ROOT
 
 IMAGES = ROOT / "docs" / "images"
 POSES = {"r1": (20.0, 8.0, 0.0), "r2": (100.0, 60.0, 1.5), "r3": (150.0, 120.0, 3.0)}
-PHONE = {
-    "viewport": {"width": 393, "height": 727},
-    "device_scale_factor": 2,
-    "is_mobile": True,
-    "has_touch": True,
-    "locale": "en-GB",
-}
 
 
 def main() -> None:
     """Write the pictures beside those of the other guides."""
-    program = shutil.which("chromium") or sys.exit("no Chromium: apt-get install chromium")
     with tempfile.TemporaryDirectory() as folder, Processes(Path(folder) / "logs") as processes:
         bridge = Bridge(processes, ROOT / "resources" / "sample_site", f"sqlite:///{folder}/fleet.db")
         bridge.start_gateway()
@@ -35,8 +25,7 @@ def main() -> None:
         desk = bridge.desk()
         desk.ask("subscribe", {"rate": 5})
         desk.wait_for_robots(*POSES)
-        with sync_playwright() as started:
-            browser = started.chromium.launch(executable_path=program, args=["--no-sandbox"])
+        with chromium() as browser:
             for scheme in ("light", "dark"):
                 page = browser.new_context(**PHONE, color_scheme=scheme).new_page()
                 page.goto(f"http://127.0.0.1:{bridge.port}/field")
@@ -44,11 +33,10 @@ def main() -> None:
                 page.wait_for_timeout(1500)
                 _walk(page, "" if scheme == "light" else "-dark")
                 desk.ask("clear_emergency_stop", {"reason": "the picture is drawn"})
-            browser.close()
         bridge.end()
 
 
-def _walk(page: Page, kind: str) -> None:
+def _walk(page: Any, kind: str) -> None:
     page.screenshot(path=IMAGES / f"field-map{kind}.png")
     page.locator("#menu-button").tap()
     page.locator("#robots button", has_text="r1:").tap()

@@ -2,33 +2,21 @@
 
 from __future__ import annotations
 
-import shutil
-
 import pytest
 
+from tests.support.errors import StageError
 from tests.support.patience import BUSY
-
-PHONE = {
-    "viewport": {"width": 393, "height": 727},
-    "device_scale_factor": 2,
-    "is_mobile": True,
-    "has_touch": True,
-    "locale": "en-GB",
-}
+from tests.support.phone import PHONE, chromium
 
 
-@pytest.fixture(scope="module")
-def chromium():
+@pytest.fixture(scope="module", name="chromium")
+def start_chromium():
     """A headless Chromium without any profile."""
-    playwright = pytest.importorskip("playwright.sync_api", reason="playwright drives the browser")
-    program = shutil.which("chromium") or shutil.which("google-chrome")
-    if program is None:
-        pytest.skip("no Chromium is installed; make setup installs it where it may")
-    with playwright.sync_playwright() as started:
-        # In a container of root's there is no sandbox.
-        browser = started.chromium.launch(executable_path=program, args=["--no-sandbox"])
-        yield browser
-        browser.close()
+    try:
+        with chromium() as browser:
+            yield browser
+    except StageError as error:
+        pytest.skip(str(error))
 
 
 @pytest.fixture

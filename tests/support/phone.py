@@ -1,0 +1,37 @@
+"""A phone's browser: a headless Chromium of that size, with touch."""
+
+from __future__ import annotations
+
+import shutil
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Any
+
+from tests.support.errors import StageError
+
+PHONE: dict[str, Any] = {
+    "viewport": {"width": 393, "height": 727},
+    "device_scale_factor": 2,
+    "is_mobile": True,
+    "has_touch": True,
+    "locale": "en-GB",
+}
+"""Options of a context of playwright's."""
+
+
+@contextmanager
+def chromium() -> Iterator[Any]:
+    """Give a browser of playwright's; contexts are opened with :data:`PHONE`.
+
+    :raises StageError: when no Chromium is installed.
+    """
+    from playwright.sync_api import sync_playwright
+
+    program = shutil.which("chromium") or shutil.which("google-chrome")
+    if program is None:
+        raise StageError("no Chromium is installed: apt-get install chromium")
+    with sync_playwright() as started:
+        # In a container of root's there is no sandbox.
+        browser = started.chromium.launch(executable_path=program, args=["--no-sandbox"])
+        yield browser
+        browser.close()
