@@ -57,6 +57,7 @@ BENCH = [
     "filter_update",
     "assignment",
     "desk",
+    "field_page",
     "endurance",
 ]
 """What ``make bench`` measures: modules of benchmarks; each has ``measure(data)``."""

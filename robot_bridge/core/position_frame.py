@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 METHOD = "positions"
 POSITION_HEAD = 4
 ALIGNMENT = 8
-POSITION_VALUE = "<f8"
+POSITION_VALUE, PLACE_VALUE = "<f8", "<f4"
 
 
 class PositionFrame(NamedTuple):
@@ -39,12 +39,14 @@ class PositionFrame(NamedTuple):
     table: npt.NDArray[np.float64]
 
 
-def packed_frame(head: bytes, columns: Iterable[npt.NDArray[np.float64]]) -> bytes:
-    """Return ``head``, a JSON text, and the columns that it names as one frame."""
+def packed_frame(
+    head: bytes, columns: Iterable[npt.NDArray[np.float64]], value: str = POSITION_VALUE
+) -> bytes:
+    """Return ``head``, a JSON text, and the columns that it names, of type ``value``, as one frame."""
     import numpy as np
 
     length = -(-(POSITION_HEAD + len(head)) // ALIGNMENT) * ALIGNMENT - POSITION_HEAD
-    values = (np.ascontiguousarray(column, dtype=POSITION_VALUE).tobytes() for column in columns)
+    values = (np.ascontiguousarray(column, dtype=value).tobytes() for column in columns)
     return b"".join([length.to_bytes(POSITION_HEAD, "little"), head.ljust(length), *values])
 
 

@@ -39,9 +39,9 @@ from ...core.messages import (
     SetObject,
     to_json,
 )
-from ...core.messages.positions import Positions
+from ...core.messages.positions import PLACE_COLUMNS, Positions
 from ...core.messages.records import Image, Observations
-from ...core.position_frame import METHOD, packed_frame
+from ...core.position_frame import METHOD, PLACE_VALUE, POSITION_VALUE, packed_frame
 from ...core.sites.settings import SiteSettings
 from ..model.events import EventBus, ObservationChanged
 from ..model.request_handlers import Encoded, handles
@@ -301,17 +301,27 @@ def position_table(
 
 
 def table_frame(
-    t: float, robots: Sequence[Robot], now: float, removed: Sequence[str] = (), *, everything: bool = False
+    t: float,
+    robots: Sequence[Robot],
+    now: float,
+    removed: Sequence[str] = (),
+    *,
+    everything: bool = False,
+    form: PositionForm = PositionForm.COLUMNS,
 ) -> bytes:
     """Return the binary frame that tells of ``robots`` at ``now``, under the gateway's time ``t``.
 
     With ``everything`` they are all that there are; else ``removed`` are gone since what was told last.
     """
     columns, words = position_table(robots, now)
+    value = POSITION_VALUE
+    if form is PositionForm.PLACES:
+        columns = {name: columns[name] for name in PLACE_COLUMNS if name in columns}
+        value = PLACE_VALUE
     names = [robot.name for robot in robots]
     head = PositionColumns(t, names, list(columns), words, list(removed), everything)
     text = msgspec.json.encode({"jsonrpc": "2.0", "method": METHOD, "params": head})
-    return packed_frame(text, columns.values())
+    return packed_frame(text, columns.values(), value)
 
 
 def _places(texts: Sequence[str | None], words: dict[str | None, float]) -> npt.NDArray[np.float64]:
@@ -426,8 +436,8 @@ class Snapshots:
         removed = [] if everything else self._robots.removed(revision)
         if not (changed or removed or everything):
             return None
-        if form is PositionForm.COLUMNS:
-            return table_frame(round(time.time(), 3), changed, now, removed, everything=everything)
+        if form is not PositionForm.ROWS:
+            return table_frame(round(time.time(), 3), changed, now, removed, everything=everything, form=form)
         rows = self._robots.rows(now, revision, ReportRow)
         params = positions(rows, removed, everything=everything)
         return msgspec.json.encode({"jsonrpc": "2.0", "method": "positions", "params": params})

@@ -116,16 +116,16 @@ export class Connection extends EventTarget {
   }
 
   /** Choose how positions come: told when they change, or asked for every 600 ms. */
-  choosePositions(byPolling, rate) {
+  choosePositions(byPolling, rate, form) {
     this.byPolling = byPolling;
     clearInterval(this._polling);
     if (!this.isUp) return;
     if (!byPolling) {
-      this.ask("subscribe", { rate, form: "columns" }).catch(() => {});
+      this.ask("subscribe", { rate, form }).catch(() => {});
       return;
     }
     // The rate of a subscription cannot be 0: one in a hundred seconds, and the rest is asked for.
-    this.ask("subscribe", { rate: 0.01, form: "columns" }).catch(() => {});
+    this.ask("subscribe", { rate: 0.01, form: "places" }).catch(() => {});
     this._polling = setInterval(() => {
       this.ask("get_positions", {}).then((answer) => this._tell("positions", rowsOf(answer)), () => {});
     }, 600);
@@ -237,12 +237,15 @@ const WORDS = new Set(["state", "link", "status", "command", "theta_from", "path
 export function tableOf(buffer) {
   const begin = 4 + new DataView(buffer).getUint32(0, true);
   const head = JSON.parse(new TextDecoder().decode(new Uint8Array(buffer, 4, begin - 4))).params;
-  const numbers = new DataView(buffer, Math.ceil(begin / 8) * 8);
+  const at = Math.ceil(begin / 8) * 8, numbers = new DataView(buffer, at), count = head.robots.length * head.columns.length;
+  // The form "places" has 32 bits for each number, and every other 64.
+  const isShort = buffer.byteLength - at === 4 * count;
+  const numberAt = (k) => (isShort ? numbers.getFloat32(4 * k, true) : numbers.getFloat64(8 * k, true));
   const robots = new Map();
   head.robots.forEach((robot, row) => {
     const found = { robot };
     head.columns.forEach((name, column) => {
-      const value = numbers.getFloat64(8 * (column * head.robots.length + row), true);
+      const value = numberAt(column * head.robots.length + row);
       if (Number.isNaN(value)) return;
       found[name] = WORDS.has(name) ? head.words[value] : name === "stopped" ? value === 1 : value;
     });

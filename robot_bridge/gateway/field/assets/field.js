@@ -23,6 +23,7 @@ class Field {
     this.site = null;
     this.traffic = [];
     this.rate = RATES[0];
+    this.form = "columns";
     this.connection = new Connection();
     this.map = new SiteMap(by("map"));
     this.stop = new EmergencyStop(
@@ -117,7 +118,7 @@ class Field {
     const gateway = this.connection, on = (type, act) => gateway.addEventListener(type, ({ detail }) => act(detail));
     on("up", (hello) => {
       this._greeted(hello);
-      gateway.choosePositions(by("updates").value === "poll", this.rate);
+      this._choosePositions();
       gateway.ask("get_commands", { limit: 200 }).then(({ commands }) => commands.reverse().forEach((one) => this._task(one)), () => {});
       // The site may be another publication, or the gateway another version, than before the link was lost.
       fetch("/field/site.json", { headers: this.token ? { Authorization: `Bearer ${this.token}` } : {}, method: "GET" })
@@ -205,12 +206,18 @@ class Field {
     by("traffic").textContent = tr("{kb} kB in the last minute", { kb: Math.round(minute / 1000) });
     if (this.traffic.length < 6 || this.connection.byPolling) return;
     const recent = ((this.traffic.at(-1) - this.traffic.at(-6)) / 5) * 60;
+    if (recent <= BUDGET) return;
+    // First less of each robot, then fewer times.
     const slower = RATES[RATES.indexOf(this.rate) + 1];
-    if (recent > BUDGET && slower) {
-      this.rate = slower;
-      this.traffic = [this.connection.received];
-      this.connection.choosePositions(false, this.rate);
-    }
+    if (this.form === "columns") this.form = "places";
+    else if (slower) this.rate = slower;
+    else return;
+    this.traffic = [this.connection.received];
+    this._choosePositions();
+  }
+
+  _choosePositions() {
+    this.connection.choosePositions(by("updates").value === "poll", this.rate, this.form);
   }
 
   _setConnection(state) {
@@ -296,10 +303,13 @@ class Field {
     by("robot-name").textContent = name;
     const since = one ? (performance.now() - one.at) / 1000 : 0, facts = [];
     if (one) {
-      facts.push(tr(one.state), tr("heard {s} s ago", { s: Math.round(one.age + since) }));
+      facts.push(tr(one.state));
+      // Of very many robots no more than state and place is told.
+      if (one.age !== undefined) facts.push(tr("heard {s} s ago", { s: Math.round(one.age + since) }));
       if (one.x === undefined) facts.push(tr("has not said where it is"));
-      else facts.push(`${(one.v ?? 0).toFixed(1)} m/s`, tr("position {s} s old", { s: Math.round((one.pose_age ?? 0) + since) }));
-      if (one.battery !== undefined) facts.push(tr("battery {n} %", { n: Math.round(one.battery) }));
+      if (one.v !== undefined) facts.push(`${one.v.toFixed(1)} m/s`);
+      if (one.pose_age !== undefined) facts.push(tr("position {s} s old", { s: Math.round(one.pose_age + since) }));
+      if (one.battery !== undefined) facts.push(tr("battery {n} %", { n: Math.round(100 * one.battery) }));
       if (one.status) facts.push(one.status);
     }
     by("robot-facts").textContent = facts.join(" · ");
@@ -426,7 +436,7 @@ class Field {
     on("here", "click", () => this._findMe());
     on("sign-out", "click", () => this._signOut());
     on("language", "change", () => this._chooseLanguage(by("language").value));
-    on("updates", "change", () => this.connection.choosePositions(by("updates").value === "poll", this.rate));
+    on("updates", "change", () => this._choosePositions());
     on("login-form", "submit", (event) => {
       event.preventDefault();
       this._signIn(by("token").value.trim(), { remember: by("remember").checked });

@@ -11,7 +11,14 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robot_bridge.core.messages import POSITION_FLAGS, POSITION_NUMBERS, POSITION_TEXTS, RobotReport, SendPos
+from robot_bridge.core.messages import (
+    POSITION_FLAGS,
+    POSITION_NUMBERS,
+    POSITION_TEXTS,
+    PositionForm,
+    RobotReport,
+    SendPos,
+)
 from robot_bridge.gateway.fleet.operator_updates import table_frame
 from robot_bridge.gateway.model.robots import Robots
 
@@ -34,14 +41,14 @@ poses = st.builds(
 fleets = st.dictionaries(st.text(min_size=1, max_size=6), st.none() | poses, min_size=1, max_size=6)
 
 
-def unpacked(data: bytes):
+def unpacked(data: bytes, value="<f8"):
     """Return the head's params and, of each robot, what is known, as the guide says that it is read."""
     begin = 4 + int.from_bytes(data[:4], "little")
     assert begin % 8 == 0
     head = json.loads(data[4:begin])
     assert (head["jsonrpc"], head["method"]) == ("2.0", "positions")
     params = head["params"]
-    table = np.frombuffer(data, "<f8", offset=begin).reshape(len(params["columns"]), len(params["robots"]))
+    table = np.frombuffer(data, value, offset=begin).reshape(len(params["columns"]), len(params["robots"]))
     robots = {}
     for name, values in zip(params["robots"], table.T.tolist(), strict=True):
         told = dict(zip(params["columns"], values, strict=True))
@@ -90,3 +97,14 @@ def test_a_place_keeps_every_digit():
     x = 640420.123456789 / 3
     _, found = unpacked(table_frame(1.0, fleet_of({"a": SendPos(x, -x, math.pi, 0.1)}).changed(-1), 12.0))
     assert (found["a"]["x"], found["a"]["y"], found["a"]["theta"]) == (x, -x, math.pi)
+
+
+def test_in_the_form_places_state_and_place_are_told_in_half_as_many_bits():
+    poses = {"a": SendPos(123.456, -7.5, 1.25, 0.4, battery=0.5), "b": None}
+    robots = fleet_of(poses).changed(-1)
+    params, found = unpacked(table_frame(1.0, robots, 12.0, form=PositionForm.PLACES), "<f4")
+    assert params["columns"] == ["state", "x", "y", "theta"]
+    assert found["b"] == {"state": "fresh"}
+    told = found["a"]
+    assert (told["state"], told["y"], told["theta"]) == ("fresh", -7.5, 1.25)
+    assert told["x"] == pytest.approx(123.456, abs=1e-5)
