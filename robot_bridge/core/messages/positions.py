@@ -44,9 +44,9 @@ class PositionColumns:
 
     ``columns`` are names of RobotReport's fields, in the order in which they follow, 64-bit little-endian
     floats (32-bit in the form ``places``), one for each of ``robots``; NaN is what is not known, and what is
-    known of no robot is left out. In columns ``state``, ``link``, ``status``, ``command``, ``theta_from``, ``paths`` and ``abilities`` a
-    number is a place in ``words``, counted from 0. With ``everything`` they are all robots that there are;
-    otherwise ``removed`` are gone for good.
+    known of no robot is left out. In columns ``state``, ``link``, ``status``, ``command``, ``theta_from``,
+    ``paths`` and ``abilities`` a number is a place in ``words``, counted from 0. With ``everything`` they
+    are all robots that there are; otherwise ``removed`` are gone for good.
     """
 
     t: float
