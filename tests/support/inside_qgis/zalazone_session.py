@@ -151,7 +151,7 @@ def click_cone(session: Session, cone: dict) -> None:
     operator.select(robot)
     operator.choose("fleet_cone_target")
     operator.click_map(x, y, cone["crs"])
-    send(session, robot)
+    send(session, robot, lambda: session.operator.press("fleet_send"))
     seconds = reached(session, robot)
     session.happened(
         f"click in {cone['called']}",
