@@ -169,6 +169,8 @@ PERSON = 0.25
 """metres: the radius of one."""
 WALKING = 1.2
 """m/s on average."""
+NEAREST = 0.2
+"""metres before a robot at which a person stops."""
 
 Discs = NDArray[Any]
 """(n, 3): x, y and radius in metres."""
@@ -196,12 +198,12 @@ class People:
                 self._goals[one] = self._near(self.places[one])
                 continue
             place = self.places[one] + way / far * min(far, self._speeds[one] * dt)
-            if len(robots):
-                apart = np.hypot(*(robots[:, :2] - place).T) - robots[:, 2] - PERSON
-                if apart.min() < 0.2:
-                    if self._rng.random() < 0.05:
-                        self._goals[one] = self._near(self.places[one])
-                    continue
+            gap = _gap(place, robots)
+            # Whom a robot has come too near to walks away from it.
+            if gap < NEAREST and gap <= _gap(self.places[one], robots):
+                if self._rng.random() < 0.05:
+                    self._goals[one] = self._near(self.places[one])
+                continue
             self.places[one] = place
 
     @property
@@ -228,6 +230,12 @@ class People:
         y = np.interp(station, self._stations, self._line[:, 1])
         place: NDArray[Any] = np.array([x, y]) + self._rng.uniform(-self._aside, self._aside, 2)
         return place
+
+
+def _gap(place: NDArray[Any], robots: Discs) -> float:
+    """Return the metres between a person and the nearest robot, infinite without any."""
+    apart = np.hypot(*(robots[:, :2] - place).T) - robots[:, 2] - PERSON
+    return float(apart.min(initial=math.inf))
 
 
 class MovingObstacles:
