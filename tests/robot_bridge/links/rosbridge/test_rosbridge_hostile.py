@@ -99,6 +99,7 @@ async def test_a_lie_is_named_and_what_comes_after_it_is_read(lie, words):
 
 async def test_a_frame_beyond_all_bounds_ends_the_connection_which_comes_back():
     async with HostileServer("x" * (LARGEST_FRAME + 1)) as server, Client(server.url) as client:
+
         def subscriptions():
             return [told for told in server.told if told["op"] == "subscribe"]
 
