@@ -56,7 +56,7 @@ class Field {
     this._setConnection("connecting");
     let answer;
     try {
-      answer = await fetch("/field/site.json", { headers: token ? { Authorization: `Bearer ${token}` } : {} });
+      answer = await fetchSite(token);
     } catch {
       // Not reached: the page tries on, and signs in when there is a network again.
       this._retry = setTimeout(() => this._signIn(token, { remember, quietly }), 2000);
@@ -97,6 +97,7 @@ class Field {
     }
     const site = await answer.json();
     this._banner("site", "");
+    if (["id", "version", "gateway"].every((fact) => site[fact] === this.site?.[fact])) return;
     this.site = site;
     by("site").textContent = document.title = site.name;
     this.map.showSite(site);
@@ -121,13 +122,7 @@ class Field {
       this._choosePositions();
       gateway.ask("get_commands", { limit: 200 }).then(({ commands }) => commands.reverse().forEach((one) => this._task(one)), () => {});
       // The site may be another publication, or the gateway another version, than before the link was lost.
-      fetch("/field/site.json", { headers: this.token ? { Authorization: `Bearer ${this.token}` } : {}, method: "GET" })
-        .then(async (answer) => {
-          const site = answer.ok ? await answer.json() : null;
-          if (site && (site.version !== this.site?.version || site.gateway !== document.querySelector('meta[name="gateway"]').content)) {
-            await this._readSite(new Response(JSON.stringify(site)));
-          }
-        }, () => {});
+      this._newSite();
     });
     on("hello", (hello) => this._greeted(hello));
     on("down", () => this._tick());
@@ -167,8 +162,7 @@ class Field {
   }
 
   _newSite() {
-    fetch("/field/site.json", { headers: this.token ? { Authorization: `Bearer ${this.token}` } : {} })
-      .then((answer) => this._readSite(answer), () => {});
+    fetchSite(this.token).then((answer) => this._readSite(answer), () => {});
   }
 
   _task(report) {
@@ -517,6 +511,10 @@ class Field {
     if (one.firstChild?.textContent === text && !more) return;
     one.replaceChildren(text, ...(more ? [more] : []));
   }
+}
+
+function fetchSite(token) {
+  return fetch("/field/site.json", { headers: token ? { Authorization: `Bearer ${token}` } : {} });
 }
 
 function failure(error) {

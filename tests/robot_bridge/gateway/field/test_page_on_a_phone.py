@@ -223,7 +223,10 @@ def test_pause_resume_and_abort_reach_the_robot(phone, desk):
     page.locator("#resume").tap()
     desk.until(lambda: desk.queues["r2"]["state"] == "running")
     page.locator("#abort").tap()
-    aborts = lambda: [one for one in desk.commands.values() if (one["robot"], one["op"]) == ("r2", "Abort")]  # noqa: E731
+
+    def aborts():
+        return [one for one in desk.commands.values() if (one["robot"], one["op"]) == ("r2", "Abort")]
+
     desk.until(lambda: any("field page" in str(one["steps"]) for one in aborts()))
 
 
