@@ -209,6 +209,15 @@ class State(VdaHeader, frozen=True, rename="camel", kw_only=True):
         """Whether anything of its order is left to be done; instant actions do not count."""
         return bool(self.node_states or self.edge_states)
 
+    @property
+    def is_held(self) -> bool:
+        """Whether the vehicle is paused, or a startPause that it has taken in is yet to take effect.
+
+        A pause sent twice may wait, paused itself, for the end of the first, and then pause the vehicle anew.
+        """
+        listed = (*self.action_states, *self.instant_action_states)
+        return self.paused or any(one.action_type == "startPause" and not one.has_ended for one in listed)
+
     def action(self, action_id: str) -> ActionState | None:
         """Return how an action stands, None where the state does not name it."""
         listed = (*self.action_states, *self.instant_action_states)

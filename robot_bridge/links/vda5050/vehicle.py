@@ -312,10 +312,10 @@ class VehicleController:
     def _unpause(self, state: State, now: float) -> str | None:
         """Lift a pause of ours, also where the vehicle does not show it; return what is against driving."""
         asked = self._next_unpause > -math.inf
-        if now >= self._next_unpause and (state.paused or not asked):
+        if now >= self._next_unpause and (state.is_held or not asked):
             self._next_unpause = now + REPEAT_EVERY
             self._ledger.publish_action("stopPause", self._names.draw())
-        return "the vehicle does not end its pause" if state.paused else None
+        return "the vehicle does not end its pause" if state.is_held else None
 
     def _begin_order(self, task: VehicleTask) -> None:
         position, frame = self._presence.position, self._presence.frame()

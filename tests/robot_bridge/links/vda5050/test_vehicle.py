@@ -208,6 +208,23 @@ def test_the_pause_of_an_emergency_stop_ends_with_the_next_task(bench):
     assert len(bench.orders) == 1
 
 
+def test_a_pause_that_waits_behind_another_is_lifted_before_the_vehicle_drives(bench):
+    bench.halt(emergency=True)
+    cancel = {"actionId": bench.action_id("cancelOrder"), "actionStatus": "FINISHED"}
+    waiting = {"actionId": "p2", "actionType": "startPause", "actionStatus": "PAUSED"}
+    bench.show(paused=True, actionStates=[cancel, waiting])
+    bench.clear()
+    bench.tell(TARGET, 9)
+    bench.show(paused=False, actionStates=[cancel, waiting])
+    assert bench.actions == ["stopPause"] and bench.orders == []
+
+    bench.show(paused=True, actionStates=[cancel, waiting | {"actionStatus": "FINISHED"}])
+    bench.wait(2)
+    assert bench.actions == ["stopPause", "stopPause"] and bench.orders == []
+    bench.show(paused=False)
+    assert len(bench.orders) == 1
+
+
 def test_an_idle_state_from_before_the_cancel_does_not_end_a_stop(bench):
     bench.tell(TARGET, 7)
     order = bench.orders[0]
