@@ -82,8 +82,9 @@ serve-maps: $(READY) ## serve a project and the fleet as WMS, WMTS, WFS (ARGS="-
 translations: $(READY) ## bring resources/translations up to date with the source
 	@$(RUN) -m tools.translations
 
-package: $(READY) ## build the zip for plugins.qgis.org
+package: $(READY) ## build the plugin's zip for plugins.qgis.org, and the gateway's wheel and sdist
 	@$(RUN) -m tools.package
+	@$(RUN) -m tools.gateway_package
 
 bench: $(READY) ## measure on the real data beside the project (PARTS=maps ..., MINUTES=5, TRIAL=1); see docs/benchmarks.md
 	@$(RUN) -m benchmarks $(PARTS)

@@ -55,12 +55,13 @@ def _own_files(root: Path) -> Iterator[Path]:
         if path.is_file():
             yield path
         elif path.is_dir():
-            yield from (file for file in path.rglob("*") if file.is_file() and _belongs(file, root))
+            yield from (file for file in path.rglob("*") if file.is_file() and belongs(file, root))
         else:
             raise PackageError(f"{path} is missing and belongs to the plugin; restore it from git")
 
 
-def _belongs(file: Path, root: Path) -> bool:
+def belongs(file: Path, root: Path) -> bool:
+    """Whether ``file``, in a folder of :data:`KINDS` below ``root``, is part of it and not just there."""
     path = file.relative_to(root)
     hidden = any(part.startswith(".") for part in path.parts)
     return not hidden and not LEFT_OUT_FOLDERS & set(path.parts) and path.suffix in KINDS[path.parts[0]]
