@@ -11,7 +11,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
 PACKAGE = "fleet_supervisor"
-FILES = ("__init__.py", "metadata.txt", "LICENSE", "CHANGELOG.md")
+FILES = ("__init__.py", "metadata.txt", "LICENSE", "CHANGELOG.md", ".bandit")
 PARTS = (*FILES, "plugin", "robot_bridge", "resources", "docs")
 VENDORED = "websockets"
 VENDOR = Path("plugin") / "vendor"
