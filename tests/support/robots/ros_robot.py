@@ -20,6 +20,7 @@ from geometry_msgs.msg import PoseStamped, Twist
 from nav2_msgs.action import FollowPath, FollowWaypoints, NavigateThroughPoses, NavigateToPose
 from nav2_msgs.msg import CostmapFilterInfo, WaypointStatus
 from nav_msgs.msg import OccupancyGrid, Odometry
+from nav_msgs.srv import GetMap
 from rclpy.action import ActionServer, CancelResponse, GoalResponse
 from rclpy.executors import MultiThreadedExecutor
 from rclpy.node import Node
@@ -91,6 +92,9 @@ class Robot(Node):
             self.create_subscription(Twist, "cmd_vel", self.twist_came, 10)
             self.create_service(Trigger, "stop", self.stop_called)
         self.create_service(Trigger, "place_cone", self.cone_called)
+        if options.asks_map:
+            self.map_client = self.create_client(GetMap, "get_map")
+            self.create_timer(0.5, self.ask_map)
 
     def serve(self, kind: Any, name: str, points_of: Any):
         """Offer an action whose goals are driven."""
@@ -210,6 +214,16 @@ class Robot(Node):
         """Note a map."""
         say("map", columns=grid.info.width, rows=grid.info.height, frame=grid.header.frame_id)
 
+    def ask_map(self):
+        """Ask for the map by its service, again and again."""
+        if self.map_client.service_is_ready():
+            self.map_client.call_async(GetMap.Request()).add_done_callback(self.map_answered)
+
+    def map_answered(self, asked: Any):
+        """Note a map that was asked for."""
+        grid = asked.result().map
+        say("map answered", columns=grid.info.width, cells=list(grid.data))
+
     def mask_came(self, name: str, grid: Any):
         """Note a mask of a costmap filter, and what is at some places."""
         info = grid.info
@@ -257,6 +271,7 @@ def main() -> None:
     parser.add_argument("--speed", type=float, default=2.0)
     parser.add_argument("--rate", type=float, default=10.0)
     parser.add_argument("--odd", action="append", default=[], choices=ODD)
+    parser.add_argument("--asks-map", action="store_true")
     parser.add_argument("--image", choices=["raw", "jpeg", "depth"])
     parser.add_argument("--actions", action="append", choices=list(ACTIONS))
     options = parser.parse_args()

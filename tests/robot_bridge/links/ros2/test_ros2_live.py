@@ -30,6 +30,7 @@ image_every_s = 1
 stop = "/{{robot}}/stop"
 place_cone = "/{{robot}}/place_cone"
 map = "/{{robot}}/map"
+get_map = "/{{robot}}/get_map"
 image = "/{{robot}}/camera"
 keepout_mask = "/{{robot}}/keepout_mask"
 keepout_info = "/{{robot}}/keepout_info"
@@ -189,8 +190,8 @@ def test_nav2_that_is_started_later_makes_its_robot_able(desk, robot, nodes):
         nodes.end(f"{name}-nav2")
 
 
-def test_the_map_of_the_site_comes_latched_with_masks_for_the_filters_of_nav2(robot, nodes):
-    name = robot()
+def test_the_map_of_the_site_comes_latched_with_masks_for_the_filters_of_nav2(robot, nodes, adapter):
+    name = robot("--asks-map")
     told = wait_until(lambda: events(nodes, name, "map"), 30)
     assert (told[0]["columns"], told[0]["rows"], told[0]["frame"]) == (2000, 1600, "map")
     wait_until(lambda: len(events(nodes, name, "mask")) == 2 and len(events(nodes, name, "filter")) == 2, 40)
@@ -202,6 +203,7 @@ def test_the_map_of_the_site_comes_latched_with_masks_for_the_filters_of_nav2(ro
     speeds, speed = masks["speed"]["cells"], filters[f"/{name}/speed_mask"]
     assert (speed["type"], speeds["excavation"]) == (2, 0)
     assert speeds["road"] * speed["multiplier"] == pytest.approx(1.0)
+    wait_until(lambda: f"robot {name}: a node on Fast DDS asks for the map" in adapter.output())
 
 
 def test_an_abort_cancels_what_nav2_does_and_the_robot_stands(desk, robot, nodes):
