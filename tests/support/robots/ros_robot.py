@@ -22,6 +22,7 @@ from nav2_msgs.msg import CostmapFilterInfo, WaypointStatus
 from nav_msgs.msg import OccupancyGrid, Odometry
 from nav_msgs.srv import GetMap
 from rclpy.action import ActionServer, CancelResponse, GoalResponse
+from rclpy.callback_groups import ReentrantCallbackGroup
 from rclpy.executors import MultiThreadedExecutor
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
@@ -39,6 +40,7 @@ ODD = (
     "deaf-stop",
     "silent",
     "misses",
+    "late-goals",
 )
 ACTIONS: dict[str, tuple[Any, Any]] = {
     "navigate_to_pose": (NavigateToPose, lambda goal: [goal.pose]),
@@ -47,6 +49,8 @@ ACTIONS: dict[str, tuple[Any, Any]] = {
     "follow_waypoints": (FollowWaypoints, lambda goal: goal.poses),
 }
 TICK = 0.05
+LATE = 1.5
+"""seconds in which a robot thinks about a goal, and a cancel that comes meanwhile finds none."""
 MASK_PLACES = {"road": (20.0, 8.0), "excavation": (95.0, 151.0)}
 """Metres in the map frame, whose grid begins at 0, 0."""
 
@@ -105,12 +109,15 @@ class Robot(Node):
             lambda goal: self.execute(kind, goal, points_of(goal.request)),
             goal_callback=self.goal_asked,
             cancel_callback=self.cancel_asked,
+            callback_group=ReentrantCallbackGroup() if "late-goals" in self.options.odd else None,
         )
 
     def goal_asked(self, goal: Any):
         """Take a goal on, or not."""
         refuses = "rejects" in self.options.odd
         say("goal asked", refuses=refuses)
+        if "late-goals" in self.options.odd:
+            time.sleep(LATE)
         return GoalResponse.REJECT if refuses else GoalResponse.ACCEPT
 
     def cancel_asked(self, goal: Any):

@@ -218,11 +218,23 @@ def test_an_abort_cancels_what_nav2_does_and_the_robot_stands(desk, robot, nodes
     assert events(nodes, name, "goal ended")[0]["status"] == 5
 
 
+def test_a_goal_that_is_taken_on_after_its_abort_is_stopped_too(desk, robot, nodes):
+    name = robot(*SLOW, "--odd", "late-goals")
+    desk.send(f"go-{name}", name, "SetPosEnd", x=60.0, y=8.0)
+    wait_until(lambda: events(nodes, name, "goal asked"))
+    desk.send(f"stop-{name}", name, "Abort")
+    desk.wait_for_step(f"stop-{name}", "acknowledged", 5)
+    assert not events(nodes, name, "goal")
+    (ended,) = wait_until(lambda: events(nodes, name, "goal ended"))
+    assert ended["status"] == 5
+
+
 def test_an_emergency_stop_stops_and_is_cleared(desk, robot, nodes):
     name = robot(*SLOW)
     desk.send(f"go-{name}", name, "SetPosEnd", x=60.0, y=8.0)
     desk.wait_for_step(f"go-{name}", "acknowledged", 5)
     desk.ask("emergency_stop", {"command": f"emergency-{name}"})
+    desk.ask("emergency_stop", {"command": f"again-{name}"})
     try:
         desk.until(lambda: desk.emergency["in_force"] and name not in desk.emergency["waiting"], 10)
         assert events(nodes, name, "goal ended")[0]["status"] == 5
