@@ -447,6 +447,7 @@ def test_a_hostile_node_is_named_and_the_robots_go_on(desk, robot, adapter, node
         ('topics = { speed_info = "/{robot}/speed_info" }', "name its mask, too, as topics.speed_mask"),
         ("image_every_s = 0.1", "ros2.image_every_s = 0.1: give seconds from 1 to 86400"),
         ("largest_image_bytes = 9", "ros2.largest_image_bytes = 9: give bytes from 1024"),
+        ("largest_image_bytes = 8_000_001", "ros2.largest_image_bytes = 8000001: give bytes from 1024"),
         ('path_actions = ["Teleport"]', "ros2.path_actions[0]: Invalid enum value 'Teleport'"),
         ('robots = ["agv-1"]', "ros2.topics.position: '/agv-1/odom' is no full name of a topic"),
     ],
