@@ -18,11 +18,6 @@
         </message>
         <message>
             <location filename="../../plugin/admin/accounts_dialog.py" />
-            <source>&amp;Copy</source>
-            <translation>&amp;Copia</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/admin/accounts_dialog.py" />
             <source>&amp;Name</source>
             <translation>&amp;Nom</translation>
         </message>
@@ -60,11 +55,6 @@
             <location filename="../../plugin/admin/accounts_dialog.py" />
             <source>Change role</source>
             <translation>Canvia el rol</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/admin/accounts_dialog.py" />
-            <source>Copied. It stays in the clipboard until something else is copied.</source>
-            <translation>Copiat. Es queda al porta-retalls fins que es copiï una altra cosa.</translation>
         </message>
         <message>
             <location filename="../../plugin/admin/accounts_dialog.py" />
@@ -168,11 +158,6 @@
         </message>
         <message>
             <location filename="../../plugin/admin/accounts_dialog.py" />
-            <source>This desk was connected with what the token takes the place of, and is cut off. Enter the token in the Fleet panel under Access, then press Connect.</source>
-            <translation>Aquesta consola estava connectada amb allò que el testimoni reemplaça, i queda desconnectada. Introduïu el testimoni al tauler de la flota, a Accés, i premeu Connecta.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/admin/accounts_dialog.py" />
             <source>This gateway has no accounts yet: everybody on its computer may do everything. The first account ends that for good, and this connection too: connect again with its token. It has to be a supervisor's.</source>
             <translation>Aquesta passarel·la encara no té comptes: tothom al seu ordinador ho pot fer tot. El primer compte hi posa fi per sempre, i també a aquesta connexió: torneu-vos a connectar amb el seu testimoni. Ha de ser d'un supervisor.</translation>
         </message>
@@ -200,11 +185,6 @@
             <location filename="../../plugin/admin/accounts_dialog.py" />
             <source>Token</source>
             <translation>Testimoni</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/admin/accounts_dialog.py" />
-            <source>Token of {operator}</source>
-            <translation>Testimoni de {operator}</translation>
         </message>
         <message>
             <location filename="../../plugin/admin/accounts_dialog.py" />
@@ -248,11 +228,6 @@
         </message>
         <message>
             <location filename="../../plugin/admin/accounts_dialog.py" />
-            <source>holds</source>
-            <translation>vàlid</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/admin/accounts_dialog.py" />
             <source>holds until {time}</source>
             <translation>vàlid fins a {time}</translation>
         </message>
@@ -290,11 +265,6 @@
             <location filename="../../plugin/admin/accounts_dialog.py" />
             <source>{operator} is {role}. Another role holds from the next thing on that is asked for, also over connections that are open.</source>
             <translation>El rol de {operator} és {role}. Un altre rol val a partir de la petició següent, també en connexions obertes.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/admin/accounts_dialog.py" />
-            <source>{operator}, {role}: the token {until}. It is shown now and never again, and kept nowhere: hand it over on a way that others do not read. If it gets lost, make a new one.</source>
-            <translation>{operator}, {role}: testimoni {until}. Es mostra ara i mai més, i no es desa enlloc: lliureu-lo per una via que altres no llegeixin. Si es perd, feu-ne un de nou.</translation>
         </message>
         <message>
             <location filename="../../plugin/admin/recordings.py" />
@@ -565,6 +535,56 @@
             <location filename="../../plugin/admin/supervisor_dialog.py" />
             <source>{words}: the gateway's answer cannot be read ({kind}). Update the gateway or the plugin, whichever is older.</source>
             <translation>{words}: la resposta de la passarel·la no es pot llegir ({kind}). Actualitzeu la passarel·la o el connector, el que sigui més antic.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/admin/token_dialog.py" />
+            <source>&amp;Copy</source>
+            <translation>&amp;Copia</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/admin/token_dialog.py" />
+            <source>A phone whose camera reads this code opens the field page, signed in with the token:</source>
+            <translation>Un telèfon que llegeix aquest codi amb la càmera obre la pàgina de camp amb la sessió iniciada amb el testimoni:</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/admin/token_dialog.py" />
+            <source>Code for a phone</source>
+            <translation>Codi per a un telèfon</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/admin/token_dialog.py" />
+            <source>Copied. It stays in the clipboard until something else is copied.</source>
+            <translation>Copiat. Es queda al porta-retalls fins que es copiï una altra cosa.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/admin/token_dialog.py" />
+            <source>For a phone: connect this desk by the address that phones reach the gateway by, not by {host}, and a new token has a code here that opens the field page.</source>
+            <translation>Per a un telèfon: connecteu aquesta consola per l'adreça amb què els telèfons arriben a la passarel·la, no per {host}, i un testimoni nou tindrà aquí un codi que obre la pàgina de camp.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/admin/token_dialog.py" />
+            <source>The Python package segno is missing, which draws the code for phones. Install the plugin from its release zip, which contains it.</source>
+            <translation>Falta el paquet de Python segno, que dibuixa el codi per als telèfons. Instal·leu el connector des del zip de la versió publicada, que el conté.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/admin/token_dialog.py" />
+            <source>This desk was connected with what the token takes the place of, and is cut off. Enter the token in the Fleet panel under Access, then press Connect.</source>
+            <translation>Aquesta consola estava connectada amb allò que el testimoni reemplaça, i queda desconnectada. Introduïu el testimoni al tauler de la flota, a Accés, i premeu Connecta.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/admin/token_dialog.py" />
+            <source>Token of {operator}</source>
+            <translation>Testimoni de {operator}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/admin/token_dialog.py" />
+            <source>holds</source>
+            <translation>vàlid</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/admin/token_dialog.py" />
+            <source>{operator}, {role}: the token {until}. It is shown now and never again, and kept nowhere: hand it over on a way that others do not read. If it gets lost, make a new one.</source>
+            <translation>{operator}, {role}: testimoni {until}. Es mostra ara i mai més, i no es desa enlloc: lliureu-lo per una via que altres no llegeixin. Si es perd, feu-ne un de nou.</translation>
         </message>
         <message>
             <location filename="../../plugin/cone_texts.py" />
@@ -2612,6 +2632,31 @@
         </message>
         <message>
             <location filename="../../plugin/layers/publishing/publication.py" />
+            <source>Keepouts</source>
+            <translation>Zones prohibides</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/publishing/publication.py" />
+            <source>Obstacles</source>
+            <translation>Obstacles</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/publishing/publication.py" />
+            <source>Publish the site again.</source>
+            <translation>Torneu a publicar el recinte.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/publishing/publication.py" />
+            <source>Road centrelines</source>
+            <translation>Eixos de via</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/publishing/publication.py" />
+            <source>Road surfaces</source>
+            <translation>Superfícies de via</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/publishing/publication.py" />
             <source>The site cannot be published in {folder}: {file} is a file. Choose a folder: a new one, or the one that the site was published in before.</source>
             <translation>El recinte no es pot publicar a {folder}: {file} és un fitxer. Trieu una carpeta: una de nova o la mateixa on ja es va publicar el recinte.</translation>
         </message>
@@ -2637,58 +2682,33 @@
         </message>
         <message>
             <location filename="../../plugin/layers/publishing/publication.py" />
+            <source>{file} cannot be read: {error}</source>
+            <translation>{file} no es pot llegir: {error}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/publishing/publication.py" />
+            <source>{file} has no layer {layers} that can be read. {again}</source>
+            <translation>{file} no té cap capa {layers} que es pugui llegir. {again}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/publishing/publication.py" />
             <source>{file} is there and is no part of a published site: choose another folder, or say that it may be replaced (REPLACE=true).</source>
             <translation>{file} hi és i no forma part d'un recinte publicat: trieu una altra carpeta, o digueu que es pot substituir (REPLACE=true).</translation>
         </message>
         <message>
             <location filename="../../plugin/layers/publishing/publication.py" />
-            <source>{folder} holds version {version} of another site, {other}: choose another folder for {site}, or say that the other site may be replaced (REPLACE=true).</source>
-            <translation>{folder} conté la versió {version} d'un altre recinte, {other}: trieu una altra carpeta per a {site}, o digueu que l'altre recinte es pot substituir (REPLACE=true).</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/layers/publishing/published_layers.py" />
-            <source>Keepouts</source>
-            <translation>Zones prohibides</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/layers/publishing/published_layers.py" />
-            <source>Obstacles</source>
-            <translation>Obstacles</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/layers/publishing/published_layers.py" />
-            <source>Publish the site again.</source>
-            <translation>Torneu a publicar el recinte.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/layers/publishing/published_layers.py" />
-            <source>Road centrelines</source>
-            <translation>Eixos de via</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/layers/publishing/published_layers.py" />
-            <source>Road surfaces</source>
-            <translation>Superfícies de via</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/layers/publishing/published_layers.py" />
-            <source>{file} cannot be read: {error}</source>
-            <translation>{file} no es pot llegir: {error}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/layers/publishing/published_layers.py" />
-            <source>{file} has no layer {layers} that can be read. {again}</source>
-            <translation>{file} no té cap capa {layers} que es pugui llegir. {again}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/layers/publishing/published_layers.py" />
             <source>{file} names no site: it has no table [site] with a name. {again}</source>
             <translation>{file} no anomena cap recinte: no té la taula [site] amb un nom. {again}</translation>
         </message>
         <message>
-            <location filename="../../plugin/layers/publishing/published_layers.py" />
+            <location filename="../../plugin/layers/publishing/publication.py" />
             <source>{folder} has a {settings} and no {geopackage}. {again}</source>
             <translation>{folder} té {settings} i no {geopackage}. {again}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/publishing/publication.py" />
+            <source>{folder} holds version {version} of another site, {other}: choose another folder for {site}, or say that the other site may be replaced (REPLACE=true).</source>
+            <translation>{folder} conté la versió {version} d'un altre recinte, {other}: trieu una altra carpeta per a {site}, o digueu que l'altre recinte es pot substituir (REPLACE=true).</translation>
         </message>
         <message>
             <location filename="../../plugin/layers/publishing/site_file.py" />
@@ -3321,6 +3341,11 @@
             </translation>
         </message>
         <message>
+            <location filename="../../plugin/map/tools/click_tools.py" />
+            <source>{in_words} is still on the map. Send it (Enter) or cancel it (Esc) first.</source>
+            <translation>{in_words} encara és al mapa. Envieu-ho (Retorn) o cancel·leu-ho (Esc) abans.</translation>
+        </message>
+        <message>
             <location filename="../../plugin/map/tools/closure_tool.py" />
             <source>Close road</source>
             <translation>Tanca via</translation>
@@ -3464,11 +3489,6 @@
             <location filename="../../plugin/map/tools/surface_tool.py" />
             <source>{told} at {where}</source>
             <translation>{told} a {where}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/tools/click_tools.py" />
-            <source>{in_words} is still on the map. Send it (Enter) or cancel it (Esc) first.</source>
-            <translation>{in_words} encara és al mapa. Envieu-ho (Retorn) o cancel·leu-ho (Esc) abans.</translation>
         </message>
         <message>
             <location filename="../../plugin/observations/observation_dock.py" />
@@ -3713,6 +3733,11 @@
         </message>
         <message>
             <location filename="../../plugin/panel/alarms/alarm_panel.py" />
+            <source>Alarm settings</source>
+            <translation>Configuració de les alarmes</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/alarms/alarm_panel.py" />
             <source>By</source>
             <translation>Qui</translation>
         </message>
@@ -3788,6 +3813,56 @@
         </message>
         <message>
             <location filename="../../plugin/panel/alarms/alarm_panel.py" />
+            <source>begins after standing with a task for</source>
+            <translation>comença després d'estar aturat amb una tasca durant</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/alarms/alarm_panel.py" />
+            <source>begins below</source>
+            <translation>comença per sota de</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/alarms/alarm_panel.py" />
+            <source>begins so far beside the road</source>
+            <translation>comença tant al costat de la via</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/alarms/alarm_panel.py" />
+            <source>begins so far outside</source>
+            <translation>comença tant fora</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/alarms/alarm_panel.py" />
+            <source>begins so long before</source>
+            <translation>comença aquest temps abans</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/alarms/alarm_panel.py" />
+            <source>begins when less exact than</source>
+            <translation>comença quan és menys exacta que</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/alarms/alarm_panel.py" />
+            <source>begins when two are nearer than</source>
+            <translation>comença quan dos són més a prop de</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/alarms/alarm_panel.py" />
+            <source>ends so much above that</source>
+            <translation>acaba tant per sobre</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/alarms/alarm_panel.py" />
+            <source>ends so much below that</source>
+            <translation>acaba tant per sota</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/alarms/alarm_panel.py" />
+            <source>ends so much further apart</source>
+            <translation>acaba tant més lluny</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/alarms/alarm_panel.py" />
             <source>it began {times} times</source>
             <translation>ha començat {times} vegades</translation>
         </message>
@@ -3805,6 +3880,16 @@
             <location filename="../../plugin/panel/alarms/alarm_panel.py" />
             <source>since {time}</source>
             <translation>des de les {time}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/alarms/alarm_panel.py" />
+            <source>the gateway judges it by the published site, and says what it does</source>
+            <translation>la passarel·la ho jutja segons el recinte publicat i diu què fa</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/alarms/alarm_panel.py" />
+            <source>the site's settings say after how long (see the robots' state)</source>
+            <translation>la configuració del recinte diu al cap de quant (vegeu l'estat dels robots)</translation>
         </message>
         <message>
             <location filename="../../plugin/panel/alarms/board.py" />
@@ -3995,71 +4080,6 @@
             <location filename="../../plugin/panel/alarms/board.py" />
             <source>{text} (it is not heard now)</source>
             <translation>{text} (ara no se'l sent)</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/alarms/thresholds_form.py" />
-            <source>Alarm settings</source>
-            <translation>Configuració de les alarmes</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/alarms/thresholds_form.py" />
-            <source>begins after standing with a task for</source>
-            <translation>comença després d'estar aturat amb una tasca durant</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/alarms/thresholds_form.py" />
-            <source>begins below</source>
-            <translation>comença per sota de</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/alarms/thresholds_form.py" />
-            <source>begins so far beside the road</source>
-            <translation>comença tant al costat de la via</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/alarms/thresholds_form.py" />
-            <source>begins so far outside</source>
-            <translation>comença tant fora</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/alarms/thresholds_form.py" />
-            <source>begins so long before</source>
-            <translation>comença aquest temps abans</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/alarms/thresholds_form.py" />
-            <source>begins when less exact than</source>
-            <translation>comença quan és menys exacta que</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/alarms/thresholds_form.py" />
-            <source>begins when two are nearer than</source>
-            <translation>comença quan dos són més a prop de</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/alarms/thresholds_form.py" />
-            <source>ends so much above that</source>
-            <translation>acaba tant per sobre</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/alarms/thresholds_form.py" />
-            <source>ends so much below that</source>
-            <translation>acaba tant per sota</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/alarms/thresholds_form.py" />
-            <source>ends so much further apart</source>
-            <translation>acaba tant més lluny</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/alarms/thresholds_form.py" />
-            <source>the gateway judges it by the published site, and says what it does</source>
-            <translation>la passarel·la ho jutja segons el recinte publicat i diu què fa</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/alarms/thresholds_form.py" />
-            <source>the site's settings say after how long (see the robots' state)</source>
-            <translation>la configuració del recinte diu al cap de quant (vegeu l'estat dels robots)</translation>
         </message>
         <message>
             <location filename="../../plugin/panel/alarms/watch.py" />
@@ -6143,6 +6163,11 @@
         </message>
         <message>
             <location filename="../../plugin/planning/proposal.py" />
+            <source>The assignment was cancelled.</source>
+            <translation>S'ha cancel·lat l'assignació.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/proposal.py" />
             <source>The plan could not be made. Please report this:
 {traceback}</source>
             <translation>El pla no s'ha pogut fer. Comuniqueu això:
@@ -6155,18 +6180,13 @@
         </message>
         <message>
             <location filename="../../plugin/planning/proposal.py" />
-            <source>{robot} and {other} come within {metres:.1f} m at {x:.0f}, {y:.0f} m after {minutes}:{seconds:02d}</source>
-            <translation>{robot} i {other} s'acosten a {metres:.1f} m a {x:.0f}, {y:.0f} m al cap de {minutes}:{seconds:02d}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/proposal.py" />
-            <source>The assignment was cancelled.</source>
-            <translation>S'ha cancel·lat l'assignació.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/proposal.py" />
             <source>{name}, straight within {nearby:g} m</source>
             <translation>{name}, recte dins de {nearby:g} m</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/proposal.py" />
+            <source>{robot} and {other} come within {metres:.1f} m at {x:.0f}, {y:.0f} m after {minutes}:{seconds:02d}</source>
+            <translation>{robot} i {other} s'acosten a {metres:.1f} m a {x:.0f}, {y:.0f} m al cap de {minutes}:{seconds:02d}</translation>
         </message>
         <message numerus="yes">
             <location filename="../../plugin/processing/algorithms/as_placed_report.py" />
@@ -9620,14 +9640,14 @@
             <translation>Camins per vies…</translation>
         </message>
         <message>
-            <location filename="../../plugin/ui/tables.py" />
-            <source>{file} was not written ({why}). Choose another folder, or close the file where it is open.</source>
-            <translation>{file} no s'ha escrit ({why}). Trieu una altra carpeta, o tanqueu el fitxer on sigui obert.</translation>
-        </message>
-        <message>
             <location filename="../../plugin/ui/language.py" />
             <source>{state}, last heard {age} ago over {link}</source>
             <translation>{state}, últim missatge fa {age} per {link}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/ui/tables.py" />
+            <source>{file} was not written ({why}). Choose another folder, or close the file where it is open.</source>
+            <translation>{file} no s'ha escrit ({why}). Trieu una altra carpeta, o tanqueu el fitxer on sigui obert.</translation>
         </message>
     </context>
 </TS>

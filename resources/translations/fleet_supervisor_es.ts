@@ -18,11 +18,6 @@
         </message>
         <message>
             <location filename="../../plugin/admin/accounts_dialog.py" />
-            <source>&amp;Copy</source>
-            <translation>&amp;Copiar</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/admin/accounts_dialog.py" />
             <source>&amp;Name</source>
             <translation>&amp;Nombre</translation>
         </message>
@@ -60,11 +55,6 @@
             <location filename="../../plugin/admin/accounts_dialog.py" />
             <source>Change role</source>
             <translation>Cambiar el rol</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/admin/accounts_dialog.py" />
-            <source>Copied. It stays in the clipboard until something else is copied.</source>
-            <translation>Copiado. Se queda en el portapapeles hasta que se copie otra cosa.</translation>
         </message>
         <message>
             <location filename="../../plugin/admin/accounts_dialog.py" />
@@ -168,11 +158,6 @@
         </message>
         <message>
             <location filename="../../plugin/admin/accounts_dialog.py" />
-            <source>This desk was connected with what the token takes the place of, and is cut off. Enter the token in the Fleet panel under Access, then press Connect.</source>
-            <translation>Esta consola estaba conectada con aquello que el testigo reemplaza, y queda desconectada. Introduzca el testigo en el panel de la flota, en Acceso, y pulse Conectar.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/admin/accounts_dialog.py" />
             <source>This gateway has no accounts yet: everybody on its computer may do everything. The first account ends that for good, and this connection too: connect again with its token. It has to be a supervisor's.</source>
             <translation>Esta pasarela aún no tiene cuentas: cualquiera en su ordenador puede hacerlo todo. La primera cuenta le pone fin para siempre, y también a esta conexión: conéctese otra vez con su testigo. Tiene que ser de un supervisor.</translation>
         </message>
@@ -200,11 +185,6 @@
             <location filename="../../plugin/admin/accounts_dialog.py" />
             <source>Token</source>
             <translation>Testigo</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/admin/accounts_dialog.py" />
-            <source>Token of {operator}</source>
-            <translation>Testigo de {operator}</translation>
         </message>
         <message>
             <location filename="../../plugin/admin/accounts_dialog.py" />
@@ -248,11 +228,6 @@
         </message>
         <message>
             <location filename="../../plugin/admin/accounts_dialog.py" />
-            <source>holds</source>
-            <translation>válido</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/admin/accounts_dialog.py" />
             <source>holds until {time}</source>
             <translation>válido hasta {time}</translation>
         </message>
@@ -290,11 +265,6 @@
             <location filename="../../plugin/admin/accounts_dialog.py" />
             <source>{operator} is {role}. Another role holds from the next thing on that is asked for, also over connections that are open.</source>
             <translation>El rol de {operator} es {role}. Otro rol vale a partir de la siguiente petición, también en conexiones abiertas.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/admin/accounts_dialog.py" />
-            <source>{operator}, {role}: the token {until}. It is shown now and never again, and kept nowhere: hand it over on a way that others do not read. If it gets lost, make a new one.</source>
-            <translation>{operator}, {role}: testigo {until}. Se muestra ahora y nunca más, y no se guarda en ningún sitio: entréguelo por una vía que otros no lean. Si se pierde, cree uno nuevo.</translation>
         </message>
         <message>
             <location filename="../../plugin/admin/recordings.py" />
@@ -565,6 +535,56 @@
             <location filename="../../plugin/admin/supervisor_dialog.py" />
             <source>{words}: the gateway's answer cannot be read ({kind}). Update the gateway or the plugin, whichever is older.</source>
             <translation>{words}: la respuesta de la pasarela no se puede leer ({kind}). Actualice la pasarela o el complemento, lo que sea más antiguo.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/admin/token_dialog.py" />
+            <source>&amp;Copy</source>
+            <translation>&amp;Copiar</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/admin/token_dialog.py" />
+            <source>A phone whose camera reads this code opens the field page, signed in with the token:</source>
+            <translation>Un teléfono que lee este código con la cámara abre la página de campo con la sesión iniciada con el token:</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/admin/token_dialog.py" />
+            <source>Code for a phone</source>
+            <translation>Código para un teléfono</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/admin/token_dialog.py" />
+            <source>Copied. It stays in the clipboard until something else is copied.</source>
+            <translation>Copiado. Se queda en el portapapeles hasta que se copie otra cosa.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/admin/token_dialog.py" />
+            <source>For a phone: connect this desk by the address that phones reach the gateway by, not by {host}, and a new token has a code here that opens the field page.</source>
+            <translation>Para un teléfono: conecte esta consola por la dirección con la que los teléfonos llegan a la pasarela, no por {host}, y un token nuevo tendrá aquí un código que abre la página de campo.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/admin/token_dialog.py" />
+            <source>The Python package segno is missing, which draws the code for phones. Install the plugin from its release zip, which contains it.</source>
+            <translation>Falta el paquete de Python segno, que dibuja el código para los teléfonos. Instale el complemento desde el zip de la versión publicada, que lo contiene.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/admin/token_dialog.py" />
+            <source>This desk was connected with what the token takes the place of, and is cut off. Enter the token in the Fleet panel under Access, then press Connect.</source>
+            <translation>Esta consola estaba conectada con aquello que el testigo reemplaza, y queda desconectada. Introduzca el testigo en el panel de la flota, en Acceso, y pulse Conectar.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/admin/token_dialog.py" />
+            <source>Token of {operator}</source>
+            <translation>Testigo de {operator}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/admin/token_dialog.py" />
+            <source>holds</source>
+            <translation>válido</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/admin/token_dialog.py" />
+            <source>{operator}, {role}: the token {until}. It is shown now and never again, and kept nowhere: hand it over on a way that others do not read. If it gets lost, make a new one.</source>
+            <translation>{operator}, {role}: testigo {until}. Se muestra ahora y nunca más, y no se guarda en ningún sitio: entréguelo por una vía que otros no lean. Si se pierde, cree uno nuevo.</translation>
         </message>
         <message>
             <location filename="../../plugin/cone_texts.py" />
@@ -2612,6 +2632,31 @@
         </message>
         <message>
             <location filename="../../plugin/layers/publishing/publication.py" />
+            <source>Keepouts</source>
+            <translation>Zonas prohibidas</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/publishing/publication.py" />
+            <source>Obstacles</source>
+            <translation>Obstáculos</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/publishing/publication.py" />
+            <source>Publish the site again.</source>
+            <translation>Vuelva a publicar el recinto.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/publishing/publication.py" />
+            <source>Road centrelines</source>
+            <translation>Ejes de vía</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/publishing/publication.py" />
+            <source>Road surfaces</source>
+            <translation>Superficies de vía</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/publishing/publication.py" />
             <source>The site cannot be published in {folder}: {file} is a file. Choose a folder: a new one, or the one that the site was published in before.</source>
             <translation>El recinto no se puede publicar en {folder}: {file} es un archivo. Elija una carpeta: una nueva o la misma en la que ya se publicó el recinto.</translation>
         </message>
@@ -2637,58 +2682,33 @@
         </message>
         <message>
             <location filename="../../plugin/layers/publishing/publication.py" />
+            <source>{file} cannot be read: {error}</source>
+            <translation>{file} no se puede leer: {error}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/publishing/publication.py" />
+            <source>{file} has no layer {layers} that can be read. {again}</source>
+            <translation>{file} no tiene ninguna capa {layers} que se pueda leer. {again}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/publishing/publication.py" />
             <source>{file} is there and is no part of a published site: choose another folder, or say that it may be replaced (REPLACE=true).</source>
             <translation>{file} está ahí y no forma parte de un recinto publicado: elija otra carpeta, o diga que se puede sustituir (REPLACE=true).</translation>
         </message>
         <message>
             <location filename="../../plugin/layers/publishing/publication.py" />
-            <source>{folder} holds version {version} of another site, {other}: choose another folder for {site}, or say that the other site may be replaced (REPLACE=true).</source>
-            <translation>{folder} contiene la versión {version} de otro recinto, {other}: elija otra carpeta para {site}, o diga que el otro recinto se puede sustituir (REPLACE=true).</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/layers/publishing/published_layers.py" />
-            <source>Keepouts</source>
-            <translation>Zonas prohibidas</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/layers/publishing/published_layers.py" />
-            <source>Obstacles</source>
-            <translation>Obstáculos</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/layers/publishing/published_layers.py" />
-            <source>Publish the site again.</source>
-            <translation>Vuelva a publicar el recinto.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/layers/publishing/published_layers.py" />
-            <source>Road centrelines</source>
-            <translation>Ejes de vía</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/layers/publishing/published_layers.py" />
-            <source>Road surfaces</source>
-            <translation>Superficies de vía</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/layers/publishing/published_layers.py" />
-            <source>{file} cannot be read: {error}</source>
-            <translation>{file} no se puede leer: {error}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/layers/publishing/published_layers.py" />
-            <source>{file} has no layer {layers} that can be read. {again}</source>
-            <translation>{file} no tiene ninguna capa {layers} que se pueda leer. {again}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/layers/publishing/published_layers.py" />
             <source>{file} names no site: it has no table [site] with a name. {again}</source>
             <translation>{file} no nombra ningún recinto: no tiene la tabla [site] con un nombre. {again}</translation>
         </message>
         <message>
-            <location filename="../../plugin/layers/publishing/published_layers.py" />
+            <location filename="../../plugin/layers/publishing/publication.py" />
             <source>{folder} has a {settings} and no {geopackage}. {again}</source>
             <translation>{folder} tiene {settings} y no {geopackage}. {again}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/publishing/publication.py" />
+            <source>{folder} holds version {version} of another site, {other}: choose another folder for {site}, or say that the other site may be replaced (REPLACE=true).</source>
+            <translation>{folder} contiene la versión {version} de otro recinto, {other}: elija otra carpeta para {site}, o diga que el otro recinto se puede sustituir (REPLACE=true).</translation>
         </message>
         <message>
             <location filename="../../plugin/layers/publishing/site_file.py" />
@@ -3321,6 +3341,11 @@
             </translation>
         </message>
         <message>
+            <location filename="../../plugin/map/tools/click_tools.py" />
+            <source>{in_words} is still on the map. Send it (Enter) or cancel it (Esc) first.</source>
+            <translation>{in_words} sigue en el mapa. Envíelo (Intro) o cancélelo (Esc) antes.</translation>
+        </message>
+        <message>
             <location filename="../../plugin/map/tools/closure_tool.py" />
             <source>Close road</source>
             <translation>Cerrar vía</translation>
@@ -3464,11 +3489,6 @@
             <location filename="../../plugin/map/tools/surface_tool.py" />
             <source>{told} at {where}</source>
             <translation>{told} en {where}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/tools/click_tools.py" />
-            <source>{in_words} is still on the map. Send it (Enter) or cancel it (Esc) first.</source>
-            <translation>{in_words} sigue en el mapa. Envíelo (Intro) o cancélelo (Esc) antes.</translation>
         </message>
         <message>
             <location filename="../../plugin/observations/observation_dock.py" />
@@ -3713,6 +3733,11 @@
         </message>
         <message>
             <location filename="../../plugin/panel/alarms/alarm_panel.py" />
+            <source>Alarm settings</source>
+            <translation>Configuración de las alarmas</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/alarms/alarm_panel.py" />
             <source>By</source>
             <translation>Quién</translation>
         </message>
@@ -3788,6 +3813,56 @@
         </message>
         <message>
             <location filename="../../plugin/panel/alarms/alarm_panel.py" />
+            <source>begins after standing with a task for</source>
+            <translation>empieza después de estar parado con una tarea durante</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/alarms/alarm_panel.py" />
+            <source>begins below</source>
+            <translation>empieza por debajo de</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/alarms/alarm_panel.py" />
+            <source>begins so far beside the road</source>
+            <translation>empieza tanto al lado de la vía</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/alarms/alarm_panel.py" />
+            <source>begins so far outside</source>
+            <translation>empieza tanto fuera</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/alarms/alarm_panel.py" />
+            <source>begins so long before</source>
+            <translation>empieza este tiempo antes</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/alarms/alarm_panel.py" />
+            <source>begins when less exact than</source>
+            <translation>empieza cuando es menos exacta que</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/alarms/alarm_panel.py" />
+            <source>begins when two are nearer than</source>
+            <translation>empieza cuando dos están más cerca de</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/alarms/alarm_panel.py" />
+            <source>ends so much above that</source>
+            <translation>termina tanto por encima</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/alarms/alarm_panel.py" />
+            <source>ends so much below that</source>
+            <translation>termina tanto por debajo</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/alarms/alarm_panel.py" />
+            <source>ends so much further apart</source>
+            <translation>termina tanto más lejos</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/alarms/alarm_panel.py" />
             <source>it began {times} times</source>
             <translation>ha empezado {times} veces</translation>
         </message>
@@ -3805,6 +3880,16 @@
             <location filename="../../plugin/panel/alarms/alarm_panel.py" />
             <source>since {time}</source>
             <translation>desde las {time}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/alarms/alarm_panel.py" />
+            <source>the gateway judges it by the published site, and says what it does</source>
+            <translation>la pasarela lo juzga según el recinto publicado y dice qué hace</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/alarms/alarm_panel.py" />
+            <source>the site's settings say after how long (see the robots' state)</source>
+            <translation>la configuración del recinto dice al cabo de cuánto (vea el estado de los robots)</translation>
         </message>
         <message>
             <location filename="../../plugin/panel/alarms/board.py" />
@@ -3995,71 +4080,6 @@
             <location filename="../../plugin/panel/alarms/board.py" />
             <source>{text} (it is not heard now)</source>
             <translation>{text} (ahora no se le oye)</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/alarms/thresholds_form.py" />
-            <source>Alarm settings</source>
-            <translation>Configuración de las alarmas</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/alarms/thresholds_form.py" />
-            <source>begins after standing with a task for</source>
-            <translation>empieza después de estar parado con una tarea durante</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/alarms/thresholds_form.py" />
-            <source>begins below</source>
-            <translation>empieza por debajo de</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/alarms/thresholds_form.py" />
-            <source>begins so far beside the road</source>
-            <translation>empieza tanto al lado de la vía</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/alarms/thresholds_form.py" />
-            <source>begins so far outside</source>
-            <translation>empieza tanto fuera</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/alarms/thresholds_form.py" />
-            <source>begins so long before</source>
-            <translation>empieza este tiempo antes</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/alarms/thresholds_form.py" />
-            <source>begins when less exact than</source>
-            <translation>empieza cuando es menos exacta que</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/alarms/thresholds_form.py" />
-            <source>begins when two are nearer than</source>
-            <translation>empieza cuando dos están más cerca de</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/alarms/thresholds_form.py" />
-            <source>ends so much above that</source>
-            <translation>termina tanto por encima</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/alarms/thresholds_form.py" />
-            <source>ends so much below that</source>
-            <translation>termina tanto por debajo</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/alarms/thresholds_form.py" />
-            <source>ends so much further apart</source>
-            <translation>termina tanto más lejos</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/alarms/thresholds_form.py" />
-            <source>the gateway judges it by the published site, and says what it does</source>
-            <translation>la pasarela lo juzga según el recinto publicado y dice qué hace</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/alarms/thresholds_form.py" />
-            <source>the site's settings say after how long (see the robots' state)</source>
-            <translation>la configuración del recinto dice al cabo de cuánto (vea el estado de los robots)</translation>
         </message>
         <message>
             <location filename="../../plugin/panel/alarms/watch.py" />
@@ -6143,6 +6163,11 @@
         </message>
         <message>
             <location filename="../../plugin/planning/proposal.py" />
+            <source>The assignment was cancelled.</source>
+            <translation>Se canceló la asignación.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/proposal.py" />
             <source>The plan could not be made. Please report this:
 {traceback}</source>
             <translation>El plan no se pudo hacer. Comunique esto:
@@ -6155,18 +6180,13 @@
         </message>
         <message>
             <location filename="../../plugin/planning/proposal.py" />
-            <source>{robot} and {other} come within {metres:.1f} m at {x:.0f}, {y:.0f} m after {minutes}:{seconds:02d}</source>
-            <translation>{robot} y {other} se acercan a {metres:.1f} m en {x:.0f}, {y:.0f} m al cabo de {minutes}:{seconds:02d}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/proposal.py" />
-            <source>The assignment was cancelled.</source>
-            <translation>Se canceló la asignación.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/proposal.py" />
             <source>{name}, straight within {nearby:g} m</source>
             <translation>{name}, recto dentro de {nearby:g} m</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/proposal.py" />
+            <source>{robot} and {other} come within {metres:.1f} m at {x:.0f}, {y:.0f} m after {minutes}:{seconds:02d}</source>
+            <translation>{robot} y {other} se acercan a {metres:.1f} m en {x:.0f}, {y:.0f} m al cabo de {minutes}:{seconds:02d}</translation>
         </message>
         <message numerus="yes">
             <location filename="../../plugin/processing/algorithms/as_placed_report.py" />
@@ -9620,14 +9640,14 @@
             <translation>Caminos por vías…</translation>
         </message>
         <message>
-            <location filename="../../plugin/ui/tables.py" />
-            <source>{file} was not written ({why}). Choose another folder, or close the file where it is open.</source>
-            <translation>{file} no se escribió ({why}). Elija otra carpeta, o cierre el archivo donde esté abierto.</translation>
-        </message>
-        <message>
             <location filename="../../plugin/ui/language.py" />
             <source>{state}, last heard {age} ago over {link}</source>
             <translation>{state}, último mensaje hace {age} por {link}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/ui/tables.py" />
+            <source>{file} was not written ({why}). Choose another folder, or close the file where it is open.</source>
+            <translation>{file} no se escribió ({why}). Elija otra carpeta, o cierre el archivo donde esté abierto.</translation>
         </message>
     </context>
 </TS>

@@ -17,11 +17,6 @@
         </message>
         <message>
             <location filename="../../plugin/admin/accounts_dialog.py" />
-            <source>&amp;Copy</source>
-            <translation>&amp;Másolás</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/admin/accounts_dialog.py" />
             <source>&amp;Name</source>
             <translation>&amp;Név</translation>
         </message>
@@ -59,11 +54,6 @@
             <location filename="../../plugin/admin/accounts_dialog.py" />
             <source>Change role</source>
             <translation>Szerep módosítása</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/admin/accounts_dialog.py" />
-            <source>Copied. It stays in the clipboard until something else is copied.</source>
-            <translation>Kimásolva. A vágólapon marad, amíg mást nem másol.</translation>
         </message>
         <message>
             <location filename="../../plugin/admin/accounts_dialog.py" />
@@ -167,11 +157,6 @@
         </message>
         <message>
             <location filename="../../plugin/admin/accounts_dialog.py" />
-            <source>This desk was connected with what the token takes the place of, and is cut off. Enter the token in the Fleet panel under Access, then press Connect.</source>
-            <translation>Ez a kezelőpult azzal volt kapcsolódva, aminek a token a helyébe lép, ezért lekapcsolódik. Adja meg a tokent a Flotta panelen a Hozzáférés alatt, majd nyomja meg a Kapcsolódás gombot.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/admin/accounts_dialog.py" />
             <source>This gateway has no accounts yet: everybody on its computer may do everything. The first account ends that for good, and this connection too: connect again with its token. It has to be a supervisor's.</source>
             <translation>Ezen az átjárón még nincsenek fiókok: a számítógépén bárki bármit megtehet. Az első fiók végleg véget vet ennek, és ennek a kapcsolatnak is: kapcsolódjon újra a tokenjével. Felügyelőé kell hogy legyen.</translation>
         </message>
@@ -199,11 +184,6 @@
             <location filename="../../plugin/admin/accounts_dialog.py" />
             <source>Token</source>
             <translation>Token</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/admin/accounts_dialog.py" />
-            <source>Token of {operator}</source>
-            <translation>{operator} tokenje</translation>
         </message>
         <message>
             <location filename="../../plugin/admin/accounts_dialog.py" />
@@ -247,11 +227,6 @@
         </message>
         <message>
             <location filename="../../plugin/admin/accounts_dialog.py" />
-            <source>holds</source>
-            <translation>érvényes</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/admin/accounts_dialog.py" />
             <source>holds until {time}</source>
             <translation>érvényes eddig: {time}</translation>
         </message>
@@ -289,11 +264,6 @@
             <location filename="../../plugin/admin/accounts_dialog.py" />
             <source>{operator} is {role}. Another role holds from the next thing on that is asked for, also over connections that are open.</source>
             <translation>{operator} szerepe: {role}. Másik szerep a következő kéréstől érvényes, a nyitott kapcsolatokon is.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/admin/accounts_dialog.py" />
-            <source>{operator}, {role}: the token {until}. It is shown now and never again, and kept nowhere: hand it over on a way that others do not read. If it gets lost, make a new one.</source>
-            <translation>{operator}, {role}: a token {until}. Most látható és soha többé, és sehol sem őrződik meg: olyan úton adja át, amelyet mások nem olvasnak. Ha elvész, készítsen újat.</translation>
         </message>
         <message>
             <location filename="../../plugin/admin/recordings.py" />
@@ -559,6 +529,56 @@
             <location filename="../../plugin/admin/supervisor_dialog.py" />
             <source>{words}: the gateway's answer cannot be read ({kind}). Update the gateway or the plugin, whichever is older.</source>
             <translation>{words}: az átjáró válasza nem olvasható ({kind}). Frissítse az átjárót vagy a bővítményt, amelyik régebbi.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/admin/token_dialog.py" />
+            <source>&amp;Copy</source>
+            <translation>&amp;Másolás</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/admin/token_dialog.py" />
+            <source>A phone whose camera reads this code opens the field page, signed in with the token:</source>
+            <translation>A telefon, amelynek kamerája leolvassa ezt a kódot, megnyitja a helyszíni oldalt, a tokennel bejelentkezve:</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/admin/token_dialog.py" />
+            <source>Code for a phone</source>
+            <translation>Kód telefonhoz</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/admin/token_dialog.py" />
+            <source>Copied. It stays in the clipboard until something else is copied.</source>
+            <translation>Kimásolva. A vágólapon marad, amíg mást nem másol.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/admin/token_dialog.py" />
+            <source>For a phone: connect this desk by the address that phones reach the gateway by, not by {host}, and a new token has a code here that opens the field page.</source>
+            <translation>Telefonhoz: ezt a kezelőpultot azon a címen csatlakoztassa, amelyen a telefonok elérik az átjárót, ne a(z) {host} címen; az új token mellett akkor itt egy kód áll, amely megnyitja a helyszíni oldalt.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/admin/token_dialog.py" />
+            <source>The Python package segno is missing, which draws the code for phones. Install the plugin from its release zip, which contains it.</source>
+            <translation>Hiányzik a segno Python-csomag, amely a telefonoknak szóló kódot rajzolja. Telepítse a bővítményt a kiadás zip-fájljából, amely tartalmazza.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/admin/token_dialog.py" />
+            <source>This desk was connected with what the token takes the place of, and is cut off. Enter the token in the Fleet panel under Access, then press Connect.</source>
+            <translation>Ez a kezelőpult azzal volt kapcsolódva, aminek a token a helyébe lép, ezért lekapcsolódik. Adja meg a tokent a Flotta panelen a Hozzáférés alatt, majd nyomja meg a Kapcsolódás gombot.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/admin/token_dialog.py" />
+            <source>Token of {operator}</source>
+            <translation>{operator} tokenje</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/admin/token_dialog.py" />
+            <source>holds</source>
+            <translation>érvényes</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/admin/token_dialog.py" />
+            <source>{operator}, {role}: the token {until}. It is shown now and never again, and kept nowhere: hand it over on a way that others do not read. If it gets lost, make a new one.</source>
+            <translation>{operator}, {role}: a token {until}. Most látható és soha többé, és sehol sem őrződik meg: olyan úton adja át, amelyet mások nem olvasnak. Ha elvész, készítsen újat.</translation>
         </message>
         <message>
             <location filename="../../plugin/cone_texts.py" />
@@ -2601,6 +2621,31 @@
         </message>
         <message>
             <location filename="../../plugin/layers/publishing/publication.py" />
+            <source>Keepouts</source>
+            <translation>Tiltott területek</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/publishing/publication.py" />
+            <source>Obstacles</source>
+            <translation>Akadályok</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/publishing/publication.py" />
+            <source>Publish the site again.</source>
+            <translation>Tegye közzé újra a telephelyet.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/publishing/publication.py" />
+            <source>Road centrelines</source>
+            <translation>Úttengelyek</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/publishing/publication.py" />
+            <source>Road surfaces</source>
+            <translation>Útfelületek</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/publishing/publication.py" />
             <source>The site cannot be published in {folder}: {file} is a file. Choose a folder: a new one, or the one that the site was published in before.</source>
             <translation>A telephely nem tehető közzé itt: {folder}: {file} egy fájl. Válasszon mappát: újat, vagy azt, amelyben a telephely korábban megjelent.</translation>
         </message>
@@ -2626,58 +2671,33 @@
         </message>
         <message>
             <location filename="../../plugin/layers/publishing/publication.py" />
+            <source>{file} cannot be read: {error}</source>
+            <translation>{file} nem olvasható: {error}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/publishing/publication.py" />
+            <source>{file} has no layer {layers} that can be read. {again}</source>
+            <translation>{file} fájlban nincs olvasható {layers} réteg. {again}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/publishing/publication.py" />
             <source>{file} is there and is no part of a published site: choose another folder, or say that it may be replaced (REPLACE=true).</source>
             <translation>{file} ott van, és nem része közzétett telephelynek: válasszon másik mappát, vagy mondja, hogy felülírható (REPLACE=true).</translation>
         </message>
         <message>
             <location filename="../../plugin/layers/publishing/publication.py" />
-            <source>{folder} holds version {version} of another site, {other}: choose another folder for {site}, or say that the other site may be replaced (REPLACE=true).</source>
-            <translation>{folder} egy másik telephely, {other} {version}. verzióját tartalmazza: válasszon másik mappát ennek: {site}, vagy mondja, hogy a másik telephely felülírható (REPLACE=true).</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/layers/publishing/published_layers.py" />
-            <source>Keepouts</source>
-            <translation>Tiltott területek</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/layers/publishing/published_layers.py" />
-            <source>Obstacles</source>
-            <translation>Akadályok</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/layers/publishing/published_layers.py" />
-            <source>Publish the site again.</source>
-            <translation>Tegye közzé újra a telephelyet.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/layers/publishing/published_layers.py" />
-            <source>Road centrelines</source>
-            <translation>Úttengelyek</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/layers/publishing/published_layers.py" />
-            <source>Road surfaces</source>
-            <translation>Útfelületek</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/layers/publishing/published_layers.py" />
-            <source>{file} cannot be read: {error}</source>
-            <translation>{file} nem olvasható: {error}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/layers/publishing/published_layers.py" />
-            <source>{file} has no layer {layers} that can be read. {again}</source>
-            <translation>{file} fájlban nincs olvasható {layers} réteg. {again}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/layers/publishing/published_layers.py" />
             <source>{file} names no site: it has no table [site] with a name. {again}</source>
             <translation>{file} nem nevez meg telephelyet: nincs benne [site] tábla névvel. {again}</translation>
         </message>
         <message>
-            <location filename="../../plugin/layers/publishing/published_layers.py" />
+            <location filename="../../plugin/layers/publishing/publication.py" />
             <source>{folder} has a {settings} and no {geopackage}. {again}</source>
             <translation>{folder}: van benne {settings}, de nincs {geopackage}. {again}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/publishing/publication.py" />
+            <source>{folder} holds version {version} of another site, {other}: choose another folder for {site}, or say that the other site may be replaced (REPLACE=true).</source>
+            <translation>{folder} egy másik telephely, {other} {version}. verzióját tartalmazza: válasszon másik mappát ennek: {site}, vagy mondja, hogy a másik telephely felülírható (REPLACE=true).</translation>
         </message>
         <message>
             <location filename="../../plugin/layers/publishing/site_file.py" />
@@ -3300,6 +3320,11 @@
             </translation>
         </message>
         <message>
+            <location filename="../../plugin/map/tools/click_tools.py" />
+            <source>{in_words} is still on the map. Send it (Enter) or cancel it (Esc) first.</source>
+            <translation>{in_words} még a térképen van. Előbb küldje el (Enter) vagy vesse el (Esc).</translation>
+        </message>
+        <message>
             <location filename="../../plugin/map/tools/closure_tool.py" />
             <source>Close road</source>
             <translation>Út lezárása</translation>
@@ -3443,11 +3468,6 @@
             <location filename="../../plugin/map/tools/surface_tool.py" />
             <source>{told} at {where}</source>
             <translation>{told} itt: {where}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/tools/click_tools.py" />
-            <source>{in_words} is still on the map. Send it (Enter) or cancel it (Esc) first.</source>
-            <translation>{in_words} még a térképen van. Előbb küldje el (Enter) vagy vesse el (Esc).</translation>
         </message>
         <message>
             <location filename="../../plugin/observations/observation_dock.py" />
@@ -3690,6 +3710,11 @@
         </message>
         <message>
             <location filename="../../plugin/panel/alarms/alarm_panel.py" />
+            <source>Alarm settings</source>
+            <translation>Riasztási beállítások</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/alarms/alarm_panel.py" />
             <source>By</source>
             <translation>Ki</translation>
         </message>
@@ -3765,6 +3790,56 @@
         </message>
         <message>
             <location filename="../../plugin/panel/alarms/alarm_panel.py" />
+            <source>begins after standing with a task for</source>
+            <translation>ennyi feladattal állás után kezdődik</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/alarms/alarm_panel.py" />
+            <source>begins below</source>
+            <translation>ez alatt kezdődik</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/alarms/alarm_panel.py" />
+            <source>begins so far beside the road</source>
+            <translation>ennyivel az út mellett kezdődik</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/alarms/alarm_panel.py" />
+            <source>begins so far outside</source>
+            <translation>ennyivel kint kezdődik</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/alarms/alarm_panel.py" />
+            <source>begins so long before</source>
+            <translation>ennyivel előbb kezdődik</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/alarms/alarm_panel.py" />
+            <source>begins when less exact than</source>
+            <translation>kezdődik, ha ennél pontatlanabb</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/alarms/alarm_panel.py" />
+            <source>begins when two are nearer than</source>
+            <translation>kezdődik, ha kettő közelebb van, mint</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/alarms/alarm_panel.py" />
+            <source>ends so much above that</source>
+            <translation>ennyivel felette ér véget</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/alarms/alarm_panel.py" />
+            <source>ends so much below that</source>
+            <translation>ennyivel alatta ér véget</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/alarms/alarm_panel.py" />
+            <source>ends so much further apart</source>
+            <translation>ennyivel távolabb ér véget</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/alarms/alarm_panel.py" />
             <source>it began {times} times</source>
             <translation>{times} alkalommal kezdődött</translation>
         </message>
@@ -3782,6 +3857,16 @@
             <location filename="../../plugin/panel/alarms/alarm_panel.py" />
             <source>since {time}</source>
             <translation>{time} óta</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/alarms/alarm_panel.py" />
+            <source>the gateway judges it by the published site, and says what it does</source>
+            <translation>az átjáró ítéli meg a közzétett telephely alapján, és megmondja, mit tesz</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/alarms/alarm_panel.py" />
+            <source>the site's settings say after how long (see the robots' state)</source>
+            <translation>a telephely beállításai mondják meg, mennyi idő után (lásd a robotok állapotát)</translation>
         </message>
         <message>
             <location filename="../../plugin/panel/alarms/board.py" />
@@ -3972,71 +4057,6 @@
             <location filename="../../plugin/panel/alarms/board.py" />
             <source>{text} (it is not heard now)</source>
             <translation>{text} (most nem hallani felőle)</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/alarms/thresholds_form.py" />
-            <source>Alarm settings</source>
-            <translation>Riasztási beállítások</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/alarms/thresholds_form.py" />
-            <source>begins after standing with a task for</source>
-            <translation>ennyi feladattal állás után kezdődik</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/alarms/thresholds_form.py" />
-            <source>begins below</source>
-            <translation>ez alatt kezdődik</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/alarms/thresholds_form.py" />
-            <source>begins so far beside the road</source>
-            <translation>ennyivel az út mellett kezdődik</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/alarms/thresholds_form.py" />
-            <source>begins so far outside</source>
-            <translation>ennyivel kint kezdődik</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/alarms/thresholds_form.py" />
-            <source>begins so long before</source>
-            <translation>ennyivel előbb kezdődik</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/alarms/thresholds_form.py" />
-            <source>begins when less exact than</source>
-            <translation>kezdődik, ha ennél pontatlanabb</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/alarms/thresholds_form.py" />
-            <source>begins when two are nearer than</source>
-            <translation>kezdődik, ha kettő közelebb van, mint</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/alarms/thresholds_form.py" />
-            <source>ends so much above that</source>
-            <translation>ennyivel felette ér véget</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/alarms/thresholds_form.py" />
-            <source>ends so much below that</source>
-            <translation>ennyivel alatta ér véget</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/alarms/thresholds_form.py" />
-            <source>ends so much further apart</source>
-            <translation>ennyivel távolabb ér véget</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/alarms/thresholds_form.py" />
-            <source>the gateway judges it by the published site, and says what it does</source>
-            <translation>az átjáró ítéli meg a közzétett telephely alapján, és megmondja, mit tesz</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/alarms/thresholds_form.py" />
-            <source>the site's settings say after how long (see the robots' state)</source>
-            <translation>a telephely beállításai mondják meg, mennyi idő után (lásd a robotok állapotát)</translation>
         </message>
         <message>
             <location filename="../../plugin/panel/alarms/watch.py" />
@@ -6103,6 +6123,11 @@
         </message>
         <message>
             <location filename="../../plugin/planning/proposal.py" />
+            <source>The assignment was cancelled.</source>
+            <translation>A kiosztást megszakították.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/proposal.py" />
             <source>The plan could not be made. Please report this:
 {traceback}</source>
             <translation>A tervet nem sikerült elkészíteni. Kérjük, jelentse ezt:
@@ -6115,18 +6140,13 @@
         </message>
         <message>
             <location filename="../../plugin/planning/proposal.py" />
-            <source>{robot} and {other} come within {metres:.1f} m at {x:.0f}, {y:.0f} m after {minutes}:{seconds:02d}</source>
-            <translation>{robot} és {other} {metres:.1f} m-re közelítik meg egymást itt: {x:.0f}, {y:.0f} m, {minutes}:{seconds:02d} után</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/proposal.py" />
-            <source>The assignment was cancelled.</source>
-            <translation>A kiosztást megszakították.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/proposal.py" />
             <source>{name}, straight within {nearby:g} m</source>
             <translation>{name}, {nearby:g} m-en belül egyenesen</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/proposal.py" />
+            <source>{robot} and {other} come within {metres:.1f} m at {x:.0f}, {y:.0f} m after {minutes}:{seconds:02d}</source>
+            <translation>{robot} és {other} {metres:.1f} m-re közelítik meg egymást itt: {x:.0f}, {y:.0f} m, {minutes}:{seconds:02d} után</translation>
         </message>
         <message numerus="yes">
             <location filename="../../plugin/processing/algorithms/as_placed_report.py" />
@@ -9558,14 +9578,14 @@
             <translation>Útvonalak utakon…</translation>
         </message>
         <message>
-            <location filename="../../plugin/ui/tables.py" />
-            <source>{file} was not written ({why}). Choose another folder, or close the file where it is open.</source>
-            <translation>{file} nem lett kiírva ({why}). Válasszon másik mappát, vagy zárja be a fájlt, ahol nyitva van.</translation>
-        </message>
-        <message>
             <location filename="../../plugin/ui/language.py" />
             <source>{state}, last heard {age} ago over {link}</source>
             <translation>{state}, utolsó hír {age} óta, ezen: {link}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/ui/tables.py" />
+            <source>{file} was not written ({why}). Choose another folder, or close the file where it is open.</source>
+            <translation>{file} nem lett kiírva ({why}). Válasszon másik mappát, vagy zárja be a fájlt, ahol nyitva van.</translation>
         </message>
     </context>
 </TS>
