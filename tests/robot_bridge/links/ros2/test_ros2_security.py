@@ -163,10 +163,10 @@ def test_certified_robots_are_led_and_stopped_and_nobody_else_is_heard(network):
     # The link without credentials shows that those without are there to be found.
     desk.wait_for_robots("r1", "r2", "anybody", seconds=30)
     desk.send("go-robot-1", "r1", "SetPosEnd", x=60.0, y=8.0)
-    desk.wait_for_step("go-robot-1", "acknowledged", 5)
+    desk.wait_for_step("go-robot-1", "acknowledged")
     wait_until(lambda: "target" in events(processes, "r1"))
     desk.send("stop-robot-1", "r1", "Abort")
-    desk.wait_for_step("stop-robot-1", "acknowledged", 5)
+    desk.wait_for_step("stop-robot-1", "acknowledged")
     desk.wait_for_step("go-robot-1", "aborted")
     assert "speed 0" in events(processes, "r1")
     desk.send("on-robot-1", "r1", "SetPosEnd", x=desk.robots["r1"]["x"] + 1.0, y=8.0)
