@@ -223,7 +223,7 @@ def test_a_goal_that_is_taken_on_after_its_abort_is_stopped_too(desk, robot, nod
     desk.send(f"go-{name}", name, "SetPosEnd", x=60.0, y=8.0)
     wait_until(lambda: events(nodes, name, "goal asked"))
     desk.send(f"stop-{name}", name, "Abort")
-    desk.wait_for_step(f"stop-{name}", "acknowledged", 5)
+    desk.wait_for_step(f"stop-{name}", "acknowledged")
     assert not events(nodes, name, "goal")
     (ended,) = wait_until(lambda: events(nodes, name, "goal ended"))
     assert ended["status"] == 5

@@ -217,10 +217,10 @@ def test_a_robot_on_fast_dds_is_led_where_cyclone_dds_begins_the_handshake(
         desk.ask("subscribe", {"rate": 20})
         desk.wait_for_robots("fast0", seconds=30)
         desk.send("go-fast-1", "fast0", "SetPosEnd", x=60.0, y=8.0)
-        desk.wait_for_step("go-fast-1", "acknowledged", 5)
+        desk.wait_for_step("go-fast-1", "acknowledged")
         wait_until(lambda: "target" in events(processes, "fast0"))
         desk.send("stop-fast-1", "fast0", "Abort")
-        desk.wait_for_step("stop-fast-1", "acknowledged", 5)
+        desk.wait_for_step("stop-fast-1", "acknowledged")
         assert "speed 0" in events(processes, "fast0")
         # The other one's key cannot be read, and Cyclone DDS says so.
         wait_until(
