@@ -6,7 +6,6 @@ import math
 import re
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
-from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -35,7 +34,7 @@ from ..ui.errors import LayerReadingError, LayerTypeError
 from ..ui.language import tr
 from .crs import stated_crs
 from .layer_expressions import FeatureFilter
-from .roles import EXPRESSIONS, FURNITURE, LayerExpressions, LayerSetup, setup_of
+from .roles import EXPRESSIONS, FURNITURE, LayerExpressions, LayerSetup, plain_name, setup_of
 from .site_transform import LayerToSiteTransform, SiteTransformError
 
 # --- A layer as it is read: everything that must be taken from it while the main thread holds it ---
@@ -135,34 +134,6 @@ def _source(
         provider=layer.providerType(),
         uri="" if layer.isEditable() else layer.source(),
     )
-
-
-def plain_name(layer: QgsVectorLayer) -> str:
-    """Return the layer's name; the one inside its file where it is only called as the file is.
-
-    That is what qgis_process calls ``campus.gpkg|layername=walls``: all layers of a file alike.
-    """
-    inside, path = _source_of(layer)
-    called_as_file = bool(inside and path) and layer.name() == Path(path).stem
-    return inside if called_as_file else layer.name()
-
-
-def names_of(layer: QgsVectorLayer) -> list[str]:
-    """Return the names that the layer goes by: the one that is shown, and the one in its file or database.
-
-    QGIS's browser shows ``campus — walls`` for the layer ``walls`` of ``campus.gpkg``. A file of one layer
-    may say no name of it: then it is the file's.
-    """
-    inside, path = _source_of(layer)
-    return list(dict.fromkeys(name for name in (plain_name(layer), inside or Path(path).stem) if name))
-
-
-def _source_of(layer: QgsVectorLayer) -> tuple[str, str]:
-    """Return the layer's name in its source, and the source's path; each empty where there is none."""
-    parts = QgsProviderRegistry.instance().decodeUri(layer.providerType(), layer.source())
-    # Of a database the name of the table is the layer's.
-    inside = parts.get("layerName") or parts.get("table") or ""
-    return str(inside), str(parts.get("path") or "")
 
 
 def _unique(names: Sequence[str]) -> list[str]:

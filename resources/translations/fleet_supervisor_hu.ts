@@ -2515,89 +2515,34 @@
             <translation>{error}; a szélessége érvényes</translation>
         </message>
         <message>
-            <location filename="../../plugin/layers/profiles.py" />
-            <source>The profile {file} cannot be read: {error}.</source>
-            <translation>A(z) {file} profil nem olvasható: {error}.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/layers/profiles.py" />
-            <source>The profile {file} is not there: give the path of a file, or one of {shipped}.</source>
-            <translation>A(z) {file} profil nincs meg: adja meg egy fájl útvonalát, vagy ezek egyikét: {shipped}.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/layers/profiles.py" />
-            <source>it has {count} characters, more than {most}</source>
-            <translation>{count} karakterből áll, több mint {most}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/layers/profiles.py" />
-            <source>{file} cannot be read: this QGIS runs Python older than 3.11, which reads no TOML. Save the profile with the same keys as JSON and choose that file.</source>
-            <translation>{file} nem olvasható: ez a QGIS 3.11-nél régebbi Pythont futtat, amely nem olvas TOML-t. Mentse a profilt ugyanazokkal a kulcsokkal JSON-ként, és válassza azt a fájlt.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/layers/profiles.py" />
-            <source>{file} is no profile: write an object with name and layers.</source>
-            <translation>{file} nem profil: írjon egy objektumot name és layers kulccsal.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/layers/profiles.py" />
-            <source>{file} is not valid {kind}: {error}. Correct that place.</source>
-            <translation>{file} nem érvényes {kind}: {error}. Javítsa ki azt a helyet.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/layers/profiles.py" />
-            <source>{file}: layers is missing or empty: write one table [[layers]] or more.</source>
-            <translation>{file}: a layers hiányzik vagy üres: írjon egy vagy több [[layers]] táblát.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/layers/profiles.py" />
-            <source>{file}: {key} fits no layer: write names = ["*building*"] or fields = ["building"].</source>
-            <translation>{file}: {key} egyik rétegre sem illik: írja így: names = ["*building*"] vagy fields = ["building"].</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/layers/profiles.py" />
-            <source>{file}: {key} is {content!r}: write a table [[layers]].</source>
-            <translation>{file}: {key} értéke {content!r}: írjon egy [[layers]] táblát.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/layers/profiles.py" />
-            <source>{file}: {key}.geometry is {geometry!r}: write one of {geometries}.</source>
-            <translation>{file}: {key}.geometry értéke {geometry!r}: írja ezek egyikét: {geometries}.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/layers/profiles.py" />
-            <source>{file}: {key}.role is {role!r}: write one of {roles}.</source>
-            <translation>{file}: {key}.role értéke {role!r}: írja ezek egyikét: {roles}.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/layers/profiles.py" />
-            <source>{file}: {key}.{name} is no QGIS expression: {error}. Correct it.</source>
-            <translation>{file}: {key}.{name} nem QGIS-kifejezés: {error}. Javítsa ki.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/layers/profiles.py" />
-            <source>{file}: {key}.{name} is {value!r}: write a list of texts, such as ["walls"].</source>
-            <translation>{file}: {key}.{name} értéke {value!r}: írja szövegek listáját, például ["walls"].</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/layers/profiles.py" />
-            <source>{file}: {prefix}{name} is no key of a profile: known are {known}. Remove it or correct its name.</source>
-            <translation>{file}: {prefix}{name} nem profilkulcs: az ismertek: {known}. Törölje, vagy javítsa ki a nevét.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/layers/profiles.py" />
-            <source>{file}: {prefix}{name} is {value!r}: write text in quotes.</source>
-            <translation>{file}: {prefix}{name} értéke {value!r}: írjon idézőjelbe tett szöveget.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/layers/profiles.py" />
-            <source>{names} with {fields}</source>
-            <translation>{names} ezekkel: {fields}</translation>
-        </message>
-        <message>
             <location filename="../../plugin/layers/publishing/publication.py" />
             <source>Another publication into {folder} is under way, by {who}: wait until it has ended, or choose another folder. If it ended on another computer without a word, remove {file}.</source>
             <translation>Másik közzététel folyik ide: {folder} ({who}): várjon, amíg véget ér, vagy válasszon másik mappát. Ha másik számítógépen szó nélkül ért véget, törölje ezt: {file}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/publishing/publication.py" />
+            <source>Keepouts</source>
+            <translation>Tiltott területek</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/publishing/publication.py" />
+            <source>Obstacles</source>
+            <translation>Akadályok</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/publishing/publication.py" />
+            <source>Publish the site again.</source>
+            <translation>Tegye közzé újra a telephelyet.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/publishing/publication.py" />
+            <source>Road centrelines</source>
+            <translation>Úttengelyek</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/publishing/publication.py" />
+            <source>Road surfaces</source>
+            <translation>Útfelületek</translation>
         </message>
         <message>
             <location filename="../../plugin/layers/publishing/publication.py" />
@@ -2626,58 +2571,33 @@
         </message>
         <message>
             <location filename="../../plugin/layers/publishing/publication.py" />
+            <source>{file} cannot be read: {error}</source>
+            <translation>{file} nem olvasható: {error}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/publishing/publication.py" />
+            <source>{file} has no layer {layers} that can be read. {again}</source>
+            <translation>{file} fájlban nincs olvasható {layers} réteg. {again}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/publishing/publication.py" />
             <source>{file} is there and is no part of a published site: choose another folder, or say that it may be replaced (REPLACE=true).</source>
             <translation>{file} ott van, és nem része közzétett telephelynek: válasszon másik mappát, vagy mondja, hogy felülírható (REPLACE=true).</translation>
         </message>
         <message>
             <location filename="../../plugin/layers/publishing/publication.py" />
-            <source>{folder} holds version {version} of another site, {other}: choose another folder for {site}, or say that the other site may be replaced (REPLACE=true).</source>
-            <translation>{folder} egy másik telephely, {other} {version}. verzióját tartalmazza: válasszon másik mappát ennek: {site}, vagy mondja, hogy a másik telephely felülírható (REPLACE=true).</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/layers/publishing/published_layers.py" />
-            <source>Keepouts</source>
-            <translation>Tiltott területek</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/layers/publishing/published_layers.py" />
-            <source>Obstacles</source>
-            <translation>Akadályok</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/layers/publishing/published_layers.py" />
-            <source>Publish the site again.</source>
-            <translation>Tegye közzé újra a telephelyet.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/layers/publishing/published_layers.py" />
-            <source>Road centrelines</source>
-            <translation>Úttengelyek</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/layers/publishing/published_layers.py" />
-            <source>Road surfaces</source>
-            <translation>Útfelületek</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/layers/publishing/published_layers.py" />
-            <source>{file} cannot be read: {error}</source>
-            <translation>{file} nem olvasható: {error}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/layers/publishing/published_layers.py" />
-            <source>{file} has no layer {layers} that can be read. {again}</source>
-            <translation>{file} fájlban nincs olvasható {layers} réteg. {again}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/layers/publishing/published_layers.py" />
             <source>{file} names no site: it has no table [site] with a name. {again}</source>
             <translation>{file} nem nevez meg telephelyet: nincs benne [site] tábla névvel. {again}</translation>
         </message>
         <message>
-            <location filename="../../plugin/layers/publishing/published_layers.py" />
+            <location filename="../../plugin/layers/publishing/publication.py" />
             <source>{folder} has a {settings} and no {geopackage}. {again}</source>
             <translation>{folder}: van benne {settings}, de nincs {geopackage}. {again}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/publishing/publication.py" />
+            <source>{folder} holds version {version} of another site, {other}: choose another folder for {site}, or say that the other site may be replaced (REPLACE=true).</source>
+            <translation>{folder} egy másik telephely, {other} {version}. verzióját tartalmazza: válasszon másik mappát ennek: {site}, vagy mondja, hogy a másik telephely felülírható (REPLACE=true).</translation>
         </message>
         <message>
             <location filename="../../plugin/layers/publishing/site_file.py" />
@@ -3023,6 +2943,86 @@
             </translation>
         </message>
         <message>
+            <location filename="../../plugin/layers/roles.py" />
+            <source>The profile {file} cannot be read: {error}.</source>
+            <translation>A(z) {file} profil nem olvasható: {error}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/roles.py" />
+            <source>The profile {file} is not there: give the path of a file, or one of {shipped}.</source>
+            <translation>A(z) {file} profil nincs meg: adja meg egy fájl útvonalát, vagy ezek egyikét: {shipped}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/roles.py" />
+            <source>it has {count} characters, more than {most}</source>
+            <translation>{count} karakterből áll, több mint {most}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/roles.py" />
+            <source>{file} cannot be read: this QGIS runs Python older than 3.11, which reads no TOML. Save the profile with the same keys as JSON and choose that file.</source>
+            <translation>{file} nem olvasható: ez a QGIS 3.11-nél régebbi Pythont futtat, amely nem olvas TOML-t. Mentse a profilt ugyanazokkal a kulcsokkal JSON-ként, és válassza azt a fájlt.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/roles.py" />
+            <source>{file} is no profile: write an object with name and layers.</source>
+            <translation>{file} nem profil: írjon egy objektumot name és layers kulccsal.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/roles.py" />
+            <source>{file} is not valid {kind}: {error}. Correct that place.</source>
+            <translation>{file} nem érvényes {kind}: {error}. Javítsa ki azt a helyet.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/roles.py" />
+            <source>{file}: layers is missing or empty: write one table [[layers]] or more.</source>
+            <translation>{file}: a layers hiányzik vagy üres: írjon egy vagy több [[layers]] táblát.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/roles.py" />
+            <source>{file}: {key} fits no layer: write names = ["*building*"] or fields = ["building"].</source>
+            <translation>{file}: {key} egyik rétegre sem illik: írja így: names = ["*building*"] vagy fields = ["building"].</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/roles.py" />
+            <source>{file}: {key} is {content!r}: write a table [[layers]].</source>
+            <translation>{file}: {key} értéke {content!r}: írjon egy [[layers]] táblát.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/roles.py" />
+            <source>{file}: {key}.geometry is {geometry!r}: write one of {geometries}.</source>
+            <translation>{file}: {key}.geometry értéke {geometry!r}: írja ezek egyikét: {geometries}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/roles.py" />
+            <source>{file}: {key}.role is {role!r}: write one of {roles}.</source>
+            <translation>{file}: {key}.role értéke {role!r}: írja ezek egyikét: {roles}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/roles.py" />
+            <source>{file}: {key}.{name} is no QGIS expression: {error}. Correct it.</source>
+            <translation>{file}: {key}.{name} nem QGIS-kifejezés: {error}. Javítsa ki.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/roles.py" />
+            <source>{file}: {key}.{name} is {value!r}: write a list of texts, such as ["walls"].</source>
+            <translation>{file}: {key}.{name} értéke {value!r}: írja szövegek listáját, például ["walls"].</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/roles.py" />
+            <source>{file}: {prefix}{name} is no key of a profile: known are {known}. Remove it or correct its name.</source>
+            <translation>{file}: {prefix}{name} nem profilkulcs: az ismertek: {known}. Törölje, vagy javítsa ki a nevét.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/roles.py" />
+            <source>{file}: {prefix}{name} is {value!r}: write text in quotes.</source>
+            <translation>{file}: {prefix}{name} értéke {value!r}: írjon idézőjelbe tett szöveget.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/roles.py" />
+            <source>{names} with {fields}</source>
+            <translation>{names} ezekkel: {fields}</translation>
+        </message>
+        <message>
             <location filename="../../plugin/layers/site_transform.py" />
             <source>A position in {crs} has no place in {target} ({error}). Choose the site's CRS as the project's CRS (bottom right in the QGIS window).</source>
             <translation>Egy {crs} helyzetnek nincs helye itt: {target} ({error}). Válassza a telephely vetületét a projekt vetületének (a QGIS ablak jobb alsó sarkában).</translation>
@@ -3300,6 +3300,11 @@
             </translation>
         </message>
         <message>
+            <location filename="../../plugin/map/tools/click_tools.py" />
+            <source>{in_words} is still on the map. Send it (Enter) or cancel it (Esc) first.</source>
+            <translation>{in_words} még a térképen van. Előbb küldje el (Enter) vagy vesse el (Esc).</translation>
+        </message>
+        <message>
             <location filename="../../plugin/map/tools/closure_tool.py" />
             <source>Close road</source>
             <translation>Út lezárása</translation>
@@ -3443,11 +3448,6 @@
             <location filename="../../plugin/map/tools/surface_tool.py" />
             <source>{told} at {where}</source>
             <translation>{told} itt: {where}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/tools/click_tools.py" />
-            <source>{in_words} is still on the map. Send it (Enter) or cancel it (Esc) first.</source>
-            <translation>{in_words} még a térképen van. Előbb küldje el (Enter) vagy vesse el (Esc).</translation>
         </message>
         <message>
             <location filename="../../plugin/observations/observation_dock.py" />
@@ -3690,6 +3690,11 @@
         </message>
         <message>
             <location filename="../../plugin/panel/alarms/alarm_panel.py" />
+            <source>Alarm settings</source>
+            <translation>Riasztási beállítások</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/alarms/alarm_panel.py" />
             <source>By</source>
             <translation>Ki</translation>
         </message>
@@ -3765,6 +3770,56 @@
         </message>
         <message>
             <location filename="../../plugin/panel/alarms/alarm_panel.py" />
+            <source>begins after standing with a task for</source>
+            <translation>ennyi feladattal állás után kezdődik</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/alarms/alarm_panel.py" />
+            <source>begins below</source>
+            <translation>ez alatt kezdődik</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/alarms/alarm_panel.py" />
+            <source>begins so far beside the road</source>
+            <translation>ennyivel az út mellett kezdődik</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/alarms/alarm_panel.py" />
+            <source>begins so far outside</source>
+            <translation>ennyivel kint kezdődik</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/alarms/alarm_panel.py" />
+            <source>begins so long before</source>
+            <translation>ennyivel előbb kezdődik</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/alarms/alarm_panel.py" />
+            <source>begins when less exact than</source>
+            <translation>kezdődik, ha ennél pontatlanabb</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/alarms/alarm_panel.py" />
+            <source>begins when two are nearer than</source>
+            <translation>kezdődik, ha kettő közelebb van, mint</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/alarms/alarm_panel.py" />
+            <source>ends so much above that</source>
+            <translation>ennyivel felette ér véget</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/alarms/alarm_panel.py" />
+            <source>ends so much below that</source>
+            <translation>ennyivel alatta ér véget</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/alarms/alarm_panel.py" />
+            <source>ends so much further apart</source>
+            <translation>ennyivel távolabb ér véget</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/alarms/alarm_panel.py" />
             <source>it began {times} times</source>
             <translation>{times} alkalommal kezdődött</translation>
         </message>
@@ -3782,6 +3837,16 @@
             <location filename="../../plugin/panel/alarms/alarm_panel.py" />
             <source>since {time}</source>
             <translation>{time} óta</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/alarms/alarm_panel.py" />
+            <source>the gateway judges it by the published site, and says what it does</source>
+            <translation>az átjáró ítéli meg a közzétett telephely alapján, és megmondja, mit tesz</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/alarms/alarm_panel.py" />
+            <source>the site's settings say after how long (see the robots' state)</source>
+            <translation>a telephely beállításai mondják meg, mennyi idő után (lásd a robotok állapotát)</translation>
         </message>
         <message>
             <location filename="../../plugin/panel/alarms/board.py" />
@@ -3972,71 +4037,6 @@
             <location filename="../../plugin/panel/alarms/board.py" />
             <source>{text} (it is not heard now)</source>
             <translation>{text} (most nem hallani felőle)</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/alarms/thresholds_form.py" />
-            <source>Alarm settings</source>
-            <translation>Riasztási beállítások</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/alarms/thresholds_form.py" />
-            <source>begins after standing with a task for</source>
-            <translation>ennyi feladattal állás után kezdődik</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/alarms/thresholds_form.py" />
-            <source>begins below</source>
-            <translation>ez alatt kezdődik</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/alarms/thresholds_form.py" />
-            <source>begins so far beside the road</source>
-            <translation>ennyivel az út mellett kezdődik</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/alarms/thresholds_form.py" />
-            <source>begins so far outside</source>
-            <translation>ennyivel kint kezdődik</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/alarms/thresholds_form.py" />
-            <source>begins so long before</source>
-            <translation>ennyivel előbb kezdődik</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/alarms/thresholds_form.py" />
-            <source>begins when less exact than</source>
-            <translation>kezdődik, ha ennél pontatlanabb</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/alarms/thresholds_form.py" />
-            <source>begins when two are nearer than</source>
-            <translation>kezdődik, ha kettő közelebb van, mint</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/alarms/thresholds_form.py" />
-            <source>ends so much above that</source>
-            <translation>ennyivel felette ér véget</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/alarms/thresholds_form.py" />
-            <source>ends so much below that</source>
-            <translation>ennyivel alatta ér véget</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/alarms/thresholds_form.py" />
-            <source>ends so much further apart</source>
-            <translation>ennyivel távolabb ér véget</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/alarms/thresholds_form.py" />
-            <source>the gateway judges it by the published site, and says what it does</source>
-            <translation>az átjáró ítéli meg a közzétett telephely alapján, és megmondja, mit tesz</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/alarms/thresholds_form.py" />
-            <source>the site's settings say after how long (see the robots' state)</source>
-            <translation>a telephely beállításai mondják meg, mennyi idő után (lásd a robotok állapotát)</translation>
         </message>
         <message>
             <location filename="../../plugin/panel/alarms/watch.py" />
@@ -6103,6 +6103,11 @@
         </message>
         <message>
             <location filename="../../plugin/planning/proposal.py" />
+            <source>The assignment was cancelled.</source>
+            <translation>A kiosztást megszakították.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/proposal.py" />
             <source>The plan could not be made. Please report this:
 {traceback}</source>
             <translation>A tervet nem sikerült elkészíteni. Kérjük, jelentse ezt:
@@ -6115,18 +6120,13 @@
         </message>
         <message>
             <location filename="../../plugin/planning/proposal.py" />
-            <source>{robot} and {other} come within {metres:.1f} m at {x:.0f}, {y:.0f} m after {minutes}:{seconds:02d}</source>
-            <translation>{robot} és {other} {metres:.1f} m-re közelítik meg egymást itt: {x:.0f}, {y:.0f} m, {minutes}:{seconds:02d} után</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/proposal.py" />
-            <source>The assignment was cancelled.</source>
-            <translation>A kiosztást megszakították.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/proposal.py" />
             <source>{name}, straight within {nearby:g} m</source>
             <translation>{name}, {nearby:g} m-en belül egyenesen</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/proposal.py" />
+            <source>{robot} and {other} come within {metres:.1f} m at {x:.0f}, {y:.0f} m after {minutes}:{seconds:02d}</source>
+            <translation>{robot} és {other} {metres:.1f} m-re közelítik meg egymást itt: {x:.0f}, {y:.0f} m, {minutes}:{seconds:02d} után</translation>
         </message>
         <message numerus="yes">
             <location filename="../../plugin/processing/algorithms/as_placed_report.py" />
@@ -7098,6 +7098,11 @@
         </message>
         <message>
             <location filename="../../plugin/processing/algorithms/export_robot_map_tiles.py" />
+            <source>Both EXTENT and ROUTE are given: give one of them, for a grid or for tiles along a route.</source>
+            <translation>EXTENT és ROUTE is meg van adva: adja meg az egyiket, rácshoz vagy útvonal menti csempékhez.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/export_robot_map_tiles.py" />
             <source>Export robot map tiles</source>
             <translation>Robottérkép-csempék exportálása</translation>
         </message>
@@ -7128,8 +7133,38 @@
         </message>
         <message>
             <location filename="../../plugin/processing/algorithms/export_robot_map_tiles.py" />
+            <source>Neither EXTENT nor ROUTE is given: give an extent for a grid, or a layer of lines to follow.</source>
+            <translation>Sem EXTENT, sem ROUTE nincs megadva: adjon meg kiterjedést a rácshoz, vagy követendő vonalak rétegét.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/export_robot_map_tiles.py" />
+            <source>OUTPUT {folder} is a file: choose a folder for the tiles.</source>
+            <translation>OUTPUT {folder} egy fájl: válasszon mappát a csempéknek.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/export_robot_map_tiles.py" />
+            <source>OVERLAP is {overlap} m: give 0 or more, and at most nine tenths of a tile's side.</source>
+            <translation>OVERLAP értéke {overlap} m: adjon meg 0-t vagy többet, legfeljebb a csempe oldalának kilenctizedét.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/export_robot_map_tiles.py" />
             <source>Obstacles in all tiles</source>
             <translation>Akadályok az összes csempén</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/export_robot_map_tiles.py" />
+            <source>ROUTE holds no line: choose a layer with the route to export along.</source>
+            <translation>A ROUTE-ban nincs vonal: válasszon réteget azzal az útvonallal, amely mentén exportálni kell.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/export_robot_map_tiles.py" />
+            <source>ROUTE {route} cannot be opened: choose a layer of lines.</source>
+            <translation>ROUTE {route} nem nyitható meg: válasszon vonalréteget.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/export_robot_map_tiles.py" />
+            <source>ROUTE: feature {id} of {layer}: {doubts}. Correct the filter of the layer.</source>
+            <translation>ROUTE: {layer} {id}. eleme: {doubts}. Javítsa ki a réteg szűrőjét.</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/algorithms/export_robot_map_tiles.py" />
@@ -7148,6 +7183,11 @@
         </message>
         <message>
             <location filename="../../plugin/processing/algorithms/export_robot_map_tiles.py" />
+            <source>That would be {count} tiles, and {most_tiles} are the most: choose larger tiles, less overlap or a smaller area.</source>
+            <translation>Ez {count} csempe lenne, és legfeljebb {most_tiles} lehet: válasszon nagyobb csempéket, kisebb átfedést vagy kisebb területet.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/export_robot_map_tiles.py" />
             <source>The index</source>
             <translation>Az index</translation>
         </message>
@@ -7155,6 +7195,11 @@
             <location filename="../../plugin/processing/algorithms/export_robot_map_tiles.py" />
             <source>The set of tiles</source>
             <translation>A csempék készlete</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/export_robot_map_tiles.py" />
+            <source>The {name} of a tile is {value} m: give at least 1 m, such as 100.</source>
+            <translation>Egy csempe mérete ({name}) {value} m: adjon meg legalább 1 m-t, például 100-at.</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/algorithms/export_robot_map_tiles.py" />
@@ -7939,8 +7984,23 @@
         </message>
         <message>
             <location filename="../../plugin/processing/common/export_parameters.py" />
-            <source>Both EXTENT and ROUTE are given: give one of them, for a grid or for tiles along a route.</source>
-            <translation>EXTENT és ROUTE is meg van adva: adja meg az egyiket, rácshoz vagy útvonal menti csempékhez.</translation>
+            <source>0 is off. An outline that would cross itself stays as it is. Needs the Python package shapely 2.</source>
+            <translation>0: kikapcsolva. Amelyik körvonal önmagát metszené, az marad, ahogy van. A shapely 2 Python-csomag kell hozzá.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/export_parameters.py" />
+            <source>0 is off. Ends of lines stay and rings keep three corners. Needs the Python package shapely 2.</source>
+            <translation>0: kikapcsolva. A vonalak végei maradnak, és a gyűrűk három sarkot megtartanak. A shapely 2 Python-csomag kell hozzá.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/export_parameters.py" />
+            <source>0 is off. Half a metre makes a compact map smaller still, and no obstacle lower than it is.</source>
+            <translation>0: kikapcsolva. A fél méter tovább csökkenti a tömör térképet, és egyetlen akadályt sem tesz alacsonyabbá.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/export_parameters.py" />
+            <source>Bare map: no leading lines, no extras</source>
+            <translation>Puszta térkép: bevezető sorok és kiegészítések nélkül</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/common/export_parameters.py" />
@@ -7949,8 +8009,33 @@
         </message>
         <message>
             <location filename="../../plugin/processing/common/export_parameters.py" />
-            <source>Neither EXTENT nor ROUTE is given: give an extent for a grid, or a layer of lines to follow.</source>
-            <translation>Sem EXTENT, sem ROUTE nincs megadva: adjon meg kiterjedést a rácshoz, vagy követendő vonalak rétegét.</translation>
+            <source>DISSOLVE, TOLERANCE and SHORTEST need the Python package shapely 2, and {version} is installed here: install a newer one (python3 -m pip install 'shapely&gt;=2'), or leave them off.</source>
+            <translation>A DISSOLVE, TOLERANCE és SHORTEST értékhez a shapely 2 Python-csomag kell, és itt {version} van telepítve: telepítsen újabbat (python3 -m pip install 'shapely&gt;=2'), vagy hagyja őket kikapcsolva.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/export_parameters.py" />
+            <source>Fewer corners: how far an outline may then be from the drawn one [m]</source>
+            <translation>Kevesebb sarok: milyen messze lehet így egy körvonal a rajzolttól [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/export_parameters.py" />
+            <source>Format (compact: binary in columns, about a third of binary)</source>
+            <translation>Formátum (compact: bináris oszlopokban, a bináris mintegy harmada)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/export_parameters.py" />
+            <source>Heights are rounded up to a multiple of this [m]</source>
+            <translation>A magasságok felkerekítése ennek többszörösére [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/export_parameters.py" />
+            <source>Join lines that meet end to end into one obstacle</source>
+            <translation>Összeérő vonalak egy akadállyá egyesítése</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/export_parameters.py" />
+            <source>Leave out walls that no robot outside can meet</source>
+            <translation>Kívülről el nem érhető falak kihagyása</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/common/export_parameters.py" />
@@ -7959,18 +8044,8 @@
         </message>
         <message>
             <location filename="../../plugin/processing/common/export_parameters.py" />
-            <source>OUTPUT {folder} is a file: choose a folder for the tiles.</source>
-            <translation>OUTPUT {folder} egy fájl: válasszon mappát a csempéknek.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/common/export_parameters.py" />
             <source>OUTPUT {target} is the file of the layer {layer}: choose another one.</source>
             <translation>OUTPUT {target} a(z) {layer} réteg fájlja: válasszon másikat.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/common/export_parameters.py" />
-            <source>OVERLAP is {overlap} m: give 0 or more, and at most nine tenths of a tile's side.</source>
-            <translation>OVERLAP értéke {overlap} m: adjon meg 0-t vagy többet, legfeljebb a csempe oldalának kilenctizedét.</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/common/export_parameters.py" />
@@ -7979,18 +8054,13 @@
         </message>
         <message>
             <location filename="../../plugin/processing/common/export_parameters.py" />
-            <source>ROUTE holds no line: choose a layer with the route to export along.</source>
-            <translation>A ROUTE-ban nincs vonal: válasszon réteget azzal az útvonallal, amely mentén exportálni kell.</translation>
+            <source>Only lines that are alike in height, label and all else. The source of a joined line is that of its first part and how many others are in it, such as walls:3+7.</source>
+            <translation>Csak olyan vonalak, amelyek magassága, címkéje és minden más azonos. Az egyesített vonal forrása az első részé és hogy hány másik van benne, például walls:3+7.</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/common/export_parameters.py" />
-            <source>ROUTE {route} cannot be opened: choose a layer of lines.</source>
-            <translation>ROUTE {route} nem nyitható meg: válasszon vonalréteget.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/common/export_parameters.py" />
-            <source>ROUTE: feature {id} of {layer}: {doubts}. Correct the filter of the layer.</source>
-            <translation>ROUTE: {layer} {id}. eleme: {doubts}. Javítsa ki a réteg szűrőjét.</translation>
+            <source>PLANE_LOW is {low:g} and PLANE_HIGH {high:g}: give the lower and the upper height in metres.</source>
+            <translation>PLANE_LOW értéke {low:g}, PLANE_HIGH értéke {high:g}: adja meg az alsó és a felső magasságot méterben.</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/common/export_parameters.py" />
@@ -7999,8 +8069,18 @@
         </message>
         <message>
             <location filename="../../plugin/processing/common/export_parameters.py" />
-            <source>That would be {count} tiles, and {most_tiles} are the most: choose larger tiles, less overlap or a smaller area.</source>
-            <translation>Ez {count} csempe lenne, és legfeljebb {most_tiles} lehet: válasszon nagyobb csempéket, kisebb átfedést vagy kisebb területet.</translation>
+            <source>Robot's plane from [m above the ground]</source>
+            <translation>A robot síkja ettől [m a talaj felett]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/export_parameters.py" />
+            <source>Robot's plane up to [m above the ground]</source>
+            <translation>A robot síkja eddig [m a talaj felett]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/export_parameters.py" />
+            <source>Shortest segment: corners nearer than this to the one before are left out [m]</source>
+            <translation>Legrövidebb szakasz: az előzőhöz ennél közelebbi sarkok kimaradnak [m]</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/common/export_parameters.py" />
@@ -8014,13 +8094,53 @@
         </message>
         <message>
             <location filename="../../plugin/processing/common/export_parameters.py" />
-            <source>The {name} of a tile is {value} m: give at least 1 m, such as 100.</source>
-            <translation>Egy csempe mérete ({name}) {value} m: adjon meg legalább 1 m-t, például 100-at.</translation>
+            <source>Those between buildings that touch, and lines inside or along buildings. What stays keeps its height and its source. Needs the Python package shapely 2.</source>
+            <translation>Az érintkező épületek közöttieket, valamint az épületekben vagy mentén futó vonalakat. Ami marad, megtartja magasságát és forrását. A shapely 2 Python-csomag kell hozzá.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/export_parameters.py" />
+            <source>What begins at this height or above it is left out: the robot drives under it. Where things begin is said by the layers or by the parameter BASE_EXPRESSION.</source>
+            <translation>Ami ezen a magasságon vagy felette kezdődik, kimarad: a robot áthajt alatta. Hogy mi hol kezdődik, a rétegek vagy a BASE_EXPRESSION paraméter mondja meg.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/export_parameters.py" />
+            <source>What is not higher than this is left out: the robot drives over it. Stairs and ramps stay. Give the lower and the upper height together, or neither.</source>
+            <translation>Ami ennél nem magasabb, kimarad: a robot áthajt rajta. Lépcsők és rámpák maradnak. Az alsó és felső magasságot együtt adja meg, vagy egyiket se.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/export_parameters.py" />
+            <source>binary: the text compressed</source>
+            <translation>bináris: a szöveg tömörítve</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/export_parameters.py" />
+            <source>compact: binary in columns</source>
+            <translation>tömör: bináris oszlopokban</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/export_parameters.py" />
+            <source>text</source>
+            <translation>szöveg</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/export_parameters.py" />
+            <source>text: lines that people and scripts read. binary: that text compressed, with a check sum. compact: the same map in columns of centimetres, also with a check sum (codec 2).</source>
+            <translation>text: sorok, amelyeket emberek és szkriptek olvasnak. binary: ez a szöveg tömörítve, ellenőrző összeggel. compact: ugyanaz a térkép centiméterek oszlopaiban, szintén ellenőrző összeggel (2. kodek).</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/common/export_parameters.py" />
             <source>{before} became {after}</source>
             <translation>előtte: {before}; utána: {after}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/export_parameters.py" />
+            <source>{name} is {value:g}: give a number of metres of 0 or more.</source>
+            <translation>{name} értéke {value:g}: adjon meg 0 vagy több métert.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/export_parameters.py" />
+            <source>{other} is given and {missing} is not: give both heights in metres, or none.</source>
+            <translation>{other} meg van adva, {missing} nincs: adja meg mindkét magasságot méterben, vagy egyiket se.</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/common/map_files.py" />
@@ -8113,176 +8233,6 @@
             <translation>két szám, 'x,y'</translation>
         </message>
         <message>
-            <location filename="../../plugin/processing/common/map_parameters.py" />
-            <source>0 is off. An outline that would cross itself stays as it is. Needs the Python package shapely 2.</source>
-            <translation>0: kikapcsolva. Amelyik körvonal önmagát metszené, az marad, ahogy van. A shapely 2 Python-csomag kell hozzá.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/common/map_parameters.py" />
-            <source>0 is off. Ends of lines stay and rings keep three corners. Needs the Python package shapely 2.</source>
-            <translation>0: kikapcsolva. A vonalak végei maradnak, és a gyűrűk három sarkot megtartanak. A shapely 2 Python-csomag kell hozzá.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/common/map_parameters.py" />
-            <source>0 is off. Half a metre makes a compact map smaller still, and no obstacle lower than it is.</source>
-            <translation>0: kikapcsolva. A fél méter tovább csökkenti a tömör térképet, és egyetlen akadályt sem tesz alacsonyabbá.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/common/map_parameters.py" />
-            <source>Bare map: no leading lines, no extras</source>
-            <translation>Puszta térkép: bevezető sorok és kiegészítések nélkül</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/common/map_parameters.py" />
-            <source>Both CENTER and EXTENT are given: give one of them, the window cannot be both.</source>
-            <translation>CENTER és EXTENT is meg van adva: adja meg az egyiket, az ablak nem lehet mindkettő.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/common/map_parameters.py" />
-            <source>Centre of the window (or choose an extent)</source>
-            <translation>Az ablak közepe (vagy válasszon kiterjedést)</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/common/map_parameters.py" />
-            <source>DISSOLVE, TOLERANCE and SHORTEST need the Python package shapely 2, and {version} is installed here: install a newer one (python3 -m pip install 'shapely&gt;=2'), or leave them off.</source>
-            <translation>A DISSOLVE, TOLERANCE és SHORTEST értékhez a shapely 2 Python-csomag kell, és itt {version} van telepítve: telepítsen újabbat (python3 -m pip install 'shapely&gt;=2'), vagy hagyja őket kikapcsolva.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/common/map_parameters.py" />
-            <source>Extent (instead of centre, width and height)</source>
-            <translation>Kiterjedés (közép, szélesség és magasság helyett)</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/common/map_parameters.py" />
-            <source>Fewer corners: how far an outline may then be from the drawn one [m]</source>
-            <translation>Kevesebb sarok: milyen messze lehet így egy körvonal a rajzolttól [m]</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/common/map_parameters.py" />
-            <source>Format (compact: binary in columns, about a third of binary)</source>
-            <translation>Formátum (compact: bináris oszlopokban, a bináris mintegy harmada)</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/common/map_parameters.py" />
-            <source>Height of the window, along y [m]</source>
-            <translation>Az ablak magassága y mentén [m]</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/common/map_parameters.py" />
-            <source>Heights are rounded up to a multiple of this [m]</source>
-            <translation>A magasságok felkerekítése ennek többszörösére [m]</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/common/map_parameters.py" />
-            <source>Join lines that meet end to end into one obstacle</source>
-            <translation>Összeérő vonalak egy akadállyá egyesítése</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/common/map_parameters.py" />
-            <source>Layers without a CRS are in metres of the site</source>
-            <translation>A vetület nélküli rétegek telephelyi méterben vannak</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/common/map_parameters.py" />
-            <source>Leave out walls that no robot outside can meet</source>
-            <translation>Kívülről el nem érhető falak kihagyása</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/common/map_parameters.py" />
-            <source>Neither CENTER nor EXTENT is given: give the centre of the window with WIDTH and HEIGHT in metres, or an extent.</source>
-            <translation>Sem CENTER, sem EXTENT nincs megadva: adja meg az ablak közepét a WIDTH és HEIGHT méterben megadott értékével, vagy egy kiterjedést.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/common/map_parameters.py" />
-            <source>Only lines that are alike in height, label and all else. The source of a joined line is that of its first part and how many others are in it, such as walls:3+7.</source>
-            <translation>Csak olyan vonalak, amelyek magassága, címkéje és minden más azonos. Az egyesített vonal forrása az első részé és hogy hány másik van benne, például walls:3+7.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/common/map_parameters.py" />
-            <source>PLANE_LOW is {low:g} and PLANE_HIGH {high:g}: give the lower and the upper height in metres.</source>
-            <translation>PLANE_LOW értéke {low:g}, PLANE_HIGH értéke {high:g}: adja meg az alsó és a felső magasságot méterben.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/common/map_parameters.py" />
-            <source>ROTATION {degrees} is not finite: give a number.</source>
-            <translation>ROTATION {degrees} nem véges: adjon meg számot.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/common/map_parameters.py" />
-            <source>Robot's plane from [m above the ground]</source>
-            <translation>A robot síkja ettől [m a talaj felett]</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/common/map_parameters.py" />
-            <source>Robot's plane up to [m above the ground]</source>
-            <translation>A robot síkja eddig [m a talaj felett]</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/common/map_parameters.py" />
-            <source>Shortest segment: corners nearer than this to the one before are left out [m]</source>
-            <translation>Legrövidebb szakasz: az előzőhöz ennél közelebbi sarkok kimaradnak [m]</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/common/map_parameters.py" />
-            <source>Site CRS, in metres (default: the project's, else the layers')</source>
-            <translation>A telephely vetülete méterben (alapértelmezés: a projekté, különben a rétegeké)</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/common/map_parameters.py" />
-            <source>Those between buildings that touch, and lines inside or along buildings. What stays keeps its height and its source. Needs the Python package shapely 2.</source>
-            <translation>Az érintkező épületek közöttieket, valamint az épületekben vagy mentén futó vonalakat. Ami marad, megtartja magasságát és forrását. A shapely 2 Python-csomag kell hozzá.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/common/map_parameters.py" />
-            <source>What begins at this height or above it is left out: the robot drives under it. Where things begin is said by the layers or by the parameter BASE_EXPRESSION.</source>
-            <translation>Ami ezen a magasságon vagy felette kezdődik, kimarad: a robot áthajt alatta. Hogy mi hol kezdődik, a rétegek vagy a BASE_EXPRESSION paraméter mondja meg.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/common/map_parameters.py" />
-            <source>What is not higher than this is left out: the robot drives over it. Stairs and ramps stay. Give the lower and the upper height together, or neither.</source>
-            <translation>Ami ennél nem magasabb, kimarad: a robot áthajt rajta. Lépcsők és rámpák maradnak. Az alsó és felső magasságot együtt adja meg, vagy egyiket se.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/common/map_parameters.py" />
-            <source>Width of the window, along x [m]</source>
-            <translation>Az ablak szélessége x mentén [m]</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/common/map_parameters.py" />
-            <source>binary: the text compressed</source>
-            <translation>bináris: a szöveg tömörítve</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/common/map_parameters.py" />
-            <source>compact: binary in columns</source>
-            <translation>tömör: bináris oszlopokban</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/common/map_parameters.py" />
-            <source>text</source>
-            <translation>szöveg</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/common/map_parameters.py" />
-            <source>text: lines that people and scripts read. binary: that text compressed, with a check sum. compact: the same map in columns of centimetres, also with a check sum (codec 2).</source>
-            <translation>text: sorok, amelyeket emberek és szkriptek olvasnak. binary: ez a szöveg tömörítve, ellenőrző összeggel. compact: ugyanaz a térkép centiméterek oszlopaiban, szintén ellenőrző összeggel (2. kodek).</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/common/map_parameters.py" />
-            <source>{name} is {value:g}: give a number of metres of 0 or more.</source>
-            <translation>{name} értéke {value:g}: adjon meg 0 vagy több métert.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/common/map_parameters.py" />
-            <source>{other} is given and {missing} is not: give both heights in metres, or none.</source>
-            <translation>{other} meg van adva, {missing} nincs: adja meg mindkét magasságot méterben, vagy egyiket se.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/common/map_parameters.py" />
-            <source>{side} is {length}: give a finite number of metres.</source>
-            <translation>{side} értéke {length}: adjon meg véges számú métert.</translation>
-        </message>
-        <message>
             <location filename="../../plugin/processing/common/navigation_files.py" />
             <source>Layer {sourcename}, feature {id}</source>
             <translation>{sourcename} réteg, {id}. elem</translation>
@@ -8349,6 +8299,31 @@
         </message>
         <message>
             <location filename="../../plugin/processing/common/parameters.py" />
+            <source>Both CENTER and EXTENT are given: give one of them, the window cannot be both.</source>
+            <translation>CENTER és EXTENT is meg van adva: adja meg az egyiket, az ablak nem lehet mindkettő.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/parameters.py" />
+            <source>Centre of the window (or choose an extent)</source>
+            <translation>Az ablak közepe (vagy válasszon kiterjedést)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/parameters.py" />
+            <source>Extent (instead of centre, width and height)</source>
+            <translation>Kiterjedés (közép, szélesség és magasság helyett)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/parameters.py" />
+            <source>Height of the window, along y [m]</source>
+            <translation>Az ablak magassága y mentén [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/parameters.py" />
+            <source>Layers without a CRS are in metres of the site</source>
+            <translation>A vetület nélküli rétegek telephelyi méterben vannak</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/parameters.py" />
             <source>Map profile ({kinds});;All files (*)</source>
             <translation>Térképprofil ({kinds});;Minden fájl (*)</translation>
         </message>
@@ -8359,8 +8334,18 @@
         </message>
         <message>
             <location filename="../../plugin/processing/common/parameters.py" />
+            <source>Neither CENTER nor EXTENT is given: give the centre of the window with WIDTH and HEIGHT in metres, or an extent.</source>
+            <translation>Sem CENTER, sem EXTENT nincs megadva: adja meg az ablak közepét a WIDTH és HEIGHT méterben megadott értékével, vagy egy kiterjedést.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/parameters.py" />
             <source>Origin of the site frame (default: as the project has it, else 0,0)</source>
             <translation>A telephelyi keret kezdőpontja (alapértelmezés: a projekté, különben 0,0)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/parameters.py" />
+            <source>ROTATION {degrees} is not finite: give a number.</source>
+            <translation>ROTATION {degrees} nem véges: adjon meg számot.</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/common/parameters.py" />
@@ -8374,8 +8359,18 @@
         </message>
         <message>
             <location filename="../../plugin/processing/common/parameters.py" />
+            <source>Site CRS, in metres (default: the project's, else the layers')</source>
+            <translation>A telephely vetülete méterben (alapértelmezés: a projekté, különben a rétegeké)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/parameters.py" />
             <source>The layer {layer} is no vector layer: take its role away.</source>
             <translation>A(z) {layer} réteg nem vektorréteg: vegye el a szerepét.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/parameters.py" />
+            <source>Width of the window, along x [m]</source>
+            <translation>Az ablak szélessége x mentén [m]</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/common/parameters.py" />
@@ -8401,6 +8396,11 @@
             <location filename="../../plugin/processing/common/parameters.py" />
             <source>{name}: the layer {layer} cannot be opened: check the file, and the layer's name after '|layername='.</source>
             <translation>{name}: a(z) {layer} réteg nem nyitható meg: ellenőrizze a fájlt és a réteg nevét a '|layername=' után.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/parameters.py" />
+            <source>{side} is {length}: give a finite number of metres.</source>
+            <translation>{side} értéke {length}: adjon meg véges számú métert.</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/common/placed_cones.py" />
@@ -9558,14 +9558,14 @@
             <translation>Útvonalak utakon…</translation>
         </message>
         <message>
-            <location filename="../../plugin/ui/tables.py" />
-            <source>{file} was not written ({why}). Choose another folder, or close the file where it is open.</source>
-            <translation>{file} nem lett kiírva ({why}). Válasszon másik mappát, vagy zárja be a fájlt, ahol nyitva van.</translation>
-        </message>
-        <message>
             <location filename="../../plugin/ui/language.py" />
             <source>{state}, last heard {age} ago over {link}</source>
             <translation>{state}, utolsó hír {age} óta, ezen: {link}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/ui/tables.py" />
+            <source>{file} was not written ({why}). Choose another folder, or close the file where it is open.</source>
+            <translation>{file} nem lett kiírva ({why}). Válasszon másik mappát, vagy zárja be a fájlt, ahol nyitva van.</translation>
         </message>
     </context>
 </TS>

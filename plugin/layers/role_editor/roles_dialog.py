@@ -40,8 +40,15 @@ from ...ui.language import tr, tr_count
 from ...ui.tables import fit_headers
 from ..crs import frame_in_project, site_crs_for, stated_crs
 from ..layer_source import ObstacleSource, obstacle_sources
-from ..profiles import SUFFIXES, read_profile, shipped_profiles
-from ..roles import PUBLISHED_ROLES, LayerExpressions, keep_setup, setup_of
+from ..roles import (
+    PUBLISHED_ROLES,
+    SUFFIXES,
+    LayerExpressions,
+    keep_setup,
+    read_profile,
+    setup_of,
+    shipped_profiles,
+)
 from ..site_transform import SiteGeoreference
 from .preview import LayerMeasure, PreviewTask, PreviewView, measure_summary
 from .role_table import (

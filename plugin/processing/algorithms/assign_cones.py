@@ -58,9 +58,16 @@ from ...cone_texts import FINISHES, METHODS, OBJECTIVES, TASKS
 from ...layers.layer_source import PointRow, point_rows
 from ...layers.site_transform import SiteGeoreference
 from ...ui.language import tr, tr_count, tr_page
-from ..common.algorithm import FleetAlgorithm, ParameterError, Parameters, fields_of, shown_by_processing
+from ..common.algorithm import (
+    FleetAlgorithm,
+    ParameterError,
+    Parameters,
+    enum_parameter,
+    fields_of,
+    shown_by_processing,
+)
 from ..common.outputs import check_target, fill_sink, line, write_whole
-from ..common.parameters import chosen_crs, enum_parameter
+from ..common.parameters import chosen_crs
 from ..common.road_sources import (
     ROADS,
     KeepoutAreas,

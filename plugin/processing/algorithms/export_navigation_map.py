@@ -24,12 +24,12 @@ from qgis.core import (
 
 from ...layers.layer_expressions import FeatureFilter
 from ...ui.language import tr, tr_page
-from ..common.algorithm import FleetAlgorithm, ParameterError, Parameters, shown_by_processing
+from ..common.algorithm import FleetAlgorithm, ParameterError, Parameters, enum_parameter, shown_by_processing
 from ..common.map_files import MAP, PlacedMap, file_problem, map_parameters, map_place, read_map_file
 from ..common.navigation_files import FORMAT_WRITERS as MADE
 from ..common.navigation_files import Files, NavigationExport, areas_of, speed_by
 from ..common.outputs import OutputError, WholeFolder
-from ..common.parameters import enum_parameter, filter_in
+from ..common.parameters import filter_in
 
 # --- The help of ``fleet:exportnavigationmap`` ---
 

@@ -95,6 +95,36 @@ def shortened_label(text: str, room: int) -> tuple[str, list[str]]:
     return text, notes
 
 
+# --- Choices among fixed values: scripts give a value, dialogs show its name ---
+
+
+def enum_parameter(
+    name: str, title: str, names: Mapping[str, str], default: str | Sequence[str], *, several: bool = False
+) -> QgsProcessingParameterEnum:
+    """Return the parameter ``name`` with the values that are the keys of ``names``, shown as these.
+
+    QGIS stores the value, in its history and in models, too: it is the same in every language.
+    """
+    choice = QgsProcessingParameterEnum(
+        name,
+        title,
+        options=list(names),
+        allowMultiple=several,
+        defaultValue=default,
+        usesStaticStrings=True,
+    )
+    # By its path: only a dialog loads what needs widgets.
+    widget = f"{__package__}.choice_widget.ChoiceWidget"
+    choice.setMetadata({"widget_wrapper": {"class": widget, "names": dict(names)}})
+    return choice
+
+
+def advanced(parameter: QgsProcessingParameterDefinition) -> QgsProcessingParameterDefinition:
+    """Return ``parameter``, which dialogs fold away from now on."""
+    parameter.setFlags(parameter.flags() | QgsProcessingParameterDefinition.Flag.FlagAdvanced)
+    return parameter
+
+
 # --- Parameters as people know them: dialogs show labels, scripts give names ---
 
 _NAME = re.compile(r"\b[A-Z][A-Z_]+\b")

@@ -18,7 +18,14 @@ from typing import Any, NamedTuple
 import msgspec
 from websockets.exceptions import ConnectionClosed
 
-from ...core.errors import BridgeError, BusyError, OutdatedError, OverridableError, RefusedError
+from ...core.errors import (
+    BridgeError,
+    BusyError,
+    ForbiddenError,
+    OutdatedError,
+    OverridableError,
+    RefusedError,
+)
 from ...core.logs import log_and_continue
 from ...core.messages import (
     DESK_REQUESTS,
@@ -40,7 +47,6 @@ from ...protocol import jsonrpc
 from ...protocol.codec import decode_desk_request, error_code
 from ..auth.client_connection import ClientConnection
 from ..auth.gate import AuthGate
-from ..auth.permissions import check_permission
 from ..fleet.operator_updates import EVERYTHING, Tick
 from ..fleet.service import Fleet
 from ..model.request_handlers import RequestHandlers
@@ -386,3 +392,20 @@ def _data_of(error: Exception) -> dict[str, Any] | None:
     if isinstance(error, OutdatedError):
         return error.newer
     return {"found": error.found} if isinstance(error, OverridableError) else None
+
+
+def check_permission(request: DeskRequest[Any], operator: str, role: Role, override_role: Role) -> None:
+    """Raise ForbiddenError for a request, or an override in it, that an operator's role does not reach.
+
+    ``override_role`` is the least role that may override a check, by the site's settings.
+    """
+    if not role.includes(request.least_role):
+        raise ForbiddenError(
+            f"{request.method}: {operator} is {role.value}, and this takes {request.least_role.value}; "
+            "ask one, or have the role changed by 'robot-bridge operators role'"
+        )
+    if getattr(request, "override", None) is not None and not role.includes(override_role):
+        raise ForbiddenError(
+            f"{request.method}: {operator} is {role.value}, and an override takes {override_role.value}; "
+            "choose another place or way, or ask one (override_role in the site's settings)"
+        )
