@@ -73,8 +73,8 @@ def _add(app: typer.Typer, name: str) -> None:
         app.command(name)(command)
 
 
-def _print_version(asked: bool) -> None:
-    if asked:
+def _print_version(print_it: bool) -> None:
+    if print_it:
         from importlib.metadata import version
 
         print(version("fleet-supervisor-robot-bridge"))

@@ -150,7 +150,7 @@ class FleetController(QObject):
         self.state.replaced.connect(self.failed)
         self.sender.failed.connect(self.failed)
         self.sender.settled.connect(self.settled)
-        self.orders.asked_again.connect(self.messages.end)
+        self.orders.retried.connect(self.messages.end)
         self.sending.failed.connect(lambda text, topics: self.report_failure(text, *topics))
         self.selection.changed.connect(self._endings.selection_changed)
         self.sending.complained.connect(lambda text: self.messages.post(text, Level.WARNING, NO_DRAFT))

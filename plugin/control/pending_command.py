@@ -80,7 +80,7 @@ class ApproachKind(Enum):
     """The target or route is sent, and the robot drives straight to it."""
     PATH = "path"
     """The way is sent, with the cone at its end."""
-    ASKED = "asked"
+    ON_REQUEST = "asked"
     """The target is sent, and the robot asks the gateway for the same way."""
 
 
@@ -101,7 +101,7 @@ class Approach:
     @property
     def is_along_roads(self) -> bool:
         """Whether it leads along the roads."""
-        return self.kind in (ApproachKind.PATH, ApproachKind.ASKED)
+        return self.kind in (ApproachKind.PATH, ApproachKind.ON_REQUEST)
 
 
 NO_APPROACH = Approach()

@@ -225,7 +225,7 @@ def _place(url: str) -> str:
 
 
 def _bad_status(response: Any, url: str) -> GatewayLinkError:
-    status, said = response.status_code, _said(response)
+    status, said = response.status_code, _reason_in(response)
     if status == 404:
         return GatewayLinkError(
             tr(
@@ -349,7 +349,7 @@ def _bad_certificate(error: ssl.SSLCertVerificationError, place: str) -> Gateway
     )
 
 
-def _said(response: Any) -> str:
+def _reason_in(response: Any) -> str:
     """Return the gateway's own words, which are one line of plain text."""
     if not str(response.headers.get("Content-Type", "")).startswith("text/plain"):
         return ""

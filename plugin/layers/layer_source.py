@@ -385,7 +385,7 @@ class FeatureWarnings:
     """Warnings in the order of their kinds' first ones; many features of one kind become one warning."""
 
     def __init__(self) -> None:
-        self._told: list[str | tuple[str, _Kind]] = []
+        self._warnings: list[str | tuple[str, _Kind]] = []
         self._kinds: dict[str, dict[str, _Kind]] = {}
         self._others: dict[str, SomeFeatures] = {}
 
@@ -398,19 +398,19 @@ class FeatureWarnings:
             return
         if pattern not in kinds:
             kinds[pattern] = _Kind()
-            self._told.append((layer, kinds[pattern]))
+            self._warnings.append((layer, kinds[pattern]))
         kinds[pattern].add(feature, note)
 
     def add_text(self, text: str) -> None:
         """Add a warning about a layer as a whole."""
-        self._told.append(text)
+        self._warnings.append(text)
 
     def texts(self) -> list[str]:
         """Return every warning."""
-        told: list[str] = []
-        for one in self._told:
-            told += [one] if isinstance(one, str) else one[1].texts(one[0])
-        return told + [
+        texts: list[str] = []
+        for one in self._warnings:
+            texts += [one] if isinstance(one, str) else one[1].texts(one[0])
+        return texts + [
             tr("Layer {layer}: warnings of more kinds about {features}", layer=layer, features=features)
             for layer, features in self._others.items()
         ]

@@ -102,8 +102,8 @@ class PendingCommandPanel(QWidget):
 
     def _show(self) -> None:
         draft = self._desk.drafts.draft
-        told = self._told(draft) if draft is not None else self._remark or NOTHING
-        self._text.setText("\n".join([*self._going_out(), told]))
+        text = self._description(draft) if draft is not None else self._remark or NOTHING
+        self._text.setText("\n".join([*self._going_out(), text]))
         is_wrong = draft is not None and draft.findings.faults
         self._text.set_text_style(WRONG_STYLE if is_wrong else "")
 
@@ -120,7 +120,7 @@ class PendingCommandPanel(QWidget):
             )
         ]
 
-    def _told(self, draft: PendingCommand) -> str:
+    def _description(self, draft: PendingCommand) -> str:
         checks = self._desk.checks
         if self._desk.sending.awaits_way:
             return tr(
@@ -289,7 +289,7 @@ class PendingCommandActions(QObject):
                     fault=draft.fault,
                 )
             )
-        if self._edits.is_asked(draft.robot):
+        if self._edits.awaits_answer(draft.robot):
             raise NotSentError(
                 tr(
                     "The gateway has not answered yet what was asked of the queue of {robot} before. Try "

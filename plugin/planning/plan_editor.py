@@ -165,7 +165,7 @@ class PlanEditor(QObject):
         stores = read_stores(self._desk.project, self.settings, frame)
         try:
             job = AssignmentJob(targets, self._robots(), stores, self.settings.finish)
-            wanted = Objective(
+            objective = Objective(
                 self.settings.objective, PREVIEW if preview else AUTOMATIC, self.settings.seconds
             )
         except MissingStoreError as error:
@@ -185,7 +185,7 @@ class PlanEditor(QObject):
         self.run(
             tr("Preview of the cone plan") if preview else tr("Cone plan"),
             blank,
-            lambda task: assign(job, ways.travel_of(job, task.goes_on), wanted, task.told),
+            lambda task: assign(job, ways.travel_of(job, task.goes_on), objective, task.report_progress),
             self._put,
         )
 

@@ -174,8 +174,8 @@ async def _review(address: str, robot: str, *, accept: bool) -> int:
     async with connect(f"{address}/desk") as wire:
         desk = _Desk(wire)
         await desk.ask("hello", {"operator": "experiment"})
-        wanted = {"robot": robot, "state": state.value, "limit": 1000}
-        found = (await desk.ask("get_observations", wanted))["observations"]
+        query = {"robot": robot, "state": state.value, "limit": 1000}
+        found = (await desk.ask("get_observations", query))["observations"]
         objects = [one["observation"] for one in found if one["op"] == SetObject.__name__]
         for number in objects:
             verdict = {"observation": number, "accept": accept, "revise": not accept}
@@ -374,8 +374,8 @@ class _Robot:
     def _note(self) -> None:
         body = self.body
         self._clearance = min(self._clearance, body.clearance())
-        told = body.pose, body.driven, body.accuracy, body.localiser.lost
-        self._rows.append((body.truth, body.odometry, *told, self._timed.seconds, body.localiser.particles))
+        state = body.pose, body.driven, body.accuracy, body.localiser.lost
+        self._rows.append((body.truth, body.odometry, *state, self._timed.seconds, body.localiser.particles))
 
     def say(self, request: Request) -> None:
         self.link.say(request)

@@ -244,8 +244,8 @@ class Gateway:
     async def _field_page(self, visitor: ClientConnection, request: Request, path: str) -> Response:
         if path != SITE:
             return self._field.file(request)
-        if told := await self._gate.may_read(visitor, request):
-            return told
+        if refusal := await self._gate.may_read(visitor, request):
+            return refusal
         return await self._field.site(request)
 
     def _host_fault(self, request: Request) -> str | None:
@@ -256,8 +256,8 @@ class Gateway:
     async def _status_page(self, visitor: ClientConnection, request: Request, path: str) -> Response:
         if path == HEALTH:
             return await self._status.health()
-        if not is_loopback(visitor.address) and (told := await self._gate.may_read(visitor, request)):
-            return told
+        if not is_loopback(visitor.address) and (refusal := await self._gate.may_read(visitor, request)):
+            return refusal
         return await self._status.metrics()
 
     def _largest_message(self, kind: TokenKind) -> int:

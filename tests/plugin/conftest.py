@@ -118,7 +118,7 @@ class SmallGateway:
         self._loop.call_soon_threadsafe(self._stop.set)
         self._thread.join(START)
 
-    def asked(self, method: str) -> list[dict]:
+    def requests_of(self, method: str) -> list[dict]:
         return [params for name, params in self.requests if name == method]
 
     def show(self, *robots: RobotReport) -> None:

@@ -63,8 +63,8 @@ def test_positions_are_asked_for_at_the_rate_that_was_set(iface, gateway, wait):
     try:
         plugin.window.dock.findChild(QLineEdit, "fleet_url").setText(gateway.url)
         plugin.window.actions.connect.trigger()
-        wait(lambda: gateway.asked("subscribe"))
-        assert [params["rate"] for params in gateway.asked("subscribe")] == [4.0]
+        wait(lambda: gateway.requests_of("subscribe"))
+        assert [params["rate"] for params in gateway.requests_of("subscribe")] == [4.0]
     finally:
         plugin.unload()
 

@@ -146,9 +146,9 @@ class FleetOverlay(QgsMapCanvasItem):
         self._painter.robots.set_magnification(times)
         self.update()
 
-    def draw_arrows(self, wanted: bool) -> None:
+    def draw_arrows(self, on: bool) -> None:
         """Draw an arrow for each robot, or leave that to the layer; the rest is drawn always."""
-        self._painter.robots.draw_arrows(wanted)
+        self._painter.robots.draw_arrows(on)
 
     def robot_at(self, x: float, y: float) -> str | None:
         """Return the robot nearest to pixel (x, y), None when there is none nearby."""

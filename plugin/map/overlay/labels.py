@@ -143,9 +143,9 @@ class LabelPlacer:
         """Take one place after the other unless a text has a part of it; return the indices of those."""
         found = []
         for index, (line, left, right) in enumerate(cells.T.tolist()):
-            wanted = _bits(left, right)
-            if not self._taken[line] & wanted:
-                self._cover(line, line + LINES, wanted)
+            bits = _bits(left, right)
+            if not self._taken[line] & bits:
+                self._cover(line, line + LINES, bits)
                 found.append(index)
         return found
 

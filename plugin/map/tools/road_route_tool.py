@@ -113,7 +113,7 @@ class RoutePreview(QObject):
         view = self._desk.state.robots.view(question.robot, self._desk.clock.steady())
         if view is None or not view.has_pose:
             return
-        if math.dist((view.told["x"], view.told["y"]), self._begins) > MOVED_M:
+        if math.dist((view.values["x"], view.values["y"]), self._begins) > MOVED_M:
             try:
                 self._desk.preview.want(question)
             except NotSentError:

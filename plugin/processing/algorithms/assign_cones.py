@@ -467,9 +467,9 @@ class AssignCones(FleetAlgorithm):
         if not job.targets:
             feedback.pushWarning(tr("CONES holds no cone: there is nothing to plan."))
         feedback.setProgress(_READ)
-        told = _Progress(feedback)
-        travel = self._travel.travel(job, crs, feedback, told.measuring)
-        plan = assign(job, travel, self._wanted(parameters, context), told.solving)
+        progress = _Progress(feedback)
+        travel = self._travel.travel(job, crs, feedback, progress.measuring)
+        plan = assign(job, travel, self._objective(parameters, context), progress.solving)
         plan = replace(plan, crs=crs.authid() or crs.toWkt())
         faults = check_plan(plan)
         if faults:
@@ -485,7 +485,7 @@ class AssignCones(FleetAlgorithm):
         _report(plan, feedback)
         return {**made, **figures(plan), METHOD_USED: plan.method, TRAVEL_USED: plan.travel}
 
-    def _wanted(self, parameters: Parameters, context: QgsProcessingContext) -> Objective:
+    def _objective(self, parameters: Parameters, context: QgsProcessingContext) -> Objective:
         return Objective(
             self.parameterAsEnumString(parameters, OBJECTIVE, context),
             self.parameterAsEnumString(parameters, METHOD, context),

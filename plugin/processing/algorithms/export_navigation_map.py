@@ -167,8 +167,8 @@ class ExportNavigationMap(FleetAlgorithm):
         robot_map = read_map_file(source)
         warnings = list(robot_map.warnings)
         # Grids and pictures stay in the site's metres, wherever those are.
-        heard = warnings if _PLACED.intersection(formats) else []
-        place = map_place(self, parameters, context, robot_map.meta, _Collector(heard))
+        noted = warnings if _PLACED.intersection(formats) else []
+        place = map_place(self, parameters, context, robot_map.meta, _Collector(noted))
         return NavigationExport(
             robot_map=robot_map,
             place=PlacedMap(place, context.transformContext()),
@@ -189,16 +189,16 @@ class ExportNavigationMap(FleetAlgorithm):
     ) -> None:
         """Read the layers of the masks that are wanted."""
         site = export.place.layers
-        wanted = [name for name in ("keepout", "speed") if name in formats]
-        if wanted and export.place.is_local:
+        kinds = [name for name in ("keepout", "speed") if name in formats]
+        if kinds and export.place.is_local:
             export.warnings.append(
                 tr("The coordinates of the keepout and speed layers are taken as the map's own metres.")
             )
-        if "keepout" in wanted:
+        if "keepout" in kinds:
             source, counted = self._layer(parameters, KEEPOUTS, context)
             export.keepouts, warnings = areas_of(source, site, counted, feedback)
             export.warnings += warnings
-        if "speed" in wanted:
+        if "speed" in kinds:
             source, counted = self._layer(parameters, SPEED_AREAS, context)
             expression = self.createExpressionContext(parameters, context, source)
             speed = speed_by(self.parameterAsString(parameters, SPEED, context), source, expression)

@@ -398,7 +398,7 @@ def network_of_roads(
     except RoadsCancelledError:
         return None
     for repair in repairs:
-        feature, text = reading.features[repair.road], repair.told(reading.features)
+        feature, text = reading.features[repair.road], repair.in_words(reading.features)
         where = f"({repair.x:.3f}, {repair.y:.3f})"
         feedback.pushInfo(
             tr(

@@ -234,7 +234,7 @@ class ClientConnection(ServerConnection):
         self._limits = door.limits
         self._stuck: asyncio.TimerHandle | None = None
         self._silence: asyncio.TimerHandle | None = None
-        self._heard_at = 0.0
+        self._last_received_at = 0.0
         self._expelled = False
         self.is_gone = False
         """Whether the connection has ended; nobody gets a place after that."""
@@ -300,9 +300,9 @@ class ClientConnection(ServerConnection):
         """Take in bytes: short messages are dealt with at once where that is possible, the others queued."""
         start = self._deal_with(data)
         if start < len(data):
-            rest, asked = data[start:] if start else data, self.request is not None
+            rest, is_upgraded = data[start:] if start else data, self.request is not None
             super().data_received(rest)
-            if not asked and self.request is not None:
+            if not is_upgraded and self.request is not None:
                 self.short_cut.begin(rest)
             else:
                 self.short_cut.pass_over(rest)
@@ -312,7 +312,7 @@ class ClientConnection(ServerConnection):
             return 0
         start = self.short_cut.handle_messages(data, self._messages)
         if start:
-            self._heard_at = self.loop.time()
+            self._last_received_at = self.loop.time()
         return start
 
     async def __aiter__(self) -> AsyncIterator[Any]:
@@ -320,7 +320,7 @@ class ClientConnection(ServerConnection):
         async for frame in super().__aiter__():
             if self._expelled:
                 return
-            self._heard_at = self.loop.time()
+            self._last_received_at = self.loop.time()
             if self._messages.consume():
                 yield frame
             elif self._patience.consume():
@@ -354,9 +354,9 @@ class ClientConnection(ServerConnection):
         super().process_event(event)
 
     @property
-    def has_spoken(self) -> bool:
+    def has_sent(self) -> bool:
         """Whether a message has come since the connection was let in."""
-        return self._heard_at > 0
+        return self._last_received_at > 0
 
     @property
     def who(self) -> str:
@@ -381,9 +381,9 @@ class ClientConnection(ServerConnection):
 
     def _check_silence(self) -> None:
         limits, robot = self._limits, self.identity is not None and self.identity.kind is TokenKind.ROBOT
-        if self._heard_at and not robot:
+        if self._last_received_at and not robot:
             return
-        due = self._heard_at + limits.silent_s if self._heard_at else self.loop.time()
+        due = self._last_received_at + limits.silent_s if self._last_received_at else self.loop.time()
         if due <= self.loop.time():
             log.warning("%s from %s said nothing for too long; closed", self.who, self.address)
             self._ending = self.loop.create_task(

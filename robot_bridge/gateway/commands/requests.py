@@ -69,8 +69,8 @@ class CommandRequests:
             order = await self._order(send.command, send.robot, send.op, send.params, operator)
         except RefusedError as refusal:
             return await self._issued_before(send.command, refusal)
-        told = [f"override: {send.override}" if send.override else None, send.reason]
-        reason = "; ".join(text for text in told if text) or None
+        remarks = [f"override: {send.override}" if send.override else None, send.reason]
+        reason = "; ".join(text for text in remarks if text) or None
         fenced = send.override is None
         order = replace(order, reason=reason, expires_in=send.expires_in, fenced=fenced)
         issue = self._issue_aborts if isinstance(order.message, Abort) else self._book.issue
@@ -128,13 +128,13 @@ class CommandRequests:
         try:
             return await storing
         except StoreError as error:
-            whom = (
+            recipients = (
                 f"sent to {listed_names(sent)} over the open connection all the same"
                 if sent
                 else "sent to no robot"
             )
             then = "" if isinstance(error, DataRefusedError) else f"; {STORED_LATER}"
-            raise StoreError(f"{error}. The Abort is not stored; it was {whom}{then}") from error
+            raise StoreError(f"{error}. The Abort is not stored; it was {recipients}{then}") from error
 
     def _send_unstored(self, order: CommandOrder) -> bool:
         is_sent = False

@@ -204,11 +204,11 @@ class CommandValidator(CommandReader):
         """Raise RefusedError where a robot must not be told the ``way`` to its ``task``, or has another."""
         self._rules.check(way)
         if not self.is_carrying_out(robot, task):
-            raise _told_otherwise(robot)
+            raise _ordered_otherwise(robot)
 
     def _check_task(self, order: CommandOrder) -> None:
         if order.instead_of is not None and not self._is_open_to(order.robot, order.instead_of):
-            raise _told_otherwise(order.robot)
+            raise _ordered_otherwise(order.robot)
         if order.aborts is not None and order.aborts != self.busy_with(order.robot):
             raise RefusedError(
                 f"command {order.aborts} is no longer what robot {order.robot!r} is doing; look at the log, "
@@ -238,5 +238,5 @@ class CommandValidator(CommandReader):
         return self.is_carrying_out(robot, task)
 
 
-def _told_otherwise(robot: str) -> RefusedError:
+def _ordered_otherwise(robot: str) -> RefusedError:
     return RefusedError(f"robot {robot!r} has been told otherwise in the meantime")

@@ -110,7 +110,7 @@ class RobotAnswers:
             raise RefusedError(f"GetPath: it is not known where robot {robot!r} is; send SendPos first")
         message, driven = task
         left = await asyncio.to_thread(remaining_path, message, (pose.x, pose.y), driven, self._planner)
-        self._ways.told(robot, message, left.message)
+        self._ways.note_reported(robot, message, left.message)
         return RobotReply(*left)
 
     async def _surfaces(self, question: GetSurface) -> SetSurface:
@@ -195,7 +195,7 @@ class MapSender:
             self._mailboxes.parts.put_nowait(robot)
 
     @handles(SendMap)
-    async def send_asked(self, request: SendMap) -> Done:
+    async def send_requested(self, request: SendMap) -> Done:
         """Return when the map for a robot is stored; it replaces one that still waits for it.
 
         :raises RefusedError: for a robot that is not known, or is not there.

@@ -237,7 +237,7 @@ class Fleet:
             return RequestOutcome(robot)
         # Only driving sets a robot that said Stopped in motion.
         stopped = isinstance(request, Stopped) or self.robots.get(robot).ended_in_order
-        known = self.robots.heard(robot, link, now, stopped=stopped, waited=waited)
+        known = self.robots.note_received(robot, link, now, stopped=stopped, waited=waited)
         self._saving.touch(robot)
         answer, note = await self._deal_with(known, link, request, id)
         return RequestOutcome(

@@ -255,8 +255,8 @@ class Replanning:
         """Return the plan; raises AssignmentError, RoadsError and RefusedError when there is none."""
         seconds = self._ground.terms.seconds
         self._until = time.monotonic() + PATIENCE * seconds
-        wanted = Objective(self._plan.objective, time_limit_s=seconds)
-        return replan(self._plan, self._travel, self._situation, wanted, lambda share: self._goes_on())
+        objective = Objective(self._plan.objective, time_limit_s=seconds)
+        return replan(self._plan, self._travel, self._situation, objective, lambda share: self._goes_on())
 
     def _travel(self, job: AssignmentJob) -> Travel:
         terms, planner = self._ground.terms, self._ground.planner

@@ -354,8 +354,8 @@ class PlanService:
                 progress.done.add(progress.stops[task].stop.id)
             if queued_task.state in TASK_ENDS:
                 one.ended.add(task)
-        wanted = GetPlacements(plan=one.plan.name, limit=MOST_PLACED)
-        for report in await self._context.database.run(records.newest_placed_cones, wanted):
+        query = GetPlacements(plan=one.plan.name, limit=MOST_PLACED)
+        for report in await self._context.database.run(records.newest_placed_cones, query):
             progress.take_placement(report)
 
     def _closed_now(self) -> dict[str, Any]:

@@ -144,7 +144,7 @@ class Detours:
         if isinstance(way.task, SetPosEnd) and way.command != NOTHING:
             more = None if also is None else also(way.command)
             await self._book.lead(way.robot, way.command, path, partial(_tell, way.robot, path, more))
-            self._ways.told(way.robot, way.task, path)
+            self._ways.note_reported(way.robot, way.task, path)
             return way.command
         done = await self.queues.redirect(way.robot, path, operator, reason)
         if done is None:

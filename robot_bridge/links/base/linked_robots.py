@@ -227,14 +227,14 @@ class Commanding:
         except LinkError as error:
             return CompletedCall(str(error))
         try:
-            done = await self._told(Command(robot, id, message, again))
+            done = await self._carried_out(Command(robot, id, message, again))
         except asyncio.CancelledError:
             await asyncio.shield(self._memory.finish(robot, id, CompletedCall(OVERTAKEN)))
             raise
         await self._memory.finish(robot, id, done)
         return done
 
-    async def _told(self, command: Command) -> CompletedCall:
+    async def _carried_out(self, command: Command) -> CompletedCall:
         what = type(command.message).__name__
         longest = self._answer_within + self._adapter.holds_s
         try:

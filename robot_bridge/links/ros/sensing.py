@@ -126,8 +126,8 @@ def diagnosis(message: Any) -> str | None:
     worst = max(message.status, key=_severity, default=None)
     if worst is None or _severity(worst) == 0:
         return None
-    said = f": {worst.message}" if worst.message else ""
-    return f"{words.get(_level(worst), 'unknown level')}: {worst.name}{said}"
+    remark = f": {worst.message}" if worst.message else ""
+    return f"{words.get(_level(worst), 'unknown level')}: {worst.name}{remark}"
 
 
 def yaw(q: Any, where: str) -> float:
@@ -317,14 +317,14 @@ class Sensing:
             found["tf_static"] = TopicPattern(f"{patterns['tf'].pattern}_static")
         return {kind: pattern.topic_of(self._robot) for kind, pattern in found.items()}
 
-    def check_type(self, kind: str, topic: str, type_name: str | None, told: str) -> str | None:
+    def check_type(self, kind: str, topic: str, type_name: str | None, declared: str) -> str | None:
         """Return a topic's type if it can be read as what it is; else None, and it is a fault.
 
-        ``told`` is the type as the network has it.
+        ``declared`` is the type as the network has it.
         """
         if type_name in READ[kind]:
             return type_name
-        self.fault(topic, f"{topic} has type {told[:80]}; {kind} is one of {', '.join(READ[kind])}")
+        self.fault(topic, f"{topic} has type {declared[:80]}; {kind} is one of {', '.join(READ[kind])}")
         return None
 
     def receive(self, kind: str, topic: str, type_name: str, message: Any) -> SendPos | SendGPS | None:
@@ -333,13 +333,13 @@ class Sensing:
             self.image = (topic, type_name, message) if self.wants_image else None
             return None
         try:
-            told = self._read(kind, topic, type_name, message)
+            reading = self._read(kind, topic, type_name, message)
         except (FaultError, MessageError) as error:
             self.refuse(topic, error)
             return None
-        if kind != "position" or told is not None:
+        if kind != "position" or reading is not None:
             self.faults.pop(topic, None)
-        return told
+        return reading
 
     def refuse(self, topic: str, error: Exception) -> None:
         """Note that a message of a topic cannot be used."""

@@ -67,7 +67,7 @@ def test_the_same_order_is_kept_once_and_answered_once():
 def test_orders_are_repeated_in_the_order_in_which_they_were_asked():
     outbox = RequestOutbox()
     for number in range(5):
-        outbox.add(OperatorRequest(f"order {number}", "send", asked_at=float(number)))
+        outbox.add(OperatorRequest(f"order {number}", "send", requested_at=float(number)))
     again, too_old = outbox.renew(now=32.5)
     assert [order.key for order in again] == ["order 3", "order 4"]
     assert [order.key for order in too_old] == ["order 0", "order 1", "order 2"]

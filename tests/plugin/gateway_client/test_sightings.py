@@ -88,8 +88,8 @@ def test_words_that_are_told_in_another_order_stay_what_they_are():
             [told("a", link="websocket"), told("b", status="driving"), told("c", status="new")], 1.0
         )
     )
-    assert [table.told(row).get("status") for row in range(3)] == [None, "driving", "new"]
-    assert [table.told(row)["link"] for row in range(3)] == ["websocket", "sql", "sql"]
+    assert [table.row_values(row).get("status") for row in range(3)] == [None, "driving", "new"]
+    assert [table.row_values(row)["link"] for row in range(3)] == ["websocket", "sql", "sql"]
 
 
 def test_the_names_are_the_same_list_until_there_are_more_of_them():

@@ -28,7 +28,7 @@ class Yard:
         self.site, self.url, self.clock = site, url, ManualClock(wall=1000.0)
         self.client = DatabaseClient(url)
         self.sql = self.client.sql
-        self.told = []
+        self.reported = []
         self.database = self.fleet = self.link = None
 
     @property
@@ -50,12 +50,12 @@ class Yard:
 
     async def restart(self):
         await self.database.close()
-        self.told.clear()
+        self.reported.clear()
         await self.start()
 
     def notify(self, method, key, params):
         if method == "command":
-            self.told.append((key, params["state"]))
+            self.reported.append((key, params["state"]))
 
     # --- a robot over the WebSocket link, which tells the fleet what it delivered ---------------------------
 

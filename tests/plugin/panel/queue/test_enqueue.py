@@ -33,7 +33,7 @@ def test_a_cone_goes_into_the_queue_of_the_robot_that_it_was_made_for(desk, ifac
     (task,) = tasks(gateway)
     assert (task.kind, task.x, task.y) == (TaskKind.PLACE, *(pytest.approx(v, abs=0.3) for v in (70, 55)))
     assert tasks(gateway, "r2") == []
-    assert gateway.asked("send") == []
+    assert gateway.requests_of("send") == []
     wait(lambda: desk.desk.drafts.draft is None)
 
 
@@ -76,7 +76,7 @@ def test_what_may_not_be_sent_may_not_be_queued(desk, iface, gateway):
     enqueue(desk)
     assert any("was not put into the queue" in text for text in iface.texts())
     QTest.qWait(150)
-    assert gateway.asked("add_tasks") == []
+    assert gateway.requests_of("add_tasks") == []
     assert desk.desk.drafts.draft is not None
 
 

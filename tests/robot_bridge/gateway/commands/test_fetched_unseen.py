@@ -59,7 +59,7 @@ async def test_a_target_that_was_fetched_unseen_stays_open_until_the_robot_answe
     await order(yard)
     assert (await yard.states())["target"] == "delivered"
     assert await yard.steps("target") == ["queued", "delivered"]
-    assert ("command-target", "delivered") in yard.told
+    assert ("command-target", "delivered") in yard.reported
 
 
 @pytest.mark.parametrize("order", [abort, abort_all, stop, expire])

@@ -59,7 +59,7 @@ async def two(yard):
     for robot, link in (("r1", "websocket"), ("r2", "sql")):
         await yard.ready(robot, link=link)
         await yard.take(robot)
-    yard.told.clear()
+    yard.reported.clear()
     return yard
 
 

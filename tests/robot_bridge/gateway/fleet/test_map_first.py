@@ -76,7 +76,7 @@ async def test_a_path_that_its_former_run_asked_for_is_gone(working):
 async def test_a_robot_that_did_not_read_its_map_still_gets_it_first(working):
     await say(working, Ready(2))
     await say(working, Ready(2))
-    await working.fleet.maps.send_asked(SendMap("r1"))
+    await working.fleet.maps.send_requested(SendMap("r1"))
     ops = await read_all(working)
     assert ops.index("SetMap") < ops.index("SetPosEnd")
     assert ops.count("SetMap") == 2

@@ -201,9 +201,9 @@ async def test_a_part_that_fails_at_an_event_keeps_it_from_no_other_and_stops_fr
     seen = set()
     owner, method = part.split(".")
     monkeypatch.setattr(getattr(two.fleet, owner), method, fail)
-    two.told.clear()
+    two.reported.clear()
     report = await two.fleet.emergency.stop(EmergencyStop("stop-0001"), "Ada")
-    assert report.stored and two.told
+    assert report.stored and two.reported
     assert seen | {part} >= set(HEAR_OF_STEPS)
     await two.fleet.orders.abort(AbortTask("abort-0001", robot="r1"), "Ada")
     assert (two.waiting("r1"), two.waiting("r2")) == (["Abort", "Abort"], ["Abort"])

@@ -67,7 +67,7 @@ async def test_its_commands_have_failed_and_those_of_others_go_on(stored):
     await yard.fleet.save()
     assert await yard.states() == {"queued": "failed", "other": "queued"}
     assert await yard.reason("queued") == "the robot was removed"
-    assert ("command-queued", "failed") in yard.told
+    assert ("command-queued", "failed") in yard.reported
 
 
 async def test_so_they_have_when_it_was_removed_while_no_gateway_ran(stored):

@@ -62,9 +62,9 @@ class Side:
 
     def happen(self, odd, name, now):
         if odd == "stopped":
-            self.robots.heard(name, LINK, now, stopped=True)
+            self.robots.note_received(name, LINK, now, stopped=True)
         elif odd == "other link":
-            self.robots.heard(name, "other", now)
+            self.robots.note_received(name, "other", now)
         elif odd == "anew":
             self.robots.ready(name, round(now * 1000), LINK, now)
         elif odd == "silent":

@@ -204,7 +204,7 @@ def test_a_place_beyond_all_bounds_ends_nothing():
     assert "its position has no place on the site: x is" in bench.saying(SendPos)[-1].status
     bench.state["agvPosition"]["x"] = 1.0
     bench.show()
-    assert bench.said[-1].x == 101.0
+    assert bench.sent[-1].x == 101.0
 
 
 @pytest.mark.parametrize(

@@ -27,7 +27,7 @@ QUESTIONS = {
     "a queue": (queues.load, ["r1"]),
     "a robot's tasks that ended": (queues.newest_ended, "r1", 20),
     "where tasks are": (queues.whereabouts, ["task-0001"]),
-    "what a robot told before": (records.find_told, "r1", "1"),
+    "what a robot told before": (records.find_reported, "r1", "1"),
     "a page of placed cones": (records.newest_placed_cones, GetPlacements(before=9)),
     "when something was stored last": (metadata.newest_time,),
     "commands to be deleted": (commands.forget, 1.0, 100),
