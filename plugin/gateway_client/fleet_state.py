@@ -51,8 +51,8 @@ class OperatorRequest:
     """One thing that the operator asked for, with one button pressed once.
 
     ``key`` stays the same however often the order has to be repeated; for ``send`` it is the command's id,
-    which lets the gateway recognise a repetition. ``requested_at`` is on the monotonic clock. ``lasting`` is for
-    what is right however late it comes, as an emergency stop is.
+    which lets the gateway recognise a repetition. ``requested_at`` is on the monotonic clock. ``lasting`` is
+    for what is right however late it comes, as an emergency stop is.
     """
 
     key: str

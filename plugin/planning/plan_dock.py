@@ -21,13 +21,7 @@ from qgis.PyQt.QtWidgets import (
     QWidget,
 )
 
-from ...robot_bridge.core.messages import (
-    CollectLayout,
-    GetPlacements,
-    PlanProblemKind,
-    PlanReport,
-    PlanState,
-)
+from ...robot_bridge.core.messages import CollectLayout, GetPlacements, PlanProblemKind, PlanReport, PlanState
 from ..control.fleet_controller import FleetController
 from ..control.messages import PLAN_REQUEST, Level
 from ..control.pending_command import in_brief
@@ -44,15 +38,7 @@ from .execution import PlanExecution, no_plans_here
 from .forms import RobotsForm, SettingsForm
 from .plan_editor import CollectionPlanner, PlanEditor
 from .plan_settings import PlanSettings, keep_settings, read_settings
-from .plan_views import (
-    PlanLayers,
-    PlanTree,
-    before_sending,
-    method_text,
-    plan_summary,
-    plan_title,
-    stop_rows,
-)
+from .plan_views import PlanLayers, PlanTree, before_sending, method_text, plan_summary, plan_title, stop_rows
 from .progress import ReportedProgress, problem_in_words
 from .proposal import closed_in_words, meeting_in_words
 

@@ -31,15 +31,7 @@ from ..core.messages.links import (
     SiteAreas,
 )
 from ..core.messages.operator_requests import Done
-from .json_schemas import (
-    HEADS,
-    JSON_SCHEMA,
-    NOTIFICATIONS,
-    Schema,
-    definitions,
-    plain_text,
-    schema_of,
-)
+from .json_schemas import HEADS, JSON_SCHEMA, NOTIFICATIONS, Schema, definitions, plain_text, schema_of
 
 # --- The pieces of an AsyncAPI document: channels, JSON-RPC frames as messages, and operations ---
 

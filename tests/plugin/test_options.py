@@ -6,19 +6,10 @@ import pytest
 from fleet_supervisor.plugin.help import OPTIONS, HelpWindow
 from fleet_supervisor.plugin.plugin import FleetPlugin
 from fleet_supervisor.plugin.settings.preferences import Preferences, read_preferences, write_preferences
-from qgis.core import (
-    QgsSettings,
-)
+from qgis.core import QgsSettings
 from qgis.PyQt.QtCore import Qt
 from qgis.PyQt.QtTest import QTest
-from qgis.PyQt.QtWidgets import (
-    QApplication,
-    QComboBox,
-    QDoubleSpinBox,
-    QLineEdit,
-    QPushButton,
-    QTabWidget,
-)
+from qgis.PyQt.QtWidgets import QApplication, QComboBox, QDoubleSpinBox, QLineEdit, QPushButton, QTabWidget
 
 
 @pytest.fixture

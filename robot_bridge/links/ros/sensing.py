@@ -306,8 +306,6 @@ class Sensing:
         """The image that came: topic, type, message."""
         self.wants_image = False
         """Whether an image is waited for; others are passed over."""
-        self.own_pose: FramePose | None = None
-        """Where it is in its own map frame."""
 
     def topics(self) -> dict[str, str]:
         """Return the robot's topics that are read, by what they are."""
@@ -381,7 +379,6 @@ class Sensing:
             x, y, theta = self._frame.pose_to_site(pose.x, pose.y, pose.theta)
         except ValueError as error:
             raise FaultError(f"its position {error}") from None
-        self.own_pose = pose
         self.pose = SendPos(
             x=x,
             y=y,

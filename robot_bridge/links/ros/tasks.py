@@ -341,10 +341,6 @@ class Tasks:
         self._task = self._waiting = None
         self._goals.clear()
 
-    def server_left(self, action: RosAction) -> None:
-        """Forget the goals of an action server that is gone."""
-        self._goals.pop(action, None)
-
     def step(self, abilities: Abilities, now: float) -> list[Effect]:
         """Let time pass: repeat a stop, send what waits, give up what nobody answers."""
         held = self._held

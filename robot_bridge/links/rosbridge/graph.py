@@ -12,13 +12,7 @@ from typing import Protocol, TypeVar
 from ..ros.errors import FaultError
 from .connection import Answer, RosbridgeConnection
 from .decoding import ServiceResponse, convert
-from .messages import (
-    ActionServersReply,
-    PublishersReply,
-    ServicesReply,
-    SubscribersReply,
-    TopicsReply,
-)
+from .messages import ActionServersReply, PublishersReply, ServicesReply, SubscribersReply, TopicsReply
 
 log = logging.getLogger(__name__)
 

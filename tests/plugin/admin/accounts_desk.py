@@ -5,13 +5,7 @@ from __future__ import annotations
 from qgis.PyQt import sip
 from qgis.PyQt.QtCore import QCoreApplication, QEvent, Qt
 from qgis.PyQt.QtTest import QTest
-from qgis.PyQt.QtWidgets import (
-    QAction,
-    QApplication,
-    QDialog,
-    QLineEdit,
-    QPushButton,
-)
+from qgis.PyQt.QtWidgets import QAction, QApplication, QDialog, QLineEdit, QPushButton
 
 MADE_AT = 1_790_000_000.0
 CHANGES = ("fleet_account_set_role", "fleet_account_rotate", "fleet_account_revoke")

@@ -5,16 +5,9 @@ from __future__ import annotations
 import pytest
 from qgis.PyQt.QtCore import Qt
 from qgis.PyQt.QtTest import QTest
-from qgis.PyQt.QtWidgets import (
-    QComboBox,
-    QLabel,
-    QLineEdit,
-)
+from qgis.PyQt.QtWidgets import QComboBox, QLabel, QLineEdit
 
-from tests.plugin.admin.accounts_desk import (
-    confirm,
-    is_closed,
-)
+from tests.plugin.admin.accounts_desk import confirm, is_closed
 
 
 def test_another_role_is_chosen_and_asked_for(at_accounts, gateway):

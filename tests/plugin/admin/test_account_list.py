@@ -5,16 +5,9 @@ from __future__ import annotations
 import pytest
 from fleet_supervisor.plugin.admin.accounts_dialog import day_and_time
 from fleet_supervisor.robot_bridge.core.messages import Role, TokenState
-from qgis.PyQt.QtWidgets import (
-    QAction,
-    QToolButton,
-)
+from qgis.PyQt.QtWidgets import QAction, QToolButton
 
-from tests.plugin.admin.accounts_desk import (
-    BUTTONS,
-    CHANGES,
-    MADE_AT,
-)
+from tests.plugin.admin.accounts_desk import BUTTONS, CHANGES, MADE_AT
 
 
 def test_every_account_is_listed_with_its_role_times_and_token(at_accounts, book):

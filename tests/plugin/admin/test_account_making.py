@@ -9,20 +9,9 @@ from qgis.core import QgsApplication, QgsSettings
 from qgis.PyQt import sip
 from qgis.PyQt.QtCore import Qt
 from qgis.PyQt.QtTest import QTest
-from qgis.PyQt.QtWidgets import (
-    QApplication,
-    QComboBox,
-    QLabel,
-    QLineEdit,
-    QPushButton,
-)
+from qgis.PyQt.QtWidgets import QApplication, QComboBox, QLabel, QLineEdit, QPushButton
 
-from tests.plugin.admin.accounts_desk import (
-    MADE_AT,
-    confirm,
-    let_deleted_go,
-    make_account,
-)
+from tests.plugin.admin.accounts_desk import MADE_AT, confirm, let_deleted_go, make_account
 
 
 def test_an_account_is_made_by_keys_alone_and_its_token_shown(at_accounts, gateway, wait):

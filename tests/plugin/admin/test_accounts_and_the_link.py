@@ -5,20 +5,9 @@ from __future__ import annotations
 from qgis.PyQt import sip
 from qgis.PyQt.QtCore import Qt
 from qgis.PyQt.QtTest import QTest
-from qgis.PyQt.QtWidgets import (
-    QAction,
-    QDialog,
-    QLabel,
-    QLineEdit,
-)
+from qgis.PyQt.QtWidgets import QAction, QDialog, QLabel, QLineEdit
 
-from tests.plugin.admin.accounts_desk import (
-    BUTTONS,
-    confirm,
-    is_closed,
-    let_deleted_go,
-    make_account,
-)
+from tests.plugin.admin.accounts_desk import BUTTONS, confirm, is_closed, let_deleted_go, make_account
 
 
 def test_ones_own_new_token_outlives_the_link_that_it_ends(at_accounts, gateway, book, plugin, wait):

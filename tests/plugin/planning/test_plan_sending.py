@@ -12,16 +12,7 @@ from qgis.PyQt.QtCore import Qt
 from qgis.PyQt.QtTest import QTest
 from qgis.PyQt.QtWidgets import QDialog, QLabel, QLineEdit, QPushButton
 
-from tests.plugin.planning.panel_parts import (
-    answer,
-    child,
-    cones_of,
-    hung,
-    key,
-    planned,
-    press,
-    question,
-)
+from tests.plugin.planning.panel_parts import answer, child, cones_of, hung, key, planned, press, question
 
 
 def test_only_send_and_a_second_send_submit_the_plan_whole(panel, plans, gateway, wait):

@@ -22,13 +22,7 @@ from fleet_supervisor.plugin.ui.glyphs import ROUTE as ROUTE_COLOUR
 from fleet_supervisor.robot_bridge.core.messages import RobotState
 from qgis.PyQt.QtGui import QColor
 
-from tests.plugin.map.on_canvas import (
-    expected,
-    placement_of,
-    scene_of,
-    show,
-    spots,
-)
+from tests.plugin.map.on_canvas import expected, placement_of, scene_of, show, spots
 
 
 def test_a_draft_is_painted_and_a_refused_one_is_red(canvas, site):

@@ -12,13 +12,7 @@ from qgis.core import QgsPointXY
 from qgis.PyQt.QtGui import QColor
 from qgis.PyQt.QtWidgets import QApplication
 
-from tests.plugin.map.on_canvas import (
-    expected,
-    placement_of,
-    scene_of,
-    show,
-    spots,
-)
+from tests.plugin.map.on_canvas import expected, placement_of, scene_of, show, spots
 
 BLUE = STATE_COLOURS[RobotState.FRESH]
 

@@ -15,14 +15,7 @@ from fleet_supervisor.robot_bridge.core.messages import RobotState
 from qgis.PyQt.QtCore import QSize
 from qgis.PyQt.QtGui import QColor, QImage, QPainter
 
-from tests.plugin.map.on_canvas import (
-    expected,
-    placement_of,
-    scene_of,
-    show,
-    spots,
-    where,
-)
+from tests.plugin.map.on_canvas import expected, placement_of, scene_of, show, spots, where
 
 BLUE = STATE_COLOURS[RobotState.FRESH]
 

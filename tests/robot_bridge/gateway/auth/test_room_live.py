@@ -15,8 +15,8 @@ from websockets.sync.client import connect
 from tests.support.bridge.bridge_programs import wait_until
 from tests.support.patience import START
 
-# A place is a newcomer's for as long as so many silent ones take to come: a client that is held up between its
-# connect and its request must not lose it to a flood.
+# A place is a newcomer's for as long as so many silent ones take to come: a client that is held up between
+# its connect and its request must not lose it to a flood.
 LIMITS = """
 [limits]
 robots = 6

@@ -8,15 +8,7 @@ import time
 import pytest
 
 from robot_bridge.core.errors import RefusedError, UncertainError
-from robot_bridge.core.messages import (
-    AbortAll,
-    AbortTask,
-    GetCommands,
-    MessageError,
-    Ready,
-    Send,
-    SendPos,
-)
+from robot_bridge.core.messages import AbortAll, AbortTask, GetCommands, MessageError, Ready, Send, SendPos
 
 LOOP = [(10.0, 10.0), (20.0, 10.0), (20.0, 20.0), (10.0, 20.0), (10.0, 10.0)]
 

@@ -5,14 +5,7 @@ from __future__ import annotations
 import pytest
 
 from robot_bridge.core.errors import RefusedError, StoreError
-from robot_bridge.core.messages import (
-    AbortAll,
-    GetCommands,
-    MessageError,
-    Send,
-    SetPositions,
-    TargetPosition,
-)
+from robot_bridge.core.messages import AbortAll, GetCommands, MessageError, Send, SetPositions, TargetPosition
 
 FULL_LIFE = ["queued", "delivered", "acknowledged", "reached"]
 

@@ -4,14 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from robot_bridge.core.messages import (
-    AbortAll,
-    AbortTask,
-    EmergencyStop,
-    OpAck,
-    Ready,
-    SendPos,
-)
+from robot_bridge.core.messages import AbortAll, AbortTask, EmergencyStop, OpAck, Ready, SendPos
 from tests.support.bridge.queue_line import PLACES, placed, task
 
 CONE = PLACES["a"]

@@ -10,13 +10,7 @@ import uuid
 import pytest
 
 from robot_bridge.core.errors import RefusedError, StoreError
-from robot_bridge.core.messages import (
-    ClearEmergencyStop,
-    EmergencyStop,
-    GetCommands,
-    MessageError,
-    Send,
-)
+from robot_bridge.core.messages import ClearEmergencyStop, EmergencyStop, GetCommands, MessageError, Send
 from robot_bridge.gateway.fleet import emergency_stop
 
 

@@ -8,12 +8,7 @@ import math
 import pytest
 
 from robot_bridge.core.errors import RefusedError, StoreError
-from robot_bridge.core.messages import (
-    AbortAll,
-    AbortTask,
-    GetPath,
-    ResolveConflict,
-)
+from robot_bridge.core.messages import AbortAll, AbortTask, GetPath, ResolveConflict
 from robot_bridge.gateway.storage.repositories import closures as stored_closures
 from tests.support.bridge.road_places import highest
 
