@@ -1,4 +1,4 @@
-"""What of the repository makes up the plugin, and the copy of websockets that goes with it."""
+"""What of the repository makes up the plugin, and the packages that go with it."""
 
 from __future__ import annotations
 
@@ -13,7 +13,8 @@ ROOT = Path(__file__).resolve().parents[1]
 PACKAGE = "fleet_supervisor"
 FILES = ("__init__.py", "metadata.txt", "LICENSE", "CHANGELOG.md")
 PARTS = (*FILES, "plugin", "robot_bridge", "resources", "docs")
-VENDORED = "websockets"
+VENDORED = ("segno", "websockets")
+"""Pure Python, so that a stock QGIS needs nothing more."""
 VENDOR = Path("plugin") / "vendor"
 VENDOR_NOTE = '"""Packages that come with the release, unchanged; each holds its own licence."""\n'
 
@@ -42,7 +43,7 @@ def version(root: Path = ROOT) -> str:
 def plugin_files(root: Path = ROOT) -> dict[str, bytes]:
     """Return every file of the plugin, by its path below the plugin's folder, in a fixed order.
 
-    :raises PackageError: when a part is missing or there is no pure Python copy of websockets to take along.
+    :raises PackageError: when a part is missing or a package is not there to take along.
     """
     files = {path.relative_to(root).as_posix(): path.read_bytes() for path in _own_files(root)}
     files |= {f"{VENDOR.as_posix()}/{name}": content for name, content in _vendored_files()}
@@ -67,23 +68,28 @@ def _belongs(file: Path, root: Path) -> bool:
 
 
 def _vendored_files() -> Iterator[tuple[str, bytes]]:
-    try:
-        distribution = importlib.metadata.distribution(VENDORED)
-    except importlib.metadata.PackageNotFoundError:
-        raise PackageError(f"{VENDORED} is not installed beside {__file__}; run: make setup") from None
     yield "__init__.py", VENDOR_NOTE.encode()
+    for package in VENDORED:
+        yield from _files_of(package)
+
+
+def _files_of(package: str) -> Iterator[tuple[str, bytes]]:
+    try:
+        distribution = importlib.metadata.distribution(package)
+    except importlib.metadata.PackageNotFoundError:
+        raise PackageError(f"{package} is not installed beside {__file__}; run: make setup") from None
     licences = 0
     for entry in distribution.files or ():
         source = Path(str(distribution.locate_file(entry)))
-        if entry.parts[0] == VENDORED and (entry.suffix == ".py" or entry.name == "py.typed"):
+        if entry.parts[0] == package and (entry.suffix == ".py" or entry.name == "py.typed"):
             yield entry.as_posix(), source.read_bytes()
         elif entry.name.upper().startswith("LICEN"):
             licences += 1
-            yield f"{VENDORED}/LICENSE", source.read_bytes()
+            yield f"{package}/LICENSE", source.read_bytes()
     if licences != 1:
         raise PackageError(
-            f"{VENDORED} {distribution.version} has {licences} licence files where one is expected; "
-            f"install it from its wheel: .venv/bin/python -m pip install --force-reinstall {VENDORED}"
+            f"{package} {distribution.version} has {licences} licence files where one is expected; "
+            f"install it from its wheel: .venv/bin/python -m pip install --force-reinstall {package}"
         )
 
 

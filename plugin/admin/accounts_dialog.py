@@ -4,21 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
-from datetime import datetime
 from typing import Any
 
 from qgis.gui import QgisInterface
 from qgis.PyQt.QtCore import QObject, Qt, pyqtSignal
-from qgis.PyQt.QtGui import QFontDatabase
 from qgis.PyQt.QtWidgets import (
-    QApplication,
     QComboBox,
-    QDialog,
-    QDialogButtonBox,
     QLineEdit,
     QMessageBox,
-    QPushButton,
-    QVBoxLayout,
     QWidget,
 )
 
@@ -26,7 +19,6 @@ from ...robot_bridge.core.messages import (
     AddOperator,
     GetOperators,
     GetSessions,
-    NewToken,
     OperatorReport,
     Operators,
     RevokeToken,
@@ -43,10 +35,11 @@ from ..control.fleet_controller import FleetController
 from ..gateway_client.connection_status import ROLES
 from ..help import ACCOUNTS
 from ..panel.connection_panel import ConnectionMenu
-from ..ui.dialogs import QuestionDialog, WrappingLabel, confirm
+from ..ui.dialogs import QuestionDialog, confirm
 from ..ui.language import tr, tr_count
 from ..ui.tables import TextModel
 from .supervisor_dialog import DialogAction, SupervisorDialog, fit_columns
+from .token_dialog import TokenDialog, day_and_time, until_in_words
 
 COLUMNS = (tr("Operator"), tr("Role"), tr("Since"), tr("Last connected"), tr("Token"))
 NOW = tr("connected now")
@@ -97,18 +90,6 @@ def token_in_words(report: OperatorReport) -> str:
     if report.token is TokenState.NONE:
         return tr("none")
     return until_in_words(report.expires_at)
-
-
-def until_in_words(expires_at: float | None) -> str:
-    """Return how long a token holds."""
-    if expires_at is None:
-        return tr("holds")
-    return tr("holds until {time}", time=day_and_time(expires_at))
-
-
-def day_and_time(at: float | None) -> str:
-    """Return a time since 1970 in the computer's time zone, to the minute; a dash for none."""
-    return "–" if at is None else datetime.fromtimestamp(at).strftime("%Y-%m-%d %H:%M")
 
 
 DAY = 86_400.0
@@ -250,78 +231,6 @@ def _add_validity(question: QuestionDialog) -> QComboBox:
     return question.add_choice(tr("&Token holds"), VALIDITIES, "fleet_account_validity")
 
 
-EDGES = 24
-"""Pixels beside the token in its field."""
-
-
-class TokenDialog(QDialog):
-    """The token is in its field and nowhere else here, and gone when this closes."""
-
-    def __init__(self, made: NewToken, *, ends_link: bool, parent: QWidget):
-        super().__init__(parent)
-        self.setObjectName("fleet_token_dialog")
-        self.setWindowTitle(tr("Token of {operator}", operator=made.operator))
-        self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
-        self._field = _field(made.token)
-        self._copied = WrappingLabel(lines=2)
-        self._copied.setObjectName("fleet_token_copied")
-        rows = QVBoxLayout(self)
-        rows.addWidget(WrappingLabel(_words(made)))
-        if ends_link:
-            rows.addWidget(WrappingLabel(ENDS_LINK))
-        rows.addWidget(self._field)
-        rows.addWidget(self._copied)
-        self._add_foot(rows)
-        self.finished.connect(self._forget)
-
-    def _add_foot(self, rows: QVBoxLayout) -> None:
-        copy = QPushButton(tr("&Copy"))
-        copy.setObjectName("fleet_token_copy")
-        copy.clicked.connect(self._copy)
-        foot = QDialogButtonBox(QDialogButtonBox.StandardButton.Close)
-        foot.addButton(copy, QDialogButtonBox.ButtonRole.ActionRole)
-        # Enter takes the token along; it must not make it vanish.
-        foot.button(QDialogButtonBox.StandardButton.Close).setAutoDefault(False)
-        foot.rejected.connect(self.reject)
-        rows.addWidget(foot)
-        # Only within the dialog: Enter would mean nothing once another button had the keyboard.
-        copy.setDefault(True)
-
-    def _copy(self) -> None:
-        QApplication.clipboard().setText(self._field.text())
-        self._copied.setText(tr("Copied. It stays in the clipboard until something else is copied."))
-
-    def _forget(self) -> None:
-        # setText, other than clear, also empties what could be undone.
-        self._field.setText("")
-
-
-ENDS_LINK = tr(
-    "This desk was connected with what the token takes the place of, and is cut off. Enter the token in the "
-    "Fleet panel under Access, then press Connect."
-)
-
-
-def _words(made: NewToken) -> str:
-    return tr(
-        "{operator}, {role}: the token {until}. It is shown now and never again, and kept nowhere: hand it "
-        "over on a way that others do not read. If it gets lost, make a new one.",
-        operator=made.operator,
-        role=ROLES[made.role],
-        until=until_in_words(made.expires_at),
-    )
-
-
-def _field(token: str) -> QLineEdit:
-    field = QLineEdit(token)
-    field.setObjectName("fleet_new_token")
-    field.setReadOnly(True)
-    field.setFont(QFontDatabase.systemFont(QFontDatabase.SystemFont.FixedFont))
-    field.setMinimumWidth(field.fontMetrics().horizontalAdvance(token) + EDGES)
-    field.setAccessibleName(tr("Token"))
-    return field
-
-
 LIST = tr("Accounts")
 WIDEST = (
     tr("{operator} (you)", operator="00000000000"),
@@ -442,7 +351,8 @@ class AccountsDialog(SupervisorDialog):
 
     def _show_token(self, result: dict[str, Any], ends_link: bool) -> None:
         # Beside the QGIS window and not this one: it must not go when this is closed.
-        dialog = TokenDialog(new_token(result), ends_link=ends_link, parent=self.parentWidget())
+        made, parent = new_token(result), self.parentWidget()
+        dialog = TokenDialog(made, self._desk.state.url, ends_link=ends_link, parent=parent)
         self._tokens.append(dialog)
         dialog.finished.connect(lambda: self._tokens.remove(dialog))
         dialog.show()

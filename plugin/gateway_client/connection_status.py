@@ -46,7 +46,7 @@ class OperatorCredentials:
             raise AddressError(
                 tr("The token cannot be right: it is one word. Paste it again, whole and alone.")
             )
-        if parts.scheme == "ws" and self.token and not _is_own(parts.hostname or ""):
+        if parts.scheme == "ws" and self.token and not is_loopback(parts.hostname or ""):
             raise AddressError(
                 tr(
                     "Over {url} everybody on the way could read the token. Write wss:// instead of ws://; a "
@@ -124,7 +124,8 @@ def check_address(url: str) -> str:
     return url
 
 
-def _is_own(host: str) -> bool:
+def is_loopback(host: str) -> bool:
+    """Tell whether a host name or address is this computer's own, which others cannot reach by it."""
     try:
         return ipaddress.ip_address("127.0.0.1" if host == "localhost" else host).is_loopback
     except ValueError:

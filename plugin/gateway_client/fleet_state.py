@@ -267,6 +267,11 @@ class FleetState(QObject):
         self._timer.setSingleShot(True)
         self._timer.timeout.connect(self._next)
 
+    @property
+    def url(self) -> str:
+        """The address of the gateway whose reports these are; empty before the first."""
+        return self._url
+
     def start(self, url: str) -> None:
         """Collect from now on what the gateway at ``url`` reports.
 

@@ -1,19 +1,13 @@
-"""Where the plugin takes the package ``websockets`` from.
-
-A release carries its own copy in ``plugin/vendor/websockets``, as pure Python, so that a stock QGIS needs
-nothing more. It is imported under its full name inside the plugin: ``sys.path`` stays as it is, and a
-copy that is installed for other programs is neither hidden nor replaced.
-"""
+"""Where the plugin takes the package ``websockets`` from: a release brings it along."""
 
 from __future__ import annotations
 
 import importlib
-import importlib.util
-import sys
 from types import ModuleType
 
 from ..ui.errors import LibraryMissingError
 from ..ui.language import tr
+from ..vendored import vendored_package
 
 OLDEST = 14
 """The first version whose ``asyncio`` client has the interface that the connection uses."""
@@ -26,8 +20,7 @@ def websocket_library() -> ModuleType:
 
     :raises LibraryMissingError: when there is none, or the installed one is older than :data:`OLDEST`.
     """
-    plugin = __package__.rpartition(".")[0]
-    library = _package(f"{plugin}.vendor.websockets") or _package("websockets")
+    library = vendored_package("websockets", "asyncio")
     if library is None:
         raise LibraryMissingError(
             tr(
@@ -51,16 +44,3 @@ def websocket_library() -> ModuleType:
         )
     importlib.import_module(".exceptions", library.__name__)
     return library
-
-
-def _package(name: str) -> ModuleType | None:
-    try:
-        found = importlib.util.find_spec(name)
-    except ModuleNotFoundError:
-        return None
-    # A folder without __init__.py is found too, as a namespace, and is no library.
-    if found is None or not found.origin:
-        return None
-    # Not by importlib: QGIS forgets with a plugin what it saw imported, and it sees no more than this.
-    __import__(name, fromlist=["asyncio"])
-    return sys.modules[name]

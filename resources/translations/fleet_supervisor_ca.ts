@@ -18,11 +18,6 @@
         </message>
         <message>
             <location filename="../../plugin/admin/accounts_dialog.py" />
-            <source>&amp;Copy</source>
-            <translation>&amp;Copia</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/admin/accounts_dialog.py" />
             <source>&amp;Name</source>
             <translation>&amp;Nom</translation>
         </message>
@@ -60,11 +55,6 @@
             <location filename="../../plugin/admin/accounts_dialog.py" />
             <source>Change role</source>
             <translation>Canvia el rol</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/admin/accounts_dialog.py" />
-            <source>Copied. It stays in the clipboard until something else is copied.</source>
-            <translation>Copiat. Es queda al porta-retalls fins que es copiï una altra cosa.</translation>
         </message>
         <message>
             <location filename="../../plugin/admin/accounts_dialog.py" />
@@ -168,11 +158,6 @@
         </message>
         <message>
             <location filename="../../plugin/admin/accounts_dialog.py" />
-            <source>This desk was connected with what the token takes the place of, and is cut off. Enter the token in the Fleet panel under Access, then press Connect.</source>
-            <translation>Aquesta consola estava connectada amb allò que el testimoni reemplaça, i queda desconnectada. Introduïu el testimoni al tauler de la flota, a Accés, i premeu Connecta.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/admin/accounts_dialog.py" />
             <source>This gateway has no accounts yet: everybody on its computer may do everything. The first account ends that for good, and this connection too: connect again with its token. It has to be a supervisor's.</source>
             <translation>Aquesta passarel·la encara no té comptes: tothom al seu ordinador ho pot fer tot. El primer compte hi posa fi per sempre, i també a aquesta connexió: torneu-vos a connectar amb el seu testimoni. Ha de ser d'un supervisor.</translation>
         </message>
@@ -200,11 +185,6 @@
             <location filename="../../plugin/admin/accounts_dialog.py" />
             <source>Token</source>
             <translation>Testimoni</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/admin/accounts_dialog.py" />
-            <source>Token of {operator}</source>
-            <translation>Testimoni de {operator}</translation>
         </message>
         <message>
             <location filename="../../plugin/admin/accounts_dialog.py" />
@@ -248,11 +228,6 @@
         </message>
         <message>
             <location filename="../../plugin/admin/accounts_dialog.py" />
-            <source>holds</source>
-            <translation>vàlid</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/admin/accounts_dialog.py" />
             <source>holds until {time}</source>
             <translation>vàlid fins a {time}</translation>
         </message>
@@ -290,11 +265,6 @@
             <location filename="../../plugin/admin/accounts_dialog.py" />
             <source>{operator} is {role}. Another role holds from the next thing on that is asked for, also over connections that are open.</source>
             <translation>El rol de {operator} és {role}. Un altre rol val a partir de la petició següent, també en connexions obertes.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/admin/accounts_dialog.py" />
-            <source>{operator}, {role}: the token {until}. It is shown now and never again, and kept nowhere: hand it over on a way that others do not read. If it gets lost, make a new one.</source>
-            <translation>{operator}, {role}: testimoni {until}. Es mostra ara i mai més, i no es desa enlloc: lliureu-lo per una via que altres no llegeixin. Si es perd, feu-ne un de nou.</translation>
         </message>
         <message>
             <location filename="../../plugin/admin/recordings.py" />
@@ -565,6 +535,56 @@
             <location filename="../../plugin/admin/supervisor_dialog.py" />
             <source>{words}: the gateway's answer cannot be read ({kind}). Update the gateway or the plugin, whichever is older.</source>
             <translation>{words}: la resposta de la passarel·la no es pot llegir ({kind}). Actualitzeu la passarel·la o el connector, el que sigui més antic.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/admin/token_dialog.py" />
+            <source>&amp;Copy</source>
+            <translation>&amp;Copia</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/admin/token_dialog.py" />
+            <source>A phone whose camera reads this code opens the field page, signed in with the token:</source>
+            <translation>Un telèfon que llegeix aquest codi amb la càmera obre la pàgina de camp amb la sessió iniciada amb el testimoni:</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/admin/token_dialog.py" />
+            <source>Code for a phone</source>
+            <translation>Codi per a un telèfon</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/admin/token_dialog.py" />
+            <source>Copied. It stays in the clipboard until something else is copied.</source>
+            <translation>Copiat. Es queda al porta-retalls fins que es copiï una altra cosa.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/admin/token_dialog.py" />
+            <source>For a phone: connect this desk by the address that phones reach the gateway by, not by {host}, and a new token has a code here that opens the field page.</source>
+            <translation>Per a un telèfon: connecteu aquesta consola per l'adreça amb què els telèfons arriben a la passarel·la, no per {host}, i un testimoni nou tindrà aquí un codi que obre la pàgina de camp.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/admin/token_dialog.py" />
+            <source>The Python package segno is missing, which draws the code for phones. Install the plugin from its release zip, which contains it.</source>
+            <translation>Falta el paquet de Python segno, que dibuixa el codi per als telèfons. Instal·leu el connector des del zip de la versió publicada, que el conté.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/admin/token_dialog.py" />
+            <source>This desk was connected with what the token takes the place of, and is cut off. Enter the token in the Fleet panel under Access, then press Connect.</source>
+            <translation>Aquesta consola estava connectada amb allò que el testimoni reemplaça, i queda desconnectada. Introduïu el testimoni al tauler de la flota, a Accés, i premeu Connecta.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/admin/token_dialog.py" />
+            <source>Token of {operator}</source>
+            <translation>Testimoni de {operator}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/admin/token_dialog.py" />
+            <source>holds</source>
+            <translation>vàlid</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/admin/token_dialog.py" />
+            <source>{operator}, {role}: the token {until}. It is shown now and never again, and kept nowhere: hand it over on a way that others do not read. If it gets lost, make a new one.</source>
+            <translation>{operator}, {role}: testimoni {until}. Es mostra ara i mai més, i no es desa enlloc: lliureu-lo per una via que altres no llegeixin. Si es perd, feu-ne un de nou.</translation>
         </message>
         <message>
             <location filename="../../plugin/cone_texts.py" />

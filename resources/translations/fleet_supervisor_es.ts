@@ -18,11 +18,6 @@
         </message>
         <message>
             <location filename="../../plugin/admin/accounts_dialog.py" />
-            <source>&amp;Copy</source>
-            <translation>&amp;Copiar</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/admin/accounts_dialog.py" />
             <source>&amp;Name</source>
             <translation>&amp;Nombre</translation>
         </message>
@@ -60,11 +55,6 @@
             <location filename="../../plugin/admin/accounts_dialog.py" />
             <source>Change role</source>
             <translation>Cambiar el rol</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/admin/accounts_dialog.py" />
-            <source>Copied. It stays in the clipboard until something else is copied.</source>
-            <translation>Copiado. Se queda en el portapapeles hasta que se copie otra cosa.</translation>
         </message>
         <message>
             <location filename="../../plugin/admin/accounts_dialog.py" />
@@ -168,11 +158,6 @@
         </message>
         <message>
             <location filename="../../plugin/admin/accounts_dialog.py" />
-            <source>This desk was connected with what the token takes the place of, and is cut off. Enter the token in the Fleet panel under Access, then press Connect.</source>
-            <translation>Esta consola estaba conectada con aquello que el testigo reemplaza, y queda desconectada. Introduzca el testigo en el panel de la flota, en Acceso, y pulse Conectar.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/admin/accounts_dialog.py" />
             <source>This gateway has no accounts yet: everybody on its computer may do everything. The first account ends that for good, and this connection too: connect again with its token. It has to be a supervisor's.</source>
             <translation>Esta pasarela aún no tiene cuentas: cualquiera en su ordenador puede hacerlo todo. La primera cuenta le pone fin para siempre, y también a esta conexión: conéctese otra vez con su testigo. Tiene que ser de un supervisor.</translation>
         </message>
@@ -200,11 +185,6 @@
             <location filename="../../plugin/admin/accounts_dialog.py" />
             <source>Token</source>
             <translation>Testigo</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/admin/accounts_dialog.py" />
-            <source>Token of {operator}</source>
-            <translation>Testigo de {operator}</translation>
         </message>
         <message>
             <location filename="../../plugin/admin/accounts_dialog.py" />
@@ -248,11 +228,6 @@
         </message>
         <message>
             <location filename="../../plugin/admin/accounts_dialog.py" />
-            <source>holds</source>
-            <translation>válido</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/admin/accounts_dialog.py" />
             <source>holds until {time}</source>
             <translation>válido hasta {time}</translation>
         </message>
@@ -290,11 +265,6 @@
             <location filename="../../plugin/admin/accounts_dialog.py" />
             <source>{operator} is {role}. Another role holds from the next thing on that is asked for, also over connections that are open.</source>
             <translation>El rol de {operator} es {role}. Otro rol vale a partir de la siguiente petición, también en conexiones abiertas.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/admin/accounts_dialog.py" />
-            <source>{operator}, {role}: the token {until}. It is shown now and never again, and kept nowhere: hand it over on a way that others do not read. If it gets lost, make a new one.</source>
-            <translation>{operator}, {role}: testigo {until}. Se muestra ahora y nunca más, y no se guarda en ningún sitio: entréguelo por una vía que otros no lean. Si se pierde, cree uno nuevo.</translation>
         </message>
         <message>
             <location filename="../../plugin/admin/recordings.py" />
@@ -565,6 +535,56 @@
             <location filename="../../plugin/admin/supervisor_dialog.py" />
             <source>{words}: the gateway's answer cannot be read ({kind}). Update the gateway or the plugin, whichever is older.</source>
             <translation>{words}: la respuesta de la pasarela no se puede leer ({kind}). Actualice la pasarela o el complemento, lo que sea más antiguo.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/admin/token_dialog.py" />
+            <source>&amp;Copy</source>
+            <translation>&amp;Copiar</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/admin/token_dialog.py" />
+            <source>A phone whose camera reads this code opens the field page, signed in with the token:</source>
+            <translation>Un teléfono que lee este código con la cámara abre la página de campo con la sesión iniciada con el token:</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/admin/token_dialog.py" />
+            <source>Code for a phone</source>
+            <translation>Código para un teléfono</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/admin/token_dialog.py" />
+            <source>Copied. It stays in the clipboard until something else is copied.</source>
+            <translation>Copiado. Se queda en el portapapeles hasta que se copie otra cosa.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/admin/token_dialog.py" />
+            <source>For a phone: connect this desk by the address that phones reach the gateway by, not by {host}, and a new token has a code here that opens the field page.</source>
+            <translation>Para un teléfono: conecte esta consola por la dirección con la que los teléfonos llegan a la pasarela, no por {host}, y un token nuevo tendrá aquí un código que abre la página de campo.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/admin/token_dialog.py" />
+            <source>The Python package segno is missing, which draws the code for phones. Install the plugin from its release zip, which contains it.</source>
+            <translation>Falta el paquete de Python segno, que dibuja el código para los teléfonos. Instale el complemento desde el zip de la versión publicada, que lo contiene.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/admin/token_dialog.py" />
+            <source>This desk was connected with what the token takes the place of, and is cut off. Enter the token in the Fleet panel under Access, then press Connect.</source>
+            <translation>Esta consola estaba conectada con aquello que el testigo reemplaza, y queda desconectada. Introduzca el testigo en el panel de la flota, en Acceso, y pulse Conectar.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/admin/token_dialog.py" />
+            <source>Token of {operator}</source>
+            <translation>Testigo de {operator}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/admin/token_dialog.py" />
+            <source>holds</source>
+            <translation>válido</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/admin/token_dialog.py" />
+            <source>{operator}, {role}: the token {until}. It is shown now and never again, and kept nowhere: hand it over on a way that others do not read. If it gets lost, make a new one.</source>
+            <translation>{operator}, {role}: testigo {until}. Se muestra ahora y nunca más, y no se guarda en ningún sitio: entréguelo por una vía que otros no lean. Si se pierde, cree uno nuevo.</translation>
         </message>
         <message>
             <location filename="../../plugin/cone_texts.py" />

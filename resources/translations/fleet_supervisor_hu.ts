@@ -17,11 +17,6 @@
         </message>
         <message>
             <location filename="../../plugin/admin/accounts_dialog.py" />
-            <source>&amp;Copy</source>
-            <translation>&amp;Másolás</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/admin/accounts_dialog.py" />
             <source>&amp;Name</source>
             <translation>&amp;Név</translation>
         </message>
@@ -59,11 +54,6 @@
             <location filename="../../plugin/admin/accounts_dialog.py" />
             <source>Change role</source>
             <translation>Szerep módosítása</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/admin/accounts_dialog.py" />
-            <source>Copied. It stays in the clipboard until something else is copied.</source>
-            <translation>Kimásolva. A vágólapon marad, amíg mást nem másol.</translation>
         </message>
         <message>
             <location filename="../../plugin/admin/accounts_dialog.py" />
@@ -167,11 +157,6 @@
         </message>
         <message>
             <location filename="../../plugin/admin/accounts_dialog.py" />
-            <source>This desk was connected with what the token takes the place of, and is cut off. Enter the token in the Fleet panel under Access, then press Connect.</source>
-            <translation>Ez a kezelőpult azzal volt kapcsolódva, aminek a token a helyébe lép, ezért lekapcsolódik. Adja meg a tokent a Flotta panelen a Hozzáférés alatt, majd nyomja meg a Kapcsolódás gombot.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/admin/accounts_dialog.py" />
             <source>This gateway has no accounts yet: everybody on its computer may do everything. The first account ends that for good, and this connection too: connect again with its token. It has to be a supervisor's.</source>
             <translation>Ezen az átjárón még nincsenek fiókok: a számítógépén bárki bármit megtehet. Az első fiók végleg véget vet ennek, és ennek a kapcsolatnak is: kapcsolódjon újra a tokenjével. Felügyelőé kell hogy legyen.</translation>
         </message>
@@ -199,11 +184,6 @@
             <location filename="../../plugin/admin/accounts_dialog.py" />
             <source>Token</source>
             <translation>Token</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/admin/accounts_dialog.py" />
-            <source>Token of {operator}</source>
-            <translation>{operator} tokenje</translation>
         </message>
         <message>
             <location filename="../../plugin/admin/accounts_dialog.py" />
@@ -247,11 +227,6 @@
         </message>
         <message>
             <location filename="../../plugin/admin/accounts_dialog.py" />
-            <source>holds</source>
-            <translation>érvényes</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/admin/accounts_dialog.py" />
             <source>holds until {time}</source>
             <translation>érvényes eddig: {time}</translation>
         </message>
@@ -289,11 +264,6 @@
             <location filename="../../plugin/admin/accounts_dialog.py" />
             <source>{operator} is {role}. Another role holds from the next thing on that is asked for, also over connections that are open.</source>
             <translation>{operator} szerepe: {role}. Másik szerep a következő kéréstől érvényes, a nyitott kapcsolatokon is.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/admin/accounts_dialog.py" />
-            <source>{operator}, {role}: the token {until}. It is shown now and never again, and kept nowhere: hand it over on a way that others do not read. If it gets lost, make a new one.</source>
-            <translation>{operator}, {role}: a token {until}. Most látható és soha többé, és sehol sem őrződik meg: olyan úton adja át, amelyet mások nem olvasnak. Ha elvész, készítsen újat.</translation>
         </message>
         <message>
             <location filename="../../plugin/admin/recordings.py" />
@@ -559,6 +529,56 @@
             <location filename="../../plugin/admin/supervisor_dialog.py" />
             <source>{words}: the gateway's answer cannot be read ({kind}). Update the gateway or the plugin, whichever is older.</source>
             <translation>{words}: az átjáró válasza nem olvasható ({kind}). Frissítse az átjárót vagy a bővítményt, amelyik régebbi.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/admin/token_dialog.py" />
+            <source>&amp;Copy</source>
+            <translation>&amp;Másolás</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/admin/token_dialog.py" />
+            <source>A phone whose camera reads this code opens the field page, signed in with the token:</source>
+            <translation>A telefon, amelynek kamerája leolvassa ezt a kódot, megnyitja a helyszíni oldalt, a tokennel bejelentkezve:</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/admin/token_dialog.py" />
+            <source>Code for a phone</source>
+            <translation>Kód telefonhoz</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/admin/token_dialog.py" />
+            <source>Copied. It stays in the clipboard until something else is copied.</source>
+            <translation>Kimásolva. A vágólapon marad, amíg mást nem másol.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/admin/token_dialog.py" />
+            <source>For a phone: connect this desk by the address that phones reach the gateway by, not by {host}, and a new token has a code here that opens the field page.</source>
+            <translation>Telefonhoz: ezt a kezelőpultot azon a címen csatlakoztassa, amelyen a telefonok elérik az átjárót, ne a(z) {host} címen; az új token mellett akkor itt egy kód áll, amely megnyitja a helyszíni oldalt.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/admin/token_dialog.py" />
+            <source>The Python package segno is missing, which draws the code for phones. Install the plugin from its release zip, which contains it.</source>
+            <translation>Hiányzik a segno Python-csomag, amely a telefonoknak szóló kódot rajzolja. Telepítse a bővítményt a kiadás zip-fájljából, amely tartalmazza.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/admin/token_dialog.py" />
+            <source>This desk was connected with what the token takes the place of, and is cut off. Enter the token in the Fleet panel under Access, then press Connect.</source>
+            <translation>Ez a kezelőpult azzal volt kapcsolódva, aminek a token a helyébe lép, ezért lekapcsolódik. Adja meg a tokent a Flotta panelen a Hozzáférés alatt, majd nyomja meg a Kapcsolódás gombot.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/admin/token_dialog.py" />
+            <source>Token of {operator}</source>
+            <translation>{operator} tokenje</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/admin/token_dialog.py" />
+            <source>holds</source>
+            <translation>érvényes</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/admin/token_dialog.py" />
+            <source>{operator}, {role}: the token {until}. It is shown now and never again, and kept nowhere: hand it over on a way that others do not read. If it gets lost, make a new one.</source>
+            <translation>{operator}, {role}: a token {until}. Most látható és soha többé, és sehol sem őrződik meg: olyan úton adja át, amelyet mások nem olvasnak. Ha elvész, készítsen újat.</translation>
         </message>
         <message>
             <location filename="../../plugin/cone_texts.py" />

@@ -143,9 +143,12 @@ def test_what_lies_about_stays_out(root, tmp_path):
     assert plugin_files(tree) == before
 
 
-def test_websockets_comes_along_as_pure_python_with_its_licence(names):
-    vendor = "fleet_supervisor/plugin/vendor/websockets/"
-    assert {f"{vendor}{name}" for name in ("__init__.py", "asyncio/client.py", "LICENSE")} <= set(names)
+@pytest.mark.parametrize(
+    ("package", "module"), [("websockets", "asyncio/client.py"), ("segno", "encoder.py")]
+)
+def test_a_package_comes_along_as_pure_python_with_its_licence(names, package, module):
+    vendor = f"fleet_supervisor/plugin/vendor/{package}/"
+    assert {f"{vendor}{name}" for name in ("__init__.py", module, "LICENSE")} <= set(names)
     assert {PurePosixPath(name).suffix for name in names if name.startswith(vendor)} <= {".py", ".typed", ""}
 
 

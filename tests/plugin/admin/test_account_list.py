@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from fleet_supervisor.plugin.admin.accounts_dialog import day_and_time
+from fleet_supervisor.plugin.admin.token_dialog import day_and_time
 from fleet_supervisor.robot_bridge.core.messages import Role, TokenState
 from qgis.PyQt.QtWidgets import QAction, QToolButton
 

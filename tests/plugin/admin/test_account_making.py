@@ -4,14 +4,19 @@ from __future__ import annotations
 
 import threading
 
-from fleet_supervisor.plugin.admin.accounts_dialog import day_and_time
+import numpy as np
+import zxingcpp
+from fleet_supervisor.plugin.admin.token_dialog import TokenDialog, day_and_time
+from fleet_supervisor.robot_bridge.core.messages import NewToken, Role
 from qgis.core import QgsApplication, QgsSettings
 from qgis.PyQt import sip
 from qgis.PyQt.QtCore import Qt
+from qgis.PyQt.QtGui import QImage
 from qgis.PyQt.QtTest import QTest
 from qgis.PyQt.QtWidgets import QApplication, QComboBox, QLabel, QLineEdit, QPushButton
 
 from tests.plugin.admin.accounts_desk import MADE_AT, confirm, let_deleted_go, make_account
+from tests.plugin.admin.conftest import secret
 
 
 def test_an_account_is_made_by_keys_alone_and_its_token_shown(at_accounts, gateway, wait):
@@ -125,3 +130,27 @@ def everything_said() -> str:
     """What any widget shows."""
     texts = [part.text() for part in QApplication.allWidgets() if isinstance(part, (QLabel, QLineEdit))]
     return "\n".join(texts)
+
+
+def test_a_phone_reads_from_the_code_what_opens_the_field_page(plugin, iface, wait):
+    made, gateway = NewToken("Ada", Role.OPERATOR, secret(7), MADE_AT), "wss://fleet.example.org:8765/desk"
+    dialog = TokenDialog(made, gateway, ends_link=False, parent=iface.mainWindow())
+    dialog.show()
+    code = dialog.findChild(QLabel, "fleet_token_code")
+    wait(lambda: dialog.rect().contains(code.geometry()))
+    picture = dialog.grab().toImage().convertToFormat(QImage.Format.Format_Grayscale8)
+    rows = np.frombuffer(picture.bits().asstring(picture.sizeInBytes()), np.uint8)
+    rows = rows.reshape(picture.height(), picture.bytesPerLine())[:, : picture.width()]
+    (found,) = zxingcpp.read_barcodes(np.ascontiguousarray(rows))
+    assert found.text == f"https://fleet.example.org:8765/field#token={secret(7)}"
+    QTest.keyClick(dialog, Qt.Key.Key_Escape)
+    assert code.pixmap() is None or code.pixmap().isNull()
+    let_deleted_go()
+
+
+def test_a_code_that_no_phone_could_use_is_not_shown(at_accounts):
+    make_account(at_accounts, "Cleo")
+    shown = at_accounts.token()
+    assert not shown.findChild(QLabel, "fleet_token_code").isVisible()
+    words = " ".join(label.text() for label in shown.findChildren(QLabel))
+    assert "not by 127.0.0.1" in words

@@ -17,6 +17,7 @@ PLUGIN_FILES = (
     "__init__.py",
     "plugin/__init__.py",
     "plugin/ui/errors.py",
+    "plugin/vendored.py",
     "plugin/gateway_client/websocket_library.py",
 )
 

@@ -12,12 +12,12 @@ from fleet_supervisor.plugin.admin.accounts_dialog import (
     ChangeRoleDialog,
     NewAccountDialog,
     RenewTokenDialog,
-    TokenDialog,
     confirm_revocation,
 )
 from fleet_supervisor.plugin.admin.recordings import RecordingsDialog
 from fleet_supervisor.plugin.admin.robot_removal import RemovalDialog
 from fleet_supervisor.plugin.admin.site_choice import SiteChoiceDialog, confirm_site_choice
+from fleet_supervisor.plugin.admin.token_dialog import TokenDialog
 from fleet_supervisor.plugin.control.pending_command import CONE, PendingCommand
 from fleet_supervisor.plugin.help import START, HelpWindow
 from fleet_supervisor.plugin.layers.role_editor.roles_dialog import RolesDialog
@@ -88,7 +88,8 @@ def _of_accounts(window, desk_window) -> Dialogs:
     yield "new_token", RenewTokenDialog(own, window)
     yield "revocation", confirm_revocation(own, window, lambda: None)
     made = NewToken("Ada", Role.SUPERVISOR, f"fleet_op_{0:043d}", time.time())
-    yield "token", TokenDialog(made, ends_link=True, parent=window)
+    yield "token", TokenDialog(made, "wss://gateway:8765/desk", ends_link=True, parent=window)
+    yield "token_here", TokenDialog(made, "ws://127.0.0.1:8765/desk", ends_link=True, parent=window)
 
 
 def _of_sites(window, desk_window) -> Dialogs:

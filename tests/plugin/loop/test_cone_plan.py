@@ -38,6 +38,8 @@ ROBOT_WIDTH = 0.5
 CONE_BASE = 0.285
 CLEAR = (ROBOT_WIDTH + CONE_BASE) / 2
 """Metres from its middle to a cone's, in which a robot does not touch it."""
+JOINED = 1.0
+"""Metres between two stored positions up to which the robot is taken to have driven straight."""
 STARTS = {"r1": (24.0, 2.0, 0.0), "r2": (62.0, 2.0, 0.0), "r3": (104.0, 2.0, math.pi)}
 
 
@@ -192,9 +194,13 @@ def stored_tracks(database, operator):
 
 
 def least_distance_to(track, x, y):
-    """Return how near the track, joined by straight lines, comes to a place."""
-    start, step = track[:-1, 1:], np.diff(track[:, 1:], axis=0)
-    length = np.maximum((step**2).sum(axis=1), 1e-12)
+    """Return how near the track comes to a place; positions that are near to one another are joined by lines.
+
+    Of a busy machine few are stored, and the line between two that are far apart cuts the bends of a detour.
+    """
+    step = np.diff(track[:, 1:], axis=0)
+    step[np.hypot(*step.T) > JOINED] = 0.0
+    start, length = track[:-1, 1:], np.maximum((step**2).sum(axis=1), 1e-12)
     part = np.clip(((np.array([x, y]) - start) * step).sum(axis=1) / length, 0.0, 1.0)
     return float(np.hypot(*(start + part[:, None] * step - (x, y)).T).min())
 
