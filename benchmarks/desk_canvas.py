@@ -271,7 +271,7 @@ def open_desk(stage: Stage, clock: Any = None) -> tuple[Any, Any, Any]:
 
 def site_of(stage: Stage) -> Any:
     """Return the site that a gateway would tell of: what the canvas shows."""
-    from fleet_supervisor.robot_bridge.core.messages import SiteReport
+    from fleet_supervisor.robot_bridge.core.messages.administration import SiteReport
 
     x, y, width, height = stage.area
     bounds = (x, y, x + width, y + height)

@@ -7,7 +7,7 @@ from typing import Any
 import msgspec
 import numpy as np
 
-from robot_bridge.core.messages import PositionColumns
+from robot_bridge.core.messages.positions import PositionColumns
 from robot_bridge.core.position_frame import METHOD, packed_frame
 
 SPEED = 1.5

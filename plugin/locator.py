@@ -11,7 +11,7 @@ from qgis.gui import QgisInterface, QgsLocatorWidget
 from qgis.PyQt.QtGui import QIcon
 from qgis.PyQt.QtWidgets import QLineEdit
 
-from ..robot_bridge.core.messages import RobotState
+from ..robot_bridge.core.messages.safety import RobotState
 from .expressions.robot_snapshot import RobotSnapshot, SnapshotHolder
 from .gateway_client.robot_states import ROBOT_STATES
 from .gateway_client.robot_table import STATES

@@ -21,7 +21,7 @@ from qgis.PyQt.QtWidgets import (
     QWidget,
 )
 
-from ...robot_bridge.core.messages import PlaybackReport, SetPlayback
+from ...robot_bridge.core.messages.administration import PlaybackReport, SetPlayback
 from ..control.fleet_controller import FleetController
 from ..gateway_client.connection_status import ConnectionPhase
 from ..help import RECORDINGS, show_help

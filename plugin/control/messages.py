@@ -12,16 +12,10 @@ from qgis.PyQt.QtCore import QObject, QSize, Qt, pyqtSignal
 from qgis.PyQt.QtGui import QResizeEvent
 from qgis.PyQt.QtWidgets import QLabel, QSizePolicy
 
-from ...robot_bridge.core.messages import (
-    Abort,
-    CommandReport,
-    CommandState,
-    LinkReport,
-    Links,
-    Suspension,
-    Suspensions,
-    TaskState,
-)
+from ...robot_bridge.core.messages.administration import LinkReport, Links, Suspension, Suspensions
+from ...robot_bridge.core.messages.commands import CommandReport, CommandState
+from ...robot_bridge.core.messages.queues import TaskState
+from ...robot_bridge.core.messages.robots import Abort
 from ..gateway_client.fleet_state import FleetState
 from ..gateway_client.report_caches import is_pending
 from ..ui.language import time_of_day, tr

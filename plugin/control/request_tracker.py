@@ -9,15 +9,11 @@ from typing import Any
 from qgis.PyQt.QtCore import QObject, pyqtSignal
 
 from ...robot_bridge.core.clock import Clock
-from ...robot_bridge.core.messages import (
-    Abort,
-    AbortAll,
-    ClearEmergencyStop,
-    EmergencyStop,
-    ResolveConflict,
-    Send,
-    to_json,
-)
+from ...robot_bridge.core.messages.commands import AbortAll, Send
+from ...robot_bridge.core.messages.json_values import to_json
+from ...robot_bridge.core.messages.roads import ResolveConflict
+from ...robot_bridge.core.messages.robots import Abort
+from ...robot_bridge.core.messages.safety import ClearEmergencyStop, EmergencyStop
 from ..gateway_client.connection import ConnectionThread
 from ..gateway_client.connection_status import ConnectionPhase
 from ..gateway_client.fleet_state import FleetState, OperatorRequest, RequestResult

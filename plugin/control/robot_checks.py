@@ -8,7 +8,10 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from ...robot_bridge.core.messages import Ability, CommandReport, RobotState, SetPath, SetPosEnd, TaskState
+from ...robot_bridge.core.messages.commands import CommandReport
+from ...robot_bridge.core.messages.queues import TaskState
+from ...robot_bridge.core.messages.robots import SetPath, SetPosEnd
+from ...robot_bridge.core.messages.safety import Ability, RobotState
 from ..gateway_client.command_cache import CommandCache, command_in_words
 from ..gateway_client.report_caches import QueueCache
 from ..gateway_client.robot_states import ROBOT_STATES, RobotView

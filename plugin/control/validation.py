@@ -9,7 +9,7 @@ from typing import Any, TypeVar
 from qgis.core import QgsProject, QgsVectorLayer, QgsWkbTypes
 from qgis.PyQt.QtCore import QObject, QTimer, pyqtSignal
 
-from ...robot_bridge.core.messages import SiteReport
+from ...robot_bridge.core.messages.administration import SiteReport
 from ..gateway_client.fleet_state import FleetState
 from ..layers.layer_source import LayerWatch
 from ..layers.roles import layers_with_role

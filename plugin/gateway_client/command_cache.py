@@ -11,14 +11,9 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from ...robot_bridge.core.messages import (
-    Abort,
-    CommandReport,
-    CommandState,
-    SetPath,
-    SetPosEnd,
-    command_report,
-)
+from ...robot_bridge.core.messages.commands import CommandReport, CommandState
+from ...robot_bridge.core.messages.json_values import command_report
+from ...robot_bridge.core.messages.robots import Abort, SetPath, SetPosEnd
 from ..ui.language import tr
 from .robot_states import COMMAND_STATES
 

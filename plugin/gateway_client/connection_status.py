@@ -11,7 +11,7 @@ from types import ModuleType
 from typing import Any
 from urllib.parse import urlsplit
 
-from ...robot_bridge.core.messages import Role
+from ...robot_bridge.core.messages.operator_requests import Role
 from ..ui.errors import AddressError, GatewayLinkError
 from ..ui.language import tr
 

@@ -10,22 +10,13 @@ from typing import Any, Protocol
 from qgis.PyQt.QtCore import QObject, QTimer, pyqtSignal
 
 from ...robot_bridge.core.clock import Clock
-from ...robot_bridge.core.messages import (
-    Closures,
-    CommandReport,
-    Conflicts,
-    EmergencyReport,
-    Geofence,
-    Links,
-    Nearness,
-    ObservationReport,
-    PlacementReport,
-    QueueReport,
-    ReplannedRobot,
-    RobotReport,
-    SiteReport,
-    Suspensions,
-)
+from ...robot_bridge.core.messages.administration import Links, SiteReport, Suspensions
+from ...robot_bridge.core.messages.commands import CommandReport
+from ...robot_bridge.core.messages.positions import RobotReport
+from ...robot_bridge.core.messages.queues import QueueReport
+from ...robot_bridge.core.messages.records import ObservationReport, PlacementReport
+from ...robot_bridge.core.messages.roads import Closures, Conflicts, ReplannedRobot
+from ...robot_bridge.core.messages.safety import EmergencyReport, Geofence, Nearness
 from ..ui.language import tr
 from ..ui.scheduling import PULL_EVERY_MS
 from .command_cache import CommandCache

@@ -9,27 +9,14 @@ from typing import Any
 
 from ...robot_bridge.core.clock import Clock
 from ...robot_bridge.core.json_decoder import DOCUMENT, check_bounds
-from ...robot_bridge.core.messages import (
-    LONGEST_OPERATOR,
-    PROTOCOL_VERSION,
-    ClearEmergencyStop,
-    EmergencyStop,
-    GetClosures,
-    GetCommands,
-    GetPlans,
-    GetQueue,
-    Hello,
-    PositionForm,
-    SiteReport,
-    Subscribe,
+from ...robot_bridge.core.messages.administration import PROTOCOL_VERSION, Hello, SiteReport
+from ...robot_bridge.core.messages.commands import GetCommands
+from ...robot_bridge.core.messages.json_values import (
     closures_report,
     conflicts_report,
     emergency_report,
-    geofence_report,
     links_report,
-    nearness_report,
     observation_report,
-    one_line,
     placement_report,
     queue_report,
     replanned_robot,
@@ -37,6 +24,17 @@ from ...robot_bridge.core.messages import (
     suspensions_report,
     to_json,
 )
+from ...robot_bridge.core.messages.plans import GetPlans
+from ...robot_bridge.core.messages.positions import PositionForm, Subscribe
+from ...robot_bridge.core.messages.queues import GetQueue
+from ...robot_bridge.core.messages.roads import GetClosures
+from ...robot_bridge.core.messages.safety import (
+    ClearEmergencyStop,
+    EmergencyStop,
+    geofence_report,
+    nearness_report,
+)
+from ...robot_bridge.core.messages.validation import LONGEST_OPERATOR, one_line
 from ..ui.errors import GatewayLinkError
 from ..ui.language import tr
 from .command_cache import command_in, commands_in

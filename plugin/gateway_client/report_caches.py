@@ -9,22 +9,16 @@ from typing import Any
 from ...robot_bridge.core.assignment.plan import ConePlan, plan_of_document
 from ...robot_bridge.core.clock import Clock
 from ...robot_bridge.core.errors import PlanFileError
-from ...robot_bridge.core.messages import (
-    FenceAlarm,
-    Geofence,
-    Nearness,
-    NearnessAlarm,
-    ObservationReport,
-    ObservationState,
-    PlacementReport,
-    PlanReport,
-    PlanState,
-    QueueReport,
+from ...robot_bridge.core.messages.json_values import (
     observation_report,
     placement_report,
     plan_report,
     queue_report,
 )
+from ...robot_bridge.core.messages.plans import PlanReport, PlanState
+from ...robot_bridge.core.messages.queues import QueueReport
+from ...robot_bridge.core.messages.records import ObservationReport, ObservationState, PlacementReport
+from ...robot_bridge.core.messages.safety import FenceAlarm, Geofence, Nearness, NearnessAlarm
 from ..ui.language import tr
 
 

@@ -10,17 +10,11 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from ...robot_bridge.core.messages import (
-    CommandState,
-    QueueReport,
-    QueueState,
-    RobotReport,
-    RobotState,
-    TaskKind,
-    TaskReport,
-    TaskState,
-    robot_report,
-)
+from ...robot_bridge.core.messages.commands import CommandState
+from ...robot_bridge.core.messages.json_values import robot_report
+from ...robot_bridge.core.messages.positions import RobotReport
+from ...robot_bridge.core.messages.queues import QueueReport, QueueState, TaskKind, TaskReport, TaskState
+from ...robot_bridge.core.messages.safety import RobotState
 from ..ui.language import time_of_day, tr, tr_count
 from .robot_table import STATES, RemovedRobots, RobotTable
 

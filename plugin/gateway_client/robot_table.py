@@ -8,15 +8,15 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from ...robot_bridge.core.messages import (
+from ...robot_bridge.core.messages.json_values import robot_report
+from ...robot_bridge.core.messages.positions import (
     POSITION_ALWAYS,
     POSITION_FLAGS,
     POSITION_NUMBERS,
     POSITION_TEXTS,
     RobotReport,
-    RobotState,
-    robot_report,
 )
+from ...robot_bridge.core.messages.safety import RobotState
 from ...robot_bridge.core.position_frame import split_frame
 
 # Ten thousand robots ten times a second are too many to make an object of each. A snapshot becomes columns on

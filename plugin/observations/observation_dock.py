@@ -21,7 +21,7 @@ from qgis.PyQt.QtWidgets import (
     QWidget,
 )
 
-from ...robot_bridge.core.messages import ObservationReport, ReviewObservation
+from ...robot_bridge.core.messages.records import ObservationReport, ReviewObservation
 from ..control.fleet_controller import FleetController
 from ..control.messages import observation_topic
 from ..gateway_client.report_caches import is_pending

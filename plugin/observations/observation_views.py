@@ -22,13 +22,13 @@ from qgis.core import (
 from qgis.PyQt.QtCore import QAbstractListModel, QModelIndex, QObject, QSize, Qt, QTemporaryDir, pyqtSignal
 from qgis.PyQt.QtGui import QColor, QIcon, QPixmap
 
-from ...robot_bridge.core.messages import (
+from ...robot_bridge.core.messages.administration import SiteReport
+from ...robot_bridge.core.messages.records import (
     GetImage,
     GetObservations,
     ObservationReport,
     ObservationState,
     ReviewObservation,
-    SiteReport,
 )
 from ..control.fleet_controller import FleetController
 from ..gateway_client.connection_status import ConnectionPhase

@@ -16,7 +16,7 @@ from qgis.PyQt.QtWidgets import (
     QWidget,
 )
 
-from ...robot_bridge.core.messages import CommandReport, GetCommands
+from ...robot_bridge.core.messages.commands import CommandReport, GetCommands
 from ..control.fleet_controller import FleetController
 from ..control.messages import file_topic
 from ..control.request_tracker import SLOW_AFTER

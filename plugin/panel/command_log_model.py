@@ -11,7 +11,8 @@ from itertools import count, groupby
 from qgis.PyQt.QtCore import QAbstractItemModel, QModelIndex, QObject, Qt
 from qgis.PyQt.QtGui import QFont
 
-from ...robot_bridge.core.messages import Abort, CommandReport, CommandState, CommandStep
+from ...robot_bridge.core.messages.commands import CommandReport, CommandState, CommandStep
+from ...robot_bridge.core.messages.robots import Abort
 from ..gateway_client.command_cache import UNDER_WAY, command_in_words, place_of, requested_at, state_word
 from ..gateway_client.robot_states import COMMAND_STATES
 from ..ui.glyphs import COMMAND_COLOURS, for_letters

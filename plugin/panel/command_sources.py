@@ -28,7 +28,7 @@ from qgis.PyQt.QtWidgets import (
     QWidget,
 )
 
-from ...robot_bridge.core.messages import LONGEST_PATH, LONGEST_QUEUE
+from ...robot_bridge.core.messages.queues import LONGEST_PATH, LONGEST_QUEUE
 from ..control.coordinates import datum_transform, read_site_place
 from ..control.fleet_controller import FleetController
 from ..control.pending_command import CONE, ROUTE, TARGETS, PendingCommand, Point

@@ -22,7 +22,7 @@ from qgis.PyQt.QtWidgets import (
     QWidget,
 )
 
-from ...robot_bridge.core.messages import SiteReport
+from ...robot_bridge.core.messages.administration import SiteReport
 from ..gateway_client.connection_status import (
     DEFAULT_URL,
     ConnectionPhase,

@@ -6,7 +6,7 @@ from qgis.core import QgsApplication
 from qgis.PyQt.QtCore import QObject, Qt, pyqtSignal
 from qgis.PyQt.QtWidgets import QAction, QApplication, QFrame, QHBoxLayout, QToolButton, QWidget
 
-from ...robot_bridge.core.messages import EmergencyReport
+from ...robot_bridge.core.messages.safety import EmergencyReport
 from ..control.fleet_controller import FleetController
 from ..gateway_client.connection_status import ConnectionPhase
 from ..ui.dialogs import QuestionDialog

@@ -10,7 +10,7 @@ from qgis.core import Qgis, QgsMessageLog, QgsPointXY
 from qgis.PyQt.QtCore import QObject, QPointF, Qt, QTimer, pyqtSignal
 from qgis.PyQt.QtWidgets import QAction, QHBoxLayout, QSizePolicy, QToolButton, QVBoxLayout, QWidget
 
-from ...robot_bridge.core.messages import CommandReport, CommandState, SendMap
+from ...robot_bridge.core.messages.commands import CommandReport, CommandState, SendMap
 from ..control.fleet_controller import FleetController
 from ..control.messages import TITLE
 from ..control.pending_command import ROUTE, TARGETS, PendingCommand, in_brief, queue_tasks, turned_round

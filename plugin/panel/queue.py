@@ -20,7 +20,7 @@ from qgis.PyQt.QtWidgets import (
     QWidget,
 )
 
-from ...robot_bridge.core.messages import (
+from ...robot_bridge.core.messages.queues import (
     AddTasks,
     MakeCurrent,
     MoveTask,

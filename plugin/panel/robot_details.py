@@ -23,14 +23,10 @@ from qgis.PyQt.QtWidgets import (
     QWidget,
 )
 
-from ...robot_bridge.core.messages import (
-    CommandReport,
-    GetCommands,
-    GetImage,
-    GetObservations,
-    QueueReport,
-    SendImage,
-)
+from ...robot_bridge.core.messages.commands import CommandReport, GetCommands
+from ...robot_bridge.core.messages.queues import QueueReport
+from ...robot_bridge.core.messages.records import GetImage, GetObservations
+from ...robot_bridge.core.messages.robots import SendImage
 from ..control.fleet_controller import FleetController
 from ..control.request_tracker import RequestTracker
 from ..gateway_client.command_cache import PathDeviations, command_in_words, requested_at, state_word

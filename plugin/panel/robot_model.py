@@ -11,14 +11,10 @@ import numpy as np
 import numpy.typing as npt
 from qgis.PyQt.QtCore import QAbstractTableModel, QModelIndex, QObject, Qt
 
-from ...robot_bridge.core.messages import (
-    CommandReport,
-    CommandState,
-    QueueState,
-    RobotState,
-    SetPath,
-    SetPosEnd,
-)
+from ...robot_bridge.core.messages.commands import CommandReport, CommandState
+from ...robot_bridge.core.messages.queues import QueueState
+from ...robot_bridge.core.messages.robots import SetPath, SetPosEnd
+from ...robot_bridge.core.messages.safety import RobotState
 from ..gateway_client.command_cache import CommandCache, PathDeviations, command_in_words
 from ..gateway_client.report_caches import QueueCache
 from ..gateway_client.robot_states import COMMAND_STATES, ROBOT_STATES, RobotStates, longest_word

@@ -18,7 +18,7 @@ from qgis.PyQt.QtWidgets import (
     QWidget,
 )
 
-from ...robot_bridge.core.messages import PlacementReport
+from ...robot_bridge.core.messages.records import PlacementReport
 from ..control.fleet_controller import FleetController
 from ..control.messages import file_topic
 from ..layers.live_layers import MARK, live_layers

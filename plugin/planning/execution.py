@@ -10,25 +10,23 @@ from typing import Any
 from qgis.PyQt.QtCore import QObject, pyqtSignal
 
 from ...robot_bridge.core.assignment.plan import ConePlan, document_of
-from ...robot_bridge.core.messages import (
+from ...robot_bridge.core.messages.plans import (
     ClearPlan,
     ConfirmReplan,
     DiscardReplan,
-    GetPlacements,
     GetPlans,
-    GetQueue,
-    MessageError,
     PausePlan,
     PlanCone,
     PlanProblemKind,
     PlanReport,
     PlanState,
-    QueueState,
     Replan,
     ResumePlan,
     SubmitPlan,
-    TaskState,
 )
+from ...robot_bridge.core.messages.queues import GetQueue, QueueState, TaskState
+from ...robot_bridge.core.messages.records import GetPlacements
+from ...robot_bridge.core.messages.validation import MessageError
 from ..control.fleet_controller import STOPPED_BY, FleetController
 from ..control.messages import PLAN_SENT, Level, Topic, plan_topic
 from ..control.pending_command import in_brief

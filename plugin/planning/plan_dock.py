@@ -21,7 +21,8 @@ from qgis.PyQt.QtWidgets import (
     QWidget,
 )
 
-from ...robot_bridge.core.messages import CollectLayout, GetPlacements, PlanProblemKind, PlanReport, PlanState
+from ...robot_bridge.core.messages.plans import PlanProblemKind, PlanReport, PlanState
+from ...robot_bridge.core.messages.records import CollectLayout, GetPlacements
 from ..control.fleet_controller import FleetController
 from ..control.messages import PLAN_REQUEST, Level
 from ..control.pending_command import in_brief

@@ -27,14 +27,10 @@ from qgis.PyQt.QtWidgets import QAbstractItemView, QMenu, QTreeWidget, QTreeWidg
 from ...robot_bridge.core.assignment.job import STRAIGHT, PlanRobot
 from ...robot_bridge.core.assignment.plan import ConePlan, PlanStop, RobotPlan
 from ...robot_bridge.core.assignment.plan_changes import trips_of
-from ...robot_bridge.core.messages import (
-    PlacementReport,
-    PlanReport,
-    QueueReport,
-    QueueState,
-    RobotState,
-    TaskState,
-)
+from ...robot_bridge.core.messages.plans import PlanReport
+from ...robot_bridge.core.messages.queues import QueueReport, QueueState, TaskState
+from ...robot_bridge.core.messages.records import PlacementReport
+from ...robot_bridge.core.messages.safety import RobotState
 from ...robot_bridge.core.sites.frame import SiteFrame
 from ..cone_texts import RESULT_QUALITY
 from ..control.fleet_controller import FleetController

@@ -11,15 +11,10 @@ import numpy.typing as npt
 from qgis.core import QgsApplication, QgsTask
 from qgis.PyQt.QtCore import QObject, pyqtSignal
 
-from ...robot_bridge.core.messages import (
-    Abort,
-    CommandReport,
-    CommandState,
-    CommandStep,
-    GetCommands,
-    GetTrajectory,
-    RobotState,
-)
+from ...robot_bridge.core.messages.commands import CommandReport, CommandState, CommandStep, GetCommands
+from ...robot_bridge.core.messages.records import GetTrajectory
+from ...robot_bridge.core.messages.robots import Abort
+from ...robot_bridge.core.messages.safety import RobotState
 from ..control.request_tracker import RequestTracker
 from ..gateway_client.command_cache import UNDER_WAY, CommandCache, command_in_words, requested_at, state_word
 from ..gateway_client.fleet_state import RequestResult

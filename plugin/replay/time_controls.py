@@ -13,7 +13,7 @@ from qgis.PyQt.QtCore import QDateTime, QEvent, QObject, QPointF, QRectF, QSize,
 from qgis.PyQt.QtGui import QColor, QKeyEvent, QMouseEvent, QPainter, QPaintEvent, QPen, QPolygonF
 from qgis.PyQt.QtWidgets import QCheckBox, QComboBox, QDateTimeEdit, QGridLayout, QToolTip, QWidget
 
-from ...robot_bridge.core.messages import CommandState
+from ...robot_bridge.core.messages.commands import CommandState
 from ..map.overlay.primitives import flat, lines
 from ..ui.glyphs import painting
 from ..ui.language import date_and_time, tr

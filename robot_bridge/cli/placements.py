@@ -16,8 +16,7 @@ import typer
 
 from ..core.errors import BridgeError, counted, listed_names
 from ..core.files import replacement, write_geopackage_layer
-from ..core.messages import GetPlacements, PlacementReport
-from ..core.messages.records import MOST_PLACEMENTS
+from ..core.messages.records import MOST_PLACEMENTS, GetPlacements, PlacementReport
 from ..core.sites.frame import SiteFrame, projections
 from ..core.sites.settings import SETTINGS_FILE, read_settings
 from ..gateway.storage.database import Database

@@ -21,7 +21,8 @@ from websockets.asyncio.client import ClientConnection, connect
 
 from ..core.errors import BridgeError
 from ..core.json_decoder import decode_json
-from ..core.messages import Answer, ObservationState, OpAck, Request, SetMap, SetObject, Stopped
+from ..core.messages.records import ObservationState
+from ..core.messages.robots import Answer, OpAck, Request, SetMap, SetObject, Stopped
 from ..core.robotmap.model import RobotMap
 from ..core.sites.settings import SETTINGS_FILE
 from ..gateway.app import GatewaySettings, Signals

@@ -11,7 +11,8 @@ from typing import Annotated
 import typer
 
 from ..core.errors import BridgeError, counted
-from ..core.messages import SendPos, check_robot_name
+from ..core.messages.robots import SendPos
+from ..core.messages.validation import check_robot_name
 from ..core.sites.settings import SETTINGS_FILE, read_settings
 from ..gateway.storage.database import Database
 from ..gateway.storage.repositories.trajectories import Fix, TrajectoryQuery

@@ -8,7 +8,7 @@ import logging
 from pathlib import Path
 
 from ..core.errors import BridgeError, RefusedError, SiteError
-from ..core.messages import ChooseSite, GetSites, SiteOffer, SiteReport, Sites
+from ..core.messages.administration import ChooseSite, GetSites, SiteOffer, SiteReport, Sites
 from ..core.sites.geopackage import GEOPACKAGE_FILE
 from ..core.sites.settings import SETTINGS_FILE, read_settings
 from ..core.sites.site import Site, frame_mismatch, read_site, sibling_sites

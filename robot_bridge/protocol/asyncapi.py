@@ -7,18 +7,7 @@ from collections.abc import Mapping, Sequence
 from functools import cache
 from typing import Any
 
-from ..core.messages import (
-    ANSWERS,
-    DESK_REQUESTS,
-    PROTOCOL_VERSION,
-    REQUESTS,
-    ROBOT_NAME,
-    OpAck,
-    SendGPS,
-    SendPos,
-    Start,
-)
-from ..core.messages.administration import Playback, PlaybackReport
+from ..core.messages.administration import PROTOCOL_VERSION, Playback, PlaybackReport
 from ..core.messages.links import (
     AbortOfAll,
     GetAreas,
@@ -30,7 +19,9 @@ from ..core.messages.links import (
     Released,
     SiteAreas,
 )
-from ..core.messages.operator_requests import Done
+from ..core.messages.operator_requests import DESK_REQUESTS, Done
+from ..core.messages.robots import ANSWERS, REQUESTS, OpAck, SendGPS, SendPos, Start
+from ..core.messages.validation import ROBOT_NAME
 from .json_schemas import HEADS, JSON_SCHEMA, NOTIFICATIONS, Schema, definitions, plain_text, schema_of
 
 # --- The pieces of an AsyncAPI document: channels, JSON-RPC frames as messages, and operations ---

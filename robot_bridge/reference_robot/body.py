@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..core.geometry import Polyline
-from ..core.messages import Observed, SendImage, SetObject
+from ..core.messages.robots import Observed, SendImage, SetObject
 from ..core.robotmap.model import PART_OF, RobotMap
 
 # --- A simulated body with differential drive: limited speed, turn rate and accelerations ---

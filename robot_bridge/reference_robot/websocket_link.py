@@ -12,7 +12,9 @@ from websockets.asyncio.client import ClientConnection, connect
 from websockets.exceptions import ConnectionClosed, InvalidHandshake, InvalidStatus, InvalidURI
 
 from ..core.errors import BridgeError
-from ..core.messages import MessageError, Observed, OpAck, Ready, Request, to_json
+from ..core.messages.json_values import to_json
+from ..core.messages.robots import Observed, OpAck, Ready, Request
+from ..core.messages.validation import MessageError
 from ..protocol import jsonrpc
 from ..protocol.codec import decode_answer, params_of
 from ..protocol.credentials import ClientCredentials

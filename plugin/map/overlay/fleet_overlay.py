@@ -14,7 +14,7 @@ from qgis.PyQt.QtGui import QFont, QPainter
 from qgis.PyQt.QtWidgets import QLabel, QStyleOptionGraphicsItem, QToolTip, QWidget
 
 from ....robot_bridge.core.geometry import heading_of
-from ....robot_bridge.core.messages import CommandReport
+from ....robot_bridge.core.messages.commands import CommandReport
 from ....robot_bridge.core.sites.frame import SiteFrame
 from ...gateway_client.command_cache import command_in_words
 from ...gateway_client.robot_states import COMMAND_STATES, ROBOT_STATES, RobotView

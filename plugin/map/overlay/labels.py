@@ -10,7 +10,7 @@ import numpy.typing as npt
 from qgis.PyQt.QtCore import QPointF, Qt
 from qgis.PyQt.QtGui import QColor, QFont, QFontMetricsF, QPainter, QPixmap, QStaticText
 
-from ....robot_bridge.core.messages import RobotState
+from ....robot_bridge.core.messages.safety import RobotState
 from ...gateway_client.robot_states import ROBOT_STATES, RobotArrays
 from ...gateway_client.robot_table import STATES
 from ...ui.glyphs import PAPER, painting

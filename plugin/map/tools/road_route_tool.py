@@ -12,7 +12,7 @@ from qgis.PyQt.QtCore import QEvent, QObject, QPoint, Qt
 from qgis.PyQt.QtGui import QColor, QCursor
 from qgis.PyQt.QtWidgets import QToolTip
 
-from ....robot_bridge.core.messages import RouteReport
+from ....robot_bridge.core.messages.roads import RouteReport
 from ...control.fleet_controller import FleetController
 from ...control.pending_command import ROUTE, PendingCommand, Point
 from ...control.roads import SHORTEST, RoutePreferences

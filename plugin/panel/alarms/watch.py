@@ -11,7 +11,7 @@ from qgis.core import Qgis, QgsApplication, QgsMessageLog
 from qgis.PyQt.QtCore import QObject, pyqtSignal
 
 from ....robot_bridge.core.clock import Clock
-from ....robot_bridge.core.messages import CommandState
+from ....robot_bridge.core.messages.commands import CommandState
 from ....robot_bridge.core.roads.surface_index import NOWHERE
 from ...control.messages import TITLE
 from ...gateway_client.connection_status import ConnectionPhase

@@ -10,21 +10,18 @@ from dataclasses import replace
 
 from ...core.errors import DataRefusedError, RefusedError, StoreError, listed_names
 from ...core.logs import log_and_continue
-from ...core.messages import (
-    COMMANDS,
-    Abort,
+from ...core.messages.commands import (
     AbortAll,
     AbortTask,
     CommandReport,
+    Commands,
     GetCommands,
-    MessageError,
     Send,
-    SetPath,
     SetPositions,
-    check_crs,
-    to_json,
 )
-from ...core.messages.commands import Commands
+from ...core.messages.json_values import to_json
+from ...core.messages.robots import COMMANDS, Abort, SetPath
+from ...core.messages.validation import MessageError, check_crs
 from ...protocol.codec import decode_command
 from ..model.request_handlers import handles
 from ..model.robots import Robots

@@ -13,7 +13,8 @@ from sqlalchemy import Connection
 from ...core.clock import Clock
 from ...core.errors import DataRefusedError, RefusedError, StoreError
 from ...core.logs import log_and_continue
-from ...core.messages import Answer, CommandReport, CommandState, OpAck, SendPos, SetPath
+from ...core.messages.commands import CommandReport, CommandState
+from ...core.messages.robots import Answer, OpAck, SendPos, SetPath
 from ..model.arrival import PathArrival, arrival_judge
 from ..model.command_states import is_open
 from ..model.events import CommandChanged, EventBus, OutboxChanged

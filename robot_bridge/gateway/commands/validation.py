@@ -9,7 +9,9 @@ from typing import Protocol, runtime_checkable
 
 from ...core.errors import RefusedError
 from ...core.geometry import Polyline
-from ...core.messages import Ability, Abort, Command, CommandState, SetPath, SetPosEnd
+from ...core.messages.commands import CommandState
+from ...core.messages.robots import Abort, Command, SetPath, SetPosEnd
+from ...core.messages.safety import Ability
 from ..model.robots import Robots
 from ..site.places import ServedSite, keepout_refusals
 from ..storage.repositories.closures import HoldRow

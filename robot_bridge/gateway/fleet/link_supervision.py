@@ -18,7 +18,6 @@ import msgspec
 
 from ...core.clock import SYSTEM_CLOCK, Clock
 from ...core.errors import RefusedError
-from ...core.messages import to_json
 from ...core.messages.administration import (
     LinkReport,
     Links,
@@ -28,6 +27,7 @@ from ...core.messages.administration import (
     Suspension,
     Suspensions,
 )
+from ...core.messages.json_values import to_json
 from ...core.messages.links import LinkStatus
 from ...core.sites.settings_tables import LinkOptions
 from ..model.events import Listeners

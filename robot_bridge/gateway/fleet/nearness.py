@@ -13,8 +13,9 @@ from typing import NamedTuple
 import numpy as np
 
 from ...core.clock import Clock
-from ...core.messages import RobotState, SendPos, to_json
-from ...core.messages.safety import Nearness, NearnessAlarm
+from ...core.messages.json_values import to_json
+from ...core.messages.robots import SendPos
+from ...core.messages.safety import Nearness, NearnessAlarm, RobotState
 from ..model.events import Listeners
 from ..model.robots import Robot, Robots
 from ..site.places import ServedSite

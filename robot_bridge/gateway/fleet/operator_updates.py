@@ -21,26 +21,28 @@ import numpy.typing as npt
 from ...core.clock import Clock
 from ...core.errors import RefusedError, UncertainError
 from ...core.images import check_size, media_type_of
-from ...core.messages import (
+from ...core.messages.json_values import to_json
+from ...core.messages.positions import (
+    PLACE_COLUMNS,
     POSITION_ALWAYS,
     POSITION_TEXTS,
-    GetImage,
-    GetObservations,
     GetPositions,
-    MessageError,
-    ObservationReport,
-    ObservationState,
-    Observed,
     PositionColumns,
     PositionForm,
-    ReviewObservation,
+    Positions,
     RobotReport,
-    SendImage,
-    SetObject,
-    to_json,
 )
-from ...core.messages.positions import PLACE_COLUMNS, Positions
-from ...core.messages.records import Image, Observations
+from ...core.messages.records import (
+    GetImage,
+    GetObservations,
+    Image,
+    ObservationReport,
+    Observations,
+    ObservationState,
+    ReviewObservation,
+)
+from ...core.messages.robots import Observed, SendImage, SetObject
+from ...core.messages.validation import MessageError
 from ...core.position_frame import METHOD, PLACE_VALUE, POSITION_VALUE, packed_frame
 from ...core.sites.settings import SiteSettings
 from ..model.events import EventBus, ObservationChanged

@@ -9,23 +9,21 @@ from typing import NamedTuple, Protocol
 
 from ...core.errors import RefusedError, StoreError
 from ...core.logs import log_unforeseen
-from ...core.messages import (
+from ...core.messages.commands import CommandState, SendMap
+from ...core.messages.operator_requests import Done
+from ...core.messages.roads import GetSurface, SetSurface
+from ...core.messages.robots import (
     Answer,
-    CommandState,
     GetMap,
     GetPath,
     GetPosIni,
-    GetSurface,
     Question,
-    RobotState,
-    SendMap,
     SetMap,
     SetPath,
     SetPosEnd,
     SetPosIni,
-    SetSurface,
 )
-from ...core.messages.operator_requests import Done
+from ...core.messages.safety import RobotState
 from ...core.roads.centrelines import Surface
 from ...core.robotmap.model import Border, EncodedMap
 from ...protocol.codec import decode_answer

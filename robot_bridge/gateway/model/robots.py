@@ -7,17 +7,10 @@ from dataclasses import dataclass, field, replace
 from typing import NamedTuple, TypeVar
 
 from ...core.errors import NotReadyError, OtherRunError, RefusedError
-from ...core.messages import (
-    Ability,
-    Command,
-    PathDeclaration,
-    RobotReport,
-    RobotState,
-    SendPos,
-    SetPath,
-    SetPosEnd,
-    check_robot_name,
-)
+from ...core.messages.positions import RobotReport
+from ...core.messages.robots import Command, SendPos, SetPath, SetPosEnd
+from ...core.messages.safety import Ability, PathDeclaration, RobotState
+from ...core.messages.validation import check_robot_name
 from .arrival import standing
 from .clocks import ClockStep, PoseOrder
 from .events import EventBus, RobotReturned

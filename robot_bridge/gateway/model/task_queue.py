@@ -8,8 +8,8 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 from ...core.errors import RefusedError
-from ...core.messages import QueueReport, QueueState, QueueTask, RobotState, TaskReport, TaskState
-from ...core.messages.queues import LONGEST_QUEUE
+from ...core.messages.queues import LONGEST_QUEUE, QueueReport, QueueState, QueueTask, TaskReport, TaskState
+from ...core.messages.safety import RobotState
 
 # --- A robot's queue as the gateway holds it, and the reports that operators are told of it ---
 

@@ -25,17 +25,16 @@ from ...core.assignment.progress import (
 )
 from ...core.assignment.solver import Objective
 from ...core.errors import AssignmentCancelledError, RefusedError
-from ...core.messages import (
-    ClosureReport,
+from ...core.messages.plans import (
     PlanProblemKind,
     PlanProblemReport,
     PlanReport,
     PlanState,
     PlanStopReport,
-    QueueTask,
     SubmitPlan,
-    TaskState,
 )
+from ...core.messages.queues import QueueTask, TaskState
+from ...core.messages.roads import ClosureReport
 from ..traffic.road_planning import RoadPlanner
 from ..traffic.site_roads import ClosedRoads
 

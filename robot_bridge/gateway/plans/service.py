@@ -25,25 +25,24 @@ from ...core.assignment.progress import (
 )
 from ...core.errors import AssignmentError, OutdatedError, PlanFileError, RefusedError, RoadsError, StoreError
 from ...core.logs import log_and_continue, log_unforeseen
-from ...core.messages import (
+from ...core.messages.json_values import to_json
+from ...core.messages.plans import (
+    MOST_CONES,
     ClearPlan,
     ConfirmReplan,
     DiscardReplan,
-    GetPlacements,
     GetPlans,
-    MessageError,
     PausePlan,
-    PauseQueue,
     PlanReport,
+    Plans,
     PlanState,
-    QueueState,
     Replan,
     ResumePlan,
     SubmitPlan,
-    TaskState,
-    to_json,
 )
-from ...core.messages.plans import MOST_CONES, Plans
+from ...core.messages.queues import PauseQueue, QueueState, TaskState
+from ...core.messages.records import GetPlacements
+from ...core.messages.validation import MessageError
 from ..model.events import Listeners
 from ..model.request_handlers import handles
 from ..model.robots import AWAY

@@ -10,7 +10,9 @@ from typing import TypeVar
 
 from ...core.clock import Clock
 from ...core.errors import OutdatedError
-from ...core.messages import PlacementReport, QueueReport, to_json
+from ...core.messages.json_values import to_json
+from ...core.messages.queues import QueueReport
+from ...core.messages.records import PlacementReport
 from ..commands.service import CommandService
 from ..commands.validation import WaitingRobots
 from ..model.arrival import Planner, StraightPlanner

@@ -11,31 +11,31 @@ from functools import partial
 from sqlalchemy import Connection
 
 from ...core.errors import OutdatedError, RefusedError
-from ...core.messages import (
-    Abort,
+from ...core.messages.queues import (
     AddTasks,
-    CollectingTasks,
-    CollectLayout,
-    GetPlacements,
     GetQueue,
     MakeCurrent,
     MoveTask,
     PauseQueue,
     PauseRobot,
-    PlacementReport,
-    Placements,
     QueueReport,
+    Queues,
     QueueTask,
     RemoveTask,
     ResumeQueue,
-    SetPath,
-    SetPosEnd,
     SetQueue,
     TakeOver,
     TaskKind,
     TaskState,
 )
-from ...core.messages.queues import Queues
+from ...core.messages.records import (
+    CollectingTasks,
+    CollectLayout,
+    GetPlacements,
+    PlacementReport,
+    Placements,
+)
+from ...core.messages.robots import Abort, SetPath, SetPosEnd
 from ..commands.active_command import ActiveCommand, CommandOrder, because
 from ..commands.persistence import Also
 from ..model import task_queue

@@ -11,19 +11,11 @@ from sqlalchemy import Connection
 
 from ...core.errors import OutdatedError, RefusedError, StoreError
 from ...core.logs import log_unforeseen
-from ...core.messages import (
-    CommandReport,
-    CommandState,
-    PlacementReport,
-    QueueTask,
-    RobotState,
-    SetPath,
-    SetPosEnd,
-    SetPosIni,
-    TaskKind,
-    TaskState,
-)
-from ...core.messages.queues import check_path
+from ...core.messages.commands import CommandReport, CommandState
+from ...core.messages.queues import QueueTask, TaskKind, TaskState, check_path
+from ...core.messages.records import PlacementReport
+from ...core.messages.robots import SetPath, SetPosEnd, SetPosIni
+from ...core.messages.safety import RobotState
 from ..commands.active_command import CommandOrder
 from ..commands.persistence import Also, AlsoOf
 from ..model.command_states import is_open

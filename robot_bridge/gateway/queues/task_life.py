@@ -11,19 +11,9 @@ from dataclasses import dataclass
 
 from ...core.errors import RefusedError, counted
 from ...core.geometry import Polyline
-from ...core.messages import (
-    CommandReport,
-    CommandState,
-    QueueState,
-    QueueTask,
-    SetPath,
-    SetPosEnd,
-    Share,
-    TakeOver,
-    TaskKind,
-    TaskState,
-)
-from ...core.messages.queues import check_path
+from ...core.messages.commands import CommandReport, CommandState
+from ...core.messages.queues import QueueState, QueueTask, Share, TakeOver, TaskKind, TaskState, check_path
+from ...core.messages.robots import SetPath, SetPosEnd
 from ..commands.active_command import ActiveCommand, because
 from ..model.task_queue import Queue, QueuedTask, return_task
 

@@ -13,7 +13,7 @@ from typing import NamedTuple, Protocol
 import numpy as np
 
 from ...core.errors import NoRouteError, OffNetworkError, RefusedError, RoadsError
-from ...core.messages import GetRoute, RouteReport, SurfaceMetres
+from ...core.messages.roads import GetRoute, RouteReport, SurfaceMetres
 from ...core.roads.centrelines import Floats
 from ...core.roads.path_smoothing import DensePath, Driving, dense_path
 from ...core.roads.routes import Restrictions, Route, Router, with_ends

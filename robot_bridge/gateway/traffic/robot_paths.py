@@ -10,7 +10,8 @@ from typing import NamedTuple
 import numpy as np
 
 from ...core.geometry import Polyline
-from ...core.messages import ConflictReport, HoldReport, SetPath, SetPosEnd
+from ...core.messages.roads import ConflictReport, HoldReport
+from ...core.messages.robots import SetPath, SetPosEnd
 from ...core.sites.settings_tables import RouteSettings
 from ..commands.service import CommandService
 from ..model.arrival import Floats, Point, remaining_line

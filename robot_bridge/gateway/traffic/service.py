@@ -10,8 +10,9 @@ from typing import Any, NamedTuple
 
 from ...core.clock import Clock
 from ...core.errors import RefusedError
-from ...core.messages import (
-    CommandReport,
+from ...core.messages.commands import CommandReport
+from ...core.messages.json_values import to_json
+from ...core.messages.roads import (
     ConflictResolved,
     Conflicts,
     GetConflicts,
@@ -24,9 +25,8 @@ from ...core.messages import (
     Surfaces,
     WayOut,
     WaysOut,
-    path_to_end,
-    to_json,
 )
+from ...core.messages.robots import path_to_end
 from ...core.sites.site import Site
 from ..commands.requests import CommandRequests
 from ..commands.service import CommandService

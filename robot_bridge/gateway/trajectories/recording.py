@@ -13,8 +13,8 @@ from sqlalchemy import Connection
 
 from ...core.clock import Clock
 from ...core.errors import DataRefusedError
-from ...core.messages import GetTrajectory, SendPos, Trajectory, TrajectoryPlace
-from ...core.messages.records import mark_text
+from ...core.messages.records import GetTrajectory, Trajectory, TrajectoryPlace, mark_text
+from ...core.messages.robots import SendPos
 from ...core.sites.settings import SettingsSource
 from ...core.sites.settings_tables import TrajectorySettings
 from ..model.arrival import standing

@@ -19,25 +19,12 @@ from websockets.asyncio.client import ClientConnection, connect
 from websockets.exceptions import ConnectionClosed, InvalidHandshake, InvalidStatus, InvalidURI
 
 from ...core.logs import log_and_continue
-from ...core.messages import (
-    Ability,
-    Abort,
-    Alive,
-    MessageError,
-    OpAck,
-    Ready,
-    Request,
-    SendGPS,
-    SendPos,
-    SiteReport,
-    Start,
-    Stopped,
-    check_robot_name,
-    to_json,
-)
-from ...core.messages.administration import Playback
-from ...core.messages.json_values import site_report
+from ...core.messages.administration import Playback, SiteReport
+from ...core.messages.json_values import site_report, to_json
 from ...core.messages.links import LINK_PROTOCOL, GetAreas, LinkHello, LinkStatus, Released, SiteAreas
+from ...core.messages.robots import Abort, Alive, OpAck, Ready, Request, SendGPS, SendPos, Start, Stopped
+from ...core.messages.safety import Ability
+from ...core.messages.validation import MessageError, check_robot_name
 from ...core.sites.frame import SiteFrame
 from ...core.systemd import notify
 from ...protocol import jsonrpc

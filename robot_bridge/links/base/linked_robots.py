@@ -14,8 +14,10 @@ import msgspec
 import numpy as np
 import numpy.typing as npt
 
-from ...core.messages import Ability, Answer, OpAck, Ready, Request, SendGPS, SendPos, Stopped, to_json
+from ...core.messages.json_values import to_json
 from ...core.messages.links import LinkColumns
+from ...core.messages.robots import Answer, OpAck, Ready, Request, SendGPS, SendPos, Stopped
+from ...core.messages.safety import Ability
 from ...core.position_frame import METHOD, NEEDED, NUMBERS, TEXTS, packed_frame
 from ...protocol import jsonrpc
 from .adapter import Adapter, Command

@@ -17,9 +17,9 @@ from typing import ClassVar
 
 import msgspec
 
-from ...core.messages import MessageError, SendPos, check_robot_name
 from ...core.messages.administration import Playback, PlaybackReport
-from ...core.messages.validation import SPEED
+from ...core.messages.robots import SendPos
+from ...core.messages.validation import SPEED, MessageError, check_robot_name
 from ...core.sites.frame import SiteFrame
 from ...recordings.csv_table import TableForm
 from ...recordings.readers import ReadingOptions, read_recording

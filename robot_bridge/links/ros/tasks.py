@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
-from ...core.messages import SetPath, SetPosEnd
+from ...core.messages.robots import SetPath, SetPosEnd
 from .effects import (
     PATH_ACTIONS,
     Abilities,

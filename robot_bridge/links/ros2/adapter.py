@@ -12,7 +12,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any, ClassVar
 
-from ...core.messages import SendGPS, SendPos, SetPath, SetPosEnd, SetPosIni
+from ...core.messages.robots import SendGPS, SendPos, SetPath, SetPosEnd, SetPosIni
 from ..base.adapter import Adapter, Link
 from ..base.errors import LinkError
 from ..base.settings import LinkSettings, read_settings

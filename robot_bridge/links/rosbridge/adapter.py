@@ -14,7 +14,7 @@ from typing import ClassVar
 
 import msgspec
 
-from ...core.messages import SendGPS, SendPos, SetPath, SetPosEnd, SetPosIni
+from ...core.messages.robots import SendGPS, SendPos, SetPath, SetPosEnd, SetPosIni
 from ..base.adapter import Adapter, Command, Link
 from ..base.errors import CommandRefusedError
 from ..base.settings import LinkSettings, read_settings

@@ -12,7 +12,8 @@ from pathlib import Path
 from typing import ClassVar
 
 from ...core.logs import RepeatedLines
-from ...core.messages import Ability, Alive, SendPos, SetPath, SetPosEnd, SetPosIni, Stopped
+from ...core.messages.robots import Alive, SendPos, SetPath, SetPosEnd, SetPosIni, Stopped
+from ...core.messages.safety import Ability
 from ...core.sites.frame import SiteFrame
 from ..base.adapter import Adapter, Command, Link, summary
 from ..base.errors import CommandRefusedError

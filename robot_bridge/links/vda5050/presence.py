@@ -7,7 +7,7 @@ from collections import deque
 from collections.abc import Mapping
 from typing import Protocol
 
-from ...core.messages import SendPos
+from ...core.messages.robots import SendPos
 from ...core.messages.validation import LONGEST_STATUS, one_line
 from .messages import LEVELS, Connection, Factsheet, Position, State, VehicleFault, Velocity, Visualization
 

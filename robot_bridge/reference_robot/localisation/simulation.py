@@ -14,7 +14,7 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
-from ...core.messages import Observed, SendImage, SetObject
+from ...core.messages.robots import Observed, SendImage, SetObject
 from ...core.robotmap.model import RobotMap
 from ..body import Body, BodyLimits, Pose
 from .avoidance import Avoidance, Discs, MovingObstacles, ObstacleShape, ranges_to

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 from fleet_supervisor.plugin.admin.robot_removal import RemovalDialog
-from fleet_supervisor.robot_bridge.core.messages import RobotState
+from fleet_supervisor.robot_bridge.core.messages.safety import RobotState
 from qgis.PyQt.QtCore import Qt
 from qgis.PyQt.QtTest import QTest
 from qgis.PyQt.QtWidgets import QAction, QComboBox, QLabel, QLineEdit, QPushButton

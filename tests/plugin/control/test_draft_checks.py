@@ -5,7 +5,8 @@ from __future__ import annotations
 from dataclasses import replace
 
 import pytest
-from fleet_supervisor.robot_bridge.core.messages import CommandState, RobotState
+from fleet_supervisor.robot_bridge.core.messages.commands import CommandState
+from fleet_supervisor.robot_bridge.core.messages.safety import RobotState
 from qgis.core import QgsCoordinateReferenceSystem, QgsProject, QgsVectorLayer
 from qgis.PyQt.QtCore import Qt
 from qgis.PyQt.QtTest import QTest
@@ -142,7 +143,7 @@ def test_a_target_too_near_to_that_of_another_robot_is_refused_and_that_one_name
 
 
 def test_a_target_too_near_to_the_end_of_another_robots_route_is_refused(cone, gateway):
-    from fleet_supervisor.robot_bridge.core.messages import CommandState
+    from fleet_supervisor.robot_bridge.core.messages.commands import CommandState
 
     gateway._queue("elsewhere", "r2", "SetPath", {"points": [[20.0, 20.0], [70.0, 55.0]]})
     gateway.step("elsewhere", CommandState.DELIVERED, "r2")
@@ -201,7 +202,7 @@ def test_ones_own_order_is_replaced_without_a_word(known, cone, gateway, wait):
 
 
 def test_a_draft_is_looked_at_once_more_when_it_is_sent(cone, gateway):
-    from fleet_supervisor.robot_bridge.core.messages import CommandState
+    from fleet_supervisor.robot_bridge.core.messages.commands import CommandState
 
     cone.click((70, 55))
     assert "Not to be sent" not in cone.draft_text

@@ -8,7 +8,7 @@ from types import SimpleNamespace
 import pytest
 from fleet_supervisor.plugin.control.pending_command import CONE, ApproachKind, PendingCommand
 from fleet_supervisor.plugin.control.request_tracker import SLOW_AFTER
-from fleet_supervisor.robot_bridge.core.messages import CommandState
+from fleet_supervisor.robot_bridge.core.messages.commands import CommandState
 from qgis.PyQt.QtCore import QEvent, Qt
 from qgis.PyQt.QtTest import QTest
 from qgis.PyQt.QtWidgets import QApplication

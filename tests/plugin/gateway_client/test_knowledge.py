@@ -23,15 +23,9 @@ from fleet_supervisor.plugin.gateway_client.robot_table import STATES, table_fro
 from fleet_supervisor.plugin.ui.errors import GatewayLinkError
 from fleet_supervisor.robot_bridge.core.assignment.plan import ConePlan, document_of
 from fleet_supervisor.robot_bridge.core.clock import ManualClock
-from fleet_supervisor.robot_bridge.core.messages import (
-    CommandReport,
-    CommandState,
-    CommandStep,
-    RobotState,
-    placement_report,
-    queue_report,
-    to_json,
-)
+from fleet_supervisor.robot_bridge.core.messages.commands import CommandReport, CommandState, CommandStep
+from fleet_supervisor.robot_bridge.core.messages.json_values import placement_report, queue_report, to_json
+from fleet_supervisor.robot_bridge.core.messages.safety import RobotState
 from hypothesis import given
 from hypothesis import strategies as st
 

@@ -15,7 +15,8 @@ from fleet_supervisor.plugin.gateway_client.robot_table import (
     table_from_rows,
 )
 from fleet_supervisor.robot_bridge.core.clock import ManualClock
-from fleet_supervisor.robot_bridge.core.messages import PositionForm, SendPos
+from fleet_supervisor.robot_bridge.core.messages.positions import PositionForm
+from fleet_supervisor.robot_bridge.core.messages.robots import SendPos
 from fleet_supervisor.robot_bridge.gateway.fleet.operator_updates import EVERYTHING, Snapshots
 from fleet_supervisor.robot_bridge.gateway.model.robots import Robots
 

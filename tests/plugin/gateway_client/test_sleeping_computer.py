@@ -9,7 +9,8 @@ import pytest
 from fleet_supervisor.plugin.gateway_client import connection
 from fleet_supervisor.plugin.gateway_client.robot_table import STATES
 from fleet_supervisor.robot_bridge.core import clock as clock_module
-from fleet_supervisor.robot_bridge.core.messages import RobotState, to_json
+from fleet_supervisor.robot_bridge.core.messages.json_values import to_json
+from fleet_supervisor.robot_bridge.core.messages.safety import RobotState
 from qgis.PyQt.QtWidgets import QToolButton
 
 from tests.support.fleet_panel import press

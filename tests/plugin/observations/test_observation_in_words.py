@@ -9,7 +9,7 @@ from fleet_supervisor.plugin.observations.observation_views import (
     observation_text,
     style_observations,
 )
-from fleet_supervisor.robot_bridge.core.messages import ObservationReport, ObservationState
+from fleet_supervisor.robot_bridge.core.messages.records import ObservationReport, ObservationState
 from qgis.core import QgsExpression, QgsExpressionContext, QgsFeature, QgsVectorLayer
 from qgis.PyQt.QtGui import QColor, QImage
 

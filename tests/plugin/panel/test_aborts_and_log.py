@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from fleet_supervisor.plugin.ui.language import short_time
-from fleet_supervisor.robot_bridge.core.messages import CommandState
+from fleet_supervisor.robot_bridge.core.messages.commands import CommandState
 from qgis.PyQt.QtWidgets import QApplication, QLabel, QLineEdit, QPushButton, QToolButton, QTreeView
 
 from tests.support.fleet_panel import press

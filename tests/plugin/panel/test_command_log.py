@@ -9,7 +9,7 @@ import pytest
 from fleet_supervisor.plugin.gateway_client.command_cache import CommandCache
 from fleet_supervisor.plugin.panel.command_log import COMMAND_CHOICES
 from fleet_supervisor.plugin.panel.command_log_model import CommandChoice, summary
-from fleet_supervisor.robot_bridge.core.messages import CommandReport, CommandState, CommandStep
+from fleet_supervisor.robot_bridge.core.messages.commands import CommandReport, CommandState, CommandStep
 from qgis.PyQt.QtCore import Qt
 from qgis.PyQt.QtTest import QTest
 from qgis.PyQt.QtWidgets import QComboBox, QLabel, QToolButton, QTreeView

@@ -7,7 +7,8 @@ import sys
 import pytest
 from fleet_supervisor.plugin.panel.emergency import ClearDialog, in_words
 from fleet_supervisor.plugin.ui.dialogs import ShrinkableScrollArea
-from fleet_supervisor.robot_bridge.core.messages import EmergencyReport, SetPosEnd
+from fleet_supervisor.robot_bridge.core.messages.robots import SetPosEnd
+from fleet_supervisor.robot_bridge.core.messages.safety import EmergencyReport
 from qgis.PyQt.QtCore import QEvent, Qt
 from qgis.PyQt.QtTest import QTest
 from qgis.PyQt.QtWidgets import (

@@ -6,7 +6,7 @@ from types import SimpleNamespace
 import pytest
 from fleet_supervisor.plugin.panel import robot_details
 from fleet_supervisor.plugin.panel.robot_details import received_rows
-from fleet_supervisor.robot_bridge.core.messages import CommandState
+from fleet_supervisor.robot_bridge.core.messages.commands import CommandState
 from qgis.PyQt.QtCore import QBuffer, QIODevice, Qt
 from qgis.PyQt.QtGui import QColor, QImage
 from qgis.PyQt.QtTest import QTest

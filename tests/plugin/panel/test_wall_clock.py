@@ -4,7 +4,7 @@ import time
 
 from fleet_supervisor.plugin.panel.emergency import in_words
 from fleet_supervisor.plugin.ui.language import date_and_time, short_time, time_of_day
-from fleet_supervisor.robot_bridge.core.messages import EmergencyReport
+from fleet_supervisor.robot_bridge.core.messages.safety import EmergencyReport
 
 NOON = time.mktime((2026, 11, 22, 12, 0, 0, 0, 0, -1))
 HOUR = 3600.0

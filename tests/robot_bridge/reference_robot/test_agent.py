@@ -8,12 +8,12 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from robot_bridge.core.messages import (
+from robot_bridge.core.messages.roads import GetSurface, SetSurface
+from robot_bridge.core.messages.robots import (
     Abort,
     Alive,
     GetMap,
     GetPath,
-    GetSurface,
     OpAck,
     Ready,
     SendImage,
@@ -23,7 +23,6 @@ from robot_bridge.core.messages import (
     SetPath,
     SetPosEnd,
     SetPosIni,
-    SetSurface,
     Start,
     Stopped,
 )

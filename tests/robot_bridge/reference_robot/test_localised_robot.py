@@ -11,7 +11,7 @@ import msgspec
 import numpy as np
 import pytest
 
-from robot_bridge.core.messages import (
+from robot_bridge.core.messages.robots import (
     Abort,
     GetMap,
     GetPath,

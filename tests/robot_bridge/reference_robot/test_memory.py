@@ -9,7 +9,16 @@ from types import SimpleNamespace
 import pytest
 
 from robot_bridge.core.errors import BridgeError
-from robot_bridge.core.messages import Abort, GetPath, OpAck, Ready, SendPos, SetPath, SetPosEnd, Stopped
+from robot_bridge.core.messages.robots import (
+    Abort,
+    GetPath,
+    OpAck,
+    Ready,
+    SendPos,
+    SetPath,
+    SetPosEnd,
+    Stopped,
+)
 from robot_bridge.reference_robot.agent import Agent, AgentSettings
 from robot_bridge.reference_robot.body import BodyLimits
 from robot_bridge.reference_robot.memory import RememberedRun, RobotMemory

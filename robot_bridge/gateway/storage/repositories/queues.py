@@ -11,7 +11,8 @@ from sqlalchemy import Connection, Select, bindparam, delete, exists, insert, or
 
 from ....core.errors import RefusedError
 from ....core.json_decoder import decode_json
-from ....core.messages import QueueState, QueueTask, TaskState, to_json
+from ....core.messages.json_values import to_json
+from ....core.messages.queues import QueueState, QueueTask, TaskState
 from ...model.task_queue import ENDS, Queue, QueuedTask, Whereabouts
 from ..rows import beside_the_time, delete_oldest, readable
 from ..schema import plan_stops, plans, queue_tasks, queues

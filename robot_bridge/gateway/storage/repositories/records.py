@@ -10,15 +10,14 @@ from sqlalchemy import ColumnElement, Connection, func, insert, select, update
 
 from ....core.errors import RefusedError, counted
 from ....core.json_decoder import decode_json
-from ....core.messages import (
+from ....core.messages.records import (
     GetObservations,
     GetPlacements,
     ObservationReport,
     ObservationState,
     PlacementReport,
-    SendImage,
-    SetObject,
 )
+from ....core.messages.robots import SendImage, SetObject
 from ..rows import beside_the_time, delete_oldest, readable
 from ..schema import observations as table
 from ..schema import placements

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 from sqlalchemy import ColumnElement, Connection, and_, delete, or_, select
 
-from ....core.messages import SendPos
+from ....core.messages.robots import SendPos
 from ..rows import add_rows, delete_oldest
 from ..schema import trajectories
 

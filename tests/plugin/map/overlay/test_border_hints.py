@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 from fleet_supervisor.plugin.ui.glyphs import STATE_COLOURS
-from fleet_supervisor.robot_bridge.core.messages import RobotState
+from fleet_supervisor.robot_bridge.core.messages.safety import RobotState
 
 from tests.plugin.map.on_canvas import expected, scene_of, show, spots
 

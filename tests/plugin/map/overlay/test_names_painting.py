@@ -6,7 +6,7 @@ import dataclasses
 
 import numpy as np
 from fleet_supervisor.plugin.map.overlay.scene import in_view
-from fleet_supervisor.robot_bridge.core.messages import RobotState
+from fleet_supervisor.robot_bridge.core.messages.safety import RobotState
 from qgis.PyQt.QtCore import QRectF
 from qgis.PyQt.QtGui import QImage, QPainter
 

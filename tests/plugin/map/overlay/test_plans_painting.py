@@ -7,7 +7,7 @@ import dataclasses
 import numpy as np
 from fleet_supervisor.plugin.map.overlay import robots_painter, task_painter
 from fleet_supervisor.plugin.map.overlay.scene import SceneTransformer
-from fleet_supervisor.robot_bridge.core.messages import RobotState
+from fleet_supervisor.robot_bridge.core.messages.safety import RobotState
 from qgis.core import QgsPointXY
 from qgis.PyQt.QtWidgets import QApplication
 

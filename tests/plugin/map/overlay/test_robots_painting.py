@@ -11,7 +11,7 @@ from fleet_supervisor.plugin.gateway_client.robot_table import STATES
 from fleet_supervisor.plugin.map.overlay import robots_painter
 from fleet_supervisor.plugin.map.overlay.scene import SceneTransformer
 from fleet_supervisor.plugin.ui.glyphs import SELECTED, STATE_COLOURS
-from fleet_supervisor.robot_bridge.core.messages import RobotState
+from fleet_supervisor.robot_bridge.core.messages.safety import RobotState
 from qgis.PyQt.QtCore import QSize
 from qgis.PyQt.QtGui import QColor, QImage, QPainter
 

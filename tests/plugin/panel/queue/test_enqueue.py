@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from fleet_supervisor.robot_bridge.core.messages import TaskKind
+from fleet_supervisor.robot_bridge.core.messages.queues import TaskKind
 from qgis.core import QgsFeature, QgsGeometry, QgsProject, QgsVectorLayer
 from qgis.PyQt.QtCore import Qt
 from qgis.PyQt.QtTest import QTest
@@ -89,7 +89,7 @@ def test_a_start_position_is_no_task(desk, iface, gateway):
 
 
 def test_a_draft_comes_back_when_the_queue_has_changed_meanwhile(desk, iface, gateway, wait):
-    from fleet_supervisor.robot_bridge.core.messages import QueueTask
+    from fleet_supervisor.robot_bridge.core.messages.queues import QueueTask
 
     gateway.queues.quiet = True
     gateway.queues.give("r1", [QueueTask("task-of-ben", 60.0, 50.0)], by="ben")
@@ -103,7 +103,7 @@ def test_a_draft_comes_back_when_the_queue_has_changed_meanwhile(desk, iface, ga
 
 
 def test_a_target_in_another_robots_queue_is_in_the_way(desk, iface, gateway, wait):
-    from fleet_supervisor.robot_bridge.core.messages import QueueTask
+    from fleet_supervisor.robot_bridge.core.messages.queues import QueueTask
 
     queued = [QueueTask("task-one", 20.0, 20.0), QueueTask("task-two", 70.0, 55.0)]
     gateway.queues.give("r2", queued)

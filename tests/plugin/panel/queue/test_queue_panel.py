@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from fleet_supervisor.robot_bridge.core.messages import QueueState, QueueTask, TaskKind
+from fleet_supervisor.robot_bridge.core.messages.queues import QueueState, QueueTask, TaskKind
 from qgis.PyQt.QtCore import QPoint, QPointF, Qt
 from qgis.PyQt.QtGui import QDragEnterEvent, QDragMoveEvent, QDropEvent
 from qgis.PyQt.QtTest import QTest

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 from fleet_supervisor.plugin.panel.robot_model import TITLES
-from fleet_supervisor.robot_bridge.core.messages import QueueState, QueueTask, TaskKind
+from fleet_supervisor.robot_bridge.core.messages.queues import QueueState, QueueTask, TaskKind
 from fleet_supervisor.robot_bridge.protocol.jsonrpc import FORBIDDEN
 from qgis.PyQt.QtCore import Qt
 from qgis.PyQt.QtTest import QTest

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from robot_bridge.core.errors import UncertainError
-from robot_bridge.core.messages import SendPos, SetPath
+from robot_bridge.core.messages.robots import SendPos, SetPath
 from robot_bridge.gateway.commands import persistence
 from robot_bridge.gateway.commands.persistence import write_acknowledged
 from robot_bridge.gateway.commands.service import NOWHERE

@@ -5,7 +5,8 @@ from __future__ import annotations
 import pytest
 
 from robot_bridge.core.errors import RefusedError, StoreError
-from robot_bridge.core.messages import AbortAll, GetCommands, MessageError, Send, SetPositions, TargetPosition
+from robot_bridge.core.messages.commands import AbortAll, GetCommands, Send, SetPositions, TargetPosition
+from robot_bridge.core.messages.validation import MessageError
 
 FULL_LIFE = ["queued", "delivered", "acknowledged", "reached"]
 

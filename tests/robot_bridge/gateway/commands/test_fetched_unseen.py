@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from robot_bridge.core.messages import AbortAll, AbortTask, EmergencyStop, OpAck, Ready, SendPos
+from robot_bridge.core.messages.commands import AbortAll, AbortTask
+from robot_bridge.core.messages.robots import OpAck, Ready, SendPos
+from robot_bridge.core.messages.safety import EmergencyStop
 from tests.support.bridge.queue_line import PLACES, placed, task
 
 CONE = PLACES["a"]

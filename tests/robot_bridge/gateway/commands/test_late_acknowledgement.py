@@ -7,7 +7,7 @@ import asyncio
 import pytest
 
 from robot_bridge.core.errors import StoreError
-from robot_bridge.core.messages import AbortTask
+from robot_bridge.core.messages.commands import AbortTask
 
 READ = "the robot had read it by then, and acknowledged it"
 

@@ -10,7 +10,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from robot_bridge.core.messages import Ready, SendMap, SetMap
+from robot_bridge.core.messages.commands import SendMap
+from robot_bridge.core.messages.robots import Ready, SetMap
 from robot_bridge.core.robotmap.binary import decode
 from robot_bridge.core.robotmap.model import PART_OF
 from robot_bridge.core.robotmap.outlines import OutlineRow, Outlines

@@ -10,7 +10,7 @@ import threading
 import pytest
 
 from robot_bridge.core.errors import RefusedError
-from robot_bridge.core.messages import ClearEmergencyStop, EmergencyReport, EmergencyStop
+from robot_bridge.core.messages.safety import ClearEmergencyStop, EmergencyReport, EmergencyStop
 from robot_bridge.gateway.fleet import emergency_stop
 from robot_bridge.gateway.fleet.emergency_persistence import StopJournal
 from robot_bridge.gateway.fleet.service import Fleet

@@ -5,7 +5,8 @@ from __future__ import annotations
 import pytest
 
 from robot_bridge.core.errors import StoreError
-from robot_bridge.core.messages import GetPath, OpAck, Ready, SendMap, SendPos
+from robot_bridge.core.messages.commands import SendMap
+from robot_bridge.core.messages.robots import GetPath, OpAck, Ready, SendPos
 
 
 async def say(yard, *requests, robot="r1"):

@@ -8,7 +8,10 @@ from types import SimpleNamespace
 import pytest
 
 from robot_bridge.core.errors import DataRefusedError, StoreError
-from robot_bridge.core.messages import AbortTask, EmergencyStop, QueueTask, SetObject, SetQueue
+from robot_bridge.core.messages.commands import AbortTask
+from robot_bridge.core.messages.queues import QueueTask, SetQueue
+from robot_bridge.core.messages.robots import SetObject
+from robot_bridge.core.messages.safety import EmergencyStop
 from robot_bridge.gateway.model.events import CommandChanged, Listeners, ObservationChanged
 
 

@@ -7,7 +7,10 @@ import json
 import pytest
 
 from robot_bridge.core.errors import NotReadyError, RefusedError, StoreError, UncertainError
-from robot_bridge.core.messages import EmergencyStop, GetQueue, PositionForm, RemoveRobots
+from robot_bridge.core.messages.administration import RemoveRobots
+from robot_bridge.core.messages.positions import PositionForm
+from robot_bridge.core.messages.queues import GetQueue
+from robot_bridge.core.messages.safety import EmergencyStop
 from robot_bridge.gateway.commands.persistence import write_steps
 from robot_bridge.gateway.fleet.operator_updates import EVERYTHING
 from robot_bridge.gateway.trajectories import recording

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from robot_bridge.core.messages import CommandReport, CommandState
+from robot_bridge.core.messages.commands import CommandReport, CommandState
 from robot_bridge.gateway.fleet.emergency_stop import MOST_NAMES, StopAnswers
 
 

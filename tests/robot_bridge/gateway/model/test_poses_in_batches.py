@@ -8,7 +8,8 @@ from types import SimpleNamespace
 from typing import ClassVar
 
 from robot_bridge.core.errors import BridgeError
-from robot_bridge.core.messages import RobotState, SendPos
+from robot_bridge.core.messages.robots import SendPos
+from robot_bridge.core.messages.safety import RobotState
 from robot_bridge.core.sites.settings import SiteBounds, SiteSettings
 from robot_bridge.core.sites.settings_tables import LimitSettings
 from robot_bridge.gateway.model.events import EventBus, RobotReturned

@@ -6,7 +6,7 @@ import itertools
 import json
 from typing import Any
 
-from fleet_supervisor.robot_bridge.core.messages import Request, SetPath, SetPosEnd, SetPosIni
+from fleet_supervisor.robot_bridge.core.messages.robots import Request, SetPath, SetPosEnd, SetPosIni
 from fleet_supervisor.robot_bridge.links.vda5050.ledger import Halted, Keep, Publish, Settled, VehicleReport
 from fleet_supervisor.robot_bridge.links.vda5050.messages import Order, VehicleId, decode_message
 from fleet_supervisor.robot_bridge.links.vda5050.tasks import Remembered

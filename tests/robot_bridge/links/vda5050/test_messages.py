@@ -7,7 +7,7 @@ from importlib import resources
 
 import jsonschema
 import pytest
-from fleet_supervisor.robot_bridge.core.messages import SendPos, SetPath, SetPosEnd, SetPosIni
+from fleet_supervisor.robot_bridge.core.messages.robots import SendPos, SetPath, SetPosEnd, SetPosIni
 from fleet_supervisor.robot_bridge.links.vda5050.messages import (
     Connection,
     Factsheet,

@@ -3,7 +3,14 @@
 from __future__ import annotations
 
 import pytest
-from fleet_supervisor.robot_bridge.core.messages import Alive, SendPos, SetPath, SetPosEnd, SetPosIni, Stopped
+from fleet_supervisor.robot_bridge.core.messages.robots import (
+    Alive,
+    SendPos,
+    SetPath,
+    SetPosEnd,
+    SetPosIni,
+    Stopped,
+)
 from fleet_supervisor.robot_bridge.links.vda5050.ledger import Keep, Publish, Settled
 
 from tests.robot_bridge.links.vda5050.bench import Bench, fault

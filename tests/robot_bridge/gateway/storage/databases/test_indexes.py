@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from sqlalchemy import event
 
-from robot_bridge.core.messages import GetPlacements
+from robot_bridge.core.messages.records import GetPlacements
 from robot_bridge.gateway.storage import revisions
 from robot_bridge.gateway.storage.database import run_once
 from robot_bridge.gateway.storage.repositories import commands, metadata, queues, records, trajectories
