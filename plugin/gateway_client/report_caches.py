@@ -198,8 +198,7 @@ def plans_in(values: dict[str, Any]) -> list[KnownPlan]:
 
 
 MOST_PLACEMENTS = 20_000
-MOST_PER_REQUEST = 5000
-"""As many as a gateway tells at once."""
+"""cones that are kept; a gateway reports at most ``messages.records.MOST_PLACEMENTS`` at once."""
 
 
 class PlacedConeCache:

@@ -25,14 +25,14 @@ from ...robot_bridge.core.messages.plans import (
     SubmitPlan,
 )
 from ...robot_bridge.core.messages.queues import GetQueue, QueueState, TaskState
-from ...robot_bridge.core.messages.records import GetPlacements
+from ...robot_bridge.core.messages.records import MOST_PLACEMENTS, GetPlacements
 from ...robot_bridge.core.messages.validation import MessageError
 from ..control.fleet_controller import STOPPED_BY, FleetController
 from ..control.messages import PLAN_SENT, Level, Topic, plan_topic
 from ..control.pending_command import in_brief
 from ..gateway_client.connection_status import ConnectionPhase
 from ..gateway_client.fleet_state import RequestResult
-from ..gateway_client.report_caches import MOST_PLACEMENTS, KnownPlan
+from ..gateway_client.report_caches import KnownPlan
 from ..ui.errors import NotSentError
 from ..ui.language import first_of, tr
 from .plan_editor import PlanEditor, PlanningError

@@ -22,11 +22,10 @@ from qgis.PyQt.QtWidgets import (
 )
 
 from ...robot_bridge.core.messages.plans import PlanProblemKind, PlanReport, PlanState
-from ...robot_bridge.core.messages.records import CollectLayout, GetPlacements
+from ...robot_bridge.core.messages.records import MOST_PLACEMENTS, CollectLayout, GetPlacements
 from ..control.fleet_controller import FleetController
 from ..control.messages import PLAN_REQUEST, Level
 from ..control.pending_command import in_brief
-from ..gateway_client.report_caches import MOST_PLACEMENTS
 from ..panel.pending_command_panel import OverrideDialog
 from ..ui.actions import ActionDock, DockAction
 from ..ui.dialogs import ShrinkableScrollArea, confirm, push_button
