@@ -113,7 +113,7 @@ def overlay(data: str, number: int) -> None:
     for _ in range(WARM_UP + UPDATES):
         now[0] += UPDATE_S
         stage.fleet.drive(UPDATE_S)
-        told = wire.table_from_rows(stage.fleet.told(), now[0])
+        told = wire.table_from_rows(stage.fleet.reports(), now[0])
         marks = [time.thread_time()]
         for step in (
             lambda told=told: desk.state.robots.merge(told),
@@ -148,7 +148,7 @@ def _repainting(stage: Stage) -> Spread:
     """Return the milliseconds that painting the canvas takes after other work."""
     times = []
     for _ in range(UPDATES):
-        stage.fleet.told()
+        stage.fleet.reports()
         began = time.thread_time()
         stage.canvas.viewport().repaint()
         times.append((time.thread_time() - began) * 1e3)
@@ -216,7 +216,7 @@ def watch_live(stage: Stage, opened: tuple[Any, Any, Any], number: int, rate: fl
             if view.overlay.frames != seen[0] and view.shown != seen[1]:
                 seen[:] = view.overlay.frames, view.shown
                 newest = desk.state.robots.view("robot-0", 0.0)
-                delays.append((time.monotonic() - newest.told["device_time"]) * 1e3)
+                delays.append((time.monotonic() - newest.values["device_time"]) * 1e3)
 
         rounds: list[tuple[float, float, float]] = []
         for _ in range(ROUNDS):
@@ -241,7 +241,7 @@ def hour(data: str, number: int) -> None:
     for second in range(HOUR):
         now[0] += 1.0
         stage.fleet.drive(1.0)
-        desk.state.robots.merge(wire.table_from_rows(stage.fleet.told(), now[0]))
+        desk.state.robots.merge(wire.table_from_rows(stage.fleet.reports(), now[0]))
         view.show_now()
         stage.canvas.viewport().repaint()
         view.layer.begin(len(desk.state.robots))
@@ -271,7 +271,7 @@ def open_desk(stage: Stage, clock: Any = None) -> tuple[Any, Any, Any]:
 
 def site_of(stage: Stage) -> Any:
     """Return the site that a gateway would tell of: what the canvas shows."""
-    from fleet_supervisor.robot_bridge.core.messages import SiteReport
+    from fleet_supervisor.robot_bridge.core.messages.administration import SiteReport
 
     x, y, width, height = stage.area
     bounds = (x, y, x + width, y + height)

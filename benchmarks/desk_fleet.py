@@ -7,7 +7,7 @@ from typing import Any
 import msgspec
 import numpy as np
 
-from robot_bridge.core.messages import PositionColumns
+from robot_bridge.core.messages.positions import PositionColumns
 from robot_bridge.core.position_frame import METHOD, packed_frame
 
 SPEED = 1.5
@@ -31,7 +31,7 @@ class DrivingFleet:
         step = np.column_stack([np.cos(self.theta), np.sin(self.theta)]) * SPEED * seconds
         self.xy[~self._silent] += step[~self._silent]
 
-    def told(self, sent: float = 0.0) -> list[dict[str, Any]]:
+    def reports(self, sent: float = 0.0) -> list[dict[str, Any]]:
         """Return the reports of all; ``sent`` stands in for their clocks."""
         places, turns = self.xy.round(3).tolist(), self.theta.round(4).tolist()
         rows = zip(places, turns, self._silent.tolist(), strict=True)

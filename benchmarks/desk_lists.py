@@ -58,7 +58,7 @@ def lists(data: str, number: int) -> None:
     times: dict[str, list[float]] = {name: [] for name in steps}
     for _ in range(UPDATES):
         stage.fleet.drive(0.5)
-        desk.state.robots.merge(wire.table_from_rows(stage.fleet.told(), time.monotonic()))
+        desk.state.robots.merge(wire.table_from_rows(stage.fleet.reports(), time.monotonic()))
         for name, step in steps.items():
             began = time.thread_time()
             step()

@@ -17,7 +17,7 @@ from benchmarks.linked import COME_WITHIN, PROBING, Linked, NotMeasuredError, li
 from benchmarks.load import SITE
 from benchmarks.raw_websocket import BINARY, Stream, call, connect
 from benchmarks.trial import size
-from robot_bridge.core.messages import PositionForm
+from robot_bridge.core.messages.positions import PositionForm
 from robot_bridge.core.position_frame import split_frame
 from robot_bridge.core.sites.settings import read_settings
 from robot_bridge.links.replay.adapter import LEAST_STEP

@@ -10,7 +10,7 @@ from benchmarks.clock import FEW, Spread, again, once, spread
 from benchmarks.trial import size
 from robot_bridge.core.errors import NoRouteError, OffNetworkError
 from robot_bridge.core.geometry import Polyline
-from robot_bridge.core.messages import SetPath
+from robot_bridge.core.messages.robots import SetPath
 from robot_bridge.core.roads.network import Network
 from robot_bridge.core.roads.path_smoothing import Driving, dense_path
 from robot_bridge.core.roads.routes import Place, Router

@@ -19,7 +19,7 @@ import msgspec
 import numpy as np
 
 from benchmarks.raw_websocket import BINARY, Stream, call, connect
-from robot_bridge.core.messages import PositionForm
+from robot_bridge.core.messages.positions import PositionForm
 from robot_bridge.core.position_frame import POSITION_HEAD, POSITION_VALUE
 
 DEVICE_TIME = "device_time"

@@ -11,7 +11,7 @@ from qgis.gui import QgisInterface, QgsLocatorWidget
 from qgis.PyQt.QtGui import QIcon
 from qgis.PyQt.QtWidgets import QLineEdit
 
-from ..robot_bridge.core.messages import RobotState
+from ..robot_bridge.core.messages.safety import RobotState
 from .expressions.robot_snapshot import RobotSnapshot, SnapshotHolder
 from .gateway_client.robot_states import ROBOT_STATES
 from .gateway_client.robot_table import STATES
@@ -128,11 +128,13 @@ class RobotFilter(QgsLocatorFilter):
 
     def _result(self, name: str, robots: RobotSnapshot, score: float) -> QgsLocatorResult:
         state, age = robots.state(name), robots.silence(name)
-        told = ROBOT_STATES[RobotState(state)]
+        description = ROBOT_STATES[RobotState(state)]
         result = QgsLocatorResult()
         result.displayString = name
         result.description = (
-            told if age is None else tr("{state}, heard of {age:.0f} s ago", state=told, age=age)
+            description
+            if age is None
+            else tr("{state}, heard of {age:.0f} s ago", state=description, age=age)
         )
         result.score = score
         if state in self._icons:
@@ -140,17 +142,17 @@ class RobotFilter(QgsLocatorFilter):
         return result
 
 
-def rank_robots(wanted: str, names: list[str]) -> list[tuple[float, str]]:
-    """Return the names that ``wanted`` is a part of, each with a score from 0 to 1, the best first.
+def rank_robots(pattern: str, names: list[str]) -> list[tuple[float, str]]:
+    """Return the names that ``pattern`` is a part of, each with a score from 0 to 1, the best first.
 
     A name that is the same comes before one that begins so, and that before one that has it within.
     """
-    wanted = wanted.strip().casefold()
+    pattern = pattern.strip().casefold()
     found = []
     for name in names:
-        at = name.casefold().find(wanted)
+        at = name.casefold().find(pattern)
         if at >= 0:
-            same = len(name) == len(wanted)
+            same = len(name) == len(pattern)
             found.append((1.0 if same else 0.9 if at == 0 else 0.6, name))
     return sorted(found, key=lambda one: (-one[0], len(one[1]), one[1]))
 

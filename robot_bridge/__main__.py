@@ -74,8 +74,8 @@ def _add(app: typer.Typer, name: str) -> None:
         app.command(name)(command)
 
 
-def _print_version(asked: bool) -> None:
-    if asked:
+def _print_version(print_it: bool) -> None:
+    if print_it:
         from importlib.metadata import version
 
         print(version("fleet-supervisor-robot-bridge"))
@@ -98,7 +98,7 @@ def _only_named() -> None:
 def _foreseen() -> tuple[type[Exception], ...]:
     """Return the families of errors whose text is for people."""
     from .core.errors import RobotMapError, SiteError
-    from .core.messages import MessageError
+    from .core.messages.validation import MessageError
     from .reference_robot.localisation.settings import ReferenceRobotError
 
     return (BridgeError, SiteError, RobotMapError, MessageError, ReferenceRobotError)

@@ -8,29 +8,22 @@ from typing import Any
 
 from qgis.gui import QgisInterface
 from qgis.PyQt.QtCore import QObject, Qt, pyqtSignal
-from qgis.PyQt.QtWidgets import (
-    QComboBox,
-    QLineEdit,
-    QMessageBox,
-    QWidget,
-)
+from qgis.PyQt.QtWidgets import QComboBox, QLineEdit, QMessageBox, QWidget
 
-from ...robot_bridge.core.messages import (
+from ...robot_bridge.core.messages.administration import (
     AddOperator,
     GetOperators,
     GetSessions,
     OperatorReport,
     Operators,
     RevokeToken,
-    Role,
     RotateToken,
     SessionReport,
     SetRole,
     TokenState,
-    new_token,
-    open_session,
-    operators_report,
 )
+from ...robot_bridge.core.messages.json_values import new_token, open_session, operators_report
+from ...robot_bridge.core.messages.operator_requests import Role
 from ..control.fleet_controller import FleetController
 from ..gateway_client.connection_status import ROLES
 from ..help import ACCOUNTS

@@ -21,7 +21,7 @@ from qgis.PyQt.QtWidgets import (
     QWidget,
 )
 
-from ...robot_bridge.core.messages import PlaybackReport, SetPlayback
+from ...robot_bridge.core.messages.administration import PlaybackReport, SetPlayback
 from ..control.fleet_controller import FleetController
 from ..gateway_client.connection_status import ConnectionPhase
 from ..help import RECORDINGS, show_help
@@ -57,8 +57,8 @@ class RecordingsDialog(QDialog):
         self._paused.setObjectName("fleet_recordings_paused")
         self._loop = QCheckBox(tr("From the &beginning again at its end"))
         self._loop.setObjectName("fleet_recordings_loop")
-        self.said = WrappingLabel(lines=2)
-        self.said.setObjectName("fleet_recordings_said")
+        self.status = WrappingLabel(lines=2)
+        self.status.setObjectName("fleet_recordings_said")
         self._timer = QTimer(self)
         self._timer.setInterval(ASK_EVERY_MS)
         self._timer.timeout.connect(self._look)
@@ -70,7 +70,7 @@ class RecordingsDialog(QDialog):
         self._speed.editingFinished.connect(self._apply)
         self._paused.clicked.connect(lambda on: self._change(paused=on))
         self._loop.clicked.connect(lambda on: self._change(loop=on))
-        self._asking.refused.connect(lambda why: self.said.setText(f"✘ {why}"))
+        self._asking.refused.connect(lambda why: self.status.setText(f"✘ {why}"))
         self._numbers: dict[str, float] = {}
         """Place and speed as reported or sent last."""
 
@@ -95,9 +95,9 @@ class RecordingsDialog(QDialog):
         for field in (self._place, self._seconds, self._speed, self._paused, self._loop):
             field.setEnabled(connected and bool(names))
         if not connected:
-            self.said.setText(tr("The desk is not connected to a gateway. Press Connect first."))
+            self.status.setText(tr("The desk is not connected to a gateway. Press Connect first."))
         elif not names:
-            self.said.setText(tr("No link plays a recording at this gateway."))
+            self.status.setText(tr("No link plays a recording at this gateway."))
         else:
             self._change()
 
@@ -136,7 +136,7 @@ class RecordingsDialog(QDialog):
                 field.setValue(value)
         self._paused.setChecked(report.paused)
         self._loop.setChecked(report.loop)
-        self.said.setText(
+        self.status.setText(
             tr(
                 "{file}: {place} s of {length} s",
                 file=report.file,
@@ -165,7 +165,7 @@ class RecordingsDialog(QDialog):
         foot.helpRequested.connect(lambda: show_help(RECORDINGS, self))
         rows = QVBoxLayout(self)
         rows.addLayout(form)
-        rows.addWidget(self.said)
+        rows.addWidget(self.status)
         rows.addWidget(foot)
         # Enter ends the typing of a number, and closes nothing.
         foot.button(standard.Apply).setDefault(True)

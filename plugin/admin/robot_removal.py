@@ -10,7 +10,8 @@ from qgis.PyQt.QtCore import Qt, pyqtSignal
 from qgis.PyQt.QtGui import QIcon, QKeySequence
 from qgis.PyQt.QtWidgets import QAction, QWidget
 
-from ...robot_bridge.core.messages import RemoveRobots, RobotState
+from ...robot_bridge.core.messages.administration import RemoveRobots
+from ...robot_bridge.core.messages.safety import RobotState
 from ..control.fleet_controller import FleetController
 from ..panel.connection_panel import ConnectionMenu
 from ..panel.robot_table import RobotTableView

@@ -9,7 +9,8 @@ from qgis.gui import QgisInterface
 from qgis.PyQt.QtCore import QObject, Qt
 from qgis.PyQt.QtWidgets import QHeaderView, QMessageBox, QWidget
 
-from ...robot_bridge.core.messages import ChooseSite, GetSites, SiteOffer, sites_report
+from ...robot_bridge.core.messages.administration import ChooseSite, GetSites, SiteOffer
+from ...robot_bridge.core.messages.json_values import sites_report
 from ..control.fleet_controller import FleetController
 from ..help import SITES
 from ..panel.connection_panel import ConnectionMenu

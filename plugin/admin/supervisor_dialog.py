@@ -20,7 +20,7 @@ from qgis.PyQt.QtWidgets import (
     QWidget,
 )
 
-from ...robot_bridge.core.messages import Role
+from ...robot_bridge.core.messages.operator_requests import Role
 from ..control.fleet_controller import FleetController
 from ..control.request_tracker import RequestTracker
 from ..gateway_client.connection_status import ConnectionPhase, ConnectionStatus, role_in_words
@@ -143,9 +143,9 @@ class SupervisorDialog(QDialog):
         self._desk, self.model, self._topic = desk, model, topic
         self._listing, self._changing = PendingQueries(desk.orders, self), PendingQueries(desk.orders, self)
         self.view = _table(model, f"{name}_table")
-        self.said = WrappingLabel(lines=2)
-        self.said.setObjectName(f"{name}_said")
-        self.said.setTextInteractionFlags(Qt.TextInteractionFlag.TextSelectableByMouse)
+        self.status = WrappingLabel(lines=2)
+        self.status.setObjectName(f"{name}_said")
+        self.status.setTextInteractionFlags(Qt.TextInteractionFlag.TextSelectableByMouse)
         self._buttons: list[tuple[QPushButton, bool]] = []
         self._question: QDialog | None = None
         self.view.selectionModel().selectionChanged.connect(self._renew)
@@ -164,9 +164,9 @@ class SupervisorDialog(QDialog):
         why = why_not(self._desk.state.link)
         if why:
             self._show_rows([])
-            self.said.setText(why)
+            self.status.setText(why)
         else:
-            self.said.setText(ASKING)
+            self.status.setText(ASKING)
             self._ask_rows()
         self._renew()
 
@@ -198,8 +198,8 @@ class SupervisorDialog(QDialog):
 
     def _say_once_known(self, text: str) -> None:
         """Say this now that the rows are there, unless what became of a change stands there."""
-        if self.said.text() == ASKING:
-            self.said.setText(text)
+        if self.status.text() == ASKING:
+            self.status.setText(text)
 
     def _button(self, name: str, text: str, press: Callable[[], None], *, for_row: bool) -> None:
         button = push_button(name, text, pressed=press)
@@ -218,7 +218,7 @@ class SupervisorDialog(QDialog):
         rows = QVBoxLayout(self)
         rows.addWidget(self.view, 1)
         rows.addLayout(line)
-        rows.addWidget(self.said)
+        rows.addWidget(self.status)
         rows.addWidget(foot)
         # Only within the dialog: Enter would mean nothing once another button had the keyboard.
         foot.button(standard.Close).setDefault(True)
@@ -243,24 +243,24 @@ class SupervisorDialog(QDialog):
 
     def _ask(self, request: Any, words: str, take: Take) -> None:
         """Ask for a change, which is ``words`` to the operator; ``take`` gets the result."""
-        self.said.setText(ASKING)
+        self.status.setText(ASKING)
         self._changing.ask(request, words, take)
 
     def _changed(self, done: str) -> None:
         """Say what was changed, and ask for the rows as they are now unless that ended the link."""
-        self.said.setText(done)
+        self.status.setText(done)
         if self.isVisible() and not why_not(self._desk.state.link):
             self._ask_rows()
 
     def _not_changed(self, why: str) -> None:
-        self.said.setText(f"✘ {why}")
+        self.status.setText(f"✘ {why}")
         if not self.isVisible():
             self._desk.failed.emit(why)
 
     def _not_listed(self, why: str) -> None:
         # Without a link that is said already, and the rows are asked for when it is back.
         if not why_not(self._desk.state.link):
-            self.said.setText(f"✘ {why}")
+            self.status.setText(f"✘ {why}")
 
     def _link_changed(self) -> None:
         # What was asked about one gateway's account must not be answered for another's.

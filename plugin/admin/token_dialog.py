@@ -19,7 +19,7 @@ from qgis.PyQt.QtWidgets import (
     QWidget,
 )
 
-from ...robot_bridge.core.messages import NewToken
+from ...robot_bridge.core.messages.administration import NewToken
 from ..gateway_client.connection_status import ROLES, is_loopback
 from ..ui.dialogs import WrappingLabel
 from ..ui.language import tr

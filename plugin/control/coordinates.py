@@ -14,7 +14,7 @@ from qgis.core import (
     QgsPointXY,
 )
 
-from ...robot_bridge.core.messages import SiteReport
+from ...robot_bridge.core.messages.administration import SiteReport
 from ..layers.site_transform import SiteToMapTransform
 from ..ui.errors import FleetError, MapTransformError
 from ..ui.language import tr

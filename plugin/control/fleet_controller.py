@@ -9,7 +9,9 @@ from qgis.gui import QgsMapCanvas
 from qgis.PyQt.QtCore import QObject, pyqtSignal
 
 from ...robot_bridge.core.clock import Clock
-from ...robot_bridge.core.messages import CommandReport, PauseRobot, ReplannedRobot
+from ...robot_bridge.core.messages.commands import CommandReport
+from ...robot_bridge.core.messages.queues import PauseRobot
+from ...robot_bridge.core.messages.roads import ReplannedRobot
 from ..gateway_client.connection import ConnectionThread
 from ..gateway_client.connection_status import ConnectionPhase, OperatorCredentials
 from ..gateway_client.fleet_state import FleetState, RequestResult
@@ -150,7 +152,7 @@ class FleetController(QObject):
         self.state.replaced.connect(self.failed)
         self.sender.failed.connect(self.failed)
         self.sender.settled.connect(self.settled)
-        self.orders.asked_again.connect(self.messages.end)
+        self.orders.retried.connect(self.messages.end)
         self.sending.failed.connect(lambda text, topics: self.report_failure(text, *topics))
         self.selection.changed.connect(self._endings.selection_changed)
         self.sending.complained.connect(lambda text: self.messages.post(text, Level.WARNING, NO_DRAFT))

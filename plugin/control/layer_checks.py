@@ -251,7 +251,7 @@ class KeepoutCheck:
                 yield 0.0
         return found
 
-    def told(
+    def findings(
         self, draft: PendingCommand, found: Sequence[tuple[CheckedPath, list[str]]], is_watched: bool
     ) -> Steps[Findings]:
         """Return the findings of what was found for each track."""
@@ -327,7 +327,7 @@ class ObstacleCheck:
             ) from error
         return found
 
-    def told(
+    def findings(
         self, draft: PendingCommand, found: Sequence[tuple[CheckedPath, list[Hit]]], is_watched: bool
     ) -> Steps[Findings]:
         """Return the findings, each obstacle once for each track."""
@@ -337,7 +337,7 @@ class ObstacleCheck:
             spot = place if len(track) == 1 else tr("The way to {to}", to=place)
             # Several features may have one name: the nearest counts.
             for name in sorted({name for name, _ in hits}):
-                texts.append(_told(spot, name, min(away for other, away in hits if other == name)))
+                texts.append(_obstacle_text(spot, name, min(away for other, away in hits if other == name)))
             yield 1.0
         return Findings(overridable=tuple(texts))
 
@@ -358,7 +358,7 @@ def _boxes(tracks: Sequence[QgsGeometry], way: QgsCoordinateTransform) -> Steps[
     return [QgsRectangle(*side) for side in sides.tolist()]
 
 
-def _told(spot: str, name: str, away: float) -> str:
+def _obstacle_text(spot: str, name: str, away: float) -> str:
     where = tr("is on") if away <= 0.0 else tr("is {away:.2f} m from", away=away)
     return tr("{spot} {where} {name}. Choose a place or way beside it.", spot=spot, where=where, name=name)
 
@@ -407,7 +407,7 @@ class SurfaceCheck:
                 yield 0.0
         return found
 
-    def told(
+    def findings(
         self, draft: PendingCommand, found: Sequence[tuple[CheckedPath, list[Share]]], is_watched: bool
     ) -> Steps[Findings]:
         """Return the findings; without any road surface nobody can tell."""
@@ -417,11 +417,11 @@ class SurfaceCheck:
         points = [(track, shares) for track, shares in found if len(track) == 1]
         off = [track for track, shares in points if not shares]
         if off:
-            return Findings(warnings=(_told_of_points(off, len(points)),))
+            return Findings(warnings=(_points_text(off, len(points)),))
         legs = [(track, shares) for track, shares in found if len(track) > 1]
         leave = [track for track, shares in legs if _gap(track, shares) > GAP_M]
         if leave:
-            return Findings(warnings=(_told_of_legs(leave, len(legs)),))
+            return Findings(warnings=(_legs_text(leave, len(legs)),))
         return Findings()
 
 
@@ -449,13 +449,13 @@ def _gap(track: CheckedPath, shares: Sequence[Share]) -> float:
     return widest * math.dist(track[0], track[-1])
 
 
-def _told_of_points(off: Sequence[CheckedPath], points: int) -> str:
+def _points_text(off: Sequence[CheckedPath], points: int) -> str:
     if len(off) == 1:
         return tr("{place} is not on a road surface.", place=place_in_words(off[0]))
     return tr("{off} of {points} points are not on a road surface.", off=len(off), points=points)
 
 
-def _told_of_legs(leave: Sequence[CheckedPath], legs: int) -> str:
+def _legs_text(leave: Sequence[CheckedPath], legs: int) -> str:
     if len(leave) == 1:
         return tr("The way to {to} leaves the road surface.", to=place_in_words(leave[0]))
     return tr("{leave} of {legs} legs leave the road surface.", leave=len(leave), legs=legs)

@@ -12,16 +12,10 @@ from qgis.PyQt.QtCore import QObject, QSize, Qt, pyqtSignal
 from qgis.PyQt.QtGui import QResizeEvent
 from qgis.PyQt.QtWidgets import QLabel, QSizePolicy
 
-from ...robot_bridge.core.messages import (
-    Abort,
-    CommandReport,
-    CommandState,
-    LinkReport,
-    Links,
-    Suspension,
-    Suspensions,
-    TaskState,
-)
+from ...robot_bridge.core.messages.administration import LinkReport, Links, Suspension, Suspensions
+from ...robot_bridge.core.messages.commands import CommandReport, CommandState
+from ...robot_bridge.core.messages.queues import TaskState
+from ...robot_bridge.core.messages.robots import Abort
 from ..gateway_client.fleet_state import FleetState
 from ..gateway_client.report_caches import is_pending
 from ..ui.language import time_of_day, tr
@@ -58,7 +52,7 @@ SELECTION = Topic("selection")
 """Other robots have to be selected."""
 NO_DRAFT = Topic("no_draft")
 """There is no draft on the map."""
-PLAN_ASKED = Topic("plan", "asked")
+PLAN_REQUEST = Topic("plan", "asked")
 """Something was asked of cone plans; it ends when something else is."""
 PLAN_SENT = Topic("plan", "sent")
 """What the gateway said of a cone plan; it ends when something else is asked of one, or none is shown."""
@@ -275,13 +269,13 @@ def _not_in_order(link: LinkReport) -> str:
 
 
 def _down(link: LinkReport) -> str:
-    told = {"link": link.link, "reason": link.text or "?"}
+    placeholders = {"link": link.link, "reason": link.text or "?"}
     if not link.count:
-        return tr("Link {link} is down: {reason}.", **told)
+        return tr("Link {link} is down: {reason}.", **placeholders)
     names = ", ".join(link.robots[:SHOWN_ROBOTS])
     if link.count > SHOWN_ROBOTS:
         names = tr("{names} and {count} more", names=names, count=link.count - SHOWN_ROBOTS)
-    return tr("Link {link} is down: {reason}. Nothing reaches {robots}.", robots=names, **told)
+    return tr("Link {link} is down: {reason}. Nothing reaches {robots}.", robots=names, **placeholders)
 
 
 def _suspended(suspension: Suspension) -> str:

@@ -14,7 +14,9 @@ from typing import Any
 import numpy as np
 from qgis.PyQt.QtCore import QObject, pyqtSignal
 
-from ...robot_bridge.core.messages import QueueTask, SetPath, SetPosEnd, SetPosIni, TaskKind, to_json
+from ...robot_bridge.core.messages.json_values import to_json
+from ...robot_bridge.core.messages.queues import QueueTask, TaskKind
+from ...robot_bridge.core.messages.robots import SetPath, SetPosEnd, SetPosIni
 from ..ui.errors import FleetError, NotSentError
 from ..ui.language import tr, tr_count
 
@@ -80,7 +82,7 @@ class ApproachKind(Enum):
     """The target or route is sent, and the robot drives straight to it."""
     PATH = "path"
     """The way is sent, with the cone at its end."""
-    ASKED = "asked"
+    ON_REQUEST = "asked"
     """The target is sent, and the robot asks the gateway for the same way."""
 
 
@@ -101,7 +103,7 @@ class Approach:
     @property
     def is_along_roads(self) -> bool:
         """Whether it leads along the roads."""
-        return self.kind in (ApproachKind.PATH, ApproachKind.ASKED)
+        return self.kind in (ApproachKind.PATH, ApproachKind.ON_REQUEST)
 
 
 NO_APPROACH = Approach()

@@ -9,15 +9,11 @@ from typing import Any
 from qgis.PyQt.QtCore import QObject, pyqtSignal
 
 from ...robot_bridge.core.clock import Clock
-from ...robot_bridge.core.messages import (
-    Abort,
-    AbortAll,
-    ClearEmergencyStop,
-    EmergencyStop,
-    ResolveConflict,
-    Send,
-    to_json,
-)
+from ...robot_bridge.core.messages.commands import AbortAll, Send
+from ...robot_bridge.core.messages.json_values import to_json
+from ...robot_bridge.core.messages.roads import ResolveConflict
+from ...robot_bridge.core.messages.robots import Abort
+from ...robot_bridge.core.messages.safety import ClearEmergencyStop, EmergencyStop
 from ..gateway_client.connection import ConnectionThread
 from ..gateway_client.connection_status import ConnectionPhase
 from ..gateway_client.fleet_state import FleetState, OperatorRequest, RequestResult
@@ -73,10 +69,10 @@ class PendingRequest:
     """An order without an answer: what it is in words, and the draft it came from."""
 
     words: str
-    asked_at: float
+    requested_at: float
     draft: PendingCommand | None = None
     stops: bool = False
-    told_slow: str = ""
+    slow_notice: str = ""
     topics: tuple[Topic, ...] = ()
     """What a refusal is about."""
 
@@ -88,7 +84,7 @@ class RequestTracker(QObject):
     """What became of a request: the RequestResult."""
     refused = pyqtSignal(str, object, object)
     """An order was not carried out: the text, the draft it came from or None, and the text's topics."""
-    asked_again = pyqtSignal(object)
+    retried = pyqtSignal(object)
     """Something is asked for now that may have been refused before: the Topic of that."""
     accepted = pyqtSignal(str)
     kept = pyqtSignal(str, str)
@@ -219,8 +215,8 @@ class RequestTracker(QObject):
         pending = self._pending.pop(answer.order.key, None)
         if pending is None:
             return
-        if pending.told_slow:
-            self.settled.emit(pending.told_slow)
+        if pending.slow_notice:
+            self.settled.emit(pending.slow_notice)
         if answer.error is not None:
             self.refused.emit(f"{pending.words}: {answer.error}", pending.draft, pending.topics)
             return
@@ -251,14 +247,14 @@ class RequestTracker(QObject):
         """Tell once of each order that waits for its answer for too long."""
         now = self._clock.steady()
         for pending in self._pending.values():
-            if not pending.told_slow and now - pending.asked_at > SLOW_AFTER:
-                pending.told_slow = tr(
+            if not pending.slow_notice and now - pending.requested_at > SLOW_AFTER:
+                pending.slow_notice = tr(
                     "{words}: the gateway has not answered for {seconds:g} s, so it may not have "
                     "arrived. It is repeated when the link is back; it is never done twice.",
                     words=pending.words,
                     seconds=SLOW_AFTER,
                 )
-                self.slow.emit(pending.told_slow)
+                self.slow.emit(pending.slow_notice)
 
     def _command(
         self,
@@ -282,13 +278,13 @@ class RequestTracker(QObject):
         more: tuple[Topic, ...] = (),
     ) -> str:
         topics = topics_of(order.method, order.params) + more
-        self.asked_again.emit(topics[0])
+        self.retried.emit(topics[0])
         try:
             self._sender.submit(order)
         except NotSentError as error:
             text = tr("{words} was NOT sent: {error}", words=words, error=error)
             raise NotSentError(text, topics) from error
-        self._pending[order.key] = PendingRequest(words, order.asked_at, draft, topics=topics)
+        self._pending[order.key] = PendingRequest(words, order.requested_at, draft, topics=topics)
         return order.key
 
 

@@ -8,13 +8,8 @@ from dataclasses import dataclass
 from qgis.PyQt.QtCore import QObject, pyqtSignal
 from qgis.PyQt.QtWidgets import QCheckBox, QDoubleSpinBox, QLineEdit, QWidget
 
-from ...robot_bridge.core.messages import (
-    CloseRoad,
-    ClosureReport,
-    OpenRoad,
-    ResolveConflict,
-    to_json,
-)
+from ...robot_bridge.core.messages.json_values import to_json
+from ...robot_bridge.core.messages.roads import CloseRoad, ClosureReport, OpenRoad, ResolveConflict
 from ..gateway_client.fleet_state import FleetState, OperatorRequest
 from ..ui.dialogs import QuestionDialog
 from ..ui.language import tr

@@ -8,7 +8,10 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from ...robot_bridge.core.messages import Ability, CommandReport, RobotState, SetPath, SetPosEnd, TaskState
+from ...robot_bridge.core.messages.commands import CommandReport
+from ...robot_bridge.core.messages.queues import TaskState
+from ...robot_bridge.core.messages.robots import SetPath, SetPosEnd
+from ...robot_bridge.core.messages.safety import Ability, RobotState
 from ..gateway_client.command_cache import CommandCache, command_in_words
 from ..gateway_client.report_caches import QueueCache
 from ..gateway_client.robot_states import ROBOT_STATES, RobotView
@@ -84,15 +87,15 @@ _NEEDED: dict[str, Ability] = {CONE: "targets", TARGETS: "targets", ROUTE: "path
 
 def has_ability(robot: RobotView | None, ability: Ability) -> bool:
     """Tell whether a robot did not say that it cannot do this."""
-    abilities = None if robot is None else robot.told.get("abilities")
+    abilities = None if robot is None else robot.values.get("abilities")
     return abilities is None or ability in abilities.split()
 
 
 def check_abilities(draft: PendingCommand, robot: RobotView | None) -> Findings:
     """Refuse what the draft's ``robot`` cannot do; warn where it goes to a cone target without a cone."""
-    if robot is None or robot.told.get("abilities") is None:
+    if robot is None or robot.values.get("abilities") is None:
         return Findings()
-    if not robot.told["abilities"]:
+    if not robot.values["abilities"]:
         return Findings(refused=(tr("{robot} is only seen: it takes no commands.", robot=draft.robot),))
     if not has_ability(robot, _NEEDED[draft.kind]):
         texts = {
@@ -117,7 +120,7 @@ REPLACING = (CONE, ROUTE)
 GONE = (RobotState.LOST, RobotState.OFFLINE)
 
 
-def check_heard(draft: PendingCommand, robot: RobotView | None) -> Findings:
+def check_last_seen(draft: PendingCommand, robot: RobotView | None) -> Findings:
     """Warn where nothing is heard of the draft's ``robot``: what is sent waits, or is not carried out."""
     if robot is None or robot.state not in GONE:
         return Findings()
@@ -200,7 +203,7 @@ class TargetCheck:
         for end, number, away in sorted(zip(one.tolist(), other.tolist(), apart.tolist(), strict=True)):
             target = self._targets[number]
             if target.robot != draft.robot and away < CLEAR_M:
-                found[_told(*ends[end].tolist(), target, away)] = None
+                found[_target_text(*ends[end].tolist(), target, away)] = None
         return Findings(overridable=tuple(found))
 
     def _read_news(self) -> None:
@@ -232,7 +235,7 @@ def _now(report: CommandReport | None) -> Iterator[OtherTarget]:
         yield OtherTarget(report.robot, tr("the end of the route"), x, y)
 
 
-def _told(x: float, y: float, target: OtherTarget, away: float) -> str:
+def _target_text(x: float, y: float, target: OtherTarget, away: float) -> str:
     return tr(
         "({x:.2f}, {y:.2f}) m is {away:.2f} m from {what} of {robot} at {other_x:.2f}, {other_y:.2f}: keep "
         "{clear_m:g} m between targets.",

@@ -10,13 +10,9 @@ from typing import Any, NamedTuple
 from qgis.PyQt.QtCore import QObject, pyqtSignal
 
 from ...robot_bridge.core.clock import Clock
-from ...robot_bridge.core.messages import (
-    GetRoute,
-    RobotReport,
-    RouteReport,
-    route_report,
-    to_json,
-)
+from ...robot_bridge.core.messages.json_values import route_report, to_json
+from ...robot_bridge.core.messages.positions import RobotReport
+from ...robot_bridge.core.messages.roads import GetRoute, RouteReport
 from ..gateway_client.fleet_state import FleetState, OperatorRequest, RequestResult
 from ..ui.errors import FleetError, NotSentError
 from ..ui.language import tr
@@ -60,7 +56,7 @@ class RouteQuery(QObject):
         self._sender = sender
         self._clock = clock
         self._numbers = itertools.count(1)
-        self._asked: tuple[str, RouteQuestion, float] | None = None
+        self._pending: tuple[str, RouteQuestion, float] | None = None
         self._next: RouteQuestion | None = None
         self.route: RouteReport | None = None
         self.wishes = SHORTEST
@@ -73,7 +69,7 @@ class RouteQuery(QObject):
         """Whether a way to where the operator clicked is still to be answered."""
         if not self._waits():
             return False
-        return self._asked[1].taken or (self._next is not None and self._next.taken)
+        return self._pending[1].taken or (self._next is not None and self._next.taken)
 
     def want(self, question: RouteQuestion) -> None:
         """Ask for a way, now or when the question before is answered; raises NotSentError."""
@@ -85,7 +81,7 @@ class RouteQuery(QObject):
 
     def forget(self) -> None:
         """Show no way, and take no answer any more."""
-        self._asked = self._next = self.route = None
+        self._pending = self._next = self.route = None
         self.why_not = ""
         self.shown.emit()
 
@@ -93,9 +89,9 @@ class RouteQuery(QObject):
         """Take in the answer to a question; false when it is one to something else."""
         if answer.order.method != GetRoute.method:
             return False
-        if self._asked is None or answer.order.key != self._asked[0]:
+        if self._pending is None or answer.order.key != self._pending[0]:
             return True
-        question, self._asked = self._asked[1], None
+        question, self._pending = self._pending[1], None
         self._show(question, *route_in(answer))
         self._ask_next()
         return True
@@ -105,22 +101,22 @@ class RouteQuery(QObject):
 
         One that only follows the mouse is given up when another waits behind it.
         """
-        if self._asked is None or self._waits():
+        if self._pending is None or self._waits():
             return
-        question = self._asked[1]
+        question = self._pending[1]
         if not question.taken and self._next is None:
             return
-        self._asked = None
+        self._pending = None
         if question.taken:
             self._show(question, None, _click_unanswered())
         self._ask_next()
 
     def _waits(self) -> bool:
         """Whether a question is asked whose answer may still come in time."""
-        if self._asked is None:
+        if self._pending is None:
             return False
-        _, question, asked_at = self._asked
-        return self._clock.steady() - asked_at < (SLOW_AFTER if question.taken else UNANSWERED_AFTER)
+        _, question, requested_at = self._pending
+        return self._clock.steady() - requested_at < (SLOW_AFTER if question.taken else UNANSWERED_AFTER)
 
     def _ask_next(self) -> None:
         following, self._next = self._next, None
@@ -149,7 +145,7 @@ class RouteQuery(QObject):
         )
         key = f"route-{id(self)}-{next(self._numbers)}"
         self._sender.submit(OperatorRequest(key, request.method, to_json(request), self._clock.steady()))
-        self._asked = key, question, self._clock.steady()
+        self._pending = key, question, self._clock.steady()
 
 
 def route_in(answer: RequestResult) -> tuple[RouteReport | None, str]:
@@ -217,7 +213,7 @@ ASKS = ("asks", "asks and cones")
 TAKES_CONES = ("cones", "asks and cones")
 
 
-class _Asked(NamedTuple):
+class _TargetQuery(NamedTuple):
     key: str
     robot: str
     goal: Point
@@ -247,10 +243,10 @@ class TargetRoutes(QObject):
         self._board, self._checks = board, checks
         self._state, self._sender, self._clock = state, sender, state.clock
         self._prefix, self._numbers = f"target-way-{id(self)}-", itertools.count(1)
-        self._asked: _Asked | None = None
-        self._beside: dict[_Asked, PendingCommand] = {}
+        self._pending: _TargetQuery | None = None
+        self._beside: dict[_TargetQuery, PendingCommand] = {}
         """Questions for the ways of targets that go out when they are known."""
-        self._asked_at = -math.inf
+        self._requested_at = -math.inf
         self._is_amending = False
         board.changed.connect(self.watch)
 
@@ -276,12 +272,12 @@ class TargetRoutes(QObject):
 
     def seek_beside(self, draft: PendingCommand) -> None:
         """Find the way of a target that is no more on the map; ``found`` tells of it."""
-        asked = self._ask(draft)
-        if asked is None:
+        query = self._ask(draft)
+        if query is None:
             refused = Approach(ApproachKind.UNKNOWN, refusal=_target_unanswered())
             self.found.emit(replace(draft, way=refused, is_checked=False))
         else:
-            self._beside[asked] = draft
+            self._beside[query] = draft
 
     def withdraw(self) -> list[PendingCommand]:
         """Seek no way any more of targets that are not on the map; return them."""
@@ -306,7 +302,7 @@ class TargetRoutes(QObject):
             fresh = self.begun(draft)
             if fresh.way.kind is ApproachKind.SOUGHT and draft.way.kind in (
                 ApproachKind.PATH,
-                ApproachKind.ASKED,
+                ApproachKind.ON_REQUEST,
             ):
                 # The one before stays on the map until the other is known.
                 self._seek(draft)
@@ -317,17 +313,17 @@ class TargetRoutes(QObject):
         """Take in the answer to a question for a target's way; false when it is one to something else."""
         if not answer.order.key.startswith(self._prefix):
             return False
-        beside = next((asked for asked in self._beside if asked.key == answer.order.key), None)
+        beside = next((query for query in self._beside if query.key == answer.order.key), None)
         if beside is not None:
             self.found.emit(replace(self._answered(self._beside.pop(beside), answer), is_checked=False))
             return True
-        if self._asked is None or answer.order.key != self._asked.key:
+        if self._pending is None or answer.order.key != self._pending.key:
             return True
-        asked, self._asked = self._asked, None
+        query, self._pending = self._pending, None
         draft = self._board.draft
         if draft is None or draft.kind != CONE or self._checks.has_order:
             return True
-        if (draft.robot, draft.points[0]) == (asked.robot, asked.goal):
+        if (draft.robot, draft.points[0]) == (query.robot, query.goal):
             self._amend(self._answered(draft, answer))
         return True
 
@@ -343,21 +339,21 @@ class TargetRoutes(QObject):
 
     def _seek(self, draft: PendingCommand) -> None:
         now, goal = self._clock.steady(), draft.points[0]
-        asked = self._asked
-        if asked is not None and (asked.robot, asked.goal) == (draft.robot, goal):
-            if now - asked.at > SLOW_AFTER:
-                self._asked = None
+        query = self._pending
+        if query is not None and (query.robot, query.goal) == (draft.robot, goal):
+            if now - query.at > SLOW_AFTER:
+                self._pending = None
                 self._amend(replace(draft, way=Approach(ApproachKind.UNKNOWN, refusal=_target_unanswered())))
             return
-        if draft.way.kind is not ApproachKind.SOUGHT and now - self._asked_at < ASK_EVERY:
+        if draft.way.kind is not ApproachKind.SOUGHT and now - self._requested_at < ASK_EVERY:
             return
-        asked = self._ask(draft)
-        if asked is not None:
-            self._asked, self._asked_at = asked, now
+        query = self._ask(draft)
+        if query is not None:
+            self._pending, self._requested_at = query, now
         elif draft.way.kind is ApproachKind.SOUGHT:
             self._amend(replace(draft, way=Approach(ApproachKind.UNKNOWN, refusal=_target_unanswered())))
 
-    def _ask(self, draft: PendingCommand) -> _Asked | None:
+    def _ask(self, draft: PendingCommand) -> _TargetQuery | None:
         """Ask for the way of a target; return None where that cannot be asked."""
         goal, now = draft.points[0], self._clock.steady()
         place = _robot_position(self._state.report_of(draft.robot))
@@ -371,13 +367,13 @@ class TargetRoutes(QObject):
             self._sender.submit(OperatorRequest(key, request.method, to_json(request), now))
         except NotSentError:
             return None
-        return _Asked(key, draft.robot, goal, now)
+        return _TargetQuery(key, draft.robot, goal, now)
 
     def _give_up_beside(self) -> None:
         now = self._clock.steady()
-        for asked, draft in list(self._beside.items()):
-            if now - asked.at > SLOW_AFTER:
-                del self._beside[asked]
+        for query, draft in list(self._beside.items()):
+            if now - query.at > SLOW_AFTER:
+                del self._beside[query]
                 refused = Approach(ApproachKind.UNKNOWN, refusal=_target_unanswered())
                 self.found.emit(replace(draft, way=refused, is_checked=False))
 
@@ -393,7 +389,7 @@ class TargetRoutes(QObject):
             if place is None:
                 return replace(draft, way=Approach(ApproachKind.UNKNOWN, note=_position_unknown(draft.robot)))
             return self._straight(draft, place, _no_route(why if route is None else route.note))
-        kind = ApproachKind.PATH if declared in TAKES_CONES else ApproachKind.ASKED
+        kind = ApproachKind.PATH if declared in TAKES_CONES else ApproachKind.ON_REQUEST
         way = Approach(kind, tuple(route.points), route_in_words(route, SHORTEST), declared=declared)
         return replace(draft, way=way)
 

@@ -9,7 +9,7 @@ from typing import Any, TypeVar
 from qgis.core import QgsProject, QgsVectorLayer, QgsWkbTypes
 from qgis.PyQt.QtCore import QObject, QTimer, pyqtSignal
 
-from ...robot_bridge.core.messages import SiteReport
+from ...robot_bridge.core.messages.administration import SiteReport
 from ..gateway_client.fleet_state import FleetState
 from ..layers.layer_source import LayerWatch
 from ..layers.roles import layers_with_role
@@ -19,7 +19,7 @@ from ..ui.language import tr
 from ..ui.scheduling import CooperativeTask, Steps, scaled_progress
 from .layer_checks import CheckedPath, KeepoutCheck, ObstacleCheck, SurfaceCheck, is_looked_at
 from .pending_command import ROUTE, Findings, PendingCommand, PendingCommandModel, Point
-from .robot_checks import TargetCheck, check_abilities, check_heard, check_orders, has_ability
+from .robot_checks import TargetCheck, check_abilities, check_last_seen, check_orders, has_ability
 
 AT_ONCE = 500
 """Tracks that are gone through between two looks at the clock."""
@@ -151,7 +151,7 @@ class LayerCheck(QObject):
         self._kept[check] = still_needed
         # As with the alarms: of layers with nothing in them, as published sites without surfaces have them.
         is_watched = any(layer.featureCount() != 0 for layer in layers)
-        return (yield from _told(check, draft, _without_repetition(draft, found_for), is_watched))
+        return (yield from _checked(check, draft, _without_repetition(draft, found_for), is_watched))
 
     def _unseen(self) -> Findings:
         """Tell of what a draft has to be held against and cannot be."""
@@ -192,22 +192,24 @@ class LayerCheck(QObject):
         self.changed.emit()
 
 
-def _told(
+def _checked(
     check: Check, draft: PendingCommand, found: Sequence[tuple[CheckedPath, list[Any]]], is_watched: bool
 ) -> Steps[Findings]:
     """Return what is to be told of what was ``found``, and which of that is about the way to the draft."""
     if not draft.way.line:
-        return (yield from check.told(draft, found, is_watched))
-    of_place = yield from check.told(draft, [one for one in found if one[0] != draft.way.line], is_watched)
+        return (yield from check.findings(draft, found, is_watched))
+    of_place = yield from check.findings(
+        draft, [one for one in found if one[0] != draft.way.line], is_watched
+    )
     if draft.kind == ROUTE:
         # By itself: what is told of the route's own legs must not change as its robot moves.
         way = [one for one in found if one[0] == draft.way.line]
-        of_way = yield from check.told(draft, way, is_watched)
+        of_way = yield from check.findings(draft, way, is_watched)
         return of_place + replace(of_way, of_way=of_way.overridable + of_way.warnings)
-    told = yield from check.told(draft, found, is_watched)
-    texts = told.overridable + told.warnings
+    findings = yield from check.findings(draft, found, is_watched)
+    texts = findings.overridable + findings.warnings
     # What is told of the place alone is not of the way to it.
-    return replace(told, of_way=tuple(text for text in texts if text not in of_place.all_texts))
+    return replace(findings, of_way=tuple(text for text in texts if text not in of_place.all_texts))
 
 
 def _without_repetition(
@@ -277,7 +279,7 @@ class CommandChecks(QObject):
         # At the end, so that nobody is sent there meanwhile.
         found += self._targets.check_command(draft)
         robot = self._state.robot(draft.robot)
-        found += check_heard(draft, robot) + check_abilities(draft, robot)
+        found += check_last_seen(draft, robot) + check_abilities(draft, robot)
         found += check_orders(draft, self._state.commands.task_of(draft.robot), self._state.link.operator)
         override = draft.override if found.overridable == draft.findings.overridable else None
         cones = has_ability(robot, "cones")

@@ -11,14 +11,9 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from ...robot_bridge.core.messages import (
-    Abort,
-    CommandReport,
-    CommandState,
-    SetPath,
-    SetPosEnd,
-    command_report,
-)
+from ...robot_bridge.core.messages.commands import CommandReport, CommandState
+from ...robot_bridge.core.messages.json_values import command_report
+from ...robot_bridge.core.messages.robots import Abort, SetPath, SetPosEnd
 from ..ui.language import tr
 from .robot_states import COMMAND_STATES
 
@@ -113,20 +108,20 @@ class CommandCache:
         """
         changed = []
         late = False
-        newest = asked_at(next(reversed(self._reports.values()))) if self._reports else 0.0
+        newest = requested_at(next(reversed(self._reports.values()))) if self._reports else 0.0
         for report in reports:
             known = self._reports.get(report.command)
             if known is not None and (len(report.steps) < len(known.steps) or report == known):
                 continue
             if known is None:
-                late, newest = late or asked_at(report) < newest, max(newest, asked_at(report))
+                late, newest = late or requested_at(report) < newest, max(newest, requested_at(report))
             self._reports[report.command] = report
             changed.append(report)
         if not changed:
             return []
         if late:
             # What was asked for before this desk came is told after what came since.
-            self._reports = dict(sorted(self._reports.items(), key=lambda item: asked_at(item[1])))
+            self._reports = dict(sorted(self._reports.items(), key=lambda item: requested_at(item[1])))
         self._forget_oldest()
         self._look_through()
         return [report for report in changed if report.command in self._reports]
@@ -179,7 +174,7 @@ class CommandCache:
                     self._reached[report.robot] = report
 
 
-def asked_at(report: CommandReport) -> float:
+def requested_at(report: CommandReport) -> float:
     """Return when a command was asked for, seconds since 1970; 0 where that was not told."""
     return report.steps[0].at if report.steps else 0.0
 

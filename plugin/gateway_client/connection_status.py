@@ -11,7 +11,7 @@ from types import ModuleType
 from typing import Any
 from urllib.parse import urlsplit
 
-from ...robot_bridge.core.messages import Role
+from ...robot_bridge.core.messages.operator_requests import Role
 from ..ui.errors import AddressError, GatewayLinkError
 from ..ui.language import tr
 
@@ -226,7 +226,7 @@ def _place(url: str) -> str:
 
 
 def _bad_status(response: Any, url: str) -> GatewayLinkError:
-    status, said = response.status_code, _said(response)
+    status, said = response.status_code, _reason_in(response)
     if status == 404:
         return GatewayLinkError(
             tr(
@@ -350,7 +350,7 @@ def _bad_certificate(error: ssl.SSLCertVerificationError, place: str) -> Gateway
     )
 
 
-def _said(response: Any) -> str:
+def _reason_in(response: Any) -> str:
     """Return the gateway's own words, which are one line of plain text."""
     if not str(response.headers.get("Content-Type", "")).startswith("text/plain"):
         return ""

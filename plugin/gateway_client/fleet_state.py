@@ -10,22 +10,13 @@ from typing import Any, Protocol
 from qgis.PyQt.QtCore import QObject, QTimer, pyqtSignal
 
 from ...robot_bridge.core.clock import Clock
-from ...robot_bridge.core.messages import (
-    Closures,
-    CommandReport,
-    Conflicts,
-    EmergencyReport,
-    Geofence,
-    Links,
-    Nearness,
-    ObservationReport,
-    PlacementReport,
-    QueueReport,
-    ReplannedRobot,
-    RobotReport,
-    SiteReport,
-    Suspensions,
-)
+from ...robot_bridge.core.messages.administration import Links, SiteReport, Suspensions
+from ...robot_bridge.core.messages.commands import CommandReport
+from ...robot_bridge.core.messages.positions import RobotReport
+from ...robot_bridge.core.messages.queues import QueueReport
+from ...robot_bridge.core.messages.records import ObservationReport, PlacementReport
+from ...robot_bridge.core.messages.roads import Closures, Conflicts, ReplannedRobot
+from ...robot_bridge.core.messages.safety import EmergencyReport, Geofence, Nearness
 from ..ui.language import tr
 from ..ui.scheduling import PULL_EVERY_MS
 from .command_cache import CommandCache
@@ -51,14 +42,14 @@ class OperatorRequest:
     """One thing that the operator asked for, with one button pressed once.
 
     ``key`` stays the same however often the order has to be repeated; for ``send`` it is the command's id,
-    which lets the gateway recognise a repetition. ``asked_at`` is on the monotonic clock. ``lasting`` is for
-    what is right however late it comes, as an emergency stop is.
+    which lets the gateway recognise a repetition. ``requested_at`` is on the monotonic clock. ``lasting`` is
+    for what is right however late it comes, as an emergency stop is.
     """
 
     key: str
     method: str
     params: dict[str, Any] = field(default_factory=dict)
-    asked_at: float = 0.0
+    requested_at: float = 0.0
     lasting: bool = False
 
 

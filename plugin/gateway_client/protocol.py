@@ -9,27 +9,14 @@ from typing import Any
 
 from ...robot_bridge.core.clock import Clock
 from ...robot_bridge.core.json_decoder import DOCUMENT, check_bounds
-from ...robot_bridge.core.messages import (
-    LONGEST_OPERATOR,
-    PROTOCOL_VERSION,
-    ClearEmergencyStop,
-    EmergencyStop,
-    GetClosures,
-    GetCommands,
-    GetPlans,
-    GetQueue,
-    Hello,
-    PositionForm,
-    SiteReport,
-    Subscribe,
+from ...robot_bridge.core.messages.administration import PROTOCOL_VERSION, Hello, SiteReport
+from ...robot_bridge.core.messages.commands import GetCommands
+from ...robot_bridge.core.messages.json_values import (
     closures_report,
     conflicts_report,
     emergency_report,
-    geofence_report,
     links_report,
-    nearness_report,
     observation_report,
-    one_line,
     placement_report,
     queue_report,
     replanned_robot,
@@ -37,6 +24,17 @@ from ...robot_bridge.core.messages import (
     suspensions_report,
     to_json,
 )
+from ...robot_bridge.core.messages.plans import GetPlans
+from ...robot_bridge.core.messages.positions import PositionForm, Subscribe
+from ...robot_bridge.core.messages.queues import GetQueue
+from ...robot_bridge.core.messages.roads import GetClosures
+from ...robot_bridge.core.messages.safety import (
+    ClearEmergencyStop,
+    EmergencyStop,
+    geofence_report,
+    nearness_report,
+)
+from ...robot_bridge.core.messages.validation import LONGEST_OPERATOR, one_line
 from ..ui.errors import GatewayLinkError
 from ..ui.language import tr
 from .command_cache import command_in, commands_in
@@ -105,7 +103,7 @@ class RequestOutbox:
     def renew(self, now: float) -> tuple[list[OperatorRequest], list[OperatorRequest]]:
         """Return the orders to send on a new link, oldest first, and those that are too old, taken out."""
         limit = now - self._repeat_within
-        too_old = [o for o in self._waiting.values() if o.asked_at < limit and not o.lasting]
+        too_old = [o for o in self._waiting.values() if o.requested_at < limit and not o.lasting]
         for order in too_old:
             del self._waiting[order.key]
         return list(self._waiting.values()), too_old
@@ -140,14 +138,14 @@ class GatewayProtocol:
         self._clock = clock
         self._outbox = RequestOutbox()
         self._ids = itertools.count(1)
-        self._asked: dict[int, OperatorRequest] = {}
+        self._pending: dict[int, OperatorRequest] = {}
         self.ready = False
         self.operator, self.role = "", ""
         """Who this desk is to the gateway, and in which role; empty as long as that is not known."""
 
     def begin(self) -> list[str]:
         """Return the first texts to send on a new link."""
-        self._asked.clear()
+        self._pending.clear()
         self.ready = False
         # A name that the gateway would refuse must not keep its operator away.
         name = one_line(self._operator.strip(), LONGEST_OPERATOR)
@@ -222,7 +220,7 @@ class GatewayProtocol:
 
     def _request(self, order: OperatorRequest) -> str:
         number = next(self._ids)
-        self._asked[number] = order
+        self._pending[number] = order
         return json.dumps({"jsonrpc": "2.0", "id": number, "method": order.method, "params": order.params})
 
     def _notified(self, method: str, params: dict[str, Any]) -> None:
@@ -238,7 +236,7 @@ class GatewayProtocol:
         # Another notification is of a newer gateway and nothing that this desk asked for.
 
     def _answered(self, message: dict[str, Any]) -> list[str]:
-        order = self._asked.pop(message.get("id", 0), None)
+        order = self._pending.pop(message.get("id", 0), None)
         if order is None:
             if "error" in message:
                 raise GatewayLinkError(
@@ -305,7 +303,7 @@ class GatewayProtocol:
         orders, too_old = self._outbox.renew(self._clock.steady())
         for order in too_old:
             self._buffer.add_answer(
-                RequestResult(order, error=_too_old(self._clock.steady() - order.asked_at))
+                RequestResult(order, error=_too_old(self._clock.steady() - order.requested_at))
             )
         first = [
             OperatorRequest(

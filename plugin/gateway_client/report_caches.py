@@ -9,22 +9,16 @@ from typing import Any
 from ...robot_bridge.core.assignment.plan import ConePlan, plan_of_document
 from ...robot_bridge.core.clock import Clock
 from ...robot_bridge.core.errors import PlanFileError
-from ...robot_bridge.core.messages import (
-    FenceAlarm,
-    Geofence,
-    Nearness,
-    NearnessAlarm,
-    ObservationReport,
-    ObservationState,
-    PlacementReport,
-    PlanReport,
-    PlanState,
-    QueueReport,
+from ...robot_bridge.core.messages.json_values import (
     observation_report,
     placement_report,
     plan_report,
     queue_report,
 )
+from ...robot_bridge.core.messages.plans import PlanReport, PlanState
+from ...robot_bridge.core.messages.queues import QueueReport
+from ...robot_bridge.core.messages.records import ObservationReport, ObservationState, PlacementReport
+from ...robot_bridge.core.messages.safety import FenceAlarm, Geofence, Nearness, NearnessAlarm
 from ..ui.language import tr
 
 
@@ -116,13 +110,13 @@ class KnownPlan:
         return self.whole_at == self.report.revision
 
 
-def newer_plan(known: KnownPlan | None, told: KnownPlan) -> KnownPlan:
-    """Return what is known of a plan once ``told`` was heard, which may have been overtaken on its way."""
+def newer_plan(known: KnownPlan | None, reported: KnownPlan) -> KnownPlan:
+    """Return what is known of a plan once ``reported`` came, which may have been overtaken on its way."""
     if known is None:
-        return told
-    if told.report.revision < known.report.revision:
+        return reported
+    if reported.report.revision < known.report.revision:
         return known
-    return replace(known, report=told.report) if told.whole_at < 0 else told
+    return replace(known, report=reported.report) if reported.whole_at < 0 else reported
 
 
 class PlanCache:
@@ -146,7 +140,7 @@ class PlanCache:
             (one for one in self if one.is_open), key=lambda one: one.report.submitted_at, reverse=True
         )
 
-    def merge(self, told: Mapping[str, KnownPlan], is_driving: bool | None = None) -> list[str]:
+    def merge(self, reported: Mapping[str, KnownPlan], is_driving: bool | None = None) -> list[str]:
         """Take in plans by their names and return those of which they tell something new.
 
         With ``is_driving``, which begins a link, there are no others.
@@ -154,11 +148,11 @@ class PlanCache:
         gone: list[str] = []
         if is_driving is not None:
             self.is_driving = is_driving
-            gone = [name for name in self._plans if name not in told]
+            gone = [name for name in self._plans if name not in reported]
             for name in gone:
                 del self._plans[name]
         new = []
-        for name, one in told.items():
+        for name, one in reported.items():
             known = self._plans.get(name)
             if is_driving is not None and known is not None and one.whole_at < 0:
                 one = replace(known, report=one.report)
@@ -204,8 +198,7 @@ def plans_in(values: dict[str, Any]) -> list[KnownPlan]:
 
 
 MOST_PLACEMENTS = 20_000
-MOST_ASKED = 5000
-"""As many as a gateway tells at once."""
+"""cones that are kept; a gateway reports at most ``messages.records.MOST_PLACEMENTS`` at once."""
 
 
 class PlacedConeCache:

@@ -10,17 +10,11 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from ...robot_bridge.core.messages import (
-    CommandState,
-    QueueReport,
-    QueueState,
-    RobotReport,
-    RobotState,
-    TaskKind,
-    TaskReport,
-    TaskState,
-    robot_report,
-)
+from ...robot_bridge.core.messages.commands import CommandState
+from ...robot_bridge.core.messages.json_values import robot_report
+from ...robot_bridge.core.messages.positions import RobotReport
+from ...robot_bridge.core.messages.queues import QueueReport, QueueState, TaskKind, TaskReport, TaskState
+from ...robot_bridge.core.messages.safety import RobotState
 from ..ui.language import time_of_day, tr, tr_count
 from .robot_table import STATES, RemovedRobots, RobotTable
 
@@ -46,19 +40,19 @@ class RobotView:
     """One robot at one moment: what was told of it last, its state now and its age in seconds now."""
 
     name: str
-    told: dict[str, Any]
+    values: dict[str, Any]
     state: RobotState
     age: float
 
     @cached_property
     def report(self) -> RobotReport:
         """The newest report."""
-        return robot_report(self.told)
+        return robot_report(self.values)
 
     @property
     def has_pose(self) -> bool:
         """Whether the robot ever said where it is."""
-        return self.told.get("x") is not None and self.told.get("y") is not None
+        return self.values.get("x") is not None and self.values.get("y") is not None
 
 
 @dataclass(frozen=True)
@@ -144,7 +138,7 @@ class RobotStates:
         rows = self._sorted() if rows is None else rows
         state, age = self._aged(now, rows)
         return [
-            RobotView(self._seen.names[row], self._seen.told(row), STATES[code], seconds)
+            RobotView(self._seen.names[row], self._seen.row_values(row), STATES[code], seconds)
             for row, code, seconds in zip(rows, state.tolist(), age.tolist(), strict=True)
         ]
 
@@ -189,9 +183,9 @@ class RobotStates:
         places, words = self._seen.texts("abilities")
         return places == words.index("") if "" in words else np.zeros(len(places), dtype=bool)
 
-    def told(self, row: int) -> dict[str, Any]:
+    def row_values(self, row: int) -> dict[str, Any]:
         """Return what was told last of the robot in ``row``, as it came."""
-        return self._seen.told(row)
+        return self._seen.row_values(row)
 
     def by_name(self) -> list[int]:
         """Return every row, in the order of the robots' names."""
@@ -215,10 +209,10 @@ class RobotStates:
         age = self._seen.column("age")[rows] + np.maximum(0.0, now - self._seen.column("received")[rows])
         state = self._seen.column("state")[rows].astype(np.intp)
         silent = np.flatnonzero(~(age < self.stale_after))
-        told, ended_in_order = state[silent], self._seen.column("stopped")[rows][silent] == 1.0
+        reported, ended_in_order = state[silent], self._seen.column("stopped")[rows][silent] == 1.0
         here = np.where(ended_in_order, _OFFLINE, np.where(age[silent] < self.lost_after, _STALE, _LOST))
         # The gateway may know more than the age tells, such as a link closed in good order.
-        state[silent] = np.where((told == _LOST) | (told == _OFFLINE), told, here)
+        state[silent] = np.where((reported == _LOST) | (reported == _OFFLINE), reported, here)
         return state, age
 
 

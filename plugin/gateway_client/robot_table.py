@@ -8,15 +8,15 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from ...robot_bridge.core.messages import (
+from ...robot_bridge.core.messages.json_values import robot_report
+from ...robot_bridge.core.messages.positions import (
     POSITION_ALWAYS,
     POSITION_FLAGS,
     POSITION_NUMBERS,
     POSITION_TEXTS,
     RobotReport,
-    RobotState,
-    robot_report,
 )
+from ...robot_bridge.core.messages.safety import RobotState
 from ...robot_bridge.core.position_frame import split_frame
 
 # Ten thousand robots ten times a second are too many to make an object of each. A snapshot becomes columns on
@@ -103,7 +103,7 @@ class RobotTable:
         """Return the row of robot ``name``, None if nothing was told of it."""
         return self._rows.get(name)
 
-    def told(self, row: int) -> dict[str, Any]:
+    def row_values(self, row: int) -> dict[str, Any]:
         """Return what was told last of the robot in ``row``: what its report holds, as JSON values."""
         values = zip(COLUMNS, self._numbers[:, row].tolist(), strict=True)
         # NaN is the one value that is not equal to itself.
@@ -119,7 +119,7 @@ class RobotTable:
 
     def report(self, row: int) -> RobotReport:
         """Return what was told last of the robot in ``row``."""
-        return robot_report(self.told(row))
+        return robot_report(self.row_values(row))
 
     def merge(self, newer: RobotTable) -> RemovedRobots:
         """Take over what is in ``newer``, which is used up, unless it arrived before what is known.
@@ -202,7 +202,7 @@ _STATE_CODES = {state.value: code for code, state in enumerate(STATES)}
 
 
 def table_from_rows(
-    told: Sequence[dict[str, Any]], received: float, params: dict[str, Any] | None = None
+    rows: Sequence[dict[str, Any]], received: float, params: dict[str, Any] | None = None
 ) -> RobotTable:
     """Return the reports of one message, all of which arrived at ``received``.
 
@@ -212,20 +212,20 @@ def table_from_rows(
     :raises KeyError: when a report lacks its robot, state, age or link.
     """
     # What is told twice counts as told last, in the place where it was told first.
-    told = list({values["robot"]: values for values in told}.values())
-    names = [values["robot"] for values in told]
+    rows = list({values["robot"]: values for values in rows}.values())
+    names = [values["robot"] for values in rows]
     if not all(isinstance(name, str) for name in names):
         raise ValueError("the name of a robot is not a text")
-    if not all("link" in values and "age" in values for values in told):
+    if not all("link" in values and "age" in values for values in rows):
         raise KeyError("link or age of a robot")
     numbers = np.empty((len(COLUMNS), len(names)))
     words: dict[str | None, float] = {None: np.nan}
     for name in POSITION_NUMBERS:
-        numbers[AT[name]] = _numbers_of(name, names, [values.get(name) for values in told])
+        numbers[AT[name]] = _numbers_of(name, names, [values.get(name) for values in rows])
     for name in WORDED:
-        numbers[AT[name]] = _places_of(name, names, [values.get(name) for values in told], words)
-    numbers[AT["state"]] = [_state_code(values["state"]) for values in told]
-    numbers[AT["stopped"]] = [values.get("stopped", False) is True for values in told]
+        numbers[AT[name]] = _places_of(name, names, [values.get(name) for values in rows], words)
+    numbers[AT["state"]] = [_state_code(values["state"]) for values in rows]
+    numbers[AT["stopped"]] = [values.get("stopped", False) is True for values in rows]
     numbers[AT["received"]] = received
     known = [word for word in words if word is not None]
     return RobotTable(names, numbers, known, **removed_robots(params or {}))

@@ -6,7 +6,6 @@ import math
 import re
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
-from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -35,7 +34,7 @@ from ..ui.errors import LayerReadingError, LayerTypeError
 from ..ui.language import tr
 from .crs import stated_crs
 from .layer_expressions import FeatureFilter
-from .roles import EXPRESSIONS, FURNITURE, LayerExpressions, LayerSetup, setup_of
+from .roles import EXPRESSIONS, FURNITURE, LayerExpressions, LayerSetup, plain_name, setup_of
 from .site_transform import LayerToSiteTransform, SiteTransformError
 
 # --- A layer as it is read: everything that must be taken from it while the main thread holds it ---
@@ -135,34 +134,6 @@ def _source(
         provider=layer.providerType(),
         uri="" if layer.isEditable() else layer.source(),
     )
-
-
-def plain_name(layer: QgsVectorLayer) -> str:
-    """Return the layer's name; the one inside its file where it is only called as the file is.
-
-    That is what qgis_process calls ``campus.gpkg|layername=walls``: all layers of a file alike.
-    """
-    inside, path = _source_of(layer)
-    called_as_file = bool(inside and path) and layer.name() == Path(path).stem
-    return inside if called_as_file else layer.name()
-
-
-def names_of(layer: QgsVectorLayer) -> list[str]:
-    """Return the names that the layer goes by: the one that is shown, and the one in its file or database.
-
-    QGIS's browser shows ``campus — walls`` for the layer ``walls`` of ``campus.gpkg``. A file of one layer
-    may say no name of it: then it is the file's.
-    """
-    inside, path = _source_of(layer)
-    return list(dict.fromkeys(name for name in (plain_name(layer), inside or Path(path).stem) if name))
-
-
-def _source_of(layer: QgsVectorLayer) -> tuple[str, str]:
-    """Return the layer's name in its source, and the source's path; each empty where there is none."""
-    parts = QgsProviderRegistry.instance().decodeUri(layer.providerType(), layer.source())
-    # Of a database the name of the table is the layer's.
-    inside = parts.get("layerName") or parts.get("table") or ""
-    return str(inside), str(parts.get("path") or "")
 
 
 def _unique(names: Sequence[str]) -> list[str]:
@@ -414,7 +385,7 @@ class FeatureWarnings:
     """Warnings in the order of their kinds' first ones; many features of one kind become one warning."""
 
     def __init__(self) -> None:
-        self._told: list[str | tuple[str, _Kind]] = []
+        self._warnings: list[str | tuple[str, _Kind]] = []
         self._kinds: dict[str, dict[str, _Kind]] = {}
         self._others: dict[str, SomeFeatures] = {}
 
@@ -427,19 +398,19 @@ class FeatureWarnings:
             return
         if pattern not in kinds:
             kinds[pattern] = _Kind()
-            self._told.append((layer, kinds[pattern]))
+            self._warnings.append((layer, kinds[pattern]))
         kinds[pattern].add(feature, note)
 
     def add_text(self, text: str) -> None:
         """Add a warning about a layer as a whole."""
-        self._told.append(text)
+        self._warnings.append(text)
 
     def texts(self) -> list[str]:
         """Return every warning."""
-        told: list[str] = []
-        for one in self._told:
-            told += [one] if isinstance(one, str) else one[1].texts(one[0])
-        return told + [
+        texts: list[str] = []
+        for one in self._warnings:
+            texts += [one] if isinstance(one, str) else one[1].texts(one[0])
+        return texts + [
             tr("Layer {layer}: warnings of more kinds about {features}", layer=layer, features=features)
             for layer, features in self._others.items()
         ]

@@ -24,7 +24,7 @@ from qgis.PyQt.QtCore import QObject, QTimer, pyqtSignal
 from qgis.PyQt.QtGui import QColor
 from qgis.PyQt.QtXml import QDomDocument, QDomElement, QDomNode
 
-from ...robot_bridge.core.messages import SiteReport
+from ...robot_bridge.core.messages.administration import SiteReport
 from ...robot_bridge.core.sites.frame import SiteFrame
 from ..ui.scheduling import CooperativeTask, Steps
 from .site_transform import frame_of

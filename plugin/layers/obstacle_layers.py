@@ -200,8 +200,8 @@ class OutlineBatch:
     def _one_by_one(self, feature: ReadFeature) -> list[OutlineRow]:
         shapes, notes = feature.shapes, list(feature.values.notes)
         if shapes is None:
-            shapes, said = shapes_of(feature.geometry, self._role)
-            notes = [*said, *(notes if shapes else [])]
+            shapes, notes_found = shapes_of(feature.geometry, self._role)
+            notes = [*notes_found, *(notes if shapes else [])]
         rows = self._rows(feature, shapes, notes) if shapes else []
         for note in notes:
             self._warnings.add(self._name, feature.id, note)

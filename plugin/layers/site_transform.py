@@ -24,7 +24,7 @@ from qgis.core import (
 from qgis.gui import QgsMapCanvas
 from qgis.PyQt.QtCore import QObject, pyqtSignal
 
-from ...robot_bridge.core.messages import SiteReport
+from ...robot_bridge.core.messages.administration import SiteReport
 from ...robot_bridge.core.sites.frame import SiteFrame
 from ..ui.errors import LayerCrsError, MapTransformError
 from ..ui.language import tr

@@ -111,9 +111,9 @@ class LiveView(QObject):
         self._took = self._last_frame - began
         self.shown = self._desk.state.robots.generation, self._desk.state.robots.revision
 
-    def draw_by_layer(self, wanted: bool) -> None:
+    def draw_by_layer(self, on: bool) -> None:
         """Let the style of the layer of robots draw them, where that is on the map, in place of arrows."""
-        self._by_layer = wanted
+        self._by_layer = on
         self._frame.start()
 
     def zoom_to(self, *robots: str) -> None:
@@ -141,10 +141,10 @@ class LiveView(QObject):
             return
         show_places(self._desk.canvas, corners)
 
-    def follow(self, whom: FollowMode) -> None:
+    def follow(self, mode: FollowMode) -> None:
         """Keep the selected robots or all of them in view, or stop doing so."""
-        self.following = whom
-        if whom is FollowMode.SELECTED and not self._desk.selection.robots:
+        self.following = mode
+        if mode is FollowMode.SELECTED and not self._desk.selection.robots:
             self._desk.complained.emit(
                 tr("No robot is selected to be followed. Select one in the table or on the map.")
             )

@@ -30,14 +30,10 @@ from qgis.PyQt import sip
 from qgis.PyQt.QtCore import QObject, pyqtSignal
 
 from ...robot_bridge.core.geometry import headings_of
-from ...robot_bridge.core.messages import (
-    ClosureReport,
-    CommandReport,
-    CommandState,
-    ConflictReport,
-    RobotState,
-    SiteReport,
-)
+from ...robot_bridge.core.messages.administration import SiteReport
+from ...robot_bridge.core.messages.commands import CommandReport, CommandState
+from ...robot_bridge.core.messages.roads import ClosureReport, ConflictReport
+from ...robot_bridge.core.messages.safety import RobotState
 from ...robot_bridge.core.sites.frame import SiteFrame
 from ..gateway_client.command_cache import DRIVE_OPERATIONS, place_of
 from ..gateway_client.fleet_state import FleetState

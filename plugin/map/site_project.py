@@ -40,7 +40,7 @@ class ProjectMatch(QObject):
     def __init__(self, state: FleetState, project: QgsProject, parent: QObject | None = None):
         super().__init__(parent)
         self._state, self._project = state, project
-        self._told = ""
+        self._posted = ""
         self._watch = ProjectWatch(project, self)
         self._watch.opened.connect(self._compare)
         state.site_changed.connect(self._compare)
@@ -50,18 +50,18 @@ class ProjectMatch(QObject):
         self._watch.remove()
 
     def _compare(self) -> None:
-        if self._told:
-            self.over.emit(self._told)
-        self._told = ""
+        if self._posted:
+            self.over.emit(self._posted)
+        self._posted = ""
         site, mine = self._state.site, own_frame(self._project)
         if site is None or mine is None or _is_one(mine, frame_of(site)):
             return
-        self._told = tr(
+        self._posted = tr(
             "This project is not that of site {site}: its variables have another origin, CRS or rotation. "
             "Checks and alarms go by the layers of this project: open the site's.",
             site=site.name,
         )
-        self.differs.emit(self._told)
+        self.differs.emit(self._posted)
 
 
 def _is_one(a: SiteFrame, b: SiteFrame) -> bool:

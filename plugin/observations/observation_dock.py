@@ -21,7 +21,7 @@ from qgis.PyQt.QtWidgets import (
     QWidget,
 )
 
-from ...robot_bridge.core.messages import ObservationReport, ReviewObservation
+from ...robot_bridge.core.messages.records import ObservationReport, ReviewObservation
 from ..control.fleet_controller import FleetController
 from ..control.messages import observation_topic
 from ..gateway_client.report_caches import is_pending
@@ -54,10 +54,10 @@ STAYS = tr("It is there: leave it on the maps")
 
 
 class ReviewForm(QWidget):
-    """Shows one observation and asks for its review: ``wanted`` has the request, ``shown`` its place."""
+    """Shows one observation and asks for its review: ``requested`` has the request, ``shown`` its place."""
 
-    wanted = pyqtSignal(object)
-    place_wanted = pyqtSignal(int)
+    requested = pyqtSignal(object)
+    place_requested = pyqtSignal(int)
 
     def __init__(self, parent: QWidget | None = None):
         super().__init__(parent)
@@ -82,13 +82,13 @@ class ReviewForm(QWidget):
         self.accept = push_button("fleet_observation_accept", tr("Accept"), "")
         self.reject = push_button("fleet_observation_reject", tr("Reject"), "")
         self._lay_out()
-        self.go.clicked.connect(lambda: self._report and self.place_wanted.emit(self._report.observation))
+        self.go.clicked.connect(lambda: self._report and self.place_requested.emit(self._report.observation))
         self.accept.clicked.connect(lambda: self._want(accept=True))
         self.reject.clicked.connect(lambda: self._want(accept=False))
-        self.show_report(None, (), asked=False)
+        self.show_report(None, (), pending=False)
 
-    def show_report(self, report: ObservationReport | None, words: Iterable[str], *, asked: bool) -> None:
-        """Show ``report``; ``words`` are offered for what it is, ``asked`` while a review is on its way.
+    def show_report(self, report: ObservationReport | None, words: Iterable[str], *, pending: bool) -> None:
+        """Show ``report``; ``words`` are offered for what it is, ``pending`` while a review is on its way.
 
         What the operator has written stays for as long as it is the same observation in the same state.
         """
@@ -104,7 +104,7 @@ class ReviewForm(QWidget):
             field.setEnabled(is_object)
         self.reason.setEnabled(report is not None)
         for button in (self.accept, self.reject):
-            button.setEnabled(report is not None and not asked)
+            button.setEnabled(report is not None and not pending)
         self.go.setEnabled(report is not None)
         self.about.setText("" if report is None else _about(report))
         if same:
@@ -146,7 +146,7 @@ class ReviewForm(QWidget):
     def _want(self, *, accept: bool) -> None:
         request = self.request(accept=accept)
         if request is not None:
-            self.wanted.emit(request)
+            self.requested.emit(request)
 
     def _lay_out(self) -> None:
         form = QFormLayout()
@@ -311,8 +311,8 @@ class ObservationDock(ActionDock):
         self.reviewed.toggled.connect(self.refresh)
         self.list.selectionModel().currentChanged.connect(lambda *_: self._show_chosen())
         self.list.doubleClicked.connect(lambda index: self.go_to(index.data(NUMBER)))
-        self.form.place_wanted.connect(self.go_to)
-        self.form.wanted.connect(self._review)
+        self.form.place_requested.connect(self.go_to)
+        self.form.requested.connect(self._review)
         self.feed.reviewed.connect(self._reviewed)
         self.feed.refused.connect(self._refused)
 
@@ -354,7 +354,7 @@ class ObservationDock(ActionDock):
         number = self.chosen
         report = None if number is None else self._desk.state.observations.get(number)
         words = [one.label for one in self._desk.state.observations if one.label][-20:]
-        self.form.show_report(report, words, asked=number is not None and self.feed.is_asked(number))
+        self.form.show_report(report, words, pending=number is not None and self.feed.awaits_answer(number))
         file = "" if report is None else self._picture_of(report)
         self.form.show_picture(file)
 

@@ -22,13 +22,13 @@ from qgis.core import (
 from qgis.PyQt.QtCore import QAbstractListModel, QModelIndex, QObject, QSize, Qt, QTemporaryDir, pyqtSignal
 from qgis.PyQt.QtGui import QColor, QIcon, QPixmap
 
-from ...robot_bridge.core.messages import (
+from ...robot_bridge.core.messages.administration import SiteReport
+from ...robot_bridge.core.messages.records import (
     GetImage,
     GetObservations,
     ObservationReport,
     ObservationState,
     ReviewObservation,
-    SiteReport,
 )
 from ..control.fleet_controller import FleetController
 from ..gateway_client.connection_status import ConnectionPhase
@@ -161,7 +161,7 @@ class ObservationFeed(QObject):
         """Tell the gateway what became of an observation; raises NotSentError when that cannot be sent."""
         self._reviews[self._desk.orders.inquire(request)] = request.observation
 
-    def is_asked(self, number: int) -> bool:
+    def awaits_answer(self, number: int) -> bool:
         """Tell whether a review of this observation is on its way."""
         return number in self._reviews.values()
 
@@ -224,13 +224,13 @@ class ObservationFeed(QObject):
         """Ask for the next image that is not there yet, when no other is on its way."""
         if self._image is not None or self._desk.state.link.phase is not ConnectionPhase.CONNECTED:
             return
-        wanted = next(
+        number = next(
             (one.observation for one in self._desk.state.observations.ordered() if self._lacks(one)), None
         )
-        if wanted is None:
+        if number is None:
             return
         try:
-            self._image = self._desk.orders.inquire(GetImage(wanted)), wanted
+            self._image = self._desk.orders.inquire(GetImage(number)), number
         except FleetError:
             self._image = None
 

@@ -16,12 +16,12 @@ from qgis.PyQt.QtWidgets import (
     QWidget,
 )
 
-from ...robot_bridge.core.messages import CommandReport, GetCommands
+from ...robot_bridge.core.messages.commands import CommandReport, GetCommands
 from ..control.fleet_controller import FleetController
 from ..control.messages import file_topic
 from ..control.request_tracker import SLOW_AFTER
 from ..gateway_client import command_cache
-from ..gateway_client.command_cache import asked_at, command_in_words, place_of
+from ..gateway_client.command_cache import command_in_words, place_of, requested_at
 from ..gateway_client.fleet_state import RequestResult
 from ..gateway_client.robot_states import COMMAND_STATES, longest_word, name_order
 from ..settings.preferences import export_path
@@ -34,7 +34,7 @@ from .command_log_model import CSV_HEAD, PAGE, CommandChoice, CommandFilter, Log
 
 OLDER = 1000
 """Commands that are asked for at once."""
-MOST_ASKED = 20
+MOST_REQUESTS = 20
 """Robots that are asked for one by one; of more of them the commands of all are."""
 
 
@@ -43,7 +43,7 @@ class HistoryRequest:
     """One press of the button: the commands ``known`` by then, and what its ``waiting`` answers told."""
 
     known: frozenset[str]
-    asked_at: float
+    requested_at: float
     """Monotonic seconds."""
     waiting: int = 0
     came: int = 0
@@ -74,7 +74,7 @@ class OlderCommands(QObject):
         )
         try:
             # Of very many robots the newest commands of all will do: the log holds no more.
-            for robot in sorted(robots) if robots and len(robots) <= MOST_ASKED else [None]:
+            for robot in sorted(robots) if robots and len(robots) <= MOST_REQUESTS else [None]:
                 self._wishes[self._desk.orders.inquire(GetCommands(robot, OLDER), lasting=True)] = wish
                 wish.waiting += 1
         except FleetError as error:
@@ -104,7 +104,7 @@ class OlderCommands(QObject):
         late = {
             id(wish): wish
             for wish in self._wishes.values()
-            if not wish.is_overdue and now - wish.asked_at > SLOW_AFTER
+            if not wish.is_overdue and now - wish.requested_at > SLOW_AFTER
         }
         for wish in late.values():
             wish.is_overdue = True
@@ -121,11 +121,11 @@ class OlderCommands(QObject):
             # Another gateway's robots are here now: what was asked of the one before is nobody's wish.
             self._wishes.clear()
 
-    def _look_at(self, told: list[str], wish: HistoryRequest) -> None:
+    def _look_at(self, notices: list[str], wish: HistoryRequest) -> None:
         # The book has taken them in by now, and let go of the oldest where it was full.
-        kept = [command for command in told if command in self._desk.state.commands]
+        kept = [command for command in notices if command in self._desk.state.commands]
         wish.came += sum(command not in wish.known for command in kept)
-        wish.ends_here = wish.ends_here or len(told) >= OLDER or len(kept) < len(told)
+        wish.ends_here = wish.ends_here or len(notices) >= OLDER or len(kept) < len(notices)
 
 
 def _commands_in(answer: RequestResult) -> list[str]:
@@ -165,7 +165,7 @@ MERGED = 500
 class CommandLog(QWidget):
     """Newest command on top; the newest one lies open until the next comes."""
 
-    place_wanted = pyqtSignal(float, float)
+    place_requested = pyqtSignal(float, float)
     """Where a command leads to, metres in the site frame."""
 
     def __init__(self, desk: FleetController, parent: QWidget | None = None):
@@ -186,7 +186,7 @@ class CommandLog(QWidget):
         self._lay_out()
         self._robots.currentIndexChanged.connect(self.refresh)
         self._which.currentIndexChanged.connect(self.refresh)
-        ZoomMenu(self.view).wanted.connect(self._go)
+        ZoomMenu(self.view).requested.connect(self._go)
         self.view.selectionModel().selectionChanged.connect(self._allow)
         desk.state.commands_changed.connect(self.show_reports)
         desk.state.site_changed.connect(self._site_changed)
@@ -283,7 +283,7 @@ class CommandLog(QWidget):
     def _show_what_is_open(self) -> None:
         self._summary.setText(summary(self._desk.state.commands))
         shown = self._model.shown
-        self._times.make_room((asked_at(shown[-1]) if shown else None) or None)
+        self._times.make_room((requested_at(shown[-1]) if shown else None) or None)
 
     def _let_go_of_old(self) -> None:
         """Keep the view short while nobody looks at older commands: it lays out each row at each new one."""
@@ -312,7 +312,7 @@ class CommandLog(QWidget):
                 tr("{what} of {robot} leads to no place.", what=command_in_words(report), robot=report.robot)
             )
             return
-        self.place_wanted.emit(*place)
+        self.place_requested.emit(*place)
 
     def _allow(self, *_what: object) -> None:
         report = self._model.report_at(self.view.currentIndex())

@@ -11,8 +11,9 @@ from itertools import count, groupby
 from qgis.PyQt.QtCore import QAbstractItemModel, QModelIndex, QObject, Qt
 from qgis.PyQt.QtGui import QFont
 
-from ...robot_bridge.core.messages import Abort, CommandReport, CommandState, CommandStep
-from ..gateway_client.command_cache import UNDER_WAY, asked_at, command_in_words, place_of, state_word
+from ...robot_bridge.core.messages.commands import CommandReport, CommandState, CommandStep
+from ...robot_bridge.core.messages.robots import Abort
+from ..gateway_client.command_cache import UNDER_WAY, command_in_words, place_of, requested_at, state_word
 from ..gateway_client.robot_states import COMMAND_STATES
 from ..ui.glyphs import COMMAND_COLOURS, for_letters
 from ..ui.language import date_and_time, short_time, tr
@@ -151,7 +152,7 @@ class LogModel(QAbstractItemModel):
         super().__init__(parent)
         self._filter = CommandFilter()
         self._shown: list[CommandReport] = []
-        self._told = 0
+        self._row_count = 0
         """How many of those a view is told of."""
         self._rows: dict[str, int] | None = {}
         """The row of each command; None where it has to be counted again."""
@@ -179,19 +180,19 @@ class LogModel(QAbstractItemModel):
 
     def rowCount(self, parent: QModelIndex | None = None) -> int:
         if parent is None or not parent.isValid():
-            return self._told
+            return self._row_count
         is_command = parent.internalId() == 0 and parent.column() == 0
         return len(self._shown[parent.row()].steps) if is_command else 0
 
     def canFetchMore(self, parent: QModelIndex) -> bool:
-        return not parent.isValid() and self._told < len(self._shown)
+        return not parent.isValid() and self._row_count < len(self._shown)
 
     def fetchMore(self, parent: QModelIndex) -> None:
         if not self.canFetchMore(parent):
             return
-        last = min(self._told + PAGE, len(self._shown)) - 1
-        self.beginInsertRows(parent, self._told, last)
-        self._told = last + 1
+        last = min(self._row_count + PAGE, len(self._shown)) - 1
+        self.beginInsertRows(parent, self._row_count, last)
+        self._row_count = last + 1
         self.endInsertRows()
 
     def columnCount(self, parent: QModelIndex | None = None) -> int:
@@ -210,7 +211,7 @@ class LogModel(QAbstractItemModel):
             return None
         if role == Qt.ItemDataRole.ToolTipRole and index.column() == TIME:
             return date_and_time(
-                asked_at(report) if index.internalId() == 0 else report.steps[index.row()].at
+                requested_at(report) if index.internalId() == 0 else report.steps[index.row()].at
             )
         if role in (Qt.ItemDataRole.DisplayRole, Qt.ItemDataRole.ToolTipRole):
             return self._cells(index, report)[index.column()]
@@ -241,9 +242,9 @@ class LogModel(QAbstractItemModel):
         self._filter = filter
         kept = [report for report in reports if filter.keeps(report)]
         # Of one time those that were told last come first.
-        kept.sort(key=asked_at)
+        kept.sort(key=requested_at)
         self._shown = kept[::-1]
-        self._told = min(PAGE, len(kept))
+        self._row_count = min(PAGE, len(kept))
         self._rows = None
         # No index outlives this, so no number is needed any more: they would add up over a shift.
         self._numbers.clear()
@@ -272,9 +273,9 @@ class LogModel(QAbstractItemModel):
 
     def shorten(self) -> None:
         """Tell a view of the first page only, as long as it has not asked for more than comes in a while."""
-        if self._told > 2 * PAGE:
-            self.beginRemoveRows(QModelIndex(), PAGE, self._told - 1)
-            self._told = PAGE
+        if self._row_count > 2 * PAGE:
+            self.beginRemoveRows(QModelIndex(), PAGE, self._row_count - 1)
+            self._row_count = PAGE
             self.endRemoveRows()
 
     def report_at(self, index: QModelIndex) -> CommandReport | None:
@@ -282,7 +283,7 @@ class LogModel(QAbstractItemModel):
         if not index.isValid():
             return None
         row = index.row() if index.internalId() == 0 else self.parent(index).row()
-        return self._shown[row] if 0 <= row < self._told else None
+        return self._shown[row] if 0 <= row < self._row_count else None
 
     def row_of(self, command: str) -> int | None:
         """Return the row of a command, None where it is not listed."""
@@ -292,9 +293,9 @@ class LogModel(QAbstractItemModel):
 
     def _insert(self, reports: list[CommandReport]) -> None:
         # Newest first, and of one time those that were told last.
-        newest_first = sorted(reports, key=asked_at)[::-1]
+        newest_first = sorted(reports, key=requested_at)[::-1]
         places = [
-            bisect.bisect_left(self._shown, -asked_at(report), key=lambda known: -asked_at(known))
+            bisect.bisect_left(self._shown, -requested_at(report), key=lambda known: -requested_at(known))
             for report in newest_first
         ]
         end = len(newest_first)
@@ -305,19 +306,19 @@ class LogModel(QAbstractItemModel):
             end = begin
 
     def _insert_at(self, row: int, reports: list[CommandReport]) -> None:
-        is_told = row < self._told or self._told == len(self._shown)
-        if is_told:
+        is_listed = row < self._row_count or self._row_count == len(self._shown)
+        if is_listed:
             self.beginInsertRows(QModelIndex(), row, row + len(reports) - 1)
-            self._told += len(reports)
+            self._row_count += len(reports)
         self._shown[row:row] = reports
         self._rows = None
-        if is_told:
+        if is_listed:
             self.endInsertRows()
 
     def _renew(self, row: int, report: CommandReport) -> None:
         before = len(self._shown[row].steps)
         more = len(report.steps) - before
-        if row >= self._told:
+        if row >= self._row_count:
             self._shown[row] = report
             return
         top = self.index(row, 0)
@@ -329,13 +330,13 @@ class LogModel(QAbstractItemModel):
         self.dataChanged.emit(top, self.index(row, len(COLUMNS) - 1))
 
     def _remove(self, row: int) -> None:
-        is_told = row < self._told
-        if is_told:
+        is_listed = row < self._row_count
+        if is_listed:
             self.beginRemoveRows(QModelIndex(), row, row)
-            self._told -= 1
+            self._row_count -= 1
         command = self._shown.pop(row).command
         self._rows = None
-        if is_told:
+        if is_listed:
             self.endRemoveRows()
         number = self._numbers.pop(command, None)
         if number is not None:

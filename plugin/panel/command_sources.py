@@ -28,7 +28,7 @@ from qgis.PyQt.QtWidgets import (
     QWidget,
 )
 
-from ...robot_bridge.core.messages import LONGEST_PATH, LONGEST_QUEUE
+from ...robot_bridge.core.messages.queues import LONGEST_PATH, LONGEST_QUEUE
 from ..control.coordinates import datum_transform, read_site_place
 from ..control.fleet_controller import FleetController
 from ..control.pending_command import CONE, ROUTE, TARGETS, PendingCommand, Point
@@ -60,12 +60,12 @@ class CoordinatesDialog(QDialog):
         self._crs = QgsProjectionSelectionWidget()
         self._crs.setObjectName("fleet_coordinates_crs")
         self._crs.setCrs(QgsCoordinateReferenceSystem(WGS84))
-        self._told = QLabel()
-        self._told.setObjectName("fleet_coordinates_told")
-        self._told.setWordWrap(True)
-        self._told.setTextFormat(Qt.TextFormat.PlainText)
-        self._told.setMinimumHeight(4 * self._told.fontMetrics().lineSpacing())
-        self._told.setAlignment(Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignTop)
+        self._status = QLabel()
+        self._status.setObjectName("fleet_coordinates_told")
+        self._status.setWordWrap(True)
+        self._status.setTextFormat(Qt.TextFormat.PlainText)
+        self._status.setMinimumHeight(4 * self._status.fontMetrics().lineSpacing())
+        self._status.setAlignment(Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignTop)
         self._set = QPushButton(tr("Set on the map"))
         self._set.setObjectName("fleet_coordinates_set")
         self._lay_out()
@@ -95,18 +95,18 @@ class CoordinatesDialog(QDialog):
         buttons.rejected.connect(self.reject)
         rows = QVBoxLayout(self)
         rows.addLayout(form)
-        rows.addWidget(self._told)
+        rows.addWidget(self._status)
         rows.addWidget(buttons)
 
     def _read(self, *_: object) -> None:
         self._place = None
-        self._told.setStyleSheet("")
+        self._status.setStyleSheet("")
         try:
-            self._told.setText(self._in_words())
+            self._status.setText(self._in_words())
         except FleetError as error:
-            self._told.setText(str(error))
+            self._status.setText(str(error))
             if self._text.text().strip():
-                self._told.setStyleSheet(WRONG_STYLE)
+                self._status.setStyleSheet(WRONG_STYLE)
         self._set.setEnabled(self._place is not None)
 
     def _in_words(self) -> str:

@@ -15,7 +15,8 @@ from qgis.PyQt.QtWidgets import (
     QWidget,
 )
 
-from ...robot_bridge.core.messages import ConflictReport, GetWaysOut, HoldReport, WayOut, ways_out_report
+from ...robot_bridge.core.messages.json_values import ways_out_report
+from ...robot_bridge.core.messages.roads import ConflictReport, GetWaysOut, HoldReport, WayOut
 from ..control.fleet_controller import FleetController
 from ..control.request_tracker import RequestTracker
 from ..gateway_client.fleet_state import FleetState, RequestResult
@@ -45,7 +46,7 @@ class ResolutionQuery(QObject):
         self._kind = ""
         self._ways: dict[tuple[str, str], WayOut] = {}
         self._key: str | None = None
-        self._asked_at = 0.0
+        self._requested_at = 0.0
         self.why_not = ""
         """Why it is not known what the robots can do; empty where it is known or was just asked."""
         state.updated.connect(self._ask_again)
@@ -69,13 +70,13 @@ class ResolutionQuery(QObject):
 
     def _ask_again(self) -> None:
         waits = ASK_EVERY if self._key is None else ANSWERED_WITHIN
-        if self._pair is not None and self._state.clock.steady() - self._asked_at >= waits:
+        if self._pair is not None and self._state.clock.steady() - self._requested_at >= waits:
             self._ask()
 
     def _ask(self) -> None:
         if self._pair is None:
             return
-        self._asked_at = self._state.clock.steady()
+        self._requested_at = self._state.clock.steady()
         try:
             self._key = self._requests.inquire(GetWaysOut(*self._pair))
         except NotSentError as error:

@@ -22,7 +22,7 @@ from qgis.PyQt.QtWidgets import (
     QWidget,
 )
 
-from ...robot_bridge.core.messages import SiteReport
+from ...robot_bridge.core.messages.administration import SiteReport
 from ..gateway_client.connection_status import (
     DEFAULT_URL,
     ConnectionPhase,
@@ -291,13 +291,13 @@ class ConnectionPanel(QWidget):
         if text != self._state.text():
             self._state.setText(text)
             self._state.setToolTip(self._which(link, site))
-        wanted = link.phase not in (ConnectionPhase.CLOSED, ConnectionPhase.FAILED)
-        self._fold(link.phase is ConnectionPhase.CONNECTED or (wanted and self._fields.isHidden()))
+        is_open = link.phase not in (ConnectionPhase.CLOSED, ConnectionPhase.FAILED)
+        self._fold(link.phase is ConnectionPhase.CONNECTED or (is_open and self._fields.isHidden()))
         for field in (self._url, self._operator):
-            if field.isReadOnly() != wanted:
-                field.setReadOnly(wanted)
-        self._access.setEnabled(not wanted)
-        self.menu.hold(wanted)
+            if field.isReadOnly() != is_open:
+                field.setReadOnly(is_open)
+        self._access.setEnabled(not is_open)
+        self.menu.hold(is_open)
         if link.wants_token and link != self._shown:
             self._more.setChecked(True)
         self._shown = link

@@ -6,7 +6,7 @@ from qgis.core import QgsApplication
 from qgis.PyQt.QtCore import QObject, Qt, pyqtSignal
 from qgis.PyQt.QtWidgets import QAction, QApplication, QFrame, QHBoxLayout, QToolButton, QWidget
 
-from ...robot_bridge.core.messages import EmergencyReport
+from ...robot_bridge.core.messages.safety import EmergencyReport
 from ..control.fleet_controller import FleetController
 from ..gateway_client.connection_status import ConnectionPhase
 from ..ui.dialogs import QuestionDialog
@@ -81,20 +81,20 @@ class EmergencyBanner(QFrame):
         """Show how things stand."""
         report = self._desk.state.emergency
         in_force = report is not None and report.in_force
-        asked = self._desk.orders.awaits_stop
+        pending = self._desk.orders.awaits_stop
         self._clear.setEnabled(in_force)
         connected = self._desk.state.link.phase is ConnectionPhase.CONNECTED
-        text = in_words(report, asked, connected)
+        text = in_words(report, pending, connected)
         self._text.setText(text)
-        if self.isHidden() is (in_force or asked):
-            self.setVisible(in_force or asked)
+        if self.isHidden() is (in_force or pending):
+            self.setVisible(in_force or pending)
             self.toggled.emit()
 
 
-def in_words(report: EmergencyReport | None, asked: bool, connected: bool) -> str:
+def in_words(report: EmergencyReport | None, pending: bool, connected: bool) -> str:
     """Return the state of a stop: asked for and not confirmed, or in force, and by whom."""
     lines = []
-    if asked:
+    if pending:
         lines.append(
             tr(
                 "EMERGENCY STOP asked for. The gateway has not confirmed it yet: watch the robots, and use "
@@ -168,7 +168,7 @@ class ClearDialog(QuestionDialog):
             is_safe=True,
             parent=parent,
         )
-        self.add_text(in_words(report, asked=False, connected=True))
+        self.add_text(in_words(report, pending=False, connected=True))
         self.add_text(
             tr(
                 "Cleared, robots can be sent again. None sets off by itself: what they were doing was "

@@ -10,7 +10,7 @@ from qgis.core import Qgis, QgsMessageLog, QgsPointXY
 from qgis.PyQt.QtCore import QObject, QPointF, Qt, QTimer, pyqtSignal
 from qgis.PyQt.QtWidgets import QAction, QHBoxLayout, QSizePolicy, QToolButton, QVBoxLayout, QWidget
 
-from ...robot_bridge.core.messages import CommandReport, CommandState, SendMap
+from ...robot_bridge.core.messages.commands import CommandReport, CommandState, SendMap
 from ..control.fleet_controller import FleetController
 from ..control.messages import TITLE
 from ..control.pending_command import ROUTE, TARGETS, PendingCommand, in_brief, queue_tasks, turned_round
@@ -102,8 +102,8 @@ class PendingCommandPanel(QWidget):
 
     def _show(self) -> None:
         draft = self._desk.drafts.draft
-        told = self._told(draft) if draft is not None else self._remark or NOTHING
-        self._text.setText("\n".join([*self._going_out(), told]))
+        text = self._description(draft) if draft is not None else self._remark or NOTHING
+        self._text.setText("\n".join([*self._going_out(), text]))
         is_wrong = draft is not None and draft.findings.faults
         self._text.set_text_style(WRONG_STYLE if is_wrong else "")
 
@@ -120,7 +120,7 @@ class PendingCommandPanel(QWidget):
             )
         ]
 
-    def _told(self, draft: PendingCommand) -> str:
+    def _description(self, draft: PendingCommand) -> str:
         checks = self._desk.checks
         if self._desk.sending.awaits_way:
             return tr(
@@ -289,7 +289,7 @@ class PendingCommandActions(QObject):
                     fault=draft.fault,
                 )
             )
-        if self._edits.is_asked(draft.robot):
+        if self._edits.awaits_answer(draft.robot):
             raise NotSentError(
                 tr(
                     "The gateway has not answered yet what was asked of the queue of {robot} before. Try "

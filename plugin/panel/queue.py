@@ -20,7 +20,7 @@ from qgis.PyQt.QtWidgets import (
     QWidget,
 )
 
-from ...robot_bridge.core.messages import (
+from ...robot_bridge.core.messages.queues import (
     AddTasks,
     MakeCurrent,
     MoveTask,
@@ -68,14 +68,14 @@ class QueueEdits(QObject):
     def __init__(self, desk: FleetController, parent: QObject | None = None):
         super().__init__(parent)
         self._desk = desk
-        self._asked: dict[str, str] = {}
+        self._pending: dict[str, str] = {}
         self._conflicts: dict[str, str] = {}
         desk.orders.answered.connect(self._answered)
         desk.state.site_changed.connect(self._clear)
 
-    def is_asked(self, robot: str) -> bool:
+    def awaits_answer(self, robot: str) -> bool:
         """Tell whether the gateway has not answered yet what was asked of this queue."""
-        return robot in self._asked.values()
+        return robot in self._pending.values()
 
     def conflict(self, robot: str) -> str:
         """Return what became of a change that came too late; empty after the next one."""
@@ -152,13 +152,13 @@ class QueueEdits(QObject):
             about = () if draft is None else (draft_topic(draft.place),)
             self._desk.report_failure(str(error), *error.topics, *about)
             return None
-        self._asked[key] = request.robot
+        self._pending[key] = request.robot
         self._conflicts.pop(request.robot, None)
         self.changed.emit()
         return key
 
     def _answered(self, answer: RequestResult) -> None:
-        robot = self._asked.pop(answer.order.key, None)
+        robot = self._pending.pop(answer.order.key, None)
         if robot is None:
             return
         if answer.outdated:
@@ -166,7 +166,7 @@ class QueueEdits(QObject):
         self.changed.emit()
 
     def _clear(self) -> None:
-        self._asked.clear()
+        self._pending.clear()
         self._conflicts.clear()
         self.changed.emit()
 
@@ -219,7 +219,7 @@ NUMBER, TASK, STATE = range(3)
 class TaskModel(RowModel):
     """One row for each task. A drop changes nothing here: it is asked for, and told by the gateway."""
 
-    move_wanted = pyqtSignal(str, object)
+    move_requested = pyqtSignal(str, object)
     """A task, and the one that it shall stand before or None for the end."""
 
     def __init__(self, parent: QWidget | None = None):
@@ -288,14 +288,14 @@ class TaskModel(RowModel):
         if here < first or row in (here, here + 1):
             return
         before = self.rows[row].task if row < len(self.rows) else None
-        self.move_wanted.emit(task, before)
+        self.move_requested.emit(task, before)
 
 
 class TaskList(QTreeView):
     """The list: drag a task to where it shall come, or move the selected one with Alt and the arrow keys."""
 
-    remove_wanted = pyqtSignal(str)
-    first_wanted = pyqtSignal(str)
+    remove_requested = pyqtSignal(str)
+    first_requested = pyqtSignal(str)
 
     def __init__(self, parent: QWidget | None = None):
         super().__init__(parent)
@@ -343,11 +343,11 @@ class TaskList(QTreeView):
         ):
             self._move(task, event.key())
         elif event.key() == keys.Key_Delete:
-            self.remove_wanted.emit(task)
+            self.remove_requested.emit(task)
         elif event.key() in (keys.Key_Return, keys.Key_Enter):
             # Alone it goes to the place: it must not let a robot drive off by a slip of the hand.
             if event.modifiers() & Qt.KeyboardModifier.ControlModifier:
-                self.first_wanted.emit(task)
+                self.first_requested.emit(task)
         else:
             super().keyPressEvent(event)
 
@@ -416,11 +416,11 @@ class QueuePanel(QWidget):
 
     def _listen(self) -> None:
         tasks = self.list
-        tasks.tasks.move_wanted.connect(self._move)
-        tasks.remove_wanted.connect(lambda task: self._ask(self._edits.remove, task))
-        tasks.first_wanted.connect(lambda task: self._ask(self._edits.make_current, task))
+        tasks.tasks.move_requested.connect(self._move)
+        tasks.remove_requested.connect(lambda task: self._ask(self._edits.remove, task))
+        tasks.first_requested.connect(lambda task: self._ask(self._edits.make_current, task))
         tasks.selectionModel().selectionChanged.connect(self._show_buttons)
-        ZoomMenu(tasks).wanted.connect(lambda index: self._go(index.row()))
+        ZoomMenu(tasks).requested.connect(lambda index: self._go(index.row()))
         self._up.clicked.connect(lambda: self._step(-1))
         self._down.clicked.connect(lambda: self._step(2))
         self._remove.clicked.connect(lambda: self._chosen(self._edits.remove))
@@ -463,7 +463,7 @@ class QueuePanel(QWidget):
 
     def _is_free(self) -> bool:
         """Tell whether what is shown is what the gateway has: nothing asked for is without an answer."""
-        return not self._edits.is_asked(self._desk.selection.last or "")
+        return not self._edits.awaits_answer(self._desk.selection.last or "")
 
     def _in_words(self, queue: QueueReport | None) -> str:
         if queue is not None:

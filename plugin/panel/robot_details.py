@@ -23,17 +23,13 @@ from qgis.PyQt.QtWidgets import (
     QWidget,
 )
 
-from ...robot_bridge.core.messages import (
-    CommandReport,
-    GetCommands,
-    GetImage,
-    GetObservations,
-    QueueReport,
-    SendImage,
-)
+from ...robot_bridge.core.messages.commands import CommandReport, GetCommands
+from ...robot_bridge.core.messages.queues import QueueReport
+from ...robot_bridge.core.messages.records import GetImage, GetObservations
+from ...robot_bridge.core.messages.robots import SendImage
 from ..control.fleet_controller import FleetController
 from ..control.request_tracker import RequestTracker
-from ..gateway_client.command_cache import PathDeviations, asked_at, command_in_words, state_word
+from ..gateway_client.command_cache import PathDeviations, command_in_words, requested_at, state_word
 from ..gateway_client.fleet_state import RequestResult
 from ..gateway_client.robot_states import (
     COMMAND_STATES,
@@ -45,7 +41,7 @@ from ..gateway_client.robot_states import (
 from ..gateway_client.robot_states import task_state_in_words as task_state
 from ..layers.site_transform import PositionCrs
 from ..ui.errors import FleetError, MapTransformError
-from ..ui.language import date_and_time, heard_in_words, time_of_day, tr
+from ..ui.language import date_and_time, last_seen_in_words, time_of_day, tr
 from ..ui.steady_widgets import ElidedText
 from ..ui.tables import shrink_view
 from .alarms.board import AlarmBoard, alarm_state_in_words
@@ -71,9 +67,9 @@ MOST = 20
 
 def state_rows(view: RobotView, task: CommandReport | None, off: str, position: str, crs: str) -> list[Row]:
     """Return how a robot is now, as the operator needs it first."""
-    told = view.told
-    heard = heard_in_words(ROBOT_STATES[view.state], view.age, told.get("link"))
-    rows = [(tr("State"), heard)]
+    values = view.values
+    last_seen = last_seen_in_words(ROBOT_STATES[view.state], view.age, values.get("link"))
+    rows = [(tr("State"), last_seen)]
     if position:
         rows.append((tr("Position, {crs}", crs=crs), position))
     rows.append(
@@ -84,14 +80,14 @@ def state_rows(view: RobotView, task: CommandReport | None, off: str, position: 
     )
     if off:
         rows.append((tr("Off path or target"), off))
-    if told.get("status"):
-        rows.append((tr("It says"), str(told["status"])))
+    if values.get("status"):
+        rows.append((tr("It says"), str(values["status"])))
     return rows
 
 
-def received_rows(told: dict[str, Any]) -> list[Row]:
+def received_rows(values: dict[str, Any]) -> list[Row]:
     """Return all that was received last, every field by its own name, nothing left out or rounded."""
-    return [(name, _value(name, value)) for name, value in told.items()]
+    return [(name, _value(name, value)) for name, value in values.items()]
 
 
 def alarm_rows(alarms: Iterable[Alarm]) -> list[Row]:
@@ -120,7 +116,7 @@ def command_rows(commands: Iterable[CommandReport]) -> list[Row]:
         because = f": {why}" if why else ""
         what = f"{command_in_words(report)}: {state_word(report.op, report.state)}{off}{because}"
         told = tr("{told}, by {operator}", told=what, operator=report.operator)
-        rows.append((time_of_day(asked_at(report)), told))
+        rows.append((time_of_day(requested_at(report)), told))
     return rows
 
 
@@ -284,7 +280,7 @@ class RobotDetails(QWidget):
         self._desk = desk
         self._positions, self._deviations = positions, deviations
         self._turn = desk.beat.turn()
-        self._asked_for = ""
+        self._requested_for = ""
         self._alarms: AlarmBoard | None = None
         self._title = ElidedText("fleet_details_title")
         font = QFont(self._title.font())
@@ -311,13 +307,13 @@ class RobotDetails(QWidget):
         view = None if robot is None else self._desk.state.robots.view(robot, self._desk.clock.steady())
         if robot is None or view is None:
             self._title.setText(tr("Select a robot in the table or on the map"))
-            self._asked_for = ""
+            self._requested_for = ""
             self._image.forget()
             self._fill({})
             return
         several = tr("{robot}, selected last of several", robot=robot)
         self._title.setText(robot if len(self._desk.selection.robots) == 1 else several)
-        if self.isVisible() and self._asked_for != robot:
+        if self.isVisible() and self._requested_for != robot:
             self.ask()
         book = self._desk.state.commands
         at = (view.report.x, view.report.y) if view.has_pose else None
@@ -333,7 +329,7 @@ class RobotDetails(QWidget):
                     self._positions.name,
                 ),
                 ALARMS: alarm_rows([] if self._alarms is None else self._alarms.of(robot)),
-                RECEIVED: received_rows(view.told),
+                RECEIVED: received_rows(view.values),
                 QUEUE: queue_rows(self._desk.state.queues.get(robot)),
                 COMMANDS: command_rows(book.of(robot, MOST)),
             }
@@ -344,7 +340,7 @@ class RobotDetails(QWidget):
         robot = self._desk.selection.last
         if robot is None:
             return
-        self._asked_for = robot
+        self._requested_for = robot
         self._image.ask(robot)
         try:
             self._desk.orders.inquire(GetCommands(robot, HISTORY))

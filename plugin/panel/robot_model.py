@@ -11,20 +11,16 @@ import numpy as np
 import numpy.typing as npt
 from qgis.PyQt.QtCore import QAbstractTableModel, QModelIndex, QObject, Qt
 
-from ...robot_bridge.core.messages import (
-    CommandReport,
-    CommandState,
-    QueueState,
-    RobotState,
-    SetPath,
-    SetPosEnd,
-)
+from ...robot_bridge.core.messages.commands import CommandReport, CommandState
+from ...robot_bridge.core.messages.queues import QueueState
+from ...robot_bridge.core.messages.robots import SetPath, SetPosEnd
+from ...robot_bridge.core.messages.safety import RobotState
 from ..gateway_client.command_cache import CommandCache, PathDeviations, command_in_words
 from ..gateway_client.report_caches import QueueCache
 from ..gateway_client.robot_states import COMMAND_STATES, ROBOT_STATES, RobotStates, longest_word
 from ..gateway_client.robot_table import STATES
 from ..ui.glyphs import STATE_COLOURS, for_letters, state_icon
-from ..ui.language import age_in_words, heard_in_words, tr
+from ..ui.language import age_in_words, last_seen_in_words, tr
 from ..ui.tables import TO_THE_RIGHT
 
 
@@ -80,9 +76,9 @@ SHORT = {"websocket": "ws"}
 """Links whose names do not fit into a column."""
 
 
-def short_link(told: dict) -> str:
+def short_link(values: dict) -> str:
     """Return how a robot is connected, short."""
-    link = str(told.get("link", ""))
+    link = str(values.get("link", ""))
     return SHORT.get(link, link)
 
 
@@ -91,11 +87,11 @@ def idle_in_words(*, stopped: bool, paused: bool) -> str:
     return tr("paused") if paused else tr("stopped") if stopped else ""
 
 
-def task_in_words(task: CommandReport | None, told: dict, *, paused: bool = False) -> str:
+def task_in_words(task: CommandReport | None, values: dict, *, paused: bool = False) -> str:
     """Return what a robot is doing, else what it says of itself, else whether it was ``paused``."""
     if task is None:
-        idle = idle_in_words(stopped=bool(told.get("stopped")), paused=paused)
-        return str(told.get("status") or idle)
+        idle = idle_in_words(stopped=bool(values.get("stopped")), paused=paused)
+        return str(values.get("status") or idle)
     if task.state is CommandState.ACKNOWLEDGED:
         if task.params.get("cone"):
             return tr("to cone")
@@ -156,14 +152,14 @@ class FleetRows:
     def __len__(self) -> int:
         return len(self.names)
 
-    def told(self, row: int) -> dict[str, Any]:
+    def row_values(self, row: int) -> dict[str, Any]:
         """Return what was told last of a robot."""
-        return self.picture.told(row)
+        return self.picture.row_values(row)
 
     def task(self, row: int) -> str:
         """Return what a robot is doing, in words."""
         name = self.names[row]
-        return task_in_words(self.book.task_of(name), self.told(row), paused=name in self.paused)
+        return task_in_words(self.book.task_of(name), self.row_values(row), paused=name in self.paused)
 
     def off(self, row: int) -> float:
         """Return how far a robot is from where it was told to be, NaN where nobody can tell."""
@@ -219,9 +215,9 @@ class FleetRows:
 
     def _offs(self) -> Floats:
         """Return what :meth:`off` says of everybody; only who was told to be somewhere can be off."""
-        told = {report.robot for report in self.book}
+        known = {report.robot for report in self.book}
         offs = np.full(len(self), np.nan)
-        for robot in told:
+        for robot in known:
             row = self.picture.row(robot)
             if row is not None:
                 offs[row] = self.off(row)
@@ -262,9 +258,9 @@ class FleetRows:
         has = self.picture.says("status", word)
         if word in tr("stopped").casefold():
             has |= (self.picture.column("stopped") == 1.0) & ~self.picture.says("status", "")
-        told = ~self.picture.says("status", "")
+        known = ~self.picture.says("status", "")
         for row in self._paused_rows():
-            has[row] |= bool(told[row]) and word in tr("paused").casefold()
+            has[row] |= bool(known[row]) and word in tr("paused").casefold()
         for task in self.book.under_way():
             row = self.picture.row(task.robot)
             if row is not None:
@@ -376,7 +372,7 @@ class RobotModel(QAbstractTableModel):
 
     def sort(self, column: int, order: Qt.SortOrder = Qt.SortOrder.AscendingOrder) -> None:
         self._sorted_by = (column, order)
-        self._put(self._wanted())
+        self._put(self._sorted_rows())
 
     def show(self, moment: float) -> None:
         """Show what is known at ``moment`` of the desk's clock."""
@@ -387,11 +383,11 @@ class RobotModel(QAbstractTableModel):
             self._arrangement = picture.arrangement
             self.beginResetModel()
             self._fleet = fleet
-            self._take(self._wanted())
+            self._take(self._sorted_rows())
             self.endResetModel()
             return
         self._fleet = fleet
-        self._put(self._wanted())
+        self._put(self._sorted_rows())
 
     def count(self) -> int:
         """Return how many robots there are, listed or not."""
@@ -411,7 +407,7 @@ class RobotModel(QAbstractTableModel):
         found = (int(self._row_at[row]) for row in known if row is not None and row < len(self._row_at))
         return [row for row in found if row >= 0]
 
-    def _wanted(self) -> Rows:
+    def _sorted_rows(self) -> Rows:
         rows = self._fleet.shown(self.which, self.text, self.troubled)
         column, order = self._sorted_by
         return self._fleet.sorted(rows, TITLES[max(0, column)], order == Qt.SortOrder.DescendingOrder)
@@ -456,17 +452,17 @@ class RobotModel(QAbstractTableModel):
         if title == "Task":
             return fleet.task(row)
         if title == "Link":
-            return short_link(fleet.told(row))
+            return short_link(fleet.row_values(row))
         if title == TITLES[POSITION]:
             return self._view.place_in_words(*fleet.xy[row].tolist())
         value = fleet.off(row) if title == "Off" else float(fleet.numbers[title][row])
         return number_in_words(title, value)
 
     def _tip(self, row: int) -> str:
-        fleet, told = self._fleet, self._fleet.told(row)
+        fleet, values = self._fleet, self._fleet.row_values(row)
         name, age = fleet.names[row], fleet.numbers["Age"][row]
-        heard = heard_in_words(ROBOT_STATES[self._state(row)], age, told.get("link"))
-        lines = [f"{name}: {heard}"]
+        last_seen = last_seen_in_words(ROBOT_STATES[self._state(row)], age, values.get("link"))
+        lines = [f"{name}: {last_seen}"]
         ping = fleet.numbers["Ping"][row]
         if np.isfinite(ping):
             lines.append(tr("its link takes {ms:.1f} ms there and back", ms=ping * 1000))
@@ -476,10 +472,10 @@ class RobotModel(QAbstractTableModel):
         task = fleet.book.task_of(name)
         if task is not None:
             lines.append(f"{command_in_words(task)}: {COMMAND_STATES[task.state]}")
-        elif fleet.task(row) and not told.get("status"):
+        elif fleet.task(row) and not values.get("status"):
             lines.append(fleet.task(row))
-        if told.get("status"):
-            lines.append(tr("it says: {text}", text=told["status"]))
+        if values.get("status"):
+            lines.append(tr("it says: {text}", text=values["status"]))
         return "\n".join(lines)
 
 

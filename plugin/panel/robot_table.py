@@ -56,7 +56,7 @@ OF_THEMES = 2
 class RobotTableView(QTableView):
     """Shows the desk's robots; its selection and the desk's are one."""
 
-    zoom_wanted = pyqtSignal(str)
+    zoom_requested = pyqtSignal(str)
     refreshed = pyqtSignal()
     """The rows are those of this moment."""
 
@@ -74,7 +74,7 @@ class RobotTableView(QTableView):
         self._model.modelReset.connect(self._reset)
         self._set_up()
         self.selectionModel().selectionChanged.connect(self._selected_here)
-        ZoomMenu(self).wanted.connect(lambda index: self.zoom_wanted.emit(self._name(index)))
+        ZoomMenu(self).requested.connect(lambda index: self.zoom_requested.emit(self._name(index)))
         self.positions.changed.connect(self.refresh)
         desk.selection.changed.connect(self._selected_elsewhere)
         desk.state.updated.connect(self._pulled)
@@ -206,16 +206,16 @@ class RobotTableView(QTableView):
         rows = self._model.rows_of(self._desk.selection.robots)
         if set(rows) == {i.row() for i in self.selectionModel().selectedRows()}:
             return
-        wanted = QItemSelection()
+        selection = QItemSelection()
         for row in rows:
             index = self._model.index(row, 0)
-            wanted.append(QItemSelectionRange(index))
+            selection.append(QItemSelectionRange(index))
         flags = QItemSelectionModel.SelectionFlag
         self._marking = True
         if rows:
             # Keys go on from the robot that drafts are made for.
             self.selectionModel().setCurrentIndex(self._model.index(rows[-1], 0), flags.NoUpdate)
-        self.selectionModel().select(wanted, flags.ClearAndSelect | flags.Rows)
+        self.selectionModel().select(selection, flags.ClearAndSelect | flags.Rows)
         self._marking = False
 
 

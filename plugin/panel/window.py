@@ -47,7 +47,7 @@ class FleetWindow(QObject):
         # A child of the main window, so that scripts find its actions there by their object names.
         super().__init__(iface.mainWindow())
         self._iface = iface
-        self._told = ""
+        self._reason = ""
         canvas = iface.mapCanvas()
         self.desk = FleetController(canvas, QgsProject.instance(), self)
         self.actions = Actions(self)
@@ -151,8 +151,8 @@ class FleetWindow(QObject):
         actions.clear_emergency.triggered.connect(self._ask_to_clear)
         actions.way_wishes.triggered.connect(self._ask_for_ways)
         desk.emergency_changed.connect(self._show_emergency)
-        self.dock.table.zoom_wanted.connect(self.view.zoom_to)
-        self.dock.log.place_wanted.connect(self.view.show_place)
+        self.dock.table.zoom_requested.connect(self.view.zoom_to)
+        self.dock.log.place_requested.connect(self.view.show_place)
         desk.messages.posted.connect(self.notices.show_message)
         desk.messages.withdrawn.connect(self.notices.take_down)
         self.notices.closed.connect(desk.messages.forget)
@@ -160,12 +160,12 @@ class FleetWindow(QObject):
         self._project_match.over.connect(self.notices.take_down)
         desk.state.link_changed.connect(self._show_link)
 
-    def _follow(self, whom: FollowMode, on: bool) -> None:
+    def _follow(self, mode: FollowMode, on: bool) -> None:
         if on:
-            other = self.actions.follow_all if whom is FollowMode.SELECTED else self.actions.follow
+            other = self.actions.follow_all if mode is FollowMode.SELECTED else self.actions.follow
             other.setChecked(False)
-            self.view.follow(whom)
-        elif self.view.following is whom:
+            self.view.follow(mode)
+        elif self.view.following is mode:
             self.view.follow(FollowMode.NOBODY)
 
     def _put_away(self, tool: QgsMapTool) -> None:
@@ -175,9 +175,9 @@ class FleetWindow(QObject):
             # A QGIS without any map tool would not answer to clicks.
             self._iface.actionPan().trigger()
 
-    def _connect_or_not(self, wanted: bool) -> None:
+    def _connect_or_not(self, connect: bool) -> None:
         self.desk.messages.end(CONNECTING)
-        if not wanted:
+        if not connect:
             self.desk.close_link()
             return
         panel = self.dock.connection_panel
@@ -194,16 +194,18 @@ class FleetWindow(QObject):
 
     def _show_link(self) -> None:
         link = self.desk.state.link
-        wanted = link.phase not in (ConnectionPhase.CLOSED, ConnectionPhase.FAILED)
-        self.actions.connect.setChecked(wanted)
-        self.actions.connect.setText(tr("Disconnect") if wanted else tr("Connect"))
+        is_open = link.phase not in (ConnectionPhase.CLOSED, ConnectionPhase.FAILED)
+        self.actions.connect.setChecked(is_open)
+        self.actions.connect.setText(tr("Disconnect") if is_open else tr("Connect"))
         if link.phase is ConnectionPhase.FAILED:
             self.desk.messages.post(link.reason, Level.ERROR, OUTAGE)
-        elif link.phase is ConnectionPhase.RETRYING and link.reason != self._told:
+        elif link.phase is ConnectionPhase.RETRYING and link.reason != self._reason:
             # The panel goes on showing it; the message bar says it once for each outage.
             self.desk.messages.post(link.reason, Level.WARNING, OUTAGE)
-        self._told = "" if link.phase in (ConnectionPhase.CONNECTED, ConnectionPhase.CLOSED) else link.reason
-        if not self._told:
+        self._reason = (
+            "" if link.phase in (ConnectionPhase.CONNECTED, ConnectionPhase.CLOSED) else link.reason
+        )
+        if not self._reason:
             self.desk.messages.end(OUTAGE)
 
     def _show_emergency(self) -> None:
@@ -240,9 +242,9 @@ class WindowAlarms(QObject):
         self._tabs.add_page(self.panel, tr("Alarms"), counts=True)
         window.dock.details.show_alarms_of(self.watch.board)
         self.watch.changed.connect(self._changed)
-        self.panel.robots_wanted.connect(self._go)
+        self.panel.robots_requested.connect(self._go)
         self.panel.counted.connect(self._count)
-        self.bar.wanted.connect(self._show)
+        self.bar.requested.connect(self._show)
 
     def remove(self) -> None:
         """Watch no more and take panel and message away."""

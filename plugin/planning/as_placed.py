@@ -18,7 +18,7 @@ from qgis.PyQt.QtWidgets import (
     QWidget,
 )
 
-from ...robot_bridge.core.messages import PlacementReport
+from ...robot_bridge.core.messages.records import PlacementReport
 from ..control.fleet_controller import FleetController
 from ..control.messages import file_topic
 from ..layers.live_layers import MARK, live_layers
@@ -151,13 +151,13 @@ MANY = 2000
 class AsPlacedPage(QWidget):
     """Shows what was put down of a plan, a layout or all, as the desk knows it."""
 
-    refresh_wanted = pyqtSignal()
-    collect_wanted = pyqtSignal(object)
+    refresh_requested = pyqtSignal()
+    collect_requested = pyqtSignal(object)
     """Ask for a plan that collects a layout (its name), or all that stands (None)."""
     shown = pyqtSignal()
-    layer_wanted = pyqtSignal()
+    layer_requested = pyqtSignal()
     """Somebody is about to take the layer of what is shown, and needs it whole."""
-    place_wanted = pyqtSignal(float, float)
+    place_requested = pyqtSignal(float, float)
 
     def __init__(self, desk: FleetController, parent: QWidget | None = None):
         super().__init__(parent)
@@ -231,16 +231,16 @@ class AsPlacedPage(QWidget):
 
     def _fill_choices(self) -> None:
         layouts = sorted({one.layout for one in self._desk.state.placed_cones if one.layout})
-        wanted = [(tr("the plan that is driven"), THIS_PLAN), (tr("everything"), EVERYTHING)]
-        wanted += [(tr("layout {name}", name=name), ("layout", name)) for name in layouts]
-        if [self.which.itemData(k) for k in range(self.which.count())] == [data for _, data in wanted]:
+        choices = [(tr("the plan that is driven"), THIS_PLAN), (tr("everything"), EVERYTHING)]
+        choices += [(tr("layout {name}", name=name), ("layout", name)) for name in layouts]
+        if [self.which.itemData(k) for k in range(self.which.count())] == [data for _, data in choices]:
             return
         now = self.which.currentData()
         self.which.blockSignals(True)
         self.which.clear()
-        for text, data in wanted:
+        for text, data in choices:
             self.which.addItem(text, data)
-        names = [data for _, data in wanted]
+        names = [data for _, data in choices]
         self.which.setCurrentIndex(names.index(now) if now in names else 0)
         self.which.blockSignals(False)
 
@@ -248,9 +248,9 @@ class AsPlacedPage(QWidget):
         what = self.which.currentData()
         layouts = {one.layout for one in self.placements if one.layout}
         if what == THIS_PLAN and len(layouts) == 1:
-            self.collect_wanted.emit(layouts.pop())
+            self.collect_requested.emit(layouts.pop())
         else:
-            self.collect_wanted.emit(what[1] if isinstance(what, tuple) else None)
+            self.collect_requested.emit(what[1] if isinstance(what, tuple) else None)
 
     def _save_as(self) -> None:
         path = file_to_write(self, tr("As-placed report"), export_path("as-placed.csv"), tr("CSV (*.csv)"))
@@ -260,7 +260,7 @@ class AsPlacedPage(QWidget):
     def _open_report(self) -> None:
         # The user may have taken the layer out of the project.
         self.show_placed()
-        self.layer_wanted.emit()
+        self.layer_requested.emit()
         self._desk.messages.end(REPORT)
         try:
             open_report_dialog(self._desk.project)
@@ -269,7 +269,7 @@ class AsPlacedPage(QWidget):
 
     def _go_there(self, row: int, _: int) -> None:
         one = self.placements[-MANY:][row]
-        self.place_wanted.emit(one.x, one.y)
+        self.place_requested.emit(one.x, one.y)
 
     def _lay_out(self) -> None:
         rows = QVBoxLayout(self)
@@ -278,7 +278,7 @@ class AsPlacedPage(QWidget):
         self.report.setEnabled(False)
         files.addWidget(self.report)
         for row, text, name, action in (
-            (foot, tr("Refresh"), "fleet_placed_refresh", self.refresh_wanted.emit),
+            (foot, tr("Refresh"), "fleet_placed_refresh", self.refresh_requested.emit),
             (files, tr("Save as CSV…"), "fleet_placed_save", self._save_as),
             (foot, tr("Plan collecting"), "fleet_placed_collect", self._collect),
         ):

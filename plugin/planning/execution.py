@@ -10,31 +10,29 @@ from typing import Any
 from qgis.PyQt.QtCore import QObject, pyqtSignal
 
 from ...robot_bridge.core.assignment.plan import ConePlan, document_of
-from ...robot_bridge.core.messages import (
+from ...robot_bridge.core.messages.plans import (
     ClearPlan,
     ConfirmReplan,
     DiscardReplan,
-    GetPlacements,
     GetPlans,
-    GetQueue,
-    MessageError,
     PausePlan,
     PlanCone,
     PlanProblemKind,
     PlanReport,
     PlanState,
-    QueueState,
     Replan,
     ResumePlan,
     SubmitPlan,
-    TaskState,
 )
+from ...robot_bridge.core.messages.queues import GetQueue, QueueState, TaskState
+from ...robot_bridge.core.messages.records import MOST_PLACEMENTS, GetPlacements
+from ...robot_bridge.core.messages.validation import MessageError
 from ..control.fleet_controller import STOPPED_BY, FleetController
 from ..control.messages import PLAN_SENT, Level, Topic, plan_topic
 from ..control.pending_command import in_brief
 from ..gateway_client.connection_status import ConnectionPhase
 from ..gateway_client.fleet_state import RequestResult
-from ..gateway_client.report_caches import MOST_ASKED, KnownPlan
+from ..gateway_client.report_caches import KnownPlan
 from ..ui.errors import NotSentError
 from ..ui.language import first_of, tr
 from .plan_editor import PlanEditor, PlanningError
@@ -62,7 +60,7 @@ class RefusedPlan:
 
 
 @dataclass(frozen=True)
-class _Asked:
+class _PendingRequest:
     request: Any
     words: str
     plan: ConePlan | None
@@ -87,7 +85,7 @@ class PlanExecution(QObject):
         self.shown: str | None = None
         """The name of the plan that is shown, None for the draft."""
         self._refusal: RefusedPlan | None = None
-        self._asked: dict[str, _Asked] = {}
+        self._pending: dict[str, _PendingRequest] = {}
         self._wants_draft = False
         """Whether the operator chose not to be shown what others submit."""
         self._cleared_here: set[str] = set()
@@ -97,7 +95,7 @@ class PlanExecution(QObject):
         """What this desk submitted last: it is shown until the gateway has sent it back."""
         self._went: tuple[str, Sequence[str]] | None = None
         """What was asked after robots were let go on, by its key, and these robots."""
-        self._told: dict[str, PlanReport] = {}
+        self._reports: dict[str, PlanReport] = {}
         desk.state.plans_changed.connect(self._take_plans)
         desk.state.queues_changed.connect(self._take_queues)
         desk.orders.answered.connect(self._answered)
@@ -131,7 +129,7 @@ class PlanExecution(QObject):
     @property
     def asking(self) -> bool:
         """Whether something was asked of the gateway that it has not answered yet; pauses do not count."""
-        return any(not isinstance(one.request, PausePlan) for one in self._asked.values())
+        return any(not isinstance(one.request, PausePlan) for one in self._pending.values())
 
     @property
     def busy(self) -> bool:
@@ -264,7 +262,7 @@ class PlanExecution(QObject):
 
     def forget(self) -> None:
         """Forget what is shown, plan or draft: it is another site's."""
-        self._told.clear()
+        self._reports.clear()
         self._show_nothing(wants_draft=False)
 
     def _show_nothing(self, *, wants_draft: bool) -> None:
@@ -315,24 +313,24 @@ class PlanExecution(QObject):
         # Only now: what could not be asked leaves what was refused to be overridden.
         self._desk.messages.end(PLAN_SENT)
         self._refusal = None
-        self._asked[key] = _Asked(request, words, plan, done)
+        self._pending[key] = _PendingRequest(request, words, plan, done)
         self.changed.emit()
 
     def _answered(self, answer: RequestResult) -> None:
-        asked = self._asked.pop(answer.order.key, None)
-        if asked is None:
+        pending = self._pending.pop(answer.order.key, None)
+        if pending is None:
             self._tell_who_stays(answer.order.key)
             return
         if answer.error is None:
-            asked.done(answer.result or {})
+            pending.done(answer.result or {})
         elif answer.overridable:
             found = tuple(f"{text}." for text in answer.overridable)
-            self._refusal = RefusedPlan(asked.request, asked.words, found, asked.plan)
+            self._refusal = RefusedPlan(pending.request, pending.words, found, pending.plan)
             # One text that says where it is decided, in place of the one that every refusal brings.
-            self._desk.messages.withdraw(f"{asked.words}: {answer.error}")
+            self._desk.messages.withdraw(f"{pending.words}: {answer.error}")
             self._fail(_in_words(self._refusal))
-        if isinstance(asked.request, ClearPlan):
-            self._cleared_here.discard(asked.request.plan)
+        if isinstance(pending.request, ClearPlan):
+            self._cleared_here.discard(pending.request.plan)
         self.changed.emit()
 
     def _submitted(self, result: dict[str, Any]) -> None:
@@ -413,7 +411,7 @@ class PlanExecution(QObject):
         try:
             self._desk.orders.inquire(GetPlans(known.plan, documents=True))
             if is_another:
-                self._desk.orders.inquire(GetPlacements(plan=known.plan, limit=MOST_ASKED))
+                self._desk.orders.inquire(GetPlacements(plan=known.plan, limit=MOST_PLACEMENTS))
         except NotSentError:
             # It is asked for once the link is back.
             return
@@ -422,12 +420,12 @@ class PlanExecution(QObject):
     # --- what is told of plans, whichever is shown ---
 
     def _notice(self, name: str) -> None:
-        known, before = self._desk.state.plans.get(name), self._told.pop(name, None)
+        known, before = self._desk.state.plans.get(name), self._reports.pop(name, None)
         trouble, by_itself = plan_topic(name, "trouble"), plan_topic(name, "unasked")
         if known is None or not known.is_open:
             self._desk.messages.end(trouble, by_itself)
             return
-        report = self._told[name] = known.report
+        report = self._reports[name] = known.report
         if before is None or before.problems != report.problems:
             self._desk.messages.end(trouble)
             if report.problems:

@@ -250,15 +250,15 @@ class RobotsModel(QAbstractTableModel):
     def setData(self, index: QModelIndex, value: object, role: int = Qt.ItemDataRole.EditRole) -> bool:
         column = index.column()
         if column == 0 and role == Qt.ItemDataRole.CheckStateRole:
-            wanted: float | None = number_of(value) == CHECKED
+            value_set: float | None = number_of(value) == CHECKED
         elif column and role == Qt.ItemDataRole.EditRole:
-            wanted = self._number(index.row(), column, str(value))
+            value_set = self._number(index.row(), column, str(value))
         else:
             return False
-        if wanted is None:
+        if value_set is None:
             return False
         name = self._names[index.row()]
-        one = replace(self._of(index.row()), **{_FIELDS[column]: wanted})
+        one = replace(self._of(index.row()), **{_FIELDS[column]: value_set})
         self._settings = self._settings.with_robot(name, one)
         self.dataChanged.emit(index, index)
         self.edited.emit(name, one)

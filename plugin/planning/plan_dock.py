@@ -21,17 +21,11 @@ from qgis.PyQt.QtWidgets import (
     QWidget,
 )
 
-from ...robot_bridge.core.messages import (
-    CollectLayout,
-    GetPlacements,
-    PlanProblemKind,
-    PlanReport,
-    PlanState,
-)
+from ...robot_bridge.core.messages.plans import PlanProblemKind, PlanReport, PlanState
+from ...robot_bridge.core.messages.records import MOST_PLACEMENTS, CollectLayout, GetPlacements
 from ..control.fleet_controller import FleetController
-from ..control.messages import PLAN_ASKED, Level
+from ..control.messages import PLAN_REQUEST, Level
 from ..control.pending_command import in_brief
-from ..gateway_client.report_caches import MOST_ASKED
 from ..panel.pending_command_panel import OverrideDialog
 from ..ui.actions import ActionDock, DockAction
 from ..ui.dialogs import ShrinkableScrollArea, confirm, push_button
@@ -44,15 +38,7 @@ from .execution import PlanExecution, no_plans_here
 from .forms import RobotsForm, SettingsForm
 from .plan_editor import CollectionPlanner, PlanEditor
 from .plan_settings import PlanSettings, keep_settings, read_settings
-from .plan_views import (
-    PlanLayers,
-    PlanTree,
-    before_sending,
-    method_text,
-    plan_summary,
-    plan_title,
-    stop_rows,
-)
+from .plan_views import PlanLayers, PlanTree, before_sending, method_text, plan_summary, plan_title, stop_rows
 from .progress import ReportedProgress, problem_in_words
 from .proposal import closed_in_words, meeting_in_words
 
@@ -62,14 +48,14 @@ from .proposal import closed_in_words, meeting_in_words
 class ExecutionBar(QWidget):
     """Buttons that are usable when they can do something, and a line that says how things stand."""
 
-    send_wanted = pyqtSignal()
-    override_wanted = pyqtSignal()
-    pause_wanted = pyqtSignal()
-    rest_wanted = pyqtSignal(bool)
-    confirm_wanted = pyqtSignal()
-    discard_wanted = pyqtSignal()
-    resume_wanted = pyqtSignal()
-    clear_wanted = pyqtSignal()
+    send_plan_requested = pyqtSignal()
+    override_requested = pyqtSignal()
+    pause_requested = pyqtSignal()
+    rest_requested = pyqtSignal(bool)
+    confirm_requested = pyqtSignal()
+    discard_requested = pyqtSignal()
+    resume_requested = pyqtSignal()
+    clear_requested = pyqtSignal()
     by_itself_changed = pyqtSignal(bool)
 
     def __init__(self, drafts: PlanEditor, driven: PlanExecution, parent: QWidget | None = None):
@@ -83,24 +69,24 @@ class ExecutionBar(QWidget):
         self._lay_out()
 
     def _make_sending_buttons(self) -> None:
-        self.send = push_button("fleet_plan_send", tr("Send…"), pressed=self.send_wanted.emit)
+        self.send = push_button("fleet_plan_send", tr("Send…"), pressed=self.send_plan_requested.emit)
         self.clear = push_button(
             "fleet_plan_clear",
             tr("Clear"),
             tr("Follow the plan no more, at no desk; robots go on with their queues"),
-            self.clear_wanted.emit,
+            self.clear_requested.emit,
         )
         self.override = push_button(
             "fleet_plan_override",
             tr("Override…"),
             tr("Send the plan in spite of what was found; asks why"),
-            self.override_wanted.emit,
+            self.override_requested.emit,
         )
         self.pause = push_button(
             "fleet_plan_pause",
             tr("Pause the plan"),
             tr("Send the plan's robots no further task; what they are doing they finish"),
-            self.pause_wanted.emit,
+            self.pause_requested.emit,
         )
 
     def _make_new_plan_buttons(self) -> None:
@@ -111,19 +97,19 @@ class ExecutionBar(QWidget):
                 "Hold the robots once they have finished what they are doing, and plan what is left; "
                 "nothing else is sent before you confirm"
             ),
-            lambda: self.rest_wanted.emit(self.again.isChecked()),
+            lambda: self.rest_requested.emit(self.again.isChecked()),
         )
         self.confirm = push_button(
-            "fleet_plan_confirm", tr("Confirm new plan"), pressed=self.confirm_wanted.emit
+            "fleet_plan_confirm", tr("Confirm new plan"), pressed=self.confirm_requested.emit
         )
         self.discard = push_button(
-            "fleet_plan_discard", tr("Go on as before"), pressed=self.discard_wanted.emit
+            "fleet_plan_discard", tr("Go on as before"), pressed=self.discard_requested.emit
         )
         self.resume = push_button(
             "fleet_plan_resume",
             tr("Let them go on"),
             tr("Resume the queues of the plan's robots that somebody paused"),
-            self.resume_wanted.emit,
+            self.resume_requested.emit,
         )
 
     def _make_choices(self) -> None:
@@ -168,9 +154,9 @@ class ExecutionBar(QWidget):
         self.by_itself.setChecked(drafts.settings.by_itself if report is None else report.by_itself)
         self.by_itself.blockSignals(False)
         self.by_itself.setEnabled(report is None)
-        told, shown = self._in_words(report), driven.shown_plan
-        self.text.setText(told)
-        self.text.setToolTip("\n".join([told, *([] if shown is None else [method_text(shown)])]))
+        text, shown = self._in_words(report), driven.shown_plan
+        self.text.setText(text)
+        self.text.setToolTip("\n".join([text, *([] if shown is None else [method_text(shown)])]))
         self.trouble.setText(self._wrong(report))
         self.trouble.set_text_style(WRONG_STYLE if self.trouble.text() else "")
 
@@ -301,7 +287,7 @@ class PlanDock(ActionDock):
 
     def make(self, *, preview: bool) -> None:
         """Plan the chosen cones, unless a plan is being driven."""
-        self._desk.messages.end(PLAN_ASKED)
+        self._desk.messages.end(PLAN_REQUEST)
         if not self._make_room():
             return
         try:
@@ -313,7 +299,7 @@ class PlanDock(ActionDock):
         try:
             self.driven.make_room()
         except FleetError as error:
-            self._desk.messages.post(str(error), Level.WARNING, PLAN_ASKED)
+            self._desk.messages.post(str(error), Level.WARNING, PLAN_REQUEST)
             return False
         return True
 
@@ -423,11 +409,11 @@ class PlanDock(ActionDock):
         """Drop what belongs to other robots; a site that was published again keeps its plan."""
         if self._generation != self._desk.state.robots.generation:
             self._generation = self._desk.state.robots.generation
-            self._desk.messages.end(PLAN_ASKED)
+            self._desk.messages.end(PLAN_REQUEST)
             self.driven.forget()
 
     def _ask_for_placements(self) -> None:
-        self._try(lambda: self._desk.orders.ask(GetPlacements(limit=MOST_ASKED), tr("Placed cones")))
+        self._try(lambda: self._desk.orders.ask(GetPlacements(limit=MOST_PLACEMENTS), tr("Placed cones")))
 
     def _go_to(self, x: float, y: float) -> None:
         ((east, north),) = self._desk.site_to_canvas.transform().to_map([(x, y)]).tolist()
@@ -436,10 +422,10 @@ class PlanDock(ActionDock):
 
     def _refuse(self, why: str) -> None:
         """Say why something of a plan was not done; it hangs there until something else is asked for."""
-        self._desk.report_failure(why, PLAN_ASKED)
+        self._desk.report_failure(why, PLAN_REQUEST)
 
     def _try(self, action: Callable[[], object]) -> None:
-        self._desk.messages.end(PLAN_ASKED)
+        self._desk.messages.end(PLAN_REQUEST)
         try:
             action()
         except FleetError as error:
@@ -486,29 +472,29 @@ class PlanDock(ActionDock):
         self.preview.clicked.connect(lambda: self.make(preview=True))
         self.solve.clicked.connect(lambda: self.make(preview=False))
         self.cancel.clicked.connect(self.drafts.cancel)
-        self.tree.move_wanted.connect(lambda *where: self._try(lambda: self.drafts.move(*where)))
-        self.tree.remove_wanted.connect(lambda target: self._try(lambda: self.drafts.remove(target)))
-        self.tree.place_wanted.connect(self._go_to)
-        self.placed.place_wanted.connect(self._go_to)
-        bar.send_wanted.connect(self.ask_to_send)
-        bar.clear_wanted.connect(lambda: self._try(self.driven.clear))
-        bar.override_wanted.connect(self.ask_to_override)
-        bar.pause_wanted.connect(lambda: self._try(self.driven.pause))
+        self.tree.move_requested.connect(lambda *where: self._try(lambda: self.drafts.move(*where)))
+        self.tree.remove_requested.connect(lambda target: self._try(lambda: self.drafts.remove(target)))
+        self.tree.place_requested.connect(self._go_to)
+        self.placed.place_requested.connect(self._go_to)
+        bar.send_plan_requested.connect(self.ask_to_send)
+        bar.clear_requested.connect(lambda: self._try(self.driven.clear))
+        bar.override_requested.connect(self.ask_to_override)
+        bar.pause_requested.connect(lambda: self._try(self.driven.pause))
         self.which.activated.connect(lambda index: self.driven.choose(self.which.itemData(index)))
-        bar.rest_wanted.connect(lambda again: self._try(lambda: self.driven.plan_rest(try_again=again)))
-        bar.confirm_wanted.connect(lambda: self._try(self.driven.confirm))
-        bar.discard_wanted.connect(lambda: self._try(self.driven.discard))
-        bar.resume_wanted.connect(lambda: self._try(self.driven.resume))
+        bar.rest_requested.connect(lambda again: self._try(lambda: self.driven.plan_rest(try_again=again)))
+        bar.confirm_requested.connect(lambda: self._try(self.driven.confirm))
+        bar.discard_requested.connect(lambda: self._try(self.driven.discard))
+        bar.resume_requested.connect(lambda: self._try(self.driven.resume))
         bar.by_itself_changed.connect(self._set_by_itself)
         self.drafts.changed.connect(self._refresh)
         self.driven.changed.connect(self._refresh)
         self.drafts.refused.connect(self._refuse)
         self.driven.remarked.connect(desk.remarked)
-        self.collecting.refused.connect(lambda text: desk.messages.post(text, Level.WARNING, PLAN_ASKED))
-        self.placed.refresh_wanted.connect(self._ask_for_placements)
-        self.placed.collect_wanted.connect(self.collect)
+        self.collecting.refused.connect(lambda text: desk.messages.post(text, Level.WARNING, PLAN_REQUEST))
+        self.placed.refresh_requested.connect(self._ask_for_placements)
+        self.placed.collect_requested.connect(self.collect)
         self.placed.shown.connect(self._show_placed_layer)
-        self.placed.layer_wanted.connect(self.layers.placed.finish)
+        self.placed.layer_requested.connect(self.layers.placed.finish)
         desk.state.placed_cones_changed.connect(self._placements_changed)
         desk.state.updated.connect(self._pulled)
         self.visibilityChanged.connect(self._shown)

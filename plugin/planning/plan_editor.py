@@ -18,7 +18,10 @@ from ...robot_bridge.core.assignment.plan import ConePlan
 from ...robot_bridge.core.assignment.progress import ConeFacts
 from ...robot_bridge.core.assignment.solver import AUTOMATIC, PREVIEW, Objective, assign
 from ...robot_bridge.core.errors import AssignmentError, MissingStoreError
-from ...robot_bridge.core.messages import ClosureReport, CollectLayout, MessageError, QueueTask, TaskKind
+from ...robot_bridge.core.messages.queues import QueueTask, TaskKind
+from ...robot_bridge.core.messages.records import CollectLayout
+from ...robot_bridge.core.messages.roads import ClosureReport
+from ...robot_bridge.core.messages.validation import MessageError
 from ...robot_bridge.core.sites.frame import SiteFrame
 from ..control.fleet_controller import FleetController
 from ..gateway_client.fleet_state import RequestResult
@@ -165,7 +168,7 @@ class PlanEditor(QObject):
         stores = read_stores(self._desk.project, self.settings, frame)
         try:
             job = AssignmentJob(targets, self._robots(), stores, self.settings.finish)
-            wanted = Objective(
+            objective = Objective(
                 self.settings.objective, PREVIEW if preview else AUTOMATIC, self.settings.seconds
             )
         except MissingStoreError as error:
@@ -185,7 +188,7 @@ class PlanEditor(QObject):
         self.run(
             tr("Preview of the cone plan") if preview else tr("Cone plan"),
             blank,
-            lambda task: assign(job, ways.travel_of(job, task.goes_on), wanted, task.told),
+            lambda task: assign(job, ways.travel_of(job, task.goes_on), objective, task.report_progress),
             self._put,
         )
 

@@ -17,7 +17,7 @@ from ...robot_bridge.core.assignment.progress import ConeFacts
 from ...robot_bridge.core.assignment.schedules import BALANCED, OBJECTIVES
 from ...robot_bridge.core.geometry import theta_of
 from ...robot_bridge.core.json_decoder import decode_json
-from ...robot_bridge.core.messages import RobotState
+from ...robot_bridge.core.messages.safety import RobotState
 from ...robot_bridge.core.sites.frame import SiteFrame
 from ..gateway_client.robot_states import RobotArrays
 from ..gateway_client.robot_table import STATES

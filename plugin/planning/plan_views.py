@@ -27,14 +27,10 @@ from qgis.PyQt.QtWidgets import QAbstractItemView, QMenu, QTreeWidget, QTreeWidg
 from ...robot_bridge.core.assignment.job import STRAIGHT, PlanRobot
 from ...robot_bridge.core.assignment.plan import ConePlan, PlanStop, RobotPlan
 from ...robot_bridge.core.assignment.plan_changes import trips_of
-from ...robot_bridge.core.messages import (
-    PlacementReport,
-    PlanReport,
-    QueueReport,
-    QueueState,
-    RobotState,
-    TaskState,
-)
+from ...robot_bridge.core.messages.plans import PlanReport
+from ...robot_bridge.core.messages.queues import QueueReport, QueueState, TaskState
+from ...robot_bridge.core.messages.records import PlacementReport
+from ...robot_bridge.core.messages.safety import RobotState
 from ...robot_bridge.core.sites.frame import SiteFrame
 from ..cone_texts import RESULT_QUALITY
 from ..control.fleet_controller import FleetController
@@ -297,10 +293,10 @@ _KINDS = {"place": "", "collect": tr("collect "), "store": tr("store "), "home":
 class PlanTree(QTreeWidget):
     """Shows a draft or the plan that is driven. Changes are asked for, and shown when they are made."""
 
-    move_wanted = pyqtSignal(str, str, int, int)
+    move_requested = pyqtSignal(str, str, int, int)
     """A target to another robot, trip and place."""
-    remove_wanted = pyqtSignal(str)
-    place_wanted = pyqtSignal(float, float)
+    remove_requested = pyqtSignal(str)
+    place_requested = pyqtSignal(float, float)
     """A stop was double clicked: where it is, in the site frame."""
 
     def __init__(self, parent: QWidget | None = None):
@@ -351,7 +347,7 @@ class PlanTree(QTreeWidget):
         target = self._target()
         moves = {Qt.Key.Key_Up: -1, Qt.Key.Key_Down: 1}
         if target and event.key() == Qt.Key.Key_Delete:
-            self.remove_wanted.emit(target)
+            self.remove_requested.emit(target)
         elif target and event.key() in moves and event.modifiers() & Qt.KeyboardModifier.AltModifier:
             self._move_by(target, moves[event.key()])
         else:
@@ -390,7 +386,7 @@ class PlanTree(QTreeWidget):
 
     def _emit(self, target: str, place: tuple[str, int, int] | None) -> None:
         if place is not None:
-            self.move_wanted.emit(target, *place)
+            self.move_requested.emit(target, *place)
 
     def _target(self) -> str:
         """Return the cone that is selected and may be changed, else nothing."""
@@ -408,13 +404,13 @@ class PlanTree(QTreeWidget):
             if not one.lost:
                 name = one.robot.id
                 menu.addAction(tr("Give to {name}", name=name), lambda name=name: self.give_to(name))
-        menu.addAction(tr("Take out"), lambda: self.remove_wanted.emit(target))
+        menu.addAction(tr("Take out"), lambda: self.remove_requested.emit(target))
         menu.exec(self.viewport().mapToGlobal(at))
 
     def _go_there(self, item: QTreeWidgetItem) -> None:
         place = item.data(0, _NAME + 1)
         if place is not None:
-            self.place_wanted.emit(*place)
+            self.place_requested.emit(*place)
 
     def _build(self, plan: ConePlan, rows: Mapping[str, Sequence[PlanStopRow]]) -> None:
         chosen = self._target()

@@ -5,14 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 
 from ...robot_bridge.core.assignment.job import COLLECT, PLACE
-from ...robot_bridge.core.messages import (
-    PlacementReport,
-    PlanProblemKind,
-    PlanProblemReport,
-    PlanReport,
-    PlanStopReport,
-    TaskState,
-)
+from ...robot_bridge.core.messages.plans import PlanProblemKind, PlanProblemReport, PlanReport, PlanStopReport
+from ...robot_bridge.core.messages.queues import TaskState
+from ...robot_bridge.core.messages.records import PlacementReport
 from ..ui.language import first_of, tr
 
 _REMARKED = (TaskState.SKIPPED, TaskState.REMOVED, TaskState.FAILED, TaskState.WAITING)

@@ -29,7 +29,7 @@ from ...robot_bridge.core.assignment.job import (
 from ...robot_bridge.core.assignment.plan import ConePlan
 from ...robot_bridge.core.assignment.progress import ClosedWay, ConeFacts
 from ...robot_bridge.core.errors import AssignmentCancelledError, AssignmentError, RoadsError
-from ...robot_bridge.core.messages import ClosureReport
+from ...robot_bridge.core.messages.roads import ClosureReport
 from ...robot_bridge.core.roads.centrelines import centrelines
 from ...robot_bridge.core.roads.map_matching import NearestEdge, edges_along, edges_of_closure
 from ...robot_bridge.core.roads.network import build_network
@@ -112,11 +112,11 @@ class PlanTravel:
     def _close(self, router: Router) -> None:
         """Close what is closed at the gateway, and open what is not any more."""
         lines = [(np.array(one.line, dtype=float), one.level) for one in self.closures]
-        wanted = {edge for line in lines for edge in edges_of_closure(router.nearest, *line).tolist()}
+        edges = {edge for line in lines for edge in edges_of_closure(router.nearest, *line).tolist()}
         always = set(np.flatnonzero(router.closed).tolist()) - self._shut
-        router.open(sorted(self._shut - wanted))
-        router.close(sorted(wanted - self._shut - always))
-        self._shut = wanted - always
+        router.open(sorted(self._shut - edges))
+        router.close(sorted(edges - self._shut - always))
+        self._shut = edges - always
 
     def _network(self, goes_on: Callable[[], bool]) -> Router | None:
         feedback = _Asking(goes_on)
@@ -347,7 +347,7 @@ class PlanTask(QgsTask):
         else:
             self.refused.emit(self._why)
 
-    def told(self, share: float) -> bool:
+    def report_progress(self, share: float) -> bool:
         """Show that ``share`` of the work, 0 to 1, is done; return whether to go on."""
         self.share = share
         self.setProgress(100.0 * share)

@@ -11,17 +11,12 @@ import numpy.typing as npt
 from qgis.core import QgsApplication, QgsTask
 from qgis.PyQt.QtCore import QObject, pyqtSignal
 
-from ...robot_bridge.core.messages import (
-    Abort,
-    CommandReport,
-    CommandState,
-    CommandStep,
-    GetCommands,
-    GetTrajectory,
-    RobotState,
-)
+from ...robot_bridge.core.messages.commands import CommandReport, CommandState, CommandStep, GetCommands
+from ...robot_bridge.core.messages.records import GetTrajectory
+from ...robot_bridge.core.messages.robots import Abort
+from ...robot_bridge.core.messages.safety import RobotState
 from ..control.request_tracker import RequestTracker
-from ..gateway_client.command_cache import UNDER_WAY, CommandCache, asked_at, command_in_words, state_word
+from ..gateway_client.command_cache import UNDER_WAY, CommandCache, command_in_words, requested_at, state_word
 from ..gateway_client.fleet_state import RequestResult
 from ..gateway_client.robot_states import RobotArrays
 from ..gateway_client.robot_table import STATES as HISTORY_STATES
@@ -102,8 +97,8 @@ class TimelineMarks(Sequence[TimelineMark]):
 
     def of_robots(self, names: Collection[str]) -> TimelineMarks:
         """Return the marks of the commands of these robots."""
-        is_wanted = np.array([report.robot in names for report in self._reports], dtype=bool)
-        return self._kept(is_wanted[self._commands])
+        is_selected = np.array([report.robot in names for report in self._reports], dtype=bool)
+        return self._kept(is_selected[self._commands])
 
     def _kept(self, rows: npt.NDArray[np.bool_]) -> TimelineMarks:
         columns = (self.at, self._commands, self._steps, self._states)
@@ -143,13 +138,13 @@ class PastCommands:
 
     def marks(self, since: float, until: float, robots: Collection[str] = ()) -> TimelineMarks:
         """Return when commands of ``robots``, or all, were sent and ended from ``since`` to ``until``."""
-        told = self._marks.between(since, until)
-        return told.of_robots(set(robots)) if robots else told
+        marks = self._marks.between(since, until)
+        return marks.of_robots(set(robots)) if robots else marks
 
 
 def sort_commands(reports: Sequence[CommandReport]) -> Steps[PastCommands]:
     """Look through commands, in steps."""
-    reports = sorted((one for one in reports if one.steps), key=asked_at)
+    reports = sorted((one for one in reports if one.steps), key=requested_at)
     begin, end = [], []
     marks: list[tuple[float, int, int, int]] = []
     for number, report in enumerate(reports):
@@ -371,7 +366,7 @@ class HistoryDownload(QObject):
         super().__init__(parent)
         self._requests = requests
         self._key = ""
-        self._wanted: GetTrajectory | None = None
+        self._query: GetTrajectory | None = None
         self._task: SortHistoryTask | None = None
         self.history = History()
         self.reached = 0.0
@@ -388,10 +383,10 @@ class HistoryDownload(QObject):
 
         :raises NotSentError: when it cannot be asked for; what was there stays.
         """
-        wanted = GetTrajectory(robots=robots, since=since, until=until, limit=PAGE)
+        query = GetTrajectory(robots=robots, since=since, until=until, limit=PAGE)
         self._requests.inquire(GetCommands(limit=COMMANDS))
-        self._key = self._requests.inquire(wanted)
-        self._wanted = wanted
+        self._key = self._requests.inquire(query)
+        self._query = query
         self._drop_task()
         self.history, self.reached = History(), since
 
@@ -403,7 +398,7 @@ class HistoryDownload(QObject):
     def forget(self) -> None:
         """Hold nothing: it is another site's."""
         self._drop_task()
-        self._key, self._wanted, self.history = "", None, History()
+        self._key, self._query, self.history = "", None, History()
 
     def _answered(self, answer: RequestResult) -> None:
         if not self._key or answer.order.key != self._key:
@@ -434,9 +429,9 @@ class HistoryDownload(QObject):
             self._go_on(str(following))
 
     def _go_on(self, after: str) -> None:
-        wanted = self._wanted
+        query = self._query
         try:
-            request = GetTrajectory(wanted.robots, wanted.since, wanted.until, after=after, limit=PAGE)
+            request = GetTrajectory(query.robots, query.since, query.until, after=after, limit=PAGE)
             self._key = self._requests.inquire(request)
         except FleetError as error:
             self._end(tr("The rest of the time was not fetched: {error}", error=error))

@@ -29,7 +29,7 @@ class ReplayDock(ActionDock):
         super().__init__(tr("Replay"), parent)
         self.setObjectName("fleet_replay_dock")
         self._desk = desk
-        self._told = ""
+        self._status = ""
         self._showing = CooperativeTask(self, ONE_STEP)
         """Shows a history that has just come."""
         self._past = CommandSorter(desk.state.commands, self)
@@ -100,15 +100,15 @@ class ReplayDock(ActionDock):
         self._say(tr("Loading …"))
 
     def _wire(self) -> None:
-        self.form.wanted.connect(self.load)
-        self.form.stop_wanted.connect(self.fetching.stop)
+        self.form.requested.connect(self.load)
+        self.form.stop_requested.connect(self.fetching.stop)
         self.fetching.progressed.connect(self._progressed)
         self.fetching.ended.connect(self._ended)
         self.layer.failed.connect(self._complain)
         self.layer.changed.connect(self.map.follow)
-        self.line.wanted.connect(self.clockwork.seek)
+        self.line.requested.connect(self.clockwork.seek)
         self.clockwork.moved.connect(self._show)
-        self.line.play_wanted.connect(self._play_or_hold)
+        self.line.play_requested.connect(self._play_or_hold)
         self.clockwork.playing_changed.connect(self._show_playing)
         self.play.clicked.connect(self._play_or_hold)
         self.speed.currentIndexChanged.connect(lambda k: self.clockwork.set_speed(SPEEDS[k]))
@@ -218,15 +218,15 @@ class ReplayDock(ActionDock):
         self._desk.messages.post(text, Level.WARNING, REPLAY, *topics)
 
     def _say(self, text: str) -> None:
-        self._told = text
+        self._status = text
         self._show_banner(self.clockwork.moment)
 
     def _show_banner(self, moment: float) -> None:
         if not self.clockwork.is_set:
-            self.banner.setText(tr("REPLAY · {told}", told=self._told))
+            self.banner.setText(tr("REPLAY · {told}", told=self._status))
             return
         self.banner.setText(
-            tr("REPLAY, not live · {moment} · {told}", moment=date_and_time(moment), told=self._told)
+            tr("REPLAY, not live · {moment} · {told}", moment=date_and_time(moment), told=self._status)
         )
 
     def _lay_out(self) -> None:

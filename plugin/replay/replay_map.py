@@ -22,7 +22,7 @@ from qgis.PyQt import sip
 from qgis.PyQt.QtCore import QObject, QSize, QTimer, pyqtSignal
 from qgis.PyQt.QtWidgets import QWidget
 
-from ...robot_bridge.core.messages import SiteReport
+from ...robot_bridge.core.messages.administration import SiteReport
 from ...robot_bridge.core.sites.frame import SiteFrame
 from ..layers.live_layers import (
     MARK,

@@ -13,7 +13,7 @@ from qgis.PyQt.QtCore import QDateTime, QEvent, QObject, QPointF, QRectF, QSize,
 from qgis.PyQt.QtGui import QColor, QKeyEvent, QMouseEvent, QPainter, QPaintEvent, QPen, QPolygonF
 from qgis.PyQt.QtWidgets import QCheckBox, QComboBox, QDateTimeEdit, QGridLayout, QToolTip, QWidget
 
-from ...robot_bridge.core.messages import CommandState
+from ...robot_bridge.core.messages.commands import CommandState
 from ..map.overlay.primitives import flat, lines
 from ..ui.glyphs import painting
 from ..ui.language import date_and_time, tr
@@ -145,10 +145,10 @@ FORMAT = "yyyy-MM-dd HH:mm:ss"
 
 
 class TimeRangeForm(QWidget):
-    """``wanted`` asks for the time in the form, ``stop_wanted`` for no more of it."""
+    """``requested`` asks for the time in the form, ``stop_requested`` for no more of it."""
 
-    wanted = pyqtSignal()
-    stop_wanted = pyqtSignal()
+    requested = pyqtSignal()
+    stop_requested = pyqtSignal()
 
     def __init__(self, parent: QWidget | None = None):
         super().__init__(parent)
@@ -168,7 +168,7 @@ class TimeRangeForm(QWidget):
         self.last.currentIndexChanged.connect(self._last_changed)
         self.since.dateTimeChanged.connect(self._by_hand)
         self.until.dateTimeChanged.connect(self._by_hand)
-        self.load.clicked.connect(lambda: (self.stop_wanted if self._is_busy else self.wanted).emit())
+        self.load.clicked.connect(lambda: (self.stop_requested if self._is_busy else self.requested).emit())
         self._last_changed()
 
     def stretch(self) -> tuple[float, float]:
@@ -236,13 +236,13 @@ STEP, LONG_STEP = 1.0, 10.0
 
 
 class TimeLine(QWidget):
-    """``wanted`` has the moment that was clicked or gone to by keys.
+    """``requested`` has the moment that was clicked or gone to by keys.
 
     What was sent is a mark upwards, what became of it one downwards.
     """
 
-    wanted = pyqtSignal(float)
-    play_wanted = pyqtSignal()
+    requested = pyqtSignal(float)
+    play_requested = pyqtSignal()
     """Space was pressed: that time goes on, or is held."""
 
     def __init__(self, parent: QWidget | None = None):
@@ -350,7 +350,7 @@ class TimeLine(QWidget):
         if event.key() in places:
             self._want(places[event.key()])
         elif event.key() == Qt.Key.Key_Space and not event.isAutoRepeat():
-            self.play_wanted.emit()
+            self.play_requested.emit()
         else:
             super().keyPressEvent(event)
 
@@ -360,4 +360,4 @@ class TimeLine(QWidget):
 
     def _want(self, moment: float) -> None:
         if self.until > self.since:
-            self.wanted.emit(min(max(moment, self.since), self.until))
+            self.requested.emit(min(max(moment, self.since), self.until))

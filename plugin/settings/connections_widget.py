@@ -75,7 +75,7 @@ LOOK_EVERY_MS = 50
 class ConnectionTest(QObject):
     """One trial at a time. The network is waited for in a thread; :meth:`end` waits for that thread."""
 
-    told = pyqtSignal(bool, str)
+    tested = pyqtSignal(bool, str)
     """Whether the gateway let the operator in, and what to say of it."""
 
     def __init__(self, parent: QObject | None = None):
@@ -92,7 +92,7 @@ class ConnectionTest(QObject):
         try:
             self._connection.open(url, operator, credentials)
         except FleetError as error:
-            self.told.emit(False, str(error))
+            self.tested.emit(False, str(error))
             return
         self._timer.start()
 
@@ -112,7 +112,7 @@ class ConnectionTest(QObject):
         verdict = self._verdict(news.link)
         if verdict is not None:
             self._connection.close()
-            self.told.emit(*verdict)
+            self.tested.emit(*verdict)
 
     def _verdict(self, link: ConnectionStatus) -> tuple[bool, str] | None:
         if link.phase in (ConnectionPhase.RETRYING, ConnectionPhase.FAILED):
@@ -159,7 +159,7 @@ class ConnectionDialog(QDialog):
         self._ca.lineEdit().setToolTip(hint)
         self._verdict = ResultLabel()
         self._trial = ConnectionTest(self)
-        self._trial.told.connect(self._verdict.show_verdict)
+        self._trial.tested.connect(self._verdict.show_verdict)
         self.finished.connect(self._trial.end)
         self._lay_out()
 
@@ -274,7 +274,7 @@ class ConnectionsWidget(QWidget):
         self._list.setColumnWidth(1, 260)
         self._verdict = ResultLabel()
         self._trial = ConnectionTest(self)
-        self._trial.told.connect(self._verdict.show_verdict)
+        self._trial.tested.connect(self._verdict.show_verdict)
         self._buttons = {
             name: self._button(name, text, action)
             for name, text, action in (

@@ -48,7 +48,7 @@ class PracticeFleet(QObject):
         self._folder: QTemporaryDir | None = None
         self._processes: list[QProcess] = []
         self._gateway: QProcess | None = None
-        self._said = ""
+        self._output = ""
 
     @property
     def running(self) -> bool:
@@ -62,7 +62,7 @@ class PracticeFleet(QObject):
         if not self.program:
             self.failed.emit(how_to_install())
             return
-        self._folder, self._said = QTemporaryDir(), ""
+        self._folder, self._output = QTemporaryDir(), ""
         database = f"sqlite:///{self._folder.filePath('fleet.db')}"
         gateway = self._gateway = self._process()
         gateway.readyReadStandardOutput.connect(self._read)
@@ -95,11 +95,11 @@ class PracticeFleet(QObject):
         return process
 
     def _read(self) -> None:
-        said = bytes(self._gateway.readAllStandardOutput()).decode("utf-8", "replace")
+        output = bytes(self._gateway.readAllStandardOutput()).decode("utf-8", "replace")
         if self.url:
             return
-        self._said += said
-        found = LISTENING.search(self._said)
+        self._output += output
+        found = LISTENING.search(self._output)
         if found:
             self.url = f"{found.group(1)}/desk"
             self._start_robots(f"{found.group(1)}/robot")
@@ -114,7 +114,7 @@ class PracticeFleet(QObject):
     def _ended(self, *_: object) -> None:
         if self._gateway is None:
             return
-        lines = self._said.strip().splitlines()
+        lines = self._output.strip().splitlines()
         why = lines[-1] if lines else self._gateway.errorString()
         self.stop()
         self.failed.emit(

@@ -198,7 +198,7 @@ class TourPanel(QFrame):
 
     changed = pyqtSignal(int)
     """The step that is shown, from 0."""
-    wanted = pyqtSignal(str)
+    requested = pyqtSignal(str)
     """What the step's button offers was asked for."""
     closed = pyqtSignal()
 
@@ -215,7 +215,7 @@ class TourPanel(QFrame):
         self._grip: QPoint | None = None
         self._title = _label("fleet_tour_title")
         self._text = _label("fleet_tour_text")
-        self._said = _label("fleet_tour_said")
+        self._status = _label("fleet_tour_said")
         self._count = QLabel()
         self._offer = _button("fleet_tour_offer", "", self._want)
         self._back = _button("fleet_tour_back", tr("&Back"), lambda: self.show_step(self._at - 1))
@@ -235,7 +235,7 @@ class TourPanel(QFrame):
     def show_step(self, at: int) -> None:
         """Show a step, counted from 0."""
         self._at = min(max(at, 0), len(STEPS) - 1)
-        self._said.clear()
+        self._status.clear()
         self._count.setText(f"{self._at + 1}/{len(STEPS)}")
         self._back.setEnabled(self._at > 0)
         self._next.setText(tr("&Finish") if self._at == len(STEPS) - 1 else tr("&Next"))
@@ -254,8 +254,8 @@ class TourPanel(QFrame):
 
     def say(self, text: str, *, busy: bool = False) -> None:
         """Show how it went with what the step's button does."""
-        self._said.setText(text)
-        self._said.setVisible(bool(text))
+        self._status.setText(text)
+        self._status.setVisible(bool(text))
         if busy and self._offer.hasFocus():
             # Left to Qt, Close would get the keyboard.
             self._next.setFocus()
@@ -281,16 +281,16 @@ class TourPanel(QFrame):
         self._title.setText(f"<b>{self.step.title}</b>")
         tried = self.step.practice if self._practice else ""
         self._text.setText(f"{self.step.text}<p><b>{tried}</b></p>" if tried else self.step.text)
-        self._said.setVisible(bool(self._said.text()))
+        self._status.setVisible(bool(self._status.text()))
         self._fit()
 
     def _fit(self) -> None:
         line = 2 * self.frameWidth()
-        wanted = self.layout().heightForWidth(WIDTH - line) + line
-        self.setFixedHeight(max(wanted, self.minimumSizeHint().height()))
+        height_needed = self.layout().heightForWidth(WIDTH - line) + line
+        self.setFixedHeight(max(height_needed, self.minimumSizeHint().height()))
 
     def _want(self) -> None:
-        self.wanted.emit(self.step.offer)
+        self.requested.emit(self.step.offer)
 
     def _go_on(self) -> None:
         if self._at == len(STEPS) - 1:
@@ -306,7 +306,7 @@ class TourPanel(QFrame):
         rows.addLayout(head)
         rows.addWidget(self._text)
         rows.addWidget(self._offer)
-        rows.addWidget(self._said)
+        rows.addWidget(self._status)
         foot = QHBoxLayout()
         foot.addWidget(self._close)
         foot.addStretch(1)
@@ -364,7 +364,7 @@ class TourAction(QObject):
             self._spotlight = Spotlight(self._iface.mainWindow())
             self.panel = TourPanel(self._iface.mainWindow())
             self.panel.changed.connect(lambda _: self._point())
-            self.panel.wanted.connect(self._do)
+            self.panel.requested.connect(self._do)
             self.panel.closed.connect(self.end)
         self.panel.show_step(0)
         self._show_practice()

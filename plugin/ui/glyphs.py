@@ -20,7 +20,8 @@ from qgis.PyQt.QtGui import (
 )
 from qgis.PyQt.QtWidgets import QApplication
 
-from ...robot_bridge.core.messages import CommandState, RobotState
+from ...robot_bridge.core.messages.commands import CommandState
+from ...robot_bridge.core.messages.safety import RobotState
 
 STATE_COLOURS = {
     RobotState.FRESH: QColor("#0072B2"),

@@ -124,6 +124,6 @@ def age_in_words(seconds: float) -> str:
     return f"{seconds / 3600:.1f} h" if seconds < 48 * 3600 else f"{seconds / 86400:.1f} d"
 
 
-def heard_in_words(state: str, seconds: float, link: object) -> str:
+def last_seen_in_words(state: str, seconds: float, link: object) -> str:
     """Return a robot's ``state``, how long ago it was heard, and how it is connected."""
     return tr("{state}, last heard {age} ago over {link}", state=state, age=age_in_words(seconds), link=link)

@@ -143,10 +143,10 @@ class CooperativeTask(QObject):
                 if self._clock.steady() >= until:
                     break
         except StopIteration as end:
-            is_wanted = self._work is work
-            if is_wanted:
+            is_selected = self._work is work
+            if is_selected:
                 self.stop()
-            return is_wanted, end.value
+            return is_selected, end.value
         except BaseException:
             if self._work is work:
                 self.stop()

@@ -112,10 +112,10 @@ def _fit(header: QHeaderView, column: int) -> None:
     if column < 0 or header.isSectionHidden(column):
         return
     head = header.model().headerData(column, Qt.Orientation.Horizontal, Qt.ItemDataRole.DisplayRole)
-    wanted = header.fontMetrics().horizontalAdvance(str(head or "")) + 2 * EDGES
+    width_needed = header.fontMetrics().horizontalAdvance(str(head or "")) + 2 * EDGES
     if header.isSortIndicatorShown() and header.sortIndicatorSection() == column:
-        wanted += header.style().pixelMetric(QStyle.PixelMetric.PM_HeaderMarkSize, None, header)
-    header.resizeSection(column, max(header.sectionSize(column), wanted))
+        width_needed += header.style().pixelMetric(QStyle.PixelMetric.PM_HeaderMarkSize, None, header)
+    header.resizeSection(column, max(header.sectionSize(column), width_needed))
 
 
 TODAY = "00:00:00"
@@ -144,12 +144,12 @@ ALONE = (Qt.KeyboardModifier.NoModifier, Qt.KeyboardModifier.KeypadModifier)
 class ZoomMenu(QObject):
     """Tells of a row of ``view`` at a double click on it, and at Enter of the selected one."""
 
-    wanted = pyqtSignal(QModelIndex)
+    requested = pyqtSignal(QModelIndex)
 
     def __init__(self, view: QAbstractItemView):
         super().__init__(view)
         self._view = view
-        view.doubleClicked.connect(self.wanted)
+        view.doubleClicked.connect(self.requested)
         view.installEventFilter(self)
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:
@@ -162,7 +162,7 @@ class ZoomMenu(QObject):
             # What is renewed all the time may have selected rows and no current one.
             index = next(iter(selection.selectedRows()), QModelIndex())
         if index.isValid():
-            self.wanted.emit(index)
+            self.requested.emit(index)
         return True
 
 

@@ -2546,86 +2546,6 @@
             <translation>{error}; es fa servir la seva amplada</translation>
         </message>
         <message>
-            <location filename="../../plugin/layers/profiles.py" />
-            <source>The profile {file} cannot be read: {error}.</source>
-            <translation>El perfil {file} no es pot llegir: {error}.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/layers/profiles.py" />
-            <source>The profile {file} is not there: give the path of a file, or one of {shipped}.</source>
-            <translation>El perfil {file} no hi és: doneu el camí d'un fitxer, o un de {shipped}.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/layers/profiles.py" />
-            <source>it has {count} characters, more than {most}</source>
-            <translation>té {count} caràcters, més de {most}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/layers/profiles.py" />
-            <source>{file} cannot be read: this QGIS runs Python older than 3.11, which reads no TOML. Save the profile with the same keys as JSON and choose that file.</source>
-            <translation>{file} no es pot llegir: aquest QGIS fa servir un Python anterior a 3.11, que no llegeix TOML. Deseu el perfil amb les mateixes claus com a JSON i trieu aquell fitxer.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/layers/profiles.py" />
-            <source>{file} is no profile: write an object with name and layers.</source>
-            <translation>{file} no és un perfil: escriviu un objecte amb name i layers.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/layers/profiles.py" />
-            <source>{file} is not valid {kind}: {error}. Correct that place.</source>
-            <translation>{file} no és {kind} vàlid: {error}. Corregiu aquest lloc.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/layers/profiles.py" />
-            <source>{file}: layers is missing or empty: write one table [[layers]] or more.</source>
-            <translation>{file}: layers falta o és buit: escriviu una o més taules [[layers]].</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/layers/profiles.py" />
-            <source>{file}: {key} fits no layer: write names = ["*building*"] or fields = ["building"].</source>
-            <translation>{file}: {key} no encaixa amb cap capa: escriviu names = ["*building*"] o fields = ["building"].</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/layers/profiles.py" />
-            <source>{file}: {key} is {content!r}: write a table [[layers]].</source>
-            <translation>{file}: {key} és {content!r}: escriviu una taula [[layers]].</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/layers/profiles.py" />
-            <source>{file}: {key}.geometry is {geometry!r}: write one of {geometries}.</source>
-            <translation>{file}: {key}.geometry és {geometry!r}: escriviu un de {geometries}.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/layers/profiles.py" />
-            <source>{file}: {key}.role is {role!r}: write one of {roles}.</source>
-            <translation>{file}: {key}.role és {role!r}: escriviu un de {roles}.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/layers/profiles.py" />
-            <source>{file}: {key}.{name} is no QGIS expression: {error}. Correct it.</source>
-            <translation>{file}: {key}.{name} no és una expressió de QGIS: {error}. Corregiu-la.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/layers/profiles.py" />
-            <source>{file}: {key}.{name} is {value!r}: write a list of texts, such as ["walls"].</source>
-            <translation>{file}: {key}.{name} és {value!r}: escriviu una llista de textos, com ara ["walls"].</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/layers/profiles.py" />
-            <source>{file}: {prefix}{name} is no key of a profile: known are {known}. Remove it or correct its name.</source>
-            <translation>{file}: {prefix}{name} no és una clau de perfil: les conegudes són {known}. Traieu-la o corregiu-ne el nom.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/layers/profiles.py" />
-            <source>{file}: {prefix}{name} is {value!r}: write text in quotes.</source>
-            <translation>{file}: {prefix}{name} és {value!r}: escriviu text entre cometes.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/layers/profiles.py" />
-            <source>{names} with {fields}</source>
-            <translation>{names} amb {fields}</translation>
-        </message>
-        <message>
             <location filename="../../plugin/layers/publishing/publication.py" />
             <source>Another publication into {folder} is under way, by {who}: wait until it has ended, or choose another folder. If it ended on another computer without a word, remove {file}.</source>
             <translation>Una altra publicació a {folder} és en curs, de {who}: espereu que acabi, o trieu una altra carpeta. Si va acabar en un altre ordinador sense dir res, esborreu {file}.</translation>
@@ -3061,6 +2981,86 @@
                 <numerusform>{name}: {known} de %n capa configurada.</numerusform>
                 <numerusform>{name}: {known} de %n capes configurades.</numerusform>
             </translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/roles.py" />
+            <source>The profile {file} cannot be read: {error}.</source>
+            <translation>El perfil {file} no es pot llegir: {error}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/roles.py" />
+            <source>The profile {file} is not there: give the path of a file, or one of {shipped}.</source>
+            <translation>El perfil {file} no hi és: doneu el camí d'un fitxer, o un de {shipped}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/roles.py" />
+            <source>it has {count} characters, more than {most}</source>
+            <translation>té {count} caràcters, més de {most}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/roles.py" />
+            <source>{file} cannot be read: this QGIS runs Python older than 3.11, which reads no TOML. Save the profile with the same keys as JSON and choose that file.</source>
+            <translation>{file} no es pot llegir: aquest QGIS fa servir un Python anterior a 3.11, que no llegeix TOML. Deseu el perfil amb les mateixes claus com a JSON i trieu aquell fitxer.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/roles.py" />
+            <source>{file} is no profile: write an object with name and layers.</source>
+            <translation>{file} no és un perfil: escriviu un objecte amb name i layers.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/roles.py" />
+            <source>{file} is not valid {kind}: {error}. Correct that place.</source>
+            <translation>{file} no és {kind} vàlid: {error}. Corregiu aquest lloc.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/roles.py" />
+            <source>{file}: layers is missing or empty: write one table [[layers]] or more.</source>
+            <translation>{file}: layers falta o és buit: escriviu una o més taules [[layers]].</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/roles.py" />
+            <source>{file}: {key} fits no layer: write names = ["*building*"] or fields = ["building"].</source>
+            <translation>{file}: {key} no encaixa amb cap capa: escriviu names = ["*building*"] o fields = ["building"].</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/roles.py" />
+            <source>{file}: {key} is {content!r}: write a table [[layers]].</source>
+            <translation>{file}: {key} és {content!r}: escriviu una taula [[layers]].</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/roles.py" />
+            <source>{file}: {key}.geometry is {geometry!r}: write one of {geometries}.</source>
+            <translation>{file}: {key}.geometry és {geometry!r}: escriviu un de {geometries}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/roles.py" />
+            <source>{file}: {key}.role is {role!r}: write one of {roles}.</source>
+            <translation>{file}: {key}.role és {role!r}: escriviu un de {roles}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/roles.py" />
+            <source>{file}: {key}.{name} is no QGIS expression: {error}. Correct it.</source>
+            <translation>{file}: {key}.{name} no és una expressió de QGIS: {error}. Corregiu-la.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/roles.py" />
+            <source>{file}: {key}.{name} is {value!r}: write a list of texts, such as ["walls"].</source>
+            <translation>{file}: {key}.{name} és {value!r}: escriviu una llista de textos, com ara ["walls"].</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/roles.py" />
+            <source>{file}: {prefix}{name} is no key of a profile: known are {known}. Remove it or correct its name.</source>
+            <translation>{file}: {prefix}{name} no és una clau de perfil: les conegudes són {known}. Traieu-la o corregiu-ne el nom.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/roles.py" />
+            <source>{file}: {prefix}{name} is {value!r}: write text in quotes.</source>
+            <translation>{file}: {prefix}{name} és {value!r}: escriviu text entre cometes.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/roles.py" />
+            <source>{names} with {fields}</source>
+            <translation>{names} amb {fields}</translation>
         </message>
         <message>
             <location filename="../../plugin/layers/site_transform.py" />
@@ -7167,6 +7167,11 @@
         </message>
         <message>
             <location filename="../../plugin/processing/algorithms/export_robot_map_tiles.py" />
+            <source>Both EXTENT and ROUTE are given: give one of them, for a grid or for tiles along a route.</source>
+            <translation>S'han donat EXTENT i ROUTE alhora: doneu-ne un, per a una graella o per a tessel·les al llarg d'una ruta.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/export_robot_map_tiles.py" />
             <source>Export robot map tiles</source>
             <translation>Exporta tessel·les del mapa de robots</translation>
         </message>
@@ -7197,8 +7202,38 @@
         </message>
         <message>
             <location filename="../../plugin/processing/algorithms/export_robot_map_tiles.py" />
+            <source>Neither EXTENT nor ROUTE is given: give an extent for a grid, or a layer of lines to follow.</source>
+            <translation>No s'ha donat ni EXTENT ni ROUTE: doneu una extensió per a una graella, o una capa de línies a seguir.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/export_robot_map_tiles.py" />
+            <source>OUTPUT {folder} is a file: choose a folder for the tiles.</source>
+            <translation>OUTPUT {folder} és un fitxer: trieu una carpeta per a les tessel·les.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/export_robot_map_tiles.py" />
+            <source>OVERLAP is {overlap} m: give 0 or more, and at most nine tenths of a tile's side.</source>
+            <translation>OVERLAP és {overlap} m: doneu 0 o més, i com a màxim nou dècimes del costat d'una tessel·la.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/export_robot_map_tiles.py" />
             <source>Obstacles in all tiles</source>
             <translation>Obstacles a totes les tessel·les</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/export_robot_map_tiles.py" />
+            <source>ROUTE holds no line: choose a layer with the route to export along.</source>
+            <translation>ROUTE no té cap línia: trieu una capa amb la ruta al llarg de la qual exportar.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/export_robot_map_tiles.py" />
+            <source>ROUTE {route} cannot be opened: choose a layer of lines.</source>
+            <translation>ROUTE {route} no es pot obrir: trieu una capa de línies.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/export_robot_map_tiles.py" />
+            <source>ROUTE: feature {id} of {layer}: {doubts}. Correct the filter of the layer.</source>
+            <translation>ROUTE: entitat {id} de {layer}: {doubts}. Corregiu el filtre de la capa.</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/algorithms/export_robot_map_tiles.py" />
@@ -7217,6 +7252,11 @@
         </message>
         <message>
             <location filename="../../plugin/processing/algorithms/export_robot_map_tiles.py" />
+            <source>That would be {count} tiles, and {most_tiles} are the most: choose larger tiles, less overlap or a smaller area.</source>
+            <translation>Serien {count} tessel·les, i {most_tiles} són el màxim: trieu tessel·les més grans, menys solapament o una zona més petita.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/export_robot_map_tiles.py" />
             <source>The index</source>
             <translation>L'índex</translation>
         </message>
@@ -7224,6 +7264,11 @@
             <location filename="../../plugin/processing/algorithms/export_robot_map_tiles.py" />
             <source>The set of tiles</source>
             <translation>El joc de tessel·les</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/export_robot_map_tiles.py" />
+            <source>The {name} of a tile is {value} m: give at least 1 m, such as 100.</source>
+            <translation>La mida ({name}) d'una tessel·la és {value} m: doneu almenys 1 m, com ara 100.</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/algorithms/export_robot_map_tiles.py" />
@@ -8016,8 +8061,23 @@
         </message>
         <message>
             <location filename="../../plugin/processing/common/export_parameters.py" />
-            <source>Both EXTENT and ROUTE are given: give one of them, for a grid or for tiles along a route.</source>
-            <translation>S'han donat EXTENT i ROUTE alhora: doneu-ne un, per a una graella o per a tessel·les al llarg d'una ruta.</translation>
+            <source>0 is off. An outline that would cross itself stays as it is. Needs the Python package shapely 2.</source>
+            <translation>0: desactivat. Un contorn que es creuaria a si mateix es queda com és. Necessita el paquet de Python shapely 2.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/export_parameters.py" />
+            <source>0 is off. Ends of lines stay and rings keep three corners. Needs the Python package shapely 2.</source>
+            <translation>0: desactivat. Els extrems de les línies es queden i els anells conserven tres cantonades. Necessita el paquet de Python shapely 2.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/export_parameters.py" />
+            <source>0 is off. Half a metre makes a compact map smaller still, and no obstacle lower than it is.</source>
+            <translation>0: desactivat. Mig metre fa encara més petit un mapa compacte, i cap obstacle més baix del que és.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/export_parameters.py" />
+            <source>Bare map: no leading lines, no extras</source>
+            <translation>Mapa nu: sense línies inicials ni extres</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/common/export_parameters.py" />
@@ -8026,8 +8086,33 @@
         </message>
         <message>
             <location filename="../../plugin/processing/common/export_parameters.py" />
-            <source>Neither EXTENT nor ROUTE is given: give an extent for a grid, or a layer of lines to follow.</source>
-            <translation>No s'ha donat ni EXTENT ni ROUTE: doneu una extensió per a una graella, o una capa de línies a seguir.</translation>
+            <source>DISSOLVE, TOLERANCE and SHORTEST need the Python package shapely 2, and {version} is installed here: install a newer one (python3 -m pip install 'shapely&gt;=2'), or leave them off.</source>
+            <translation>DISSOLVE, TOLERANCE i SHORTEST necessiten el paquet de Python shapely 2, i aquí hi ha {version}: instal·leu-ne un de més nou (python3 -m pip install 'shapely&gt;=2'), o deixeu-los desactivats.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/export_parameters.py" />
+            <source>Fewer corners: how far an outline may then be from the drawn one [m]</source>
+            <translation>Menys cantonades: a quina distància pot quedar un contorn del dibuixat [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/export_parameters.py" />
+            <source>Format (compact: binary in columns, about a third of binary)</source>
+            <translation>Format (compact: binari en columnes, un terç del binari)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/export_parameters.py" />
+            <source>Heights are rounded up to a multiple of this [m]</source>
+            <translation>Alçades arrodonides a un múltiple de [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/export_parameters.py" />
+            <source>Join lines that meet end to end into one obstacle</source>
+            <translation>Uneix en un obstacle les línies que es troben</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/export_parameters.py" />
+            <source>Leave out walls that no robot outside can meet</source>
+            <translation>Omet els murs que cap robot pot trobar des de fora</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/common/export_parameters.py" />
@@ -8036,18 +8121,8 @@
         </message>
         <message>
             <location filename="../../plugin/processing/common/export_parameters.py" />
-            <source>OUTPUT {folder} is a file: choose a folder for the tiles.</source>
-            <translation>OUTPUT {folder} és un fitxer: trieu una carpeta per a les tessel·les.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/common/export_parameters.py" />
             <source>OUTPUT {target} is the file of the layer {layer}: choose another one.</source>
             <translation>OUTPUT {target} és el fitxer de la capa {layer}: trieu-ne un altre.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/common/export_parameters.py" />
-            <source>OVERLAP is {overlap} m: give 0 or more, and at most nine tenths of a tile's side.</source>
-            <translation>OVERLAP és {overlap} m: doneu 0 o més, i com a màxim nou dècimes del costat d'una tessel·la.</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/common/export_parameters.py" />
@@ -8056,18 +8131,13 @@
         </message>
         <message>
             <location filename="../../plugin/processing/common/export_parameters.py" />
-            <source>ROUTE holds no line: choose a layer with the route to export along.</source>
-            <translation>ROUTE no té cap línia: trieu una capa amb la ruta al llarg de la qual exportar.</translation>
+            <source>Only lines that are alike in height, label and all else. The source of a joined line is that of its first part and how many others are in it, such as walls:3+7.</source>
+            <translation>Només línies iguals en alçada, etiqueta i tota la resta. La font d'una línia unida és la de la primera part i quantes més hi ha, com ara walls:3+7.</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/common/export_parameters.py" />
-            <source>ROUTE {route} cannot be opened: choose a layer of lines.</source>
-            <translation>ROUTE {route} no es pot obrir: trieu una capa de línies.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/common/export_parameters.py" />
-            <source>ROUTE: feature {id} of {layer}: {doubts}. Correct the filter of the layer.</source>
-            <translation>ROUTE: entitat {id} de {layer}: {doubts}. Corregiu el filtre de la capa.</translation>
+            <source>PLANE_LOW is {low:g} and PLANE_HIGH {high:g}: give the lower and the upper height in metres.</source>
+            <translation>PLANE_LOW és {low:g} i PLANE_HIGH {high:g}: doneu l'alçada inferior i la superior en metres.</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/common/export_parameters.py" />
@@ -8076,8 +8146,18 @@
         </message>
         <message>
             <location filename="../../plugin/processing/common/export_parameters.py" />
-            <source>That would be {count} tiles, and {most_tiles} are the most: choose larger tiles, less overlap or a smaller area.</source>
-            <translation>Serien {count} tessel·les, i {most_tiles} són el màxim: trieu tessel·les més grans, menys solapament o una zona més petita.</translation>
+            <source>Robot's plane from [m above the ground]</source>
+            <translation>Pla del robot des de [m sobre el sòl]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/export_parameters.py" />
+            <source>Robot's plane up to [m above the ground]</source>
+            <translation>Pla del robot fins a [m sobre el sòl]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/export_parameters.py" />
+            <source>Shortest segment: corners nearer than this to the one before are left out [m]</source>
+            <translation>Segment més curt: s'ometen les cantonades més properes a l'anterior [m]</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/common/export_parameters.py" />
@@ -8091,13 +8171,53 @@
         </message>
         <message>
             <location filename="../../plugin/processing/common/export_parameters.py" />
-            <source>The {name} of a tile is {value} m: give at least 1 m, such as 100.</source>
-            <translation>La mida ({name}) d'una tessel·la és {value} m: doneu almenys 1 m, com ara 100.</translation>
+            <source>Those between buildings that touch, and lines inside or along buildings. What stays keeps its height and its source. Needs the Python package shapely 2.</source>
+            <translation>Els d'entre edificis que es toquen i les línies dins o al llarg d'edificis. El que queda conserva l'alçada i l'origen. Necessita el paquet de Python shapely 2.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/export_parameters.py" />
+            <source>What begins at this height or above it is left out: the robot drives under it. Where things begin is said by the layers or by the parameter BASE_EXPRESSION.</source>
+            <translation>El que comença a aquesta alçada o per sobre s'omet: el robot hi passa per sota. On comencen les coses ho diuen les capes o el paràmetre BASE_EXPRESSION.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/export_parameters.py" />
+            <source>What is not higher than this is left out: the robot drives over it. Stairs and ramps stay. Give the lower and the upper height together, or neither.</source>
+            <translation>El que no és més alt s'omet: el robot hi passa per sobre. Escales i rampes es queden. Doneu l'alçada inferior i la superior juntes, o cap.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/export_parameters.py" />
+            <source>binary: the text compressed</source>
+            <translation>binari: el text comprimit</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/export_parameters.py" />
+            <source>compact: binary in columns</source>
+            <translation>compacte: binari en columnes</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/export_parameters.py" />
+            <source>text</source>
+            <translation>text</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/export_parameters.py" />
+            <source>text: lines that people and scripts read. binary: that text compressed, with a check sum. compact: the same map in columns of centimetres, also with a check sum (codec 2).</source>
+            <translation>text: línies que llegeixen persones i scripts. binary: aquest text comprimit, amb suma de verificació. compact: el mateix mapa en columnes de centímetres, també amb suma de verificació (còdec 2).</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/common/export_parameters.py" />
             <source>{before} became {after}</source>
             <translation>abans: {before}; després: {after}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/export_parameters.py" />
+            <source>{name} is {value:g}: give a number of metres of 0 or more.</source>
+            <translation>{name} és {value:g}: doneu un nombre de metres de 0 o més.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/export_parameters.py" />
+            <source>{other} is given and {missing} is not: give both heights in metres, or none.</source>
+            <translation>S'ha donat {other} i no {missing}: doneu les dues alçades en metres, o cap.</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/common/map_files.py" />
@@ -8190,176 +8310,6 @@
             <translation>dos nombres 'x,y'</translation>
         </message>
         <message>
-            <location filename="../../plugin/processing/common/map_parameters.py" />
-            <source>0 is off. An outline that would cross itself stays as it is. Needs the Python package shapely 2.</source>
-            <translation>0: desactivat. Un contorn que es creuaria a si mateix es queda com és. Necessita el paquet de Python shapely 2.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/common/map_parameters.py" />
-            <source>0 is off. Ends of lines stay and rings keep three corners. Needs the Python package shapely 2.</source>
-            <translation>0: desactivat. Els extrems de les línies es queden i els anells conserven tres cantonades. Necessita el paquet de Python shapely 2.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/common/map_parameters.py" />
-            <source>0 is off. Half a metre makes a compact map smaller still, and no obstacle lower than it is.</source>
-            <translation>0: desactivat. Mig metre fa encara més petit un mapa compacte, i cap obstacle més baix del que és.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/common/map_parameters.py" />
-            <source>Bare map: no leading lines, no extras</source>
-            <translation>Mapa nu: sense línies inicials ni extres</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/common/map_parameters.py" />
-            <source>Both CENTER and EXTENT are given: give one of them, the window cannot be both.</source>
-            <translation>S'han donat CENTER i EXTENT alhora: doneu-ne un, la finestra no pot ser tots dos.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/common/map_parameters.py" />
-            <source>Centre of the window (or choose an extent)</source>
-            <translation>Centre de la finestra (o trieu una extensió)</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/common/map_parameters.py" />
-            <source>DISSOLVE, TOLERANCE and SHORTEST need the Python package shapely 2, and {version} is installed here: install a newer one (python3 -m pip install 'shapely&gt;=2'), or leave them off.</source>
-            <translation>DISSOLVE, TOLERANCE i SHORTEST necessiten el paquet de Python shapely 2, i aquí hi ha {version}: instal·leu-ne un de més nou (python3 -m pip install 'shapely&gt;=2'), o deixeu-los desactivats.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/common/map_parameters.py" />
-            <source>Extent (instead of centre, width and height)</source>
-            <translation>Extensió (en lloc de centre, amplada i alçada)</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/common/map_parameters.py" />
-            <source>Fewer corners: how far an outline may then be from the drawn one [m]</source>
-            <translation>Menys cantonades: a quina distància pot quedar un contorn del dibuixat [m]</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/common/map_parameters.py" />
-            <source>Format (compact: binary in columns, about a third of binary)</source>
-            <translation>Format (compact: binari en columnes, un terç del binari)</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/common/map_parameters.py" />
-            <source>Height of the window, along y [m]</source>
-            <translation>Alçada de la finestra, en y [m]</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/common/map_parameters.py" />
-            <source>Heights are rounded up to a multiple of this [m]</source>
-            <translation>Alçades arrodonides a un múltiple de [m]</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/common/map_parameters.py" />
-            <source>Join lines that meet end to end into one obstacle</source>
-            <translation>Uneix en un obstacle les línies que es troben</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/common/map_parameters.py" />
-            <source>Layers without a CRS are in metres of the site</source>
-            <translation>Les capes sense SRC són en metres del recinte</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/common/map_parameters.py" />
-            <source>Leave out walls that no robot outside can meet</source>
-            <translation>Omet els murs que cap robot pot trobar des de fora</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/common/map_parameters.py" />
-            <source>Neither CENTER nor EXTENT is given: give the centre of the window with WIDTH and HEIGHT in metres, or an extent.</source>
-            <translation>No s'ha donat ni CENTER ni EXTENT: doneu el centre de la finestra amb WIDTH i HEIGHT en metres, o una extensió.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/common/map_parameters.py" />
-            <source>Only lines that are alike in height, label and all else. The source of a joined line is that of its first part and how many others are in it, such as walls:3+7.</source>
-            <translation>Només línies iguals en alçada, etiqueta i tota la resta. La font d'una línia unida és la de la primera part i quantes més hi ha, com ara walls:3+7.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/common/map_parameters.py" />
-            <source>PLANE_LOW is {low:g} and PLANE_HIGH {high:g}: give the lower and the upper height in metres.</source>
-            <translation>PLANE_LOW és {low:g} i PLANE_HIGH {high:g}: doneu l'alçada inferior i la superior en metres.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/common/map_parameters.py" />
-            <source>ROTATION {degrees} is not finite: give a number.</source>
-            <translation>ROTATION {degrees} no és finit: doneu un nombre.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/common/map_parameters.py" />
-            <source>Robot's plane from [m above the ground]</source>
-            <translation>Pla del robot des de [m sobre el sòl]</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/common/map_parameters.py" />
-            <source>Robot's plane up to [m above the ground]</source>
-            <translation>Pla del robot fins a [m sobre el sòl]</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/common/map_parameters.py" />
-            <source>Shortest segment: corners nearer than this to the one before are left out [m]</source>
-            <translation>Segment més curt: s'ometen les cantonades més properes a l'anterior [m]</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/common/map_parameters.py" />
-            <source>Site CRS, in metres (default: the project's, else the layers')</source>
-            <translation>SRC del recinte, en metres (per defecte: el del projecte, si no el de les capes)</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/common/map_parameters.py" />
-            <source>Those between buildings that touch, and lines inside or along buildings. What stays keeps its height and its source. Needs the Python package shapely 2.</source>
-            <translation>Els d'entre edificis que es toquen i les línies dins o al llarg d'edificis. El que queda conserva l'alçada i l'origen. Necessita el paquet de Python shapely 2.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/common/map_parameters.py" />
-            <source>What begins at this height or above it is left out: the robot drives under it. Where things begin is said by the layers or by the parameter BASE_EXPRESSION.</source>
-            <translation>El que comença a aquesta alçada o per sobre s'omet: el robot hi passa per sota. On comencen les coses ho diuen les capes o el paràmetre BASE_EXPRESSION.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/common/map_parameters.py" />
-            <source>What is not higher than this is left out: the robot drives over it. Stairs and ramps stay. Give the lower and the upper height together, or neither.</source>
-            <translation>El que no és més alt s'omet: el robot hi passa per sobre. Escales i rampes es queden. Doneu l'alçada inferior i la superior juntes, o cap.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/common/map_parameters.py" />
-            <source>Width of the window, along x [m]</source>
-            <translation>Amplada de la finestra, en x [m]</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/common/map_parameters.py" />
-            <source>binary: the text compressed</source>
-            <translation>binari: el text comprimit</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/common/map_parameters.py" />
-            <source>compact: binary in columns</source>
-            <translation>compacte: binari en columnes</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/common/map_parameters.py" />
-            <source>text</source>
-            <translation>text</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/common/map_parameters.py" />
-            <source>text: lines that people and scripts read. binary: that text compressed, with a check sum. compact: the same map in columns of centimetres, also with a check sum (codec 2).</source>
-            <translation>text: línies que llegeixen persones i scripts. binary: aquest text comprimit, amb suma de verificació. compact: el mateix mapa en columnes de centímetres, també amb suma de verificació (còdec 2).</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/common/map_parameters.py" />
-            <source>{name} is {value:g}: give a number of metres of 0 or more.</source>
-            <translation>{name} és {value:g}: doneu un nombre de metres de 0 o més.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/common/map_parameters.py" />
-            <source>{other} is given and {missing} is not: give both heights in metres, or none.</source>
-            <translation>S'ha donat {other} i no {missing}: doneu les dues alçades en metres, o cap.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/common/map_parameters.py" />
-            <source>{side} is {length}: give a finite number of metres.</source>
-            <translation>{side} és {length}: doneu un nombre finit de metres.</translation>
-        </message>
-        <message>
             <location filename="../../plugin/processing/common/navigation_files.py" />
             <source>Layer {sourcename}, feature {id}</source>
             <translation>Capa {sourcename}, entitat {id}</translation>
@@ -8426,6 +8376,31 @@
         </message>
         <message>
             <location filename="../../plugin/processing/common/parameters.py" />
+            <source>Both CENTER and EXTENT are given: give one of them, the window cannot be both.</source>
+            <translation>S'han donat CENTER i EXTENT alhora: doneu-ne un, la finestra no pot ser tots dos.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/parameters.py" />
+            <source>Centre of the window (or choose an extent)</source>
+            <translation>Centre de la finestra (o trieu una extensió)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/parameters.py" />
+            <source>Extent (instead of centre, width and height)</source>
+            <translation>Extensió (en lloc de centre, amplada i alçada)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/parameters.py" />
+            <source>Height of the window, along y [m]</source>
+            <translation>Alçada de la finestra, en y [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/parameters.py" />
+            <source>Layers without a CRS are in metres of the site</source>
+            <translation>Les capes sense SRC són en metres del recinte</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/parameters.py" />
             <source>Map profile ({kinds});;All files (*)</source>
             <translation>Perfil de mapa ({kinds});;Tots els fitxers (*)</translation>
         </message>
@@ -8436,8 +8411,18 @@
         </message>
         <message>
             <location filename="../../plugin/processing/common/parameters.py" />
+            <source>Neither CENTER nor EXTENT is given: give the centre of the window with WIDTH and HEIGHT in metres, or an extent.</source>
+            <translation>No s'ha donat ni CENTER ni EXTENT: doneu el centre de la finestra amb WIDTH i HEIGHT en metres, o una extensió.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/parameters.py" />
             <source>Origin of the site frame (default: as the project has it, else 0,0)</source>
             <translation>Origen del marc del recinte (per defecte: el del projecte, si no 0,0)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/parameters.py" />
+            <source>ROTATION {degrees} is not finite: give a number.</source>
+            <translation>ROTATION {degrees} no és finit: doneu un nombre.</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/common/parameters.py" />
@@ -8451,8 +8436,18 @@
         </message>
         <message>
             <location filename="../../plugin/processing/common/parameters.py" />
+            <source>Site CRS, in metres (default: the project's, else the layers')</source>
+            <translation>SRC del recinte, en metres (per defecte: el del projecte, si no el de les capes)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/parameters.py" />
             <source>The layer {layer} is no vector layer: take its role away.</source>
             <translation>La capa {layer} no és vectorial: traieu-li el paper.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/parameters.py" />
+            <source>Width of the window, along x [m]</source>
+            <translation>Amplada de la finestra, en x [m]</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/common/parameters.py" />
@@ -8478,6 +8473,11 @@
             <location filename="../../plugin/processing/common/parameters.py" />
             <source>{name}: the layer {layer} cannot be opened: check the file, and the layer's name after '|layername='.</source>
             <translation>{name}: la capa {layer} no es pot obrir: comproveu el fitxer i el nom de la capa després de '|layername='.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/parameters.py" />
+            <source>{side} is {length}: give a finite number of metres.</source>
+            <translation>{side} és {length}: doneu un nombre finit de metres.</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/common/placed_cones.py" />

@@ -2546,86 +2546,6 @@
             <translation>{error}; se usa su anchura</translation>
         </message>
         <message>
-            <location filename="../../plugin/layers/profiles.py" />
-            <source>The profile {file} cannot be read: {error}.</source>
-            <translation>El perfil {file} no se puede leer: {error}.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/layers/profiles.py" />
-            <source>The profile {file} is not there: give the path of a file, or one of {shipped}.</source>
-            <translation>El perfil {file} no está: dé la ruta de un archivo, o uno de {shipped}.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/layers/profiles.py" />
-            <source>it has {count} characters, more than {most}</source>
-            <translation>tiene {count} caracteres, más de {most}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/layers/profiles.py" />
-            <source>{file} cannot be read: this QGIS runs Python older than 3.11, which reads no TOML. Save the profile with the same keys as JSON and choose that file.</source>
-            <translation>{file} no se puede leer: este QGIS usa un Python anterior a 3.11, que no lee TOML. Guarde el perfil con las mismas claves como JSON y elija ese archivo.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/layers/profiles.py" />
-            <source>{file} is no profile: write an object with name and layers.</source>
-            <translation>{file} no es un perfil: escriba un objeto con name y layers.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/layers/profiles.py" />
-            <source>{file} is not valid {kind}: {error}. Correct that place.</source>
-            <translation>{file} no es {kind} válido: {error}. Corrija ese lugar.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/layers/profiles.py" />
-            <source>{file}: layers is missing or empty: write one table [[layers]] or more.</source>
-            <translation>{file}: layers falta o está vacío: escriba una o más tablas [[layers]].</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/layers/profiles.py" />
-            <source>{file}: {key} fits no layer: write names = ["*building*"] or fields = ["building"].</source>
-            <translation>{file}: {key} no encaja con ninguna capa: escriba names = ["*building*"] o fields = ["building"].</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/layers/profiles.py" />
-            <source>{file}: {key} is {content!r}: write a table [[layers]].</source>
-            <translation>{file}: {key} es {content!r}: escriba una tabla [[layers]].</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/layers/profiles.py" />
-            <source>{file}: {key}.geometry is {geometry!r}: write one of {geometries}.</source>
-            <translation>{file}: {key}.geometry es {geometry!r}: escriba uno de {geometries}.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/layers/profiles.py" />
-            <source>{file}: {key}.role is {role!r}: write one of {roles}.</source>
-            <translation>{file}: {key}.role es {role!r}: escriba uno de {roles}.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/layers/profiles.py" />
-            <source>{file}: {key}.{name} is no QGIS expression: {error}. Correct it.</source>
-            <translation>{file}: {key}.{name} no es una expresión de QGIS: {error}. Corríjala.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/layers/profiles.py" />
-            <source>{file}: {key}.{name} is {value!r}: write a list of texts, such as ["walls"].</source>
-            <translation>{file}: {key}.{name} es {value!r}: escriba una lista de textos, como ["walls"].</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/layers/profiles.py" />
-            <source>{file}: {prefix}{name} is no key of a profile: known are {known}. Remove it or correct its name.</source>
-            <translation>{file}: {prefix}{name} no es una clave de perfil: las conocidas son {known}. Quítela o corrija su nombre.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/layers/profiles.py" />
-            <source>{file}: {prefix}{name} is {value!r}: write text in quotes.</source>
-            <translation>{file}: {prefix}{name} es {value!r}: escriba texto entre comillas.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/layers/profiles.py" />
-            <source>{names} with {fields}</source>
-            <translation>{names} con {fields}</translation>
-        </message>
-        <message>
             <location filename="../../plugin/layers/publishing/publication.py" />
             <source>Another publication into {folder} is under way, by {who}: wait until it has ended, or choose another folder. If it ended on another computer without a word, remove {file}.</source>
             <translation>Otra publicación en {folder} está en curso, de {who}: espere a que acabe, o elija otra carpeta. Si acabó en otro ordenador sin decir nada, borre {file}.</translation>
@@ -3061,6 +2981,86 @@
                 <numerusform>{name}: {known} de %n capa configurada.</numerusform>
                 <numerusform>{name}: {known} de %n capas configuradas.</numerusform>
             </translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/roles.py" />
+            <source>The profile {file} cannot be read: {error}.</source>
+            <translation>El perfil {file} no se puede leer: {error}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/roles.py" />
+            <source>The profile {file} is not there: give the path of a file, or one of {shipped}.</source>
+            <translation>El perfil {file} no está: dé la ruta de un archivo, o uno de {shipped}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/roles.py" />
+            <source>it has {count} characters, more than {most}</source>
+            <translation>tiene {count} caracteres, más de {most}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/roles.py" />
+            <source>{file} cannot be read: this QGIS runs Python older than 3.11, which reads no TOML. Save the profile with the same keys as JSON and choose that file.</source>
+            <translation>{file} no se puede leer: este QGIS usa un Python anterior a 3.11, que no lee TOML. Guarde el perfil con las mismas claves como JSON y elija ese archivo.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/roles.py" />
+            <source>{file} is no profile: write an object with name and layers.</source>
+            <translation>{file} no es un perfil: escriba un objeto con name y layers.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/roles.py" />
+            <source>{file} is not valid {kind}: {error}. Correct that place.</source>
+            <translation>{file} no es {kind} válido: {error}. Corrija ese lugar.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/roles.py" />
+            <source>{file}: layers is missing or empty: write one table [[layers]] or more.</source>
+            <translation>{file}: layers falta o está vacío: escriba una o más tablas [[layers]].</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/roles.py" />
+            <source>{file}: {key} fits no layer: write names = ["*building*"] or fields = ["building"].</source>
+            <translation>{file}: {key} no encaja con ninguna capa: escriba names = ["*building*"] o fields = ["building"].</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/roles.py" />
+            <source>{file}: {key} is {content!r}: write a table [[layers]].</source>
+            <translation>{file}: {key} es {content!r}: escriba una tabla [[layers]].</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/roles.py" />
+            <source>{file}: {key}.geometry is {geometry!r}: write one of {geometries}.</source>
+            <translation>{file}: {key}.geometry es {geometry!r}: escriba uno de {geometries}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/roles.py" />
+            <source>{file}: {key}.role is {role!r}: write one of {roles}.</source>
+            <translation>{file}: {key}.role es {role!r}: escriba uno de {roles}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/roles.py" />
+            <source>{file}: {key}.{name} is no QGIS expression: {error}. Correct it.</source>
+            <translation>{file}: {key}.{name} no es una expresión de QGIS: {error}. Corríjala.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/roles.py" />
+            <source>{file}: {key}.{name} is {value!r}: write a list of texts, such as ["walls"].</source>
+            <translation>{file}: {key}.{name} es {value!r}: escriba una lista de textos, como ["walls"].</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/roles.py" />
+            <source>{file}: {prefix}{name} is no key of a profile: known are {known}. Remove it or correct its name.</source>
+            <translation>{file}: {prefix}{name} no es una clave de perfil: las conocidas son {known}. Quítela o corrija su nombre.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/roles.py" />
+            <source>{file}: {prefix}{name} is {value!r}: write text in quotes.</source>
+            <translation>{file}: {prefix}{name} es {value!r}: escriba texto entre comillas.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/roles.py" />
+            <source>{names} with {fields}</source>
+            <translation>{names} con {fields}</translation>
         </message>
         <message>
             <location filename="../../plugin/layers/site_transform.py" />
@@ -7167,6 +7167,11 @@
         </message>
         <message>
             <location filename="../../plugin/processing/algorithms/export_robot_map_tiles.py" />
+            <source>Both EXTENT and ROUTE are given: give one of them, for a grid or for tiles along a route.</source>
+            <translation>Se han dado EXTENT y ROUTE a la vez: dé uno, para una rejilla o para teselas a lo largo de una ruta.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/export_robot_map_tiles.py" />
             <source>Export robot map tiles</source>
             <translation>Exportar teselas del mapa de robots</translation>
         </message>
@@ -7197,8 +7202,38 @@
         </message>
         <message>
             <location filename="../../plugin/processing/algorithms/export_robot_map_tiles.py" />
+            <source>Neither EXTENT nor ROUTE is given: give an extent for a grid, or a layer of lines to follow.</source>
+            <translation>No se ha dado ni EXTENT ni ROUTE: dé una extensión para una rejilla, o una capa de líneas que seguir.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/export_robot_map_tiles.py" />
+            <source>OUTPUT {folder} is a file: choose a folder for the tiles.</source>
+            <translation>OUTPUT {folder} es un archivo: elija una carpeta para las teselas.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/export_robot_map_tiles.py" />
+            <source>OVERLAP is {overlap} m: give 0 or more, and at most nine tenths of a tile's side.</source>
+            <translation>OVERLAP es {overlap} m: dé 0 o más, y como máximo nueve décimas del lado de una tesela.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/export_robot_map_tiles.py" />
             <source>Obstacles in all tiles</source>
             <translation>Obstáculos en todas las teselas</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/export_robot_map_tiles.py" />
+            <source>ROUTE holds no line: choose a layer with the route to export along.</source>
+            <translation>ROUTE no tiene ninguna línea: elija una capa con la ruta a lo largo de la cual exportar.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/export_robot_map_tiles.py" />
+            <source>ROUTE {route} cannot be opened: choose a layer of lines.</source>
+            <translation>ROUTE {route} no se puede abrir: elija una capa de líneas.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/export_robot_map_tiles.py" />
+            <source>ROUTE: feature {id} of {layer}: {doubts}. Correct the filter of the layer.</source>
+            <translation>ROUTE: objeto {id} de {layer}: {doubts}. Corrija el filtro de la capa.</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/algorithms/export_robot_map_tiles.py" />
@@ -7217,6 +7252,11 @@
         </message>
         <message>
             <location filename="../../plugin/processing/algorithms/export_robot_map_tiles.py" />
+            <source>That would be {count} tiles, and {most_tiles} are the most: choose larger tiles, less overlap or a smaller area.</source>
+            <translation>Serían {count} teselas, y {most_tiles} son el máximo: elija teselas más grandes, menos solape o una zona más pequeña.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/export_robot_map_tiles.py" />
             <source>The index</source>
             <translation>El índice</translation>
         </message>
@@ -7224,6 +7264,11 @@
             <location filename="../../plugin/processing/algorithms/export_robot_map_tiles.py" />
             <source>The set of tiles</source>
             <translation>El juego de teselas</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/export_robot_map_tiles.py" />
+            <source>The {name} of a tile is {value} m: give at least 1 m, such as 100.</source>
+            <translation>El tamaño ({name}) de una tesela es {value} m: dé al menos 1 m, como 100.</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/algorithms/export_robot_map_tiles.py" />
@@ -8016,8 +8061,23 @@
         </message>
         <message>
             <location filename="../../plugin/processing/common/export_parameters.py" />
-            <source>Both EXTENT and ROUTE are given: give one of them, for a grid or for tiles along a route.</source>
-            <translation>Se han dado EXTENT y ROUTE a la vez: dé uno, para una rejilla o para teselas a lo largo de una ruta.</translation>
+            <source>0 is off. An outline that would cross itself stays as it is. Needs the Python package shapely 2.</source>
+            <translation>0: desactivado. Un contorno que se cruzaría a sí mismo se queda como está. Necesita el paquete de Python shapely 2.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/export_parameters.py" />
+            <source>0 is off. Ends of lines stay and rings keep three corners. Needs the Python package shapely 2.</source>
+            <translation>0: desactivado. Los extremos de las líneas se quedan y los anillos conservan tres esquinas. Necesita el paquete de Python shapely 2.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/export_parameters.py" />
+            <source>0 is off. Half a metre makes a compact map smaller still, and no obstacle lower than it is.</source>
+            <translation>0: desactivado. Medio metro hace aún más pequeño un mapa compacto, y ningún obstáculo más bajo de lo que es.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/export_parameters.py" />
+            <source>Bare map: no leading lines, no extras</source>
+            <translation>Mapa escueto: sin líneas iniciales ni extras</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/common/export_parameters.py" />
@@ -8026,8 +8086,33 @@
         </message>
         <message>
             <location filename="../../plugin/processing/common/export_parameters.py" />
-            <source>Neither EXTENT nor ROUTE is given: give an extent for a grid, or a layer of lines to follow.</source>
-            <translation>No se ha dado ni EXTENT ni ROUTE: dé una extensión para una rejilla, o una capa de líneas que seguir.</translation>
+            <source>DISSOLVE, TOLERANCE and SHORTEST need the Python package shapely 2, and {version} is installed here: install a newer one (python3 -m pip install 'shapely&gt;=2'), or leave them off.</source>
+            <translation>DISSOLVE, TOLERANCE y SHORTEST necesitan el paquete de Python shapely 2, y aquí hay {version}: instale uno más nuevo (python3 -m pip install 'shapely&gt;=2'), o déjelos desactivados.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/export_parameters.py" />
+            <source>Fewer corners: how far an outline may then be from the drawn one [m]</source>
+            <translation>Menos esquinas: a qué distancia puede quedar un contorno del dibujado [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/export_parameters.py" />
+            <source>Format (compact: binary in columns, about a third of binary)</source>
+            <translation>Formato (compact: binario en columnas, un tercio del binario)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/export_parameters.py" />
+            <source>Heights are rounded up to a multiple of this [m]</source>
+            <translation>Alturas redondeadas a un múltiplo de [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/export_parameters.py" />
+            <source>Join lines that meet end to end into one obstacle</source>
+            <translation>Unir en un obstáculo las líneas que se tocan</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/export_parameters.py" />
+            <source>Leave out walls that no robot outside can meet</source>
+            <translation>Omitir los muros que ningún robot encuentra fuera</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/common/export_parameters.py" />
@@ -8036,18 +8121,8 @@
         </message>
         <message>
             <location filename="../../plugin/processing/common/export_parameters.py" />
-            <source>OUTPUT {folder} is a file: choose a folder for the tiles.</source>
-            <translation>OUTPUT {folder} es un archivo: elija una carpeta para las teselas.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/common/export_parameters.py" />
             <source>OUTPUT {target} is the file of the layer {layer}: choose another one.</source>
             <translation>OUTPUT {target} es el archivo de la capa {layer}: elija otro.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/common/export_parameters.py" />
-            <source>OVERLAP is {overlap} m: give 0 or more, and at most nine tenths of a tile's side.</source>
-            <translation>OVERLAP es {overlap} m: dé 0 o más, y como máximo nueve décimas del lado de una tesela.</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/common/export_parameters.py" />
@@ -8056,18 +8131,13 @@
         </message>
         <message>
             <location filename="../../plugin/processing/common/export_parameters.py" />
-            <source>ROUTE holds no line: choose a layer with the route to export along.</source>
-            <translation>ROUTE no tiene ninguna línea: elija una capa con la ruta a lo largo de la cual exportar.</translation>
+            <source>Only lines that are alike in height, label and all else. The source of a joined line is that of its first part and how many others are in it, such as walls:3+7.</source>
+            <translation>Solo líneas iguales en altura, etiqueta y todo lo demás. La fuente de una línea unida es la de su primera parte y cuántas más hay, como walls:3+7.</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/common/export_parameters.py" />
-            <source>ROUTE {route} cannot be opened: choose a layer of lines.</source>
-            <translation>ROUTE {route} no se puede abrir: elija una capa de líneas.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/common/export_parameters.py" />
-            <source>ROUTE: feature {id} of {layer}: {doubts}. Correct the filter of the layer.</source>
-            <translation>ROUTE: objeto {id} de {layer}: {doubts}. Corrija el filtro de la capa.</translation>
+            <source>PLANE_LOW is {low:g} and PLANE_HIGH {high:g}: give the lower and the upper height in metres.</source>
+            <translation>PLANE_LOW es {low:g} y PLANE_HIGH {high:g}: dé la altura inferior y la superior en metros.</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/common/export_parameters.py" />
@@ -8076,8 +8146,18 @@
         </message>
         <message>
             <location filename="../../plugin/processing/common/export_parameters.py" />
-            <source>That would be {count} tiles, and {most_tiles} are the most: choose larger tiles, less overlap or a smaller area.</source>
-            <translation>Serían {count} teselas, y {most_tiles} son el máximo: elija teselas más grandes, menos solape o una zona más pequeña.</translation>
+            <source>Robot's plane from [m above the ground]</source>
+            <translation>Plano del robot desde [m sobre el suelo]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/export_parameters.py" />
+            <source>Robot's plane up to [m above the ground]</source>
+            <translation>Plano del robot hasta [m sobre el suelo]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/export_parameters.py" />
+            <source>Shortest segment: corners nearer than this to the one before are left out [m]</source>
+            <translation>Segmento más corto: se omiten las esquinas más cercanas a la anterior [m]</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/common/export_parameters.py" />
@@ -8091,13 +8171,53 @@
         </message>
         <message>
             <location filename="../../plugin/processing/common/export_parameters.py" />
-            <source>The {name} of a tile is {value} m: give at least 1 m, such as 100.</source>
-            <translation>El tamaño ({name}) de una tesela es {value} m: dé al menos 1 m, como 100.</translation>
+            <source>Those between buildings that touch, and lines inside or along buildings. What stays keeps its height and its source. Needs the Python package shapely 2.</source>
+            <translation>Los de entre edificios que se tocan y las líneas dentro o a lo largo de edificios. Lo que queda conserva su altura y su origen. Necesita el paquete de Python shapely 2.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/export_parameters.py" />
+            <source>What begins at this height or above it is left out: the robot drives under it. Where things begin is said by the layers or by the parameter BASE_EXPRESSION.</source>
+            <translation>Lo que empieza a esta altura o por encima se omite: el robot pasa por debajo. Dónde empiezan las cosas lo dicen las capas o el parámetro BASE_EXPRESSION.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/export_parameters.py" />
+            <source>What is not higher than this is left out: the robot drives over it. Stairs and ramps stay. Give the lower and the upper height together, or neither.</source>
+            <translation>Lo que no es más alto se omite: el robot pasa por encima. Escaleras y rampas se quedan. Dé la altura inferior y la superior juntas, o ninguna.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/export_parameters.py" />
+            <source>binary: the text compressed</source>
+            <translation>binario: el texto comprimido</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/export_parameters.py" />
+            <source>compact: binary in columns</source>
+            <translation>compacto: binario en columnas</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/export_parameters.py" />
+            <source>text</source>
+            <translation>texto</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/export_parameters.py" />
+            <source>text: lines that people and scripts read. binary: that text compressed, with a check sum. compact: the same map in columns of centimetres, also with a check sum (codec 2).</source>
+            <translation>text: líneas que leen personas y scripts. binary: ese texto comprimido, con suma de verificación. compact: el mismo mapa en columnas de centímetros, también con suma de verificación (códec 2).</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/common/export_parameters.py" />
             <source>{before} became {after}</source>
             <translation>antes: {before}; después: {after}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/export_parameters.py" />
+            <source>{name} is {value:g}: give a number of metres of 0 or more.</source>
+            <translation>{name} es {value:g}: dé un número de metros de 0 o más.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/export_parameters.py" />
+            <source>{other} is given and {missing} is not: give both heights in metres, or none.</source>
+            <translation>Se ha dado {other} y no {missing}: dé las dos alturas en metros, o ninguna.</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/common/map_files.py" />
@@ -8190,176 +8310,6 @@
             <translation>dos números 'x,y'</translation>
         </message>
         <message>
-            <location filename="../../plugin/processing/common/map_parameters.py" />
-            <source>0 is off. An outline that would cross itself stays as it is. Needs the Python package shapely 2.</source>
-            <translation>0: desactivado. Un contorno que se cruzaría a sí mismo se queda como está. Necesita el paquete de Python shapely 2.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/common/map_parameters.py" />
-            <source>0 is off. Ends of lines stay and rings keep three corners. Needs the Python package shapely 2.</source>
-            <translation>0: desactivado. Los extremos de las líneas se quedan y los anillos conservan tres esquinas. Necesita el paquete de Python shapely 2.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/common/map_parameters.py" />
-            <source>0 is off. Half a metre makes a compact map smaller still, and no obstacle lower than it is.</source>
-            <translation>0: desactivado. Medio metro hace aún más pequeño un mapa compacto, y ningún obstáculo más bajo de lo que es.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/common/map_parameters.py" />
-            <source>Bare map: no leading lines, no extras</source>
-            <translation>Mapa escueto: sin líneas iniciales ni extras</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/common/map_parameters.py" />
-            <source>Both CENTER and EXTENT are given: give one of them, the window cannot be both.</source>
-            <translation>Se han dado CENTER y EXTENT a la vez: dé uno, la ventana no puede ser ambos.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/common/map_parameters.py" />
-            <source>Centre of the window (or choose an extent)</source>
-            <translation>Centro de la ventana (o elija una extensión)</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/common/map_parameters.py" />
-            <source>DISSOLVE, TOLERANCE and SHORTEST need the Python package shapely 2, and {version} is installed here: install a newer one (python3 -m pip install 'shapely&gt;=2'), or leave them off.</source>
-            <translation>DISSOLVE, TOLERANCE y SHORTEST necesitan el paquete de Python shapely 2, y aquí hay {version}: instale uno más nuevo (python3 -m pip install 'shapely&gt;=2'), o déjelos desactivados.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/common/map_parameters.py" />
-            <source>Extent (instead of centre, width and height)</source>
-            <translation>Extensión (en lugar de centro, anchura y altura)</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/common/map_parameters.py" />
-            <source>Fewer corners: how far an outline may then be from the drawn one [m]</source>
-            <translation>Menos esquinas: a qué distancia puede quedar un contorno del dibujado [m]</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/common/map_parameters.py" />
-            <source>Format (compact: binary in columns, about a third of binary)</source>
-            <translation>Formato (compact: binario en columnas, un tercio del binario)</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/common/map_parameters.py" />
-            <source>Height of the window, along y [m]</source>
-            <translation>Altura de la ventana, en y [m]</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/common/map_parameters.py" />
-            <source>Heights are rounded up to a multiple of this [m]</source>
-            <translation>Alturas redondeadas a un múltiplo de [m]</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/common/map_parameters.py" />
-            <source>Join lines that meet end to end into one obstacle</source>
-            <translation>Unir en un obstáculo las líneas que se tocan</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/common/map_parameters.py" />
-            <source>Layers without a CRS are in metres of the site</source>
-            <translation>Las capas sin SRC están en metros del recinto</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/common/map_parameters.py" />
-            <source>Leave out walls that no robot outside can meet</source>
-            <translation>Omitir los muros que ningún robot encuentra fuera</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/common/map_parameters.py" />
-            <source>Neither CENTER nor EXTENT is given: give the centre of the window with WIDTH and HEIGHT in metres, or an extent.</source>
-            <translation>No se ha dado ni CENTER ni EXTENT: dé el centro de la ventana con WIDTH y HEIGHT en metros, o una extensión.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/common/map_parameters.py" />
-            <source>Only lines that are alike in height, label and all else. The source of a joined line is that of its first part and how many others are in it, such as walls:3+7.</source>
-            <translation>Solo líneas iguales en altura, etiqueta y todo lo demás. La fuente de una línea unida es la de su primera parte y cuántas más hay, como walls:3+7.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/common/map_parameters.py" />
-            <source>PLANE_LOW is {low:g} and PLANE_HIGH {high:g}: give the lower and the upper height in metres.</source>
-            <translation>PLANE_LOW es {low:g} y PLANE_HIGH {high:g}: dé la altura inferior y la superior en metros.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/common/map_parameters.py" />
-            <source>ROTATION {degrees} is not finite: give a number.</source>
-            <translation>ROTATION {degrees} no es finito: dé un número.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/common/map_parameters.py" />
-            <source>Robot's plane from [m above the ground]</source>
-            <translation>Plano del robot desde [m sobre el suelo]</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/common/map_parameters.py" />
-            <source>Robot's plane up to [m above the ground]</source>
-            <translation>Plano del robot hasta [m sobre el suelo]</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/common/map_parameters.py" />
-            <source>Shortest segment: corners nearer than this to the one before are left out [m]</source>
-            <translation>Segmento más corto: se omiten las esquinas más cercanas a la anterior [m]</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/common/map_parameters.py" />
-            <source>Site CRS, in metres (default: the project's, else the layers')</source>
-            <translation>SRC del recinto, en metros (por defecto: el del proyecto, si no el de las capas)</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/common/map_parameters.py" />
-            <source>Those between buildings that touch, and lines inside or along buildings. What stays keeps its height and its source. Needs the Python package shapely 2.</source>
-            <translation>Los de entre edificios que se tocan y las líneas dentro o a lo largo de edificios. Lo que queda conserva su altura y su origen. Necesita el paquete de Python shapely 2.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/common/map_parameters.py" />
-            <source>What begins at this height or above it is left out: the robot drives under it. Where things begin is said by the layers or by the parameter BASE_EXPRESSION.</source>
-            <translation>Lo que empieza a esta altura o por encima se omite: el robot pasa por debajo. Dónde empiezan las cosas lo dicen las capas o el parámetro BASE_EXPRESSION.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/common/map_parameters.py" />
-            <source>What is not higher than this is left out: the robot drives over it. Stairs and ramps stay. Give the lower and the upper height together, or neither.</source>
-            <translation>Lo que no es más alto se omite: el robot pasa por encima. Escaleras y rampas se quedan. Dé la altura inferior y la superior juntas, o ninguna.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/common/map_parameters.py" />
-            <source>Width of the window, along x [m]</source>
-            <translation>Anchura de la ventana, en x [m]</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/common/map_parameters.py" />
-            <source>binary: the text compressed</source>
-            <translation>binario: el texto comprimido</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/common/map_parameters.py" />
-            <source>compact: binary in columns</source>
-            <translation>compacto: binario en columnas</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/common/map_parameters.py" />
-            <source>text</source>
-            <translation>texto</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/common/map_parameters.py" />
-            <source>text: lines that people and scripts read. binary: that text compressed, with a check sum. compact: the same map in columns of centimetres, also with a check sum (codec 2).</source>
-            <translation>text: líneas que leen personas y scripts. binary: ese texto comprimido, con suma de verificación. compact: el mismo mapa en columnas de centímetros, también con suma de verificación (códec 2).</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/common/map_parameters.py" />
-            <source>{name} is {value:g}: give a number of metres of 0 or more.</source>
-            <translation>{name} es {value:g}: dé un número de metros de 0 o más.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/common/map_parameters.py" />
-            <source>{other} is given and {missing} is not: give both heights in metres, or none.</source>
-            <translation>Se ha dado {other} y no {missing}: dé las dos alturas en metros, o ninguna.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/common/map_parameters.py" />
-            <source>{side} is {length}: give a finite number of metres.</source>
-            <translation>{side} es {length}: dé un número finito de metros.</translation>
-        </message>
-        <message>
             <location filename="../../plugin/processing/common/navigation_files.py" />
             <source>Layer {sourcename}, feature {id}</source>
             <translation>Capa {sourcename}, objeto espacial {id}</translation>
@@ -8426,6 +8376,31 @@
         </message>
         <message>
             <location filename="../../plugin/processing/common/parameters.py" />
+            <source>Both CENTER and EXTENT are given: give one of them, the window cannot be both.</source>
+            <translation>Se han dado CENTER y EXTENT a la vez: dé uno, la ventana no puede ser ambos.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/parameters.py" />
+            <source>Centre of the window (or choose an extent)</source>
+            <translation>Centro de la ventana (o elija una extensión)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/parameters.py" />
+            <source>Extent (instead of centre, width and height)</source>
+            <translation>Extensión (en lugar de centro, anchura y altura)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/parameters.py" />
+            <source>Height of the window, along y [m]</source>
+            <translation>Altura de la ventana, en y [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/parameters.py" />
+            <source>Layers without a CRS are in metres of the site</source>
+            <translation>Las capas sin SRC están en metros del recinto</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/parameters.py" />
             <source>Map profile ({kinds});;All files (*)</source>
             <translation>Perfil de mapa ({kinds});;Todos los archivos (*)</translation>
         </message>
@@ -8436,8 +8411,18 @@
         </message>
         <message>
             <location filename="../../plugin/processing/common/parameters.py" />
+            <source>Neither CENTER nor EXTENT is given: give the centre of the window with WIDTH and HEIGHT in metres, or an extent.</source>
+            <translation>No se ha dado ni CENTER ni EXTENT: dé el centro de la ventana con WIDTH y HEIGHT en metros, o una extensión.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/parameters.py" />
             <source>Origin of the site frame (default: as the project has it, else 0,0)</source>
             <translation>Origen del marco del recinto (por defecto: el del proyecto, si no 0,0)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/parameters.py" />
+            <source>ROTATION {degrees} is not finite: give a number.</source>
+            <translation>ROTATION {degrees} no es finito: dé un número.</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/common/parameters.py" />
@@ -8451,8 +8436,18 @@
         </message>
         <message>
             <location filename="../../plugin/processing/common/parameters.py" />
+            <source>Site CRS, in metres (default: the project's, else the layers')</source>
+            <translation>SRC del recinto, en metros (por defecto: el del proyecto, si no el de las capas)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/parameters.py" />
             <source>The layer {layer} is no vector layer: take its role away.</source>
             <translation>La capa {layer} no es vectorial: quítele el papel.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/parameters.py" />
+            <source>Width of the window, along x [m]</source>
+            <translation>Anchura de la ventana, en x [m]</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/common/parameters.py" />
@@ -8478,6 +8473,11 @@
             <location filename="../../plugin/processing/common/parameters.py" />
             <source>{name}: the layer {layer} cannot be opened: check the file, and the layer's name after '|layername='.</source>
             <translation>{name}: la capa {layer} no se puede abrir: compruebe el archivo y el nombre de la capa después de '|layername='.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/parameters.py" />
+            <source>{side} is {length}: give a finite number of metres.</source>
+            <translation>{side} es {length}: dé un número finito de metros.</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/common/placed_cones.py" />

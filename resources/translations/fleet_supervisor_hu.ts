@@ -2535,86 +2535,6 @@
             <translation>{error}; a szélessége érvényes</translation>
         </message>
         <message>
-            <location filename="../../plugin/layers/profiles.py" />
-            <source>The profile {file} cannot be read: {error}.</source>
-            <translation>A(z) {file} profil nem olvasható: {error}.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/layers/profiles.py" />
-            <source>The profile {file} is not there: give the path of a file, or one of {shipped}.</source>
-            <translation>A(z) {file} profil nincs meg: adja meg egy fájl útvonalát, vagy ezek egyikét: {shipped}.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/layers/profiles.py" />
-            <source>it has {count} characters, more than {most}</source>
-            <translation>{count} karakterből áll, több mint {most}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/layers/profiles.py" />
-            <source>{file} cannot be read: this QGIS runs Python older than 3.11, which reads no TOML. Save the profile with the same keys as JSON and choose that file.</source>
-            <translation>{file} nem olvasható: ez a QGIS 3.11-nél régebbi Pythont futtat, amely nem olvas TOML-t. Mentse a profilt ugyanazokkal a kulcsokkal JSON-ként, és válassza azt a fájlt.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/layers/profiles.py" />
-            <source>{file} is no profile: write an object with name and layers.</source>
-            <translation>{file} nem profil: írjon egy objektumot name és layers kulccsal.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/layers/profiles.py" />
-            <source>{file} is not valid {kind}: {error}. Correct that place.</source>
-            <translation>{file} nem érvényes {kind}: {error}. Javítsa ki azt a helyet.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/layers/profiles.py" />
-            <source>{file}: layers is missing or empty: write one table [[layers]] or more.</source>
-            <translation>{file}: a layers hiányzik vagy üres: írjon egy vagy több [[layers]] táblát.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/layers/profiles.py" />
-            <source>{file}: {key} fits no layer: write names = ["*building*"] or fields = ["building"].</source>
-            <translation>{file}: {key} egyik rétegre sem illik: írja így: names = ["*building*"] vagy fields = ["building"].</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/layers/profiles.py" />
-            <source>{file}: {key} is {content!r}: write a table [[layers]].</source>
-            <translation>{file}: {key} értéke {content!r}: írjon egy [[layers]] táblát.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/layers/profiles.py" />
-            <source>{file}: {key}.geometry is {geometry!r}: write one of {geometries}.</source>
-            <translation>{file}: {key}.geometry értéke {geometry!r}: írja ezek egyikét: {geometries}.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/layers/profiles.py" />
-            <source>{file}: {key}.role is {role!r}: write one of {roles}.</source>
-            <translation>{file}: {key}.role értéke {role!r}: írja ezek egyikét: {roles}.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/layers/profiles.py" />
-            <source>{file}: {key}.{name} is no QGIS expression: {error}. Correct it.</source>
-            <translation>{file}: {key}.{name} nem QGIS-kifejezés: {error}. Javítsa ki.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/layers/profiles.py" />
-            <source>{file}: {key}.{name} is {value!r}: write a list of texts, such as ["walls"].</source>
-            <translation>{file}: {key}.{name} értéke {value!r}: írja szövegek listáját, például ["walls"].</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/layers/profiles.py" />
-            <source>{file}: {prefix}{name} is no key of a profile: known are {known}. Remove it or correct its name.</source>
-            <translation>{file}: {prefix}{name} nem profilkulcs: az ismertek: {known}. Törölje, vagy javítsa ki a nevét.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/layers/profiles.py" />
-            <source>{file}: {prefix}{name} is {value!r}: write text in quotes.</source>
-            <translation>{file}: {prefix}{name} értéke {value!r}: írjon idézőjelbe tett szöveget.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/layers/profiles.py" />
-            <source>{names} with {fields}</source>
-            <translation>{names} ezekkel: {fields}</translation>
-        </message>
-        <message>
             <location filename="../../plugin/layers/publishing/publication.py" />
             <source>Another publication into {folder} is under way, by {who}: wait until it has ended, or choose another folder. If it ended on another computer without a word, remove {file}.</source>
             <translation>Másik közzététel folyik ide: {folder} ({who}): várjon, amíg véget ér, vagy válasszon másik mappát. Ha másik számítógépen szó nélkül ért véget, törölje ezt: {file}.</translation>
@@ -3041,6 +2961,86 @@
             <translation>
                 <numerusform>{name}: %n rétegből {known} beállítva.</numerusform>
             </translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/roles.py" />
+            <source>The profile {file} cannot be read: {error}.</source>
+            <translation>A(z) {file} profil nem olvasható: {error}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/roles.py" />
+            <source>The profile {file} is not there: give the path of a file, or one of {shipped}.</source>
+            <translation>A(z) {file} profil nincs meg: adja meg egy fájl útvonalát, vagy ezek egyikét: {shipped}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/roles.py" />
+            <source>it has {count} characters, more than {most}</source>
+            <translation>{count} karakterből áll, több mint {most}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/roles.py" />
+            <source>{file} cannot be read: this QGIS runs Python older than 3.11, which reads no TOML. Save the profile with the same keys as JSON and choose that file.</source>
+            <translation>{file} nem olvasható: ez a QGIS 3.11-nél régebbi Pythont futtat, amely nem olvas TOML-t. Mentse a profilt ugyanazokkal a kulcsokkal JSON-ként, és válassza azt a fájlt.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/roles.py" />
+            <source>{file} is no profile: write an object with name and layers.</source>
+            <translation>{file} nem profil: írjon egy objektumot name és layers kulccsal.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/roles.py" />
+            <source>{file} is not valid {kind}: {error}. Correct that place.</source>
+            <translation>{file} nem érvényes {kind}: {error}. Javítsa ki azt a helyet.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/roles.py" />
+            <source>{file}: layers is missing or empty: write one table [[layers]] or more.</source>
+            <translation>{file}: a layers hiányzik vagy üres: írjon egy vagy több [[layers]] táblát.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/roles.py" />
+            <source>{file}: {key} fits no layer: write names = ["*building*"] or fields = ["building"].</source>
+            <translation>{file}: {key} egyik rétegre sem illik: írja így: names = ["*building*"] vagy fields = ["building"].</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/roles.py" />
+            <source>{file}: {key} is {content!r}: write a table [[layers]].</source>
+            <translation>{file}: {key} értéke {content!r}: írjon egy [[layers]] táblát.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/roles.py" />
+            <source>{file}: {key}.geometry is {geometry!r}: write one of {geometries}.</source>
+            <translation>{file}: {key}.geometry értéke {geometry!r}: írja ezek egyikét: {geometries}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/roles.py" />
+            <source>{file}: {key}.role is {role!r}: write one of {roles}.</source>
+            <translation>{file}: {key}.role értéke {role!r}: írja ezek egyikét: {roles}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/roles.py" />
+            <source>{file}: {key}.{name} is no QGIS expression: {error}. Correct it.</source>
+            <translation>{file}: {key}.{name} nem QGIS-kifejezés: {error}. Javítsa ki.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/roles.py" />
+            <source>{file}: {key}.{name} is {value!r}: write a list of texts, such as ["walls"].</source>
+            <translation>{file}: {key}.{name} értéke {value!r}: írja szövegek listáját, például ["walls"].</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/roles.py" />
+            <source>{file}: {prefix}{name} is no key of a profile: known are {known}. Remove it or correct its name.</source>
+            <translation>{file}: {prefix}{name} nem profilkulcs: az ismertek: {known}. Törölje, vagy javítsa ki a nevét.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/roles.py" />
+            <source>{file}: {prefix}{name} is {value!r}: write text in quotes.</source>
+            <translation>{file}: {prefix}{name} értéke {value!r}: írjon idézőjelbe tett szöveget.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/roles.py" />
+            <source>{names} with {fields}</source>
+            <translation>{names} ezekkel: {fields}</translation>
         </message>
         <message>
             <location filename="../../plugin/layers/site_transform.py" />
@@ -7118,6 +7118,11 @@
         </message>
         <message>
             <location filename="../../plugin/processing/algorithms/export_robot_map_tiles.py" />
+            <source>Both EXTENT and ROUTE are given: give one of them, for a grid or for tiles along a route.</source>
+            <translation>EXTENT és ROUTE is meg van adva: adja meg az egyiket, rácshoz vagy útvonal menti csempékhez.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/export_robot_map_tiles.py" />
             <source>Export robot map tiles</source>
             <translation>Robottérkép-csempék exportálása</translation>
         </message>
@@ -7148,8 +7153,38 @@
         </message>
         <message>
             <location filename="../../plugin/processing/algorithms/export_robot_map_tiles.py" />
+            <source>Neither EXTENT nor ROUTE is given: give an extent for a grid, or a layer of lines to follow.</source>
+            <translation>Sem EXTENT, sem ROUTE nincs megadva: adjon meg kiterjedést a rácshoz, vagy követendő vonalak rétegét.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/export_robot_map_tiles.py" />
+            <source>OUTPUT {folder} is a file: choose a folder for the tiles.</source>
+            <translation>OUTPUT {folder} egy fájl: válasszon mappát a csempéknek.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/export_robot_map_tiles.py" />
+            <source>OVERLAP is {overlap} m: give 0 or more, and at most nine tenths of a tile's side.</source>
+            <translation>OVERLAP értéke {overlap} m: adjon meg 0-t vagy többet, legfeljebb a csempe oldalának kilenctizedét.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/export_robot_map_tiles.py" />
             <source>Obstacles in all tiles</source>
             <translation>Akadályok az összes csempén</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/export_robot_map_tiles.py" />
+            <source>ROUTE holds no line: choose a layer with the route to export along.</source>
+            <translation>A ROUTE-ban nincs vonal: válasszon réteget azzal az útvonallal, amely mentén exportálni kell.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/export_robot_map_tiles.py" />
+            <source>ROUTE {route} cannot be opened: choose a layer of lines.</source>
+            <translation>ROUTE {route} nem nyitható meg: válasszon vonalréteget.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/export_robot_map_tiles.py" />
+            <source>ROUTE: feature {id} of {layer}: {doubts}. Correct the filter of the layer.</source>
+            <translation>ROUTE: {layer} {id}. eleme: {doubts}. Javítsa ki a réteg szűrőjét.</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/algorithms/export_robot_map_tiles.py" />
@@ -7168,6 +7203,11 @@
         </message>
         <message>
             <location filename="../../plugin/processing/algorithms/export_robot_map_tiles.py" />
+            <source>That would be {count} tiles, and {most_tiles} are the most: choose larger tiles, less overlap or a smaller area.</source>
+            <translation>Ez {count} csempe lenne, és legfeljebb {most_tiles} lehet: válasszon nagyobb csempéket, kisebb átfedést vagy kisebb területet.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/export_robot_map_tiles.py" />
             <source>The index</source>
             <translation>Az index</translation>
         </message>
@@ -7175,6 +7215,11 @@
             <location filename="../../plugin/processing/algorithms/export_robot_map_tiles.py" />
             <source>The set of tiles</source>
             <translation>A csempék készlete</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/export_robot_map_tiles.py" />
+            <source>The {name} of a tile is {value} m: give at least 1 m, such as 100.</source>
+            <translation>Egy csempe mérete ({name}) {value} m: adjon meg legalább 1 m-t, például 100-at.</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/algorithms/export_robot_map_tiles.py" />
@@ -7959,8 +8004,23 @@
         </message>
         <message>
             <location filename="../../plugin/processing/common/export_parameters.py" />
-            <source>Both EXTENT and ROUTE are given: give one of them, for a grid or for tiles along a route.</source>
-            <translation>EXTENT és ROUTE is meg van adva: adja meg az egyiket, rácshoz vagy útvonal menti csempékhez.</translation>
+            <source>0 is off. An outline that would cross itself stays as it is. Needs the Python package shapely 2.</source>
+            <translation>0: kikapcsolva. Amelyik körvonal önmagát metszené, az marad, ahogy van. A shapely 2 Python-csomag kell hozzá.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/export_parameters.py" />
+            <source>0 is off. Ends of lines stay and rings keep three corners. Needs the Python package shapely 2.</source>
+            <translation>0: kikapcsolva. A vonalak végei maradnak, és a gyűrűk három sarkot megtartanak. A shapely 2 Python-csomag kell hozzá.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/export_parameters.py" />
+            <source>0 is off. Half a metre makes a compact map smaller still, and no obstacle lower than it is.</source>
+            <translation>0: kikapcsolva. A fél méter tovább csökkenti a tömör térképet, és egyetlen akadályt sem tesz alacsonyabbá.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/export_parameters.py" />
+            <source>Bare map: no leading lines, no extras</source>
+            <translation>Puszta térkép: bevezető sorok és kiegészítések nélkül</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/common/export_parameters.py" />
@@ -7969,8 +8029,33 @@
         </message>
         <message>
             <location filename="../../plugin/processing/common/export_parameters.py" />
-            <source>Neither EXTENT nor ROUTE is given: give an extent for a grid, or a layer of lines to follow.</source>
-            <translation>Sem EXTENT, sem ROUTE nincs megadva: adjon meg kiterjedést a rácshoz, vagy követendő vonalak rétegét.</translation>
+            <source>DISSOLVE, TOLERANCE and SHORTEST need the Python package shapely 2, and {version} is installed here: install a newer one (python3 -m pip install 'shapely&gt;=2'), or leave them off.</source>
+            <translation>A DISSOLVE, TOLERANCE és SHORTEST értékhez a shapely 2 Python-csomag kell, és itt {version} van telepítve: telepítsen újabbat (python3 -m pip install 'shapely&gt;=2'), vagy hagyja őket kikapcsolva.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/export_parameters.py" />
+            <source>Fewer corners: how far an outline may then be from the drawn one [m]</source>
+            <translation>Kevesebb sarok: milyen messze lehet így egy körvonal a rajzolttól [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/export_parameters.py" />
+            <source>Format (compact: binary in columns, about a third of binary)</source>
+            <translation>Formátum (compact: bináris oszlopokban, a bináris mintegy harmada)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/export_parameters.py" />
+            <source>Heights are rounded up to a multiple of this [m]</source>
+            <translation>A magasságok felkerekítése ennek többszörösére [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/export_parameters.py" />
+            <source>Join lines that meet end to end into one obstacle</source>
+            <translation>Összeérő vonalak egy akadállyá egyesítése</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/export_parameters.py" />
+            <source>Leave out walls that no robot outside can meet</source>
+            <translation>Kívülről el nem érhető falak kihagyása</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/common/export_parameters.py" />
@@ -7979,18 +8064,8 @@
         </message>
         <message>
             <location filename="../../plugin/processing/common/export_parameters.py" />
-            <source>OUTPUT {folder} is a file: choose a folder for the tiles.</source>
-            <translation>OUTPUT {folder} egy fájl: válasszon mappát a csempéknek.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/common/export_parameters.py" />
             <source>OUTPUT {target} is the file of the layer {layer}: choose another one.</source>
             <translation>OUTPUT {target} a(z) {layer} réteg fájlja: válasszon másikat.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/common/export_parameters.py" />
-            <source>OVERLAP is {overlap} m: give 0 or more, and at most nine tenths of a tile's side.</source>
-            <translation>OVERLAP értéke {overlap} m: adjon meg 0-t vagy többet, legfeljebb a csempe oldalának kilenctizedét.</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/common/export_parameters.py" />
@@ -7999,18 +8074,13 @@
         </message>
         <message>
             <location filename="../../plugin/processing/common/export_parameters.py" />
-            <source>ROUTE holds no line: choose a layer with the route to export along.</source>
-            <translation>A ROUTE-ban nincs vonal: válasszon réteget azzal az útvonallal, amely mentén exportálni kell.</translation>
+            <source>Only lines that are alike in height, label and all else. The source of a joined line is that of its first part and how many others are in it, such as walls:3+7.</source>
+            <translation>Csak olyan vonalak, amelyek magassága, címkéje és minden más azonos. Az egyesített vonal forrása az első részé és hogy hány másik van benne, például walls:3+7.</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/common/export_parameters.py" />
-            <source>ROUTE {route} cannot be opened: choose a layer of lines.</source>
-            <translation>ROUTE {route} nem nyitható meg: válasszon vonalréteget.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/common/export_parameters.py" />
-            <source>ROUTE: feature {id} of {layer}: {doubts}. Correct the filter of the layer.</source>
-            <translation>ROUTE: {layer} {id}. eleme: {doubts}. Javítsa ki a réteg szűrőjét.</translation>
+            <source>PLANE_LOW is {low:g} and PLANE_HIGH {high:g}: give the lower and the upper height in metres.</source>
+            <translation>PLANE_LOW értéke {low:g}, PLANE_HIGH értéke {high:g}: adja meg az alsó és a felső magasságot méterben.</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/common/export_parameters.py" />
@@ -8019,8 +8089,18 @@
         </message>
         <message>
             <location filename="../../plugin/processing/common/export_parameters.py" />
-            <source>That would be {count} tiles, and {most_tiles} are the most: choose larger tiles, less overlap or a smaller area.</source>
-            <translation>Ez {count} csempe lenne, és legfeljebb {most_tiles} lehet: válasszon nagyobb csempéket, kisebb átfedést vagy kisebb területet.</translation>
+            <source>Robot's plane from [m above the ground]</source>
+            <translation>A robot síkja ettől [m a talaj felett]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/export_parameters.py" />
+            <source>Robot's plane up to [m above the ground]</source>
+            <translation>A robot síkja eddig [m a talaj felett]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/export_parameters.py" />
+            <source>Shortest segment: corners nearer than this to the one before are left out [m]</source>
+            <translation>Legrövidebb szakasz: az előzőhöz ennél közelebbi sarkok kimaradnak [m]</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/common/export_parameters.py" />
@@ -8034,13 +8114,53 @@
         </message>
         <message>
             <location filename="../../plugin/processing/common/export_parameters.py" />
-            <source>The {name} of a tile is {value} m: give at least 1 m, such as 100.</source>
-            <translation>Egy csempe mérete ({name}) {value} m: adjon meg legalább 1 m-t, például 100-at.</translation>
+            <source>Those between buildings that touch, and lines inside or along buildings. What stays keeps its height and its source. Needs the Python package shapely 2.</source>
+            <translation>Az érintkező épületek közöttieket, valamint az épületekben vagy mentén futó vonalakat. Ami marad, megtartja magasságát és forrását. A shapely 2 Python-csomag kell hozzá.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/export_parameters.py" />
+            <source>What begins at this height or above it is left out: the robot drives under it. Where things begin is said by the layers or by the parameter BASE_EXPRESSION.</source>
+            <translation>Ami ezen a magasságon vagy felette kezdődik, kimarad: a robot áthajt alatta. Hogy mi hol kezdődik, a rétegek vagy a BASE_EXPRESSION paraméter mondja meg.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/export_parameters.py" />
+            <source>What is not higher than this is left out: the robot drives over it. Stairs and ramps stay. Give the lower and the upper height together, or neither.</source>
+            <translation>Ami ennél nem magasabb, kimarad: a robot áthajt rajta. Lépcsők és rámpák maradnak. Az alsó és felső magasságot együtt adja meg, vagy egyiket se.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/export_parameters.py" />
+            <source>binary: the text compressed</source>
+            <translation>bináris: a szöveg tömörítve</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/export_parameters.py" />
+            <source>compact: binary in columns</source>
+            <translation>tömör: bináris oszlopokban</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/export_parameters.py" />
+            <source>text</source>
+            <translation>szöveg</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/export_parameters.py" />
+            <source>text: lines that people and scripts read. binary: that text compressed, with a check sum. compact: the same map in columns of centimetres, also with a check sum (codec 2).</source>
+            <translation>text: sorok, amelyeket emberek és szkriptek olvasnak. binary: ez a szöveg tömörítve, ellenőrző összeggel. compact: ugyanaz a térkép centiméterek oszlopaiban, szintén ellenőrző összeggel (2. kodek).</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/common/export_parameters.py" />
             <source>{before} became {after}</source>
             <translation>előtte: {before}; utána: {after}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/export_parameters.py" />
+            <source>{name} is {value:g}: give a number of metres of 0 or more.</source>
+            <translation>{name} értéke {value:g}: adjon meg 0 vagy több métert.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/export_parameters.py" />
+            <source>{other} is given and {missing} is not: give both heights in metres, or none.</source>
+            <translation>{other} meg van adva, {missing} nincs: adja meg mindkét magasságot méterben, vagy egyiket se.</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/common/map_files.py" />
@@ -8133,176 +8253,6 @@
             <translation>két szám, 'x,y'</translation>
         </message>
         <message>
-            <location filename="../../plugin/processing/common/map_parameters.py" />
-            <source>0 is off. An outline that would cross itself stays as it is. Needs the Python package shapely 2.</source>
-            <translation>0: kikapcsolva. Amelyik körvonal önmagát metszené, az marad, ahogy van. A shapely 2 Python-csomag kell hozzá.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/common/map_parameters.py" />
-            <source>0 is off. Ends of lines stay and rings keep three corners. Needs the Python package shapely 2.</source>
-            <translation>0: kikapcsolva. A vonalak végei maradnak, és a gyűrűk három sarkot megtartanak. A shapely 2 Python-csomag kell hozzá.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/common/map_parameters.py" />
-            <source>0 is off. Half a metre makes a compact map smaller still, and no obstacle lower than it is.</source>
-            <translation>0: kikapcsolva. A fél méter tovább csökkenti a tömör térképet, és egyetlen akadályt sem tesz alacsonyabbá.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/common/map_parameters.py" />
-            <source>Bare map: no leading lines, no extras</source>
-            <translation>Puszta térkép: bevezető sorok és kiegészítések nélkül</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/common/map_parameters.py" />
-            <source>Both CENTER and EXTENT are given: give one of them, the window cannot be both.</source>
-            <translation>CENTER és EXTENT is meg van adva: adja meg az egyiket, az ablak nem lehet mindkettő.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/common/map_parameters.py" />
-            <source>Centre of the window (or choose an extent)</source>
-            <translation>Az ablak közepe (vagy válasszon kiterjedést)</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/common/map_parameters.py" />
-            <source>DISSOLVE, TOLERANCE and SHORTEST need the Python package shapely 2, and {version} is installed here: install a newer one (python3 -m pip install 'shapely&gt;=2'), or leave them off.</source>
-            <translation>A DISSOLVE, TOLERANCE és SHORTEST értékhez a shapely 2 Python-csomag kell, és itt {version} van telepítve: telepítsen újabbat (python3 -m pip install 'shapely&gt;=2'), vagy hagyja őket kikapcsolva.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/common/map_parameters.py" />
-            <source>Extent (instead of centre, width and height)</source>
-            <translation>Kiterjedés (közép, szélesség és magasság helyett)</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/common/map_parameters.py" />
-            <source>Fewer corners: how far an outline may then be from the drawn one [m]</source>
-            <translation>Kevesebb sarok: milyen messze lehet így egy körvonal a rajzolttól [m]</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/common/map_parameters.py" />
-            <source>Format (compact: binary in columns, about a third of binary)</source>
-            <translation>Formátum (compact: bináris oszlopokban, a bináris mintegy harmada)</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/common/map_parameters.py" />
-            <source>Height of the window, along y [m]</source>
-            <translation>Az ablak magassága y mentén [m]</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/common/map_parameters.py" />
-            <source>Heights are rounded up to a multiple of this [m]</source>
-            <translation>A magasságok felkerekítése ennek többszörösére [m]</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/common/map_parameters.py" />
-            <source>Join lines that meet end to end into one obstacle</source>
-            <translation>Összeérő vonalak egy akadállyá egyesítése</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/common/map_parameters.py" />
-            <source>Layers without a CRS are in metres of the site</source>
-            <translation>A vetület nélküli rétegek telephelyi méterben vannak</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/common/map_parameters.py" />
-            <source>Leave out walls that no robot outside can meet</source>
-            <translation>Kívülről el nem érhető falak kihagyása</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/common/map_parameters.py" />
-            <source>Neither CENTER nor EXTENT is given: give the centre of the window with WIDTH and HEIGHT in metres, or an extent.</source>
-            <translation>Sem CENTER, sem EXTENT nincs megadva: adja meg az ablak közepét a WIDTH és HEIGHT méterben megadott értékével, vagy egy kiterjedést.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/common/map_parameters.py" />
-            <source>Only lines that are alike in height, label and all else. The source of a joined line is that of its first part and how many others are in it, such as walls:3+7.</source>
-            <translation>Csak olyan vonalak, amelyek magassága, címkéje és minden más azonos. Az egyesített vonal forrása az első részé és hogy hány másik van benne, például walls:3+7.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/common/map_parameters.py" />
-            <source>PLANE_LOW is {low:g} and PLANE_HIGH {high:g}: give the lower and the upper height in metres.</source>
-            <translation>PLANE_LOW értéke {low:g}, PLANE_HIGH értéke {high:g}: adja meg az alsó és a felső magasságot méterben.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/common/map_parameters.py" />
-            <source>ROTATION {degrees} is not finite: give a number.</source>
-            <translation>ROTATION {degrees} nem véges: adjon meg számot.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/common/map_parameters.py" />
-            <source>Robot's plane from [m above the ground]</source>
-            <translation>A robot síkja ettől [m a talaj felett]</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/common/map_parameters.py" />
-            <source>Robot's plane up to [m above the ground]</source>
-            <translation>A robot síkja eddig [m a talaj felett]</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/common/map_parameters.py" />
-            <source>Shortest segment: corners nearer than this to the one before are left out [m]</source>
-            <translation>Legrövidebb szakasz: az előzőhöz ennél közelebbi sarkok kimaradnak [m]</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/common/map_parameters.py" />
-            <source>Site CRS, in metres (default: the project's, else the layers')</source>
-            <translation>A telephely vetülete méterben (alapértelmezés: a projekté, különben a rétegeké)</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/common/map_parameters.py" />
-            <source>Those between buildings that touch, and lines inside or along buildings. What stays keeps its height and its source. Needs the Python package shapely 2.</source>
-            <translation>Az érintkező épületek közöttieket, valamint az épületekben vagy mentén futó vonalakat. Ami marad, megtartja magasságát és forrását. A shapely 2 Python-csomag kell hozzá.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/common/map_parameters.py" />
-            <source>What begins at this height or above it is left out: the robot drives under it. Where things begin is said by the layers or by the parameter BASE_EXPRESSION.</source>
-            <translation>Ami ezen a magasságon vagy felette kezdődik, kimarad: a robot áthajt alatta. Hogy mi hol kezdődik, a rétegek vagy a BASE_EXPRESSION paraméter mondja meg.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/common/map_parameters.py" />
-            <source>What is not higher than this is left out: the robot drives over it. Stairs and ramps stay. Give the lower and the upper height together, or neither.</source>
-            <translation>Ami ennél nem magasabb, kimarad: a robot áthajt rajta. Lépcsők és rámpák maradnak. Az alsó és felső magasságot együtt adja meg, vagy egyiket se.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/common/map_parameters.py" />
-            <source>Width of the window, along x [m]</source>
-            <translation>Az ablak szélessége x mentén [m]</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/common/map_parameters.py" />
-            <source>binary: the text compressed</source>
-            <translation>bináris: a szöveg tömörítve</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/common/map_parameters.py" />
-            <source>compact: binary in columns</source>
-            <translation>tömör: bináris oszlopokban</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/common/map_parameters.py" />
-            <source>text</source>
-            <translation>szöveg</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/common/map_parameters.py" />
-            <source>text: lines that people and scripts read. binary: that text compressed, with a check sum. compact: the same map in columns of centimetres, also with a check sum (codec 2).</source>
-            <translation>text: sorok, amelyeket emberek és szkriptek olvasnak. binary: ez a szöveg tömörítve, ellenőrző összeggel. compact: ugyanaz a térkép centiméterek oszlopaiban, szintén ellenőrző összeggel (2. kodek).</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/common/map_parameters.py" />
-            <source>{name} is {value:g}: give a number of metres of 0 or more.</source>
-            <translation>{name} értéke {value:g}: adjon meg 0 vagy több métert.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/common/map_parameters.py" />
-            <source>{other} is given and {missing} is not: give both heights in metres, or none.</source>
-            <translation>{other} meg van adva, {missing} nincs: adja meg mindkét magasságot méterben, vagy egyiket se.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/common/map_parameters.py" />
-            <source>{side} is {length}: give a finite number of metres.</source>
-            <translation>{side} értéke {length}: adjon meg véges számú métert.</translation>
-        </message>
-        <message>
             <location filename="../../plugin/processing/common/navigation_files.py" />
             <source>Layer {sourcename}, feature {id}</source>
             <translation>{sourcename} réteg, {id}. elem</translation>
@@ -8369,6 +8319,31 @@
         </message>
         <message>
             <location filename="../../plugin/processing/common/parameters.py" />
+            <source>Both CENTER and EXTENT are given: give one of them, the window cannot be both.</source>
+            <translation>CENTER és EXTENT is meg van adva: adja meg az egyiket, az ablak nem lehet mindkettő.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/parameters.py" />
+            <source>Centre of the window (or choose an extent)</source>
+            <translation>Az ablak közepe (vagy válasszon kiterjedést)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/parameters.py" />
+            <source>Extent (instead of centre, width and height)</source>
+            <translation>Kiterjedés (közép, szélesség és magasság helyett)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/parameters.py" />
+            <source>Height of the window, along y [m]</source>
+            <translation>Az ablak magassága y mentén [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/parameters.py" />
+            <source>Layers without a CRS are in metres of the site</source>
+            <translation>A vetület nélküli rétegek telephelyi méterben vannak</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/parameters.py" />
             <source>Map profile ({kinds});;All files (*)</source>
             <translation>Térképprofil ({kinds});;Minden fájl (*)</translation>
         </message>
@@ -8379,8 +8354,18 @@
         </message>
         <message>
             <location filename="../../plugin/processing/common/parameters.py" />
+            <source>Neither CENTER nor EXTENT is given: give the centre of the window with WIDTH and HEIGHT in metres, or an extent.</source>
+            <translation>Sem CENTER, sem EXTENT nincs megadva: adja meg az ablak közepét a WIDTH és HEIGHT méterben megadott értékével, vagy egy kiterjedést.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/parameters.py" />
             <source>Origin of the site frame (default: as the project has it, else 0,0)</source>
             <translation>A telephelyi keret kezdőpontja (alapértelmezés: a projekté, különben 0,0)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/parameters.py" />
+            <source>ROTATION {degrees} is not finite: give a number.</source>
+            <translation>ROTATION {degrees} nem véges: adjon meg számot.</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/common/parameters.py" />
@@ -8394,8 +8379,18 @@
         </message>
         <message>
             <location filename="../../plugin/processing/common/parameters.py" />
+            <source>Site CRS, in metres (default: the project's, else the layers')</source>
+            <translation>A telephely vetülete méterben (alapértelmezés: a projekté, különben a rétegeké)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/parameters.py" />
             <source>The layer {layer} is no vector layer: take its role away.</source>
             <translation>A(z) {layer} réteg nem vektorréteg: vegye el a szerepét.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/parameters.py" />
+            <source>Width of the window, along x [m]</source>
+            <translation>Az ablak szélessége x mentén [m]</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/common/parameters.py" />
@@ -8421,6 +8416,11 @@
             <location filename="../../plugin/processing/common/parameters.py" />
             <source>{name}: the layer {layer} cannot be opened: check the file, and the layer's name after '|layername='.</source>
             <translation>{name}: a(z) {layer} réteg nem nyitható meg: ellenőrizze a fájlt és a réteg nevét a '|layername=' után.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/parameters.py" />
+            <source>{side} is {length}: give a finite number of metres.</source>
+            <translation>{side} értéke {length}: adjon meg véges számú métert.</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/common/placed_cones.py" />

@@ -11,7 +11,7 @@ from typing import Annotated
 import typer
 from sqlalchemy import Connection
 
-from ..core.messages import Role
+from ..core.messages.operator_requests import Role
 from ..gateway.auth import accounts, audit
 from ..gateway.storage.database import read_password
 from .audit import act_audited, after_days, local_time, read_database

@@ -12,7 +12,7 @@ from sqlalchemy import URL, Connection
 
 from ..core.errors import StoreError
 from ..core.files import replacement
-from ..core.messages import check_robot_name
+from ..core.messages.validation import check_robot_name
 from ..core.sites.settings import SETTINGS_FILE, read_settings
 from ..gateway.storage import revisions
 from ..gateway.storage.backup import back_up, revision_in

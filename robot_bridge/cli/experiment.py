@@ -83,15 +83,15 @@ def experiment(
     if reporter is not None and not accept:
         raise BridgeError("--reporter is the robot whose observations are accepted: add --accept")
     robot_map = read_site(world or site).whole_map()
-    wanted = range(first_seed, first_seed + seeds)
+    chosen_seeds = range(first_seed, first_seed + seeds)
     compiled = False if numpy else None
-    found: Iterable[Record] = (drives.run(robot_map, settings, seed, compiled) for seed in wanted)
+    found: Iterable[Record] = (drives.run(robot_map, settings, seed, compiled) for seed in chosen_seeds)
     if gateway:
         served = _served(site, file.stem, database, output)
         served = replace(served, at_once=at_once, people=people, pace=pace, compiled=compiled)
         other = None if reporter is None else drives.read_settings(_settings_file(reporter))
         served = replace(served, window=window, accept=accept, reporter=other)
-        found = drive_at_gateway(served, robot_map, settings, wanted)
+        found = drive_at_gateway(served, robot_map, settings, chosen_seeds)
     title = settings.title or file.stem
     records: dict[bool, list[Record]] = {}
     for record in found:

@@ -16,8 +16,7 @@ import typer
 
 from ..core.errors import BridgeError, counted, listed_names
 from ..core.files import replacement, write_geopackage_layer
-from ..core.messages import GetPlacements, PlacementReport
-from ..core.messages.records import MOST_PLACEMENTS
+from ..core.messages.records import MOST_PLACEMENTS, GetPlacements, PlacementReport
 from ..core.sites.frame import SiteFrame, projections
 from ..core.sites.settings import SETTINGS_FILE, read_settings
 from ..gateway.storage.database import Database
@@ -201,7 +200,7 @@ def export(
     if file.exists() and not replace:
         raise BridgeError(f"{file} is there already; choose another name, or give --replace")
     first, last = time_span(since, until)
-    wanted = GetPlacements(
+    query = GetPlacements(
         layout=layout,
         plan=plan,
         robot=robot,
@@ -216,8 +215,8 @@ def export(
     async def work() -> list[PlacementReport]:
         opened = Database(address, patience=None)
         try:
-            await _check_named(opened, wanted)
-            return await _all(opened, wanted)
+            await _check_named(opened, query)
+            return await _all(opened, query)
         finally:
             await opened.close()
 
@@ -227,10 +226,10 @@ def export(
     typer.echo(f"{file}: {counted(len(found), 'cone')}, {worst:.3f} m off their places at most")
 
 
-async def _check_named(database: Database, wanted: GetPlacements) -> None:
+async def _check_named(database: Database, query: GetPlacements) -> None:
     """Raise BridgeError for a layout, plan or robot of which no cone is stored, as for a misspelt one."""
     for kind in ("layout", "plan", "robot"):
-        name = getattr(wanted, kind)
+        name = getattr(query, kind)
         if name is None or await database.run(stored.has_any, kind, name):
             continue
         known = await database.run(stored.names, kind)
@@ -240,10 +239,10 @@ async def _check_named(database: Database, wanted: GetPlacements) -> None:
         )
 
 
-async def _all(database: Database, wanted: GetPlacements) -> list[PlacementReport]:
+async def _all(database: Database, query: GetPlacements) -> list[PlacementReport]:
     """Return every page, in the order in which the cones were put down."""
     found: list[PlacementReport] = []
-    while page := await database.run(stored.newest_placed_cones, wanted):
+    while page := await database.run(stored.newest_placed_cones, query):
         found += page
-        wanted = dataclasses.replace(wanted, before=page[-1].placement)
+        query = dataclasses.replace(query, before=page[-1].placement)
     return found[::-1]

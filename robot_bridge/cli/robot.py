@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from ..core.errors import BridgeError
-from ..core.messages import SetObject
+from ..core.messages.robots import SetObject
 from ..reference_robot.body import ScriptedObject
 from .options import PasswordFileOption, database_address
 

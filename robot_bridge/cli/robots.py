@@ -9,7 +9,7 @@ from typing import Annotated
 import typer
 from sqlalchemy import Connection
 
-from ..core.messages import check_robot_name
+from ..core.messages.validation import check_robot_name
 from ..gateway.auth import accounts
 from ..gateway.storage.database import shown
 from ..gateway.storage.repositories import robots as stored_robots

@@ -21,7 +21,8 @@ from websockets.asyncio.client import ClientConnection, connect
 
 from ..core.errors import BridgeError
 from ..core.json_decoder import decode_json
-from ..core.messages import Answer, ObservationState, OpAck, Request, SetMap, SetObject, Stopped
+from ..core.messages.records import ObservationState
+from ..core.messages.robots import Answer, OpAck, Request, SetMap, SetObject, Stopped
 from ..core.robotmap.model import RobotMap
 from ..core.sites.settings import SETTINGS_FILE
 from ..gateway.app import GatewaySettings, Signals
@@ -174,8 +175,8 @@ async def _review(address: str, robot: str, *, accept: bool) -> int:
     async with connect(f"{address}/desk") as wire:
         desk = _Desk(wire)
         await desk.ask("hello", {"operator": "experiment"})
-        wanted = {"robot": robot, "state": state.value, "limit": 1000}
-        found = (await desk.ask("get_observations", wanted))["observations"]
+        query = {"robot": robot, "state": state.value, "limit": 1000}
+        found = (await desk.ask("get_observations", query))["observations"]
         objects = [one["observation"] for one in found if one["op"] == SetObject.__name__]
         for number in objects:
             verdict = {"observation": number, "accept": accept, "revise": not accept}
@@ -374,8 +375,8 @@ class _Robot:
     def _note(self) -> None:
         body = self.body
         self._clearance = min(self._clearance, body.clearance())
-        told = body.pose, body.driven, body.accuracy, body.localiser.lost
-        self._rows.append((body.truth, body.odometry, *told, self._timed.seconds, body.localiser.particles))
+        state = body.pose, body.driven, body.accuracy, body.localiser.lost
+        self._rows.append((body.truth, body.odometry, *state, self._timed.seconds, body.localiser.particles))
 
     def say(self, request: Request) -> None:
         self.link.say(request)

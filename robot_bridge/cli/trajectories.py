@@ -11,7 +11,8 @@ from typing import Annotated
 import typer
 
 from ..core.errors import BridgeError, counted
-from ..core.messages import SendPos, check_robot_name
+from ..core.messages.robots import SendPos
+from ..core.messages.validation import check_robot_name
 from ..core.sites.settings import SETTINGS_FILE, read_settings
 from ..gateway.storage.database import Database
 from ..gateway.storage.repositories.trajectories import Fix, TrajectoryQuery
@@ -99,17 +100,17 @@ def _fixes(track: Track, name: str, frame: LinkFrame, shift: float) -> Iterator[
         yield Fix(name, at + shift, SendPos(*place, v, t=at))
 
 
-def _named(tracks: Sequence[Track], wanted: Sequence[str], file: Path) -> list[tuple[Track, str]]:
+def _named(tracks: Sequence[Track], choices: Sequence[str], file: Path) -> list[tuple[Track, str]]:
     """Return the tracks that are wanted, with the names of their robots."""
     known = {track.robot: track for track in tracks}
-    if len(wanted) == 1 and "=" not in wanted[0]:
+    if len(choices) == 1 and "=" not in choices[0]:
         if len(tracks) > 1:
             raise BridgeError(
-                f"{file} has {len(tracks)} robots; write --robot RECORDED={wanted[0]}. Recorded are "
+                f"{file} has {len(tracks)} robots; write --robot RECORDED={choices[0]}. Recorded are "
                 f"{', '.join(list(known)[:20])}"
             )
-        return [(tracks[0], check_robot_name(wanted[0]))]
-    pairs = [_pair("--robot", text) for text in wanted] or [(name, name) for name in known]
+        return [(tracks[0], check_robot_name(choices[0]))]
+    pairs = [_pair("--robot", text) for text in choices] or [(name, name) for name in known]
     for recorded, _ in pairs:
         if recorded not in known:
             raise BridgeError(
@@ -192,7 +193,7 @@ def export(
     if file.exists() and not replace:
         raise BridgeError(f"{file} is there already; choose another name, or give --replace")
     first, last = time_span(since, until)
-    wanted = TrajectoryQuery(
+    query = TrajectoryQuery(
         robots=tuple(check_robot_name(name) for name in robot or ()),
         since=first,
         until=last,
@@ -204,7 +205,7 @@ def export(
     async def work() -> TrajectoryFile:
         opened = Database(address, patience=None)
         try:
-            return await write(opened, wanted, frame, file, gap)
+            return await write(opened, query, frame, file, gap)
         finally:
             await opened.close()
 

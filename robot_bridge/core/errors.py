@@ -280,6 +280,6 @@ def installation(package: str) -> str:
     elsewhere = f"python3 -m pip install {package}, with the Python that runs this"
     if debian := _DEBIAN.get(package):
         return f"(on Debian: apt install {debian}; elsewhere: {elsewhere})"
-    wanted = _VERSIONS.get(package, package)
-    pip = f"python3 -m pip install --user --break-system-packages {wanted}"
+    requirement = _VERSIONS.get(package, package)
+    pip = f"python3 -m pip install --user --break-system-packages {requirement}"
     return f"(on Debian: apt install python3-pip, then {pip}; elsewhere: {elsewhere})"

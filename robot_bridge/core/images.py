@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .errors import RefusedError
-from .messages import MessageError
+from .messages.validation import MessageError
 
 _BEGINNINGS = {
     "image/jpeg": b"\xff\xd8\xff",
@@ -27,10 +27,10 @@ def check_size(size: int, largest: int) -> None:
         )
 
 
-def media_type_of(content: bytes, said: str | None = None) -> str:
+def media_type_of(content: bytes, declared: str | None = None) -> str:
     """Return the media type of an image.
 
-    Raises MessageError when it is none that is taken, or another than what was ``said``.
+    Raises MessageError when it is none that is taken, or another than what was ``declared``.
     """
     found = next((name for name, begin in _BEGINNINGS.items() if content.startswith(begin)), None)
     if content[:4] == b"RIFF" and content[8:12] == b"WEBP":
@@ -40,8 +40,8 @@ def media_type_of(content: bytes, said: str | None = None) -> str:
             f"SendImage: image begins with {content[:8].hex(' ') or 'nothing'}, which is neither JPEG, PNG "
             "nor WebP; send one of these"
         )
-    if said is not None and said != found:
-        raise MessageError(f"SendImage: media_type is {said!r}, and the bytes are {found}; correct it")
+    if declared is not None and declared != found:
+        raise MessageError(f"SendImage: media_type is {declared!r}, and the bytes are {found}; correct it")
     return found
 
 

@@ -20,7 +20,9 @@ from websockets.frames import CloseCode
 from websockets.http11 import Request, Response
 
 from ..core.errors import BridgeError, SiteError, StoreError
-from ..core.messages import MessageError, Stopping, check_robot_name, to_json
+from ..core.messages.administration import Stopping
+from ..core.messages.json_values import to_json
+from ..core.messages.validation import MessageError, check_robot_name
 from ..core.sites.site import Site, check_site, frame_mismatch, read_site
 from ..protocol.asyncapi import served
 from ..protocol.credentials import AccessError
@@ -244,8 +246,8 @@ class Gateway:
     async def _field_page(self, visitor: ClientConnection, request: Request, path: str) -> Response:
         if path != SITE:
             return self._field.file(request)
-        if told := await self._gate.may_read(visitor, request):
-            return told
+        if refusal := await self._gate.may_read(visitor, request):
+            return refusal
         return await self._field.site(request)
 
     def _host_fault(self, request: Request) -> str | None:
@@ -256,8 +258,8 @@ class Gateway:
     async def _status_page(self, visitor: ClientConnection, request: Request, path: str) -> Response:
         if path == HEALTH:
             return await self._status.health()
-        if not is_loopback(visitor.address) and (told := await self._gate.may_read(visitor, request)):
-            return told
+        if not is_loopback(visitor.address) and (refusal := await self._gate.may_read(visitor, request)):
+            return refusal
         return await self._status.metrics()
 
     def _largest_message(self, kind: TokenKind) -> int:

@@ -8,7 +8,7 @@ import logging
 from pathlib import Path
 
 from ..core.errors import BridgeError, RefusedError, SiteError
-from ..core.messages import ChooseSite, GetSites, SiteOffer, SiteReport, Sites
+from ..core.messages.administration import ChooseSite, GetSites, SiteOffer, SiteReport, Sites
 from ..core.sites.geopackage import GEOPACKAGE_FILE
 from ..core.sites.settings import SETTINGS_FILE, read_settings
 from ..core.sites.site import Site, frame_mismatch, read_site, sibling_sites
@@ -55,13 +55,13 @@ class SiteWatch:
         while True:
             with contextlib.suppress(TimeoutError):
                 await asyncio.wait_for(self._reload.wait(), LOOK_INTERVAL)
-            await self.refresh(asked=self._reload.is_set())
+            await self.refresh(requested=self._reload.is_set())
 
-    async def refresh(self, *, asked: bool = False) -> None:
-        """Look once; ``asked``: read the site even if it looks the same."""
+    async def refresh(self, *, requested: bool = False) -> None:
+        """Look once; ``requested``: read the site even if it looks the same."""
         self._reload.clear()
         async with self._reading:
-            await self._look(asked)
+            await self._look(requested)
 
     @handles(GetSites)
     async def offers(self) -> Sites:
@@ -86,9 +86,9 @@ class SiteWatch:
             await self._take_over(site)
             return self._maps.report
 
-    async def _look(self, asked: bool) -> None:
+    async def _look(self, requested: bool) -> None:
         stamp = await asyncio.to_thread(stamp_of, self._folder)
-        if stamp == self._seen and not asked:
+        if stamp == self._seen and not requested:
             return
         try:
             site = await asyncio.to_thread(read_site, self._folder)
@@ -96,7 +96,7 @@ class SiteWatch:
             await asyncio.to_thread(check_roads, site)
         except (SiteError, BridgeError) as error:
             # Two files are replaced one after the other: what is wrong may be half of something right.
-            if stamp == self._doubtful or asked:
+            if stamp == self._doubtful or requested:
                 self._seen = stamp
                 log.error("version %d is served on: %s", self._maps.report.version, error)
             self._doubtful = stamp

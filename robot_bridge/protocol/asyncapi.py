@@ -7,18 +7,7 @@ from collections.abc import Mapping, Sequence
 from functools import cache
 from typing import Any
 
-from ..core.messages import (
-    ANSWERS,
-    DESK_REQUESTS,
-    PROTOCOL_VERSION,
-    REQUESTS,
-    ROBOT_NAME,
-    OpAck,
-    SendGPS,
-    SendPos,
-    Start,
-)
-from ..core.messages.administration import Playback, PlaybackReport
+from ..core.messages.administration import PROTOCOL_VERSION, Playback, PlaybackReport
 from ..core.messages.links import (
     AbortOfAll,
     GetAreas,
@@ -30,16 +19,10 @@ from ..core.messages.links import (
     Released,
     SiteAreas,
 )
-from ..core.messages.operator_requests import Done
-from .json_schemas import (
-    HEADS,
-    JSON_SCHEMA,
-    NOTIFICATIONS,
-    Schema,
-    definitions,
-    plain_text,
-    schema_of,
-)
+from ..core.messages.operator_requests import DESK_REQUESTS, Done
+from ..core.messages.robots import ANSWERS, REQUESTS, OpAck, SendGPS, SendPos, Start
+from ..core.messages.validation import ROBOT_NAME
+from .json_schemas import HEADS, JSON_SCHEMA, NOTIFICATIONS, Schema, definitions, plain_text, schema_of
 
 # --- The pieces of an AsyncAPI document: channels, JSON-RPC frames as messages, and operations ---
 
@@ -161,17 +144,25 @@ _ROBOT: Schema = {
 
 def link_documents() -> dict[str, Schema]:
     """Return the JSON Schemas by path: ``link`` holds what links say, ``link-gateway`` what they are told."""
-    said = {f"link/{op}.json": _with_robot(schema_of(cls, closed=True)) for op, cls in ROBOT_CALLS.items()}
-    said |= {f"link/{method}.json": schema_of(cls, closed=True) for method, cls in CALLS.items()}
+    received_documents = {
+        f"link/{op}.json": _with_robot(schema_of(cls, closed=True)) for op, cls in ROBOT_CALLS.items()
+    }
+    received_documents |= {
+        f"link/{method}.json": schema_of(cls, closed=True) for method, cls in CALLS.items()
+    }
     positions = [_with_robot(schema_of(cls, closed=True)) for cls in (SendPos, SendGPS)]
-    said["link/positions.json"] = _with_entries(schema_of(LinkPositions), positions)
-    said["head/link-positions.json"] = schema_of(LinkColumns)
-    told = {f"link-gateway/{op}.json": _with_robot(schema_of(cls)) for op, cls in ROBOT_ANSWERS.items()}
-    told |= {f"link-gateway/{cls.__name__}.json": schema_of(cls) for cls in (Start, Released, AbortOfAll)}
-    told[f"link-gateway/{Playback.method}.json"] = schema_of(Playback)
-    said[f"link/{_PLAYBACK_RESULT}.json"] = schema_of(PlaybackReport)
-    told |= {f"link-gateway/{name}.json": schema_of(cls) for name, cls in _RESULTS.items()}
-    return {**said, **told}
+    received_documents["link/positions.json"] = _with_entries(schema_of(LinkPositions), positions)
+    received_documents["head/link-positions.json"] = schema_of(LinkColumns)
+    sent_documents = {
+        f"link-gateway/{op}.json": _with_robot(schema_of(cls)) for op, cls in ROBOT_ANSWERS.items()
+    }
+    sent_documents |= {
+        f"link-gateway/{cls.__name__}.json": schema_of(cls) for cls in (Start, Released, AbortOfAll)
+    }
+    sent_documents[f"link-gateway/{Playback.method}.json"] = schema_of(Playback)
+    received_documents[f"link/{_PLAYBACK_RESULT}.json"] = schema_of(PlaybackReport)
+    sent_documents |= {f"link-gateway/{name}.json": schema_of(cls) for name, cls in _RESULTS.items()}
+    return {**received_documents, **sent_documents}
 
 
 def link_schemas(template: str) -> dict[str, Schema]:
@@ -190,13 +181,13 @@ def link_schemas(template: str) -> dict[str, Schema]:
 def link_channel() -> Schema:
     """Return the endpoint with its messages."""
     positions = {LinkPositions.method: LinkPositions}
-    told = {"Start": Start, "Released": Released}
+    extra = {"Start": Start, "Released": Released}
     messages = {
         **calls(CALLS),
         **calls(ROBOT_CALLS, OF_ROBOT),
         **calls(ROBOT_ANSWERS, OF_ROBOT),
         **results(_RESULTS),
-        **news({**positions, **told}),
+        **news({**positions, **extra}),
         **in_columns({LinkPositions.method: LinkColumns}),
         **calls({Playback.method: Playback}),
         **results({_PLAYBACK_RESULT: PlaybackReport}),
@@ -292,8 +283,8 @@ def _schemas() -> dict[str, Schema]:
     tables = (REQUESTS, ANSWERS, DESK_REQUESTS, results_of, NOTIFICATIONS, HEADS)
     # Some are in two tables, and each is to be described once.
     classes = {cls: None for table in tables for cls in table.values()}
-    asked = [cls for op, cls in REQUESTS.items() if op not in ANSWERS] + list(DESK_REQUESTS.values())
-    own = definitions(list(classes), _REFERENCE, asked)
+    requests = [cls for op, cls in REQUESTS.items() if op not in ANSWERS] + list(DESK_REQUESTS.values())
+    own = definitions(list(classes), _REFERENCE, requests)
     return {**own, **link_schemas(_REFERENCE), "Id": _ID, "Error": _ERROR}
 
 
@@ -346,15 +337,15 @@ def _robot_operations(requests: Mapping[str, type], answers: Mapping[str, type])
 
 def _desk_operations() -> Schema:
     """Return what the gateway receives of operators, with its result, and what it tells them unasked."""
-    asked = {
+    requests = {
         f"desk.{method}": operation("receive", "desk", [method], (f"{method}Result", "error"))
         for method in DESK_REQUESTS
     }
-    told = {
+    notifications = {
         f"news.{name}": operation("send", "desk", [name, *([f"{name}InColumns"] if name in HEADS else [])])
         for name in NOTIFICATIONS
     }
-    return {**asked, **told}
+    return {**requests, **notifications}
 
 
 # --- Every schema as a file: what ``robot-bridge schemas`` writes and the gateway serves under ``/schemas/``

@@ -9,26 +9,15 @@ from typing import Any
 
 import msgspec
 
-from ..core.messages import (
-    PAYLOADS,
-    Closures,
-    CommandReport,
-    Conflicts,
-    EmergencyReport,
-    Geofence,
-    Links,
-    Nearness,
-    ObservationReport,
-    PlacementReport,
-    PlanReport,
-    PositionColumns,
-    QueueReport,
-    ReplannedRobot,
-    SiteReport,
-    Stopping,
-    Suspensions,
-)
-from ..core.messages.positions import Positions
+from ..core.messages.administration import Links, SiteReport, Stopping, Suspensions
+from ..core.messages.commands import CommandReport
+from ..core.messages.plans import PlanReport
+from ..core.messages.positions import PositionColumns, Positions
+from ..core.messages.queues import QueueReport
+from ..core.messages.records import ObservationReport, PlacementReport
+from ..core.messages.roads import Closures, Conflicts, ReplannedRobot
+from ..core.messages.robots import PAYLOADS
+from ..core.messages.safety import EmergencyReport, Geofence, Nearness
 
 # --- The JSON Schema (draft 2020-12) of each message, from its class: types, defaults, ranges and texts
 

@@ -116,11 +116,11 @@ def _of_robot(
     name: str | None, head: Sequence[str], columns: dict[str, str], place: tuple[str, str]
 ) -> RobotColumns:
     def find(key: str) -> int | None:
-        wanted = columns.get(key, key).replace(ROBOT, name or "")
-        if wanted in head:
-            return head.index(wanted)
+        column = columns.get(key, key).replace(ROBOT, name or "")
+        if column in head:
+            return head.index(column)
         if key in columns:
-            raise RecordingError(f"columns.{key}: no column is called {wanted}; {_there(head)}")
+            raise RecordingError(f"columns.{key}: no column is called {column}; {_there(head)}")
         return None
 
     def need(key: str) -> int:

@@ -8,13 +8,13 @@ from dataclasses import dataclass
 from typing import Protocol
 
 from ..core.errors import RobotMapError
-from ..core.messages import (
+from ..core.messages.roads import GetSurface, SetSurface
+from ..core.messages.robots import (
     Abort,
     Alive,
     Answer,
     GetMap,
     GetPath,
-    GetSurface,
     OpAck,
     Ready,
     Request,
@@ -23,7 +23,6 @@ from ..core.messages import (
     SetPath,
     SetPosEnd,
     SetPosIni,
-    SetSurface,
     Start,
     Stopped,
 )

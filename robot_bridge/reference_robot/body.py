@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..core.geometry import Polyline
-from ..core.messages import Observed, SendImage, SetObject
+from ..core.messages.robots import Observed, SendImage, SetObject
 from ..core.robotmap.model import PART_OF, RobotMap
 
 # --- A simulated body with differential drive: limited speed, turn rate and accelerations ---
@@ -91,7 +91,7 @@ class Body:
         self.driven = 0.0
         self.turn_rate = 0.0
         self._limits = limits
-        self._wanted = (0.0, 0.0)
+        self._target_speeds = (0.0, 0.0)
 
     def place(self, pose: Pose) -> None:
         """Take the body to be at ``pose``, as a robot that is told where it stands."""
@@ -108,7 +108,7 @@ class Body:
     def drive(self, v: float, turn_rate: float) -> None:
         """Ask for a speed (m/s) and a turn rate (rad/s), within the limits."""
         limits = self._limits
-        self._wanted = (
+        self._target_speeds = (
             _clamp(v, limits.speed),
             _clamp(turn_rate, limits.turn_rate),
         )
@@ -116,8 +116,8 @@ class Body:
     def step(self, dt: float) -> None:
         """Move on by ``dt`` seconds along an arc."""
         limits = self._limits
-        self.v += _clamp(self._wanted[0] - self.v, limits.acceleration * dt)
-        self.turn_rate += _clamp(self._wanted[1] - self.turn_rate, limits.turn_acceleration * dt)
+        self.v += _clamp(self._target_speeds[0] - self.v, limits.acceleration * dt)
+        self.turn_rate += _clamp(self._target_speeds[1] - self.turn_rate, limits.turn_acceleration * dt)
         x, y, theta = self.pose
         self.driven += abs(self.v) * dt
         middle = theta + self.turn_rate * dt / 2

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Protocol
 
-from ..core.messages import check_robot_name
+from ..core.messages.validation import check_robot_name
 from ..protocol.credentials import ClientCredentials
 from .agent import STEER_EVERY, Agent, AgentSettings, RequestSink
 from .body import BodyLimits, Pose, ScriptedObject, SimulatedVehicle

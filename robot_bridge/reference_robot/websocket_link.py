@@ -12,7 +12,9 @@ from websockets.asyncio.client import ClientConnection, connect
 from websockets.exceptions import ConnectionClosed, InvalidHandshake, InvalidStatus, InvalidURI
 
 from ..core.errors import BridgeError
-from ..core.messages import MessageError, Observed, OpAck, Ready, Request, to_json
+from ..core.messages.json_values import to_json
+from ..core.messages.robots import Observed, OpAck, Ready, Request
+from ..core.messages.validation import MessageError
 from ..protocol import jsonrpc
 from ..protocol.codec import decode_answer, params_of
 from ..protocol.credentials import ClientCredentials
@@ -45,7 +47,7 @@ class RobotWebSocketLink:
         self._connected = False
         self._ids = itertools.count(1)
         self._untold: list[Observed] = []
-        self._asked: dict[int, Request] = {}
+        self._pending_requests: dict[int, Request] = {}
 
     @property
     def unacknowledged_observations(self) -> int:
@@ -91,7 +93,7 @@ class RobotWebSocketLink:
 
     async def _carry(self, connection: ClientConnection, agent: Agent) -> None:
         self._outgoing = asyncio.Queue()
-        self._asked = {}
+        self._pending_requests = {}
         sending = asyncio.create_task(self._send_all(connection))
         try:
             async for frame in connection:
@@ -109,7 +111,7 @@ class RobotWebSocketLink:
                     continue
                 id = next(self._ids) if request.acknowledged else None
                 if id is not None:
-                    self._asked[id] = request
+                    self._pending_requests[id] = request
                 await connection.send(jsonrpc.call(type(request).__name__, params_of(request), id))
         except ConnectionClosed:
             return
@@ -135,15 +137,15 @@ class RobotWebSocketLink:
             self._outgoing.put_nowait(_reply(message.id, ack or OpAck(id=id)))
 
     def _receive_reply(self, agent: Agent, reply: jsonrpc.Reply) -> None:
-        asked = self._asked.pop(reply.id, None) if isinstance(reply.id, int) else None
+        request = self._pending_requests.pop(reply.id, None) if isinstance(reply.id, int) else None
         ack = _acknowledgement(reply)
-        if isinstance(asked, Observed) and reply.code == jsonrpc.INTERNAL_ERROR:
+        if isinstance(request, Observed) and reply.code == jsonrpc.INTERNAL_ERROR:
             # What could not be stored just now is said again; what is wrong is not.
-            asyncio.get_running_loop().call_later(SAY_AGAIN, self._outgoing.put_nowait, asked)
-        elif isinstance(asked, Observed) and asked in self._untold:
-            self._untold.remove(asked)
+            asyncio.get_running_loop().call_later(SAY_AGAIN, self._outgoing.put_nowait, request)
+        elif isinstance(request, Observed) and request in self._untold:
+            self._untold.remove(request)
         if not ack.ok:
-            log.error("the gateway refused %s: %s", type(asked).__name__, ack.reason)
+            log.error("the gateway refused %s: %s", type(request).__name__, ack.reason)
         agent.receive(ack, None)
 
 
@@ -166,6 +168,6 @@ def _reply(id: int | str, ack: OpAck) -> str:
 def _reason(error: OSError | InvalidHandshake) -> str:
     """Return why there is no connection, in the gateway's own words where it gave some."""
     if isinstance(error, InvalidStatus):
-        said = bytes(error.response.body).decode("utf-8", "replace").strip()
-        return f"the gateway refuses (HTTP {error.response.status_code}): {said[:300]}"
+        text = bytes(error.response.body).decode("utf-8", "replace").strip()
+        return f"the gateway refuses (HTTP {error.response.status_code}): {text[:300]}"
     return str(error)

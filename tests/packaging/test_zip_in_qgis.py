@@ -89,4 +89,4 @@ def test_every_module_is_there_that_the_plugin_imports(unpacked):
         for imported in graph.find_modules_directly_imported_by(module)
     }
     assert used <= names
-    assert "fleet_supervisor.robot_bridge.core.messages" in used
+    assert "fleet_supervisor.robot_bridge.core.messages.robots" in used

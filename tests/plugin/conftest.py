@@ -11,16 +11,11 @@ from collections.abc import Callable
 from dataclasses import replace
 
 import pytest
-from fleet_supervisor.robot_bridge.core.messages import (
-    CommandReport,
-    CommandState,
-    CommandStep,
-    EmergencyReport,
-    RobotReport,
-    RobotState,
-    SiteReport,
-    to_json,
-)
+from fleet_supervisor.robot_bridge.core.messages.administration import SiteReport
+from fleet_supervisor.robot_bridge.core.messages.commands import CommandReport, CommandState, CommandStep
+from fleet_supervisor.robot_bridge.core.messages.json_values import to_json
+from fleet_supervisor.robot_bridge.core.messages.positions import RobotReport
+from fleet_supervisor.robot_bridge.core.messages.safety import EmergencyReport, RobotState
 from qgis.core import (
     QgsCoordinateReferenceSystem,
     QgsFeature,
@@ -118,7 +113,7 @@ class SmallGateway:
         self._loop.call_soon_threadsafe(self._stop.set)
         self._thread.join(START)
 
-    def asked(self, method: str) -> list[dict]:
+    def requests_of(self, method: str) -> list[dict]:
         return [params for name, params in self.requests if name == method]
 
     def show(self, *robots: RobotReport) -> None:

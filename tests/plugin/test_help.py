@@ -17,11 +17,7 @@ from fleet_supervisor.plugin.help import (
 )
 from qgis.PyQt.QtCore import Qt, QUrl
 from qgis.PyQt.QtTest import QTest
-from qgis.PyQt.QtWidgets import (
-    QLineEdit,
-    QTableView,
-    QWidget,
-)
+from qgis.PyQt.QtWidgets import QLineEdit, QTableView, QWidget
 
 
 def test_f1_explains_what_has_the_keyboard(plugin, iface):

@@ -6,17 +6,10 @@ import gc
 import threading
 
 from fleet_supervisor.plugin.plugin import FleetPlugin
-from qgis.core import (
-    QgsApplication,
-    QgsExpression,
-    QgsProject,
-)
+from qgis.core import QgsApplication, QgsExpression, QgsProject
 from qgis.gui import QgsGui
 from qgis.PyQt.QtCore import QCoreApplication, QEvent, QThread
-from qgis.PyQt.QtWidgets import (
-    QApplication,
-    QLineEdit,
-)
+from qgis.PyQt.QtWidgets import QApplication, QLineEdit
 
 
 def registered(iface):

@@ -7,18 +7,10 @@ import threading
 import pytest
 from fleet_supervisor.plugin.locator import PREFIX_KEY, RobotFilter, rank_robots
 from fleet_supervisor.plugin.plugin import FleetPlugin
-from qgis.core import (
-    QgsExpression,
-    QgsLocatorContext,
-    QgsLocatorResult,
-    QgsSettings,
-)
+from qgis.core import QgsExpression, QgsLocatorContext, QgsLocatorResult, QgsSettings
 from qgis.gui import QgsLocatorWidget
 from qgis.PyQt.QtTest import QSignalSpy
-from qgis.PyQt.QtWidgets import (
-    QApplication,
-    QLineEdit,
-)
+from qgis.PyQt.QtWidgets import QApplication, QLineEdit
 
 
 def found(iface, text, wait):

@@ -6,19 +6,10 @@ import pytest
 from fleet_supervisor.plugin.help import OPTIONS, HelpWindow
 from fleet_supervisor.plugin.plugin import FleetPlugin
 from fleet_supervisor.plugin.settings.preferences import Preferences, read_preferences, write_preferences
-from qgis.core import (
-    QgsSettings,
-)
+from qgis.core import QgsSettings
 from qgis.PyQt.QtCore import Qt
 from qgis.PyQt.QtTest import QTest
-from qgis.PyQt.QtWidgets import (
-    QApplication,
-    QComboBox,
-    QDoubleSpinBox,
-    QLineEdit,
-    QPushButton,
-    QTabWidget,
-)
+from qgis.PyQt.QtWidgets import QApplication, QComboBox, QDoubleSpinBox, QLineEdit, QPushButton, QTabWidget
 
 
 @pytest.fixture
@@ -63,8 +54,8 @@ def test_positions_are_asked_for_at_the_rate_that_was_set(iface, gateway, wait):
     try:
         plugin.window.dock.findChild(QLineEdit, "fleet_url").setText(gateway.url)
         plugin.window.actions.connect.trigger()
-        wait(lambda: gateway.asked("subscribe"))
-        assert [params["rate"] for params in gateway.asked("subscribe")] == [4.0]
+        wait(lambda: gateway.requests_of("subscribe"))
+        assert [params["rate"] for params in gateway.requests_of("subscribe")] == [4.0]
     finally:
         plugin.unload()
 

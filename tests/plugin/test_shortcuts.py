@@ -7,10 +7,7 @@ from fleet_supervisor.plugin.ui.actions import KEYS
 from qgis.gui import QgsGui
 from qgis.PyQt.QtCore import Qt
 from qgis.PyQt.QtTest import QTest
-from qgis.PyQt.QtWidgets import (
-    QApplication,
-    QLineEdit,
-)
+from qgis.PyQt.QtWidgets import QApplication, QLineEdit
 
 
 def test_keys_are_in_qgis_list_and_no_two_are_the_same(plugin):

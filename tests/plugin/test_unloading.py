@@ -7,10 +7,7 @@ import time
 
 from fleet_supervisor.plugin.plugin import FleetPlugin
 from qgis.core import QgsApplication, QgsProject, QgsVectorLayer
-from qgis.PyQt.QtWidgets import (
-    QAction,
-    QLineEdit,
-)
+from qgis.PyQt.QtWidgets import QAction, QLineEdit
 
 from tests.support.left_behind import connected_to, left_behind
 

@@ -13,7 +13,8 @@ import jsonschema
 import pytest
 from websockets.frames import CloseCode
 
-from robot_bridge.core.messages import ANSWERS, DESK_REQUESTS, PAYLOADS, REQUESTS
+from robot_bridge.core.messages.operator_requests import DESK_REQUESTS
+from robot_bridge.core.messages.robots import ANSWERS, PAYLOADS, REQUESTS
 from robot_bridge.gateway.api.robot_session import REPLACED
 from robot_bridge.gateway.auth.gate import REVOKED
 from robot_bridge.protocol import jsonrpc

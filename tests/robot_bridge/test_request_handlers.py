@@ -6,8 +6,9 @@ from dataclasses import dataclass
 
 import pytest
 
-from robot_bridge.core.messages import DESK_REQUESTS, DeskRequest, GetClosures, GetQueue, PauseRobot, Role
-from robot_bridge.core.messages.operator_requests import Done, Priority
+from robot_bridge.core.messages.operator_requests import DESK_REQUESTS, DeskRequest, Done, Priority, Role
+from robot_bridge.core.messages.queues import GetQueue, PauseRobot
+from robot_bridge.core.messages.roads import GetClosures
 from robot_bridge.gateway.model.request_handlers import Encoded, RequestHandlers, handles
 
 

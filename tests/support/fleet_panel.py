@@ -4,10 +4,7 @@ from __future__ import annotations
 
 from qgis.PyQt.QtCore import Qt
 from qgis.PyQt.QtTest import QTest
-from qgis.PyQt.QtWidgets import (
-    QLabel,
-    QTableView,
-)
+from qgis.PyQt.QtWidgets import QLabel, QTableView
 
 LEFT = Qt.MouseButton.LeftButton
 

@@ -48,8 +48,8 @@ class LayerMeasure:
             return tr("refused")
         if not self.role:
             return ""
-        told = [_things(self.role, self.count), _segments(len(self.segments))]
-        return ", ".join(told + ([_warnings(len(self.warnings))] if self.warnings else []))
+        parts = [_things(self.role, self.count), _segments(len(self.segments))]
+        return ", ".join(parts + ([_warnings(len(self.warnings))] if self.warnings else []))
 
 
 def measure_layer(
@@ -84,12 +84,12 @@ def measure_summary(measures: Sequence[LayerMeasure]) -> str:
         if one.role:
             counted[one.role if one.role in counted else OBSTACLE] += one.count
     segments = sum(len(one.segments) for one in measures if one.role in OBSTACLE_ROLES)
-    told = [_things(kind, number) for kind, number in counted.items()]
-    told[0] = tr("{obstacles} of {segments}", obstacles=told[0], segments=_segments(segments))
+    parts = [_things(kind, number) for kind, number in counted.items()]
+    parts[0] = tr("{obstacles} of {segments}", obstacles=parts[0], segments=_segments(segments))
     refused = sum(bool(one.refused) for one in measures)
     if refused:
-        told.append(tr_count(refused, "1 layer refused", "%n layers refused"))
-    return ", ".join([*told, _warnings(sum(len(one.warnings) for one in measures))])
+        parts.append(tr_count(refused, "1 layer refused", "%n layers refused"))
+    return ", ".join([*parts, _warnings(sum(len(one.warnings) for one in measures))])
 
 
 def _things(role: str, number: int) -> str:
@@ -193,9 +193,9 @@ def _extent(groups: Sequence[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _scale_bar(painter: QPainter, size: QSize, scale: float) -> None:
-    wanted = 0.25 * size.width() / scale
-    step = 10.0 ** np.floor(np.log10(wanted))
-    metres = max(step * factor for factor in (1, 2, 5) if step * factor <= wanted)
+    ideal_length = 0.25 * size.width() / scale
+    step = 10.0 ** np.floor(np.log10(ideal_length))
+    metres = max(step * factor for factor in (1, 2, 5) if step * factor <= ideal_length)
     length, y = metres * scale, size.height() - MARGIN
     painter.setPen(QPen(QColor("#30383f"), 2))
     painter.drawLine(QLineF(MARGIN, y, MARGIN + length, y))

@@ -40,8 +40,15 @@ from ...ui.language import tr, tr_count
 from ...ui.tables import fit_headers
 from ..crs import frame_in_project, site_crs_for, stated_crs
 from ..layer_source import ObstacleSource, obstacle_sources
-from ..profiles import SUFFIXES, read_profile, shipped_profiles
-from ..roles import PUBLISHED_ROLES, LayerExpressions, keep_setup, setup_of
+from ..roles import (
+    PUBLISHED_ROLES,
+    SUFFIXES,
+    LayerExpressions,
+    keep_setup,
+    read_profile,
+    setup_of,
+    shipped_profiles,
+)
 from ..site_transform import SiteGeoreference
 from .preview import LayerMeasure, PreviewTask, PreviewView, measure_summary
 from .role_table import (
@@ -129,15 +136,15 @@ class LivePreview(QObject):
         if self._task is not None:
             # The one that was cancelled ends soon, and starts this again.
             return
-        wanted = [row for row in self._rows if row.setup.role in PUBLISHED_ROLES]
-        missing = [row for row in wanted if _key(row) not in self._known]
+        rows = [row for row in self._rows if row.setup.role in PUBLISHED_ROLES]
+        missing = [row for row in rows if _key(row) not in self._known]
         try:
-            site = self._site(wanted)
+            site = self._site(rows)
         except FleetError as error:
             self.summed.emit(str(error))
             return
         sources = {_key(row): source for row in missing if (source := self._source(row)) is not None}
-        known = {_key(row): self._known[_key(row)] for row in wanted if _key(row) in self._known}
+        known = {_key(row): self._known[_key(row)] for row in rows if _key(row) in self._known}
         self.summed.emit(
             tr_count(len(sources), "Reading 1 layer …", "Reading %n layers …")
             if sources

@@ -14,7 +14,7 @@ from qgis.PyQt.QtGui import QFont, QPainter
 from qgis.PyQt.QtWidgets import QLabel, QStyleOptionGraphicsItem, QToolTip, QWidget
 
 from ....robot_bridge.core.geometry import heading_of
-from ....robot_bridge.core.messages import CommandReport
+from ....robot_bridge.core.messages.commands import CommandReport
 from ....robot_bridge.core.sites.frame import SiteFrame
 from ...gateway_client.command_cache import command_in_words
 from ...gateway_client.robot_states import COMMAND_STATES, ROBOT_STATES, RobotView
@@ -146,9 +146,9 @@ class FleetOverlay(QgsMapCanvasItem):
         self._painter.robots.set_magnification(times)
         self.update()
 
-    def draw_arrows(self, wanted: bool) -> None:
+    def draw_arrows(self, on: bool) -> None:
         """Draw an arrow for each robot, or leave that to the layer; the rest is drawn always."""
-        self._painter.robots.draw_arrows(wanted)
+        self._painter.robots.draw_arrows(on)
 
     def robot_at(self, x: float, y: float) -> str | None:
         """Return the robot nearest to pixel (x, y), None when there is none nearby."""

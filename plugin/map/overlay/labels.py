@@ -10,7 +10,7 @@ import numpy.typing as npt
 from qgis.PyQt.QtCore import QPointF, Qt
 from qgis.PyQt.QtGui import QColor, QFont, QFontMetricsF, QPainter, QPixmap, QStaticText
 
-from ....robot_bridge.core.messages import RobotState
+from ....robot_bridge.core.messages.safety import RobotState
 from ...gateway_client.robot_states import ROBOT_STATES, RobotArrays
 from ...gateway_client.robot_table import STATES
 from ...ui.glyphs import PAPER, painting
@@ -143,9 +143,9 @@ class LabelPlacer:
         """Take one place after the other unless a text has a part of it; return the indices of those."""
         found = []
         for index, (line, left, right) in enumerate(cells.T.tolist()):
-            wanted = _bits(left, right)
-            if not self._taken[line] & wanted:
-                self._cover(line, line + LINES, wanted)
+            bits = _bits(left, right)
+            if not self._taken[line] & bits:
+                self._cover(line, line + LINES, bits)
                 found.append(index)
         return found
 

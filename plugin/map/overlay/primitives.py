@@ -10,7 +10,7 @@ from qgis.PyQt import sip
 from qgis.PyQt.QtCore import QByteArray, QDataStream, QLineF, QPointF, Qt
 from qgis.PyQt.QtGui import QBrush, QColor, QImage, QPainter, QPainterPath, QPen, QPixmap, QPolygonF
 
-from ....robot_bridge.core.messages import RobotState
+from ....robot_bridge.core.messages.safety import RobotState
 from ...ui.glyphs import CASING, CELL, PAPER, SELECTED, draw_arrow, draw_cone, draw_robot, painting, pen
 
 Points = npt.NDArray[np.float64]

@@ -82,9 +82,9 @@ class RobotsPainter:
         """Draw robots so many times as large as they come."""
         self.magnification = times
 
-    def draw_arrows(self, wanted: bool) -> None:
+    def draw_arrows(self, on: bool) -> None:
         """Draw an arrow for each robot, or none."""
-        self.arrows = wanted
+        self.arrows = on
 
     def marks(self, ratio: float, size: float = 1.0) -> Sprites:
         """Return the marks of :func:`~.desk.live.atlases.mark_atlas`."""

@@ -15,7 +15,8 @@ from qgis.core import QgsPointXY, QgsRectangle
 from qgis.gui import QgsMapCanvas, QgsMapCanvasItem
 from qgis.PyQt.QtGui import QColor, QImage, QPainter, QTransform
 
-from ....robot_bridge.core.messages import CommandReport, SetPath
+from ....robot_bridge.core.messages.commands import CommandReport
+from ....robot_bridge.core.messages.robots import SetPath
 from ...control.pending_command import PendingCommand, Point
 from ...gateway_client.command_cache import ON_PATH_M, PathApproach
 from ...gateway_client.robot_states import RobotArrays

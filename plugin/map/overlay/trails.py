@@ -233,11 +233,11 @@ class TrailSheet:
     def _stamp(self, start: Points, end: Points, times: Points) -> None:
         """Note ``times`` in the pixels on the lines from ``start`` to ``end``, unless they are newer."""
         pixels, lines = _on_lines(start, end, self._times.shape)
-        noted, told = self._times.reshape(-1), (times - self._epoch)[lines]
-        newer = np.flatnonzero(told > noted[pixels])
+        noted, drawn = self._times.reshape(-1), (times - self._epoch)[lines]
+        newer = np.flatnonzero(drawn > noted[pixels])
         # Of several robots on one pixel the last one written stays: the newest.
-        newer = newer[np.argsort(told[newer], kind="stable")]
-        noted[pixels[newer]] = told[newer]
+        newer = newer[np.argsort(drawn[newer], kind="stable")]
+        noted[pixels[newer]] = drawn[newer]
 
     def _colour(self, pixels: Pixels) -> None:
         """Colour new pixels without waiting for their band's turn."""
@@ -337,11 +337,11 @@ def _between(
 
 
 def _inside(
-    x: Numbers, y: Numbers, wanted: npt.NDArray[np.bool_] | bool, shape: tuple[int, int]
+    x: Numbers, y: Numbers, selected: npt.NDArray[np.bool_] | bool, shape: tuple[int, int]
 ) -> tuple[Pixels, Pixels]:
-    """Return the places on the image of those that are ``wanted``, and which of them these are."""
+    """Return the places on the image of those that are ``selected``, and which of them these are."""
     height, width = shape
-    those = np.flatnonzero((x >= 0) & (x < width) & (y >= 0) & (y < height) & wanted)
+    those = np.flatnonzero((x >= 0) & (x < width) & (y >= 0) & (y < height) & selected)
     return (y * width + x).take(those).astype(np.intp), those
 
 

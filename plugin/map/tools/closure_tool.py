@@ -11,7 +11,7 @@ from qgis.PyQt.QtCore import QPoint, Qt, pyqtSignal
 from qgis.PyQt.QtGui import QKeyEvent
 from qgis.PyQt.QtWidgets import QLineEdit, QWidget
 
-from ....robot_bridge.core.messages import ClosureReport
+from ....robot_bridge.core.messages.roads import ClosureReport
 from ....robot_bridge.core.roads.network import foot_on
 from ...control.fleet_controller import FleetController
 from ...control.pending_command import Point

@@ -12,7 +12,7 @@ from qgis.PyQt.QtCore import QEvent, QObject, QPoint, Qt
 from qgis.PyQt.QtGui import QColor, QCursor
 from qgis.PyQt.QtWidgets import QToolTip
 
-from ....robot_bridge.core.messages import RouteReport
+from ....robot_bridge.core.messages.roads import RouteReport
 from ...control.fleet_controller import FleetController
 from ...control.pending_command import ROUTE, PendingCommand, Point
 from ...control.roads import SHORTEST, RoutePreferences
@@ -113,7 +113,7 @@ class RoutePreview(QObject):
         view = self._desk.state.robots.view(question.robot, self._desk.clock.steady())
         if view is None or not view.has_pose:
             return
-        if math.dist((view.told["x"], view.told["y"]), self._begins) > MOVED_M:
+        if math.dist((view.values["x"], view.values["y"]), self._begins) > MOVED_M:
             try:
                 self._desk.preview.want(question)
             except NotSentError:

@@ -122,7 +122,9 @@ class SurfaceTool(QgsMapTool):
         crs = self._crs()
         digits = 6 if crs.isGeographic() else 2
         where = f"{place.x():.{digits}f}, {place.y():.{digits}f} ({crs.authid() or tr('no CRS')})"
-        self._notices.info(tr("{told} at {where}", told=_told(_at(surfaces, place, crs)), where=where))
+        self._notices.info(
+            tr("{told} at {where}", told=_surface_text(_at(surfaces, place, crs)), where=where)
+        )
 
     def _read_anew(self) -> None:
         # Without layers there is nothing to read; a click says so.
@@ -155,7 +157,7 @@ def _named(surface: Surface | None) -> str:
     return surface.label or tr("road surface without a class")
 
 
-def _told(surface: Surface | None) -> str:
+def _surface_text(surface: Surface | None) -> str:
     if surface is None:
         return tr("No road surface")
     name = f"“{surface.name}”, " if surface.name else ""

@@ -68,7 +68,7 @@ NAMED = 2
 class AlarmBar(QObject):
     """Hangs there while there are alarms that nobody has seen. Closed, it comes back with the next one."""
 
-    wanted = pyqtSignal()
+    requested = pyqtSignal()
     """The operator wants to see the alarms."""
 
     def __init__(self, bar: QgsMessageBar, watch: AlarmWatch, parent: QObject | None = None):
@@ -148,7 +148,7 @@ class AlarmBar(QObject):
         show = QToolButton()
         show.setObjectName("fleet_show_alarms")
         show.setText(tr("Show"))
-        show.clicked.connect(lambda: self.wanted.emit())
+        show.clicked.connect(lambda: self.requested.emit())
         # Nothing else is pressed here: the bar comes and goes, and whoever aimed at what was there before
         # would have acknowledged what nobody has read.
         body = NoticeBody(self._label, [show], self._bar)

@@ -101,8 +101,8 @@ class ThresholdsForm(QWidget):
         grid.addWidget(box, row, 0)
         fields = [field for field in FIELDS if field.kind is kind]
         if not fields:
-            told = ElidedText("", SITE_SETS if kind is AlarmKind.LOST else GATEWAY_JUDGES)
-            grid.addWidget(told, row, 1, 1, 2)
+            explanation = ElidedText("", SITE_SETS if kind is AlarmKind.LOST else GATEWAY_JUDGES)
+            grid.addWidget(explanation, row, 1, 1, 2)
         for number, field in enumerate(fields):
             grid.addWidget(QLabel(field.label), row + number, 1)
             grid.addWidget(self._spin_box(field, box), row + number, 2)
@@ -225,9 +225,9 @@ class AlarmLogDialog(QDialog):
         for column, widest in enumerate(widths):
             view.setColumnWidth(column, view.fontMetrics().horizontalAdvance(widest) + 16)
         view.horizontalHeader().setSectionResizeMode(4, QHeaderView.ResizeMode.Stretch)
-        self._said = QLabel()
-        self._said.setObjectName("fleet_alarm_log_said")
-        self._said.setWordWrap(True)
+        self._status = QLabel()
+        self._status.setObjectName("fleet_alarm_log_said")
+        self._status.setWordWrap(True)
         buttons = QDialogButtonBox(QDialogButtonBox.StandardButton.Close)
         export = buttons.addButton(tr("Export CSV…"), QDialogButtonBox.ButtonRole.ActionRole)
         export.setObjectName("fleet_export_alarms")
@@ -235,7 +235,7 @@ class AlarmLogDialog(QDialog):
         buttons.rejected.connect(self.reject)
         rows = QVBoxLayout(self)
         rows.addWidget(view, 1)
-        rows.addWidget(self._said)
+        rows.addWidget(self._status)
         rows.addWidget(buttons)
         self.resize(1040, 440)
 
@@ -249,9 +249,9 @@ class AlarmLogDialog(QDialog):
         try:
             count = write_csv(path, CSV_HEAD, map(_csv_row, self._events))
         except FleetError as error:
-            self._said.setText(str(error))
+            self._status.setText(str(error))
             return
-        self._said.setText(
+        self._status.setText(
             tr_count(count, "1 line written to {path}", "%n lines written to {path}", path=path)
         )
 
@@ -298,7 +298,7 @@ def _csv_row(event: AlarmEvent) -> tuple[object, ...]:
 class AlarmPanel(QWidget):
     """A row for each alarm; a double click or Enter goes to the robot."""
 
-    robots_wanted = pyqtSignal(list)
+    robots_requested = pyqtSignal(list)
     """The names of robots to be selected and shown."""
     counted = pyqtSignal(int)
     """How many alarms nobody has acknowledged yet."""
@@ -346,7 +346,7 @@ class AlarmPanel(QWidget):
         view.setColumnWidth(2, view.fontMetrics().horizontalAdvance(tr("over") + " ×00") + 14)
         view.horizontalHeader().setSectionResizeMode(1, QHeaderView.ResizeMode.Stretch)
         view.horizontalHeader().setHighlightSections(False)
-        ZoomMenu(view).wanted.connect(lambda index: self._go(self._model.alarm_at(index.row())))
+        ZoomMenu(view).requested.connect(lambda index: self._go(self._model.alarm_at(index.row())))
         view.selectionModel().selectionChanged.connect(self._allow)
 
     def _buttons(self) -> QHBoxLayout:
@@ -411,18 +411,18 @@ class AlarmPanel(QWidget):
         rows = self._model.rows_of(keys)
         if {index.row() for index in self._view.selectionModel().selectedRows()} == set(rows):
             return
-        wanted = QItemSelection()
+        selection = QItemSelection()
         for row in rows:
             index = self._model.index(row, 0)
-            wanted.merge(QItemSelection(index, index), QItemSelectionModel.SelectionFlag.Select)
+            selection.merge(QItemSelection(index, index), QItemSelectionModel.SelectionFlag.Select)
         flags = QItemSelectionModel.SelectionFlag
-        self._view.selectionModel().select(wanted, flags.ClearAndSelect | flags.Rows)
+        self._view.selectionModel().select(selection, flags.ClearAndSelect | flags.Rows)
 
     def _allow(self, *_what: object) -> None:
         self._seen.setEnabled(any(alarm.is_new for alarm in self._chosen()))
 
     def _go(self, alarm: Alarm) -> None:
-        self.robots_wanted.emit([name for name in (alarm.other, alarm.robot) if name])
+        self.robots_requested.emit([name for name in (alarm.other, alarm.robot) if name])
 
 
 def _button(name: str, text: str, tip: str) -> QPushButton:

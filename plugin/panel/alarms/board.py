@@ -10,7 +10,8 @@ import numpy as np
 from qgis.PyQt.QtGui import QColor, QPalette
 from qgis.PyQt.QtWidgets import QApplication
 
-from ....robot_bridge.core.messages import ConflictReport, Conflicts, FenceAlarm, NearnessAlarm
+from ....robot_bridge.core.messages.roads import ConflictReport, Conflicts
+from ....robot_bridge.core.messages.safety import FenceAlarm, NearnessAlarm
 from ...gateway_client.robot_states import RemovedRobots
 from ...ui.glyphs import is_dark
 from ...ui.language import tr

@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 from qgis.core import QgsSettings
 
-from ....robot_bridge.core.messages import RobotState
+from ....robot_bridge.core.messages.safety import RobotState
 from ...control.robot_checks import Ints, close_pairs
 from ...gateway_client.robot_table import STATES
 

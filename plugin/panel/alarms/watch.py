@@ -11,7 +11,7 @@ from qgis.core import Qgis, QgsApplication, QgsMessageLog
 from qgis.PyQt.QtCore import QObject, pyqtSignal
 
 from ....robot_bridge.core.clock import Clock
-from ....robot_bridge.core.messages import CommandState
+from ....robot_bridge.core.messages.commands import CommandState
 from ....robot_bridge.core.roads.surface_index import NOWHERE
 from ...control.messages import TITLE
 from ...gateway_client.connection_status import ConnectionPhase
@@ -280,7 +280,7 @@ class AlarmWatch(QObject):
         self._messages = AlarmMessages(state.clock)
         self._turn = scheduler.turn()
         self._generation = state.robots.generation
-        self._told = ""
+        self._reason = ""
         self._untold: list[AlarmEvent] = []
         self._unseen: set[Key] = set()
         """Alarms that have begun and that nobody was told of yet."""
@@ -375,7 +375,7 @@ class AlarmWatch(QObject):
         self.changed.emit()
 
     def _tell_of_watching(self) -> None:
-        told = self.why_not()
-        if told != self._told:
-            self._told = told
+        reason = self.why_not()
+        if reason != self._reason:
+            self._reason = reason
             self.changed.emit()

@@ -63,7 +63,7 @@ class LayoutDimensions(QDialog):
     """The layout with the dimensions as they are now, all of them possible."""
     turned = pyqtSignal(float)
     """The heading that the operator gave, degrees clockwise from north."""
-    undo_wanted = pyqtSignal()
+    undo_requested = pyqtSignal()
     """The operator wants the layout that was placed last taken back."""
     left = pyqtSignal()
     """The operator is done here: the keys are the map's again."""
@@ -98,7 +98,7 @@ class LayoutDimensions(QDialog):
         self.undo.setAutoDefault(False)
         self.undo.setEnabled(False)
         self.undo.setToolTip(tr("Remove the cones that were placed last; Ctrl+Z over the map does so too"))
-        self.undo.clicked.connect(self.undo_wanted)
+        self.undo.clicked.connect(self.undo_requested)
         for widget in (self.standard, self._area, self.problem, self.reset, self.undo):
             rows.addWidget(widget)
         self.resize(460, 480)

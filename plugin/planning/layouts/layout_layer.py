@@ -300,9 +300,9 @@ class LayoutGroundReader(QObject):
         """Return the ground in ``crs``; None while it is being read, or cannot be."""
         roads = layers_with_role(self._project, ROAD_SURFACE)
         obstacles = layers_with_role(self._project, *OBSTACLE_ROLES)
-        wanted = (crs.toWkt(), *((layer.id(), setup_of(layer)) for layer in (*roads, *obstacles)))
-        if wanted != self._of:
-            self._begin(wanted, roads, obstacles, crs)
+        key = (crs.toWkt(), *((layer.id(), setup_of(layer)) for layer in (*roads, *obstacles)))
+        if key != self._of:
+            self._begin(key, roads, obstacles, crs)
         return self._ground
 
     def forget(self) -> None:
@@ -320,10 +320,10 @@ class LayoutGroundReader(QObject):
             task.left.wait(GIVE_UP_S)
 
     def _begin(
-        self, wanted: tuple[object, ...], roads: list, obstacles: list, crs: QgsCoordinateReferenceSystem
+        self, key: tuple[object, ...], roads: list, obstacles: list, crs: QgsCoordinateReferenceSystem
     ) -> None:
         self.forget()
-        self._of = wanted
+        self._of = key
         self._watch.watch([*roads, *obstacles])
         context = QgsExpressionContext(QgsExpressionContextUtils.globalProjectLayerScopes(None))
         try:

@@ -70,7 +70,7 @@ class LayoutTool(QgsMapTool):
     """The wheel or a key has turned the layout; degrees as :attr:`heading`."""
     undo_changed = pyqtSignal(bool)
     """Whether there is a layout to take back."""
-    dimensions_wanted = pyqtSignal()
+    dimensions_requested = pyqtSignal()
     """F2: the operator wants to type dimensions."""
 
     def __init__(self, canvas: QgsMapCanvas, project: QgsProject, notices: MessageBar):
@@ -194,7 +194,7 @@ class LayoutTool(QgsMapTool):
         elif event.matches(REDO):
             self._try(self.redo)
         elif event.key() == Qt.Key.Key_F2:
-            self.dimensions_wanted.emit()
+            self.dimensions_requested.emit()
         else:
             super().keyPressEvent(event)
             return
@@ -352,8 +352,8 @@ class LayoutAction:
         self.dimensions.turned.connect(self.tool.turn_to)
         self.dimensions.left.connect(iface.mapCanvas().setFocus)
         self.tool.turned.connect(self.dimensions.show_heading)
-        self.tool.dimensions_wanted.connect(self.dimensions.take_keys)
-        self.dimensions.undo_wanted.connect(self.tool.undo)
+        self.tool.dimensions_requested.connect(self.dimensions.take_keys)
+        self.dimensions.undo_requested.connect(self.tool.undo)
         self.tool.undo_changed.connect(self.dimensions.undo.setEnabled)
         self._file = LayoutFile(QgsProject.instance(), notices)
         self.tool.deactivated.connect(self.dimensions.hide)

@@ -58,9 +58,16 @@ from ...cone_texts import FINISHES, METHODS, OBJECTIVES, TASKS
 from ...layers.layer_source import PointRow, point_rows
 from ...layers.site_transform import SiteGeoreference
 from ...ui.language import tr, tr_count, tr_page
-from ..common.algorithm import FleetAlgorithm, ParameterError, Parameters, fields_of, shown_by_processing
+from ..common.algorithm import (
+    FleetAlgorithm,
+    ParameterError,
+    Parameters,
+    enum_parameter,
+    fields_of,
+    shown_by_processing,
+)
 from ..common.outputs import check_target, fill_sink, line, write_whole
-from ..common.parameters import chosen_crs, enum_parameter
+from ..common.parameters import chosen_crs
 from ..common.road_sources import (
     ROADS,
     KeepoutAreas,
@@ -460,9 +467,9 @@ class AssignCones(FleetAlgorithm):
         if not job.targets:
             feedback.pushWarning(tr("CONES holds no cone: there is nothing to plan."))
         feedback.setProgress(_READ)
-        told = _Progress(feedback)
-        travel = self._travel.travel(job, crs, feedback, told.measuring)
-        plan = assign(job, travel, self._wanted(parameters, context), told.solving)
+        progress = _Progress(feedback)
+        travel = self._travel.travel(job, crs, feedback, progress.measuring)
+        plan = assign(job, travel, self._objective(parameters, context), progress.solving)
         plan = replace(plan, crs=crs.authid() or crs.toWkt())
         faults = check_plan(plan)
         if faults:
@@ -478,7 +485,7 @@ class AssignCones(FleetAlgorithm):
         _report(plan, feedback)
         return {**made, **figures(plan), METHOD_USED: plan.method, TRAVEL_USED: plan.travel}
 
-    def _wanted(self, parameters: Parameters, context: QgsProcessingContext) -> Objective:
+    def _objective(self, parameters: Parameters, context: QgsProcessingContext) -> Objective:
         return Objective(
             self.parameterAsEnumString(parameters, OBJECTIVE, context),
             self.parameterAsEnumString(parameters, METHOD, context),

@@ -125,6 +125,6 @@ def _row(finding: RoadFinding, features: list[int]):
         int(finding.kind in REPAIRED),
         features[finding.road],
         # People know features, not the numbers of roads.
-        finding.told(features),
+        finding.in_words(features),
     ]
     return QgsGeometry.fromPointXY(QgsPointXY(finding.x, finding.y)), values

@@ -19,10 +19,9 @@ from qgis.core import (
 from ....robot_bridge.core.robotmap.checks import CHECKS
 from ....robot_bridge.core.robotmap.findings import MapCheckLimits, MapFinding, SegmentTable, Severity
 from ...ui.language import tr, tr_page
-from ..common.algorithm import FleetAlgorithm, Parameters, fields_of, shown_by_processing
+from ..common.algorithm import FleetAlgorithm, Parameters, advanced, fields_of, shown_by_processing
 from ..common.map_files import MAP, MapPlace, file_problem, map_parameters, map_place, read_map_file
 from ..common.outputs import fill_sink, lines
-from ..common.parameters import advanced
 
 FINDINGS = "FINDINGS"
 _FIELDS = {"kind": "string", "severity": "string", "obstacle": "int8", "text": "string"}

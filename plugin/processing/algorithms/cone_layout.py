@@ -25,9 +25,9 @@ from ...cone_texts import layout_in_words, whole_dimension_in_words
 from ...layers.road_layers import lines_of
 from ...layers.site_transform import SiteGeoreference
 from ...ui.language import tr, tr_page
-from ..common.algorithm import FleetAlgorithm, ParameterError, Parameters, shown_by_processing
+from ..common.algorithm import FleetAlgorithm, ParameterError, Parameters, enum_parameter, shown_by_processing
 from ..common.cone_layers import STYLES, ConeSetup, add_layers, cone_crs_parameter, ground_parameters
-from ..common.parameters import enum_parameter, point_in
+from ..common.parameters import point_in
 
 LAYOUT, DIMENSIONS, PREFIX = "LAYOUT", "DIMENSIONS", "PREFIX"
 POINT, HEADING, LINE, LINE_ID, START, REVERSE = "POINT", "HEADING", "LINE", "LINE_ID", "START", "REVERSE"

@@ -24,12 +24,12 @@ from qgis.core import (
 
 from ...layers.layer_expressions import FeatureFilter
 from ...ui.language import tr, tr_page
-from ..common.algorithm import FleetAlgorithm, ParameterError, Parameters, shown_by_processing
+from ..common.algorithm import FleetAlgorithm, ParameterError, Parameters, enum_parameter, shown_by_processing
 from ..common.map_files import MAP, PlacedMap, file_problem, map_parameters, map_place, read_map_file
 from ..common.navigation_files import FORMAT_WRITERS as MADE
 from ..common.navigation_files import Files, NavigationExport, areas_of, speed_by
 from ..common.outputs import OutputError, WholeFolder
-from ..common.parameters import enum_parameter, filter_in
+from ..common.parameters import filter_in
 
 # --- The help of ``fleet:exportnavigationmap`` ---
 
@@ -167,8 +167,8 @@ class ExportNavigationMap(FleetAlgorithm):
         robot_map = read_map_file(source)
         warnings = list(robot_map.warnings)
         # Grids and pictures stay in the site's metres, wherever those are.
-        heard = warnings if _PLACED.intersection(formats) else []
-        place = map_place(self, parameters, context, robot_map.meta, _Collector(heard))
+        noted = warnings if _PLACED.intersection(formats) else []
+        place = map_place(self, parameters, context, robot_map.meta, _Collector(noted))
         return NavigationExport(
             robot_map=robot_map,
             place=PlacedMap(place, context.transformContext()),
@@ -189,16 +189,16 @@ class ExportNavigationMap(FleetAlgorithm):
     ) -> None:
         """Read the layers of the masks that are wanted."""
         site = export.place.layers
-        wanted = [name for name in ("keepout", "speed") if name in formats]
-        if wanted and export.place.is_local:
+        kinds = [name for name in ("keepout", "speed") if name in formats]
+        if kinds and export.place.is_local:
             export.warnings.append(
                 tr("The coordinates of the keepout and speed layers are taken as the map's own metres.")
             )
-        if "keepout" in wanted:
+        if "keepout" in kinds:
             source, counted = self._layer(parameters, KEEPOUTS, context)
             export.keepouts, warnings = areas_of(source, site, counted, feedback)
             export.warnings += warnings
-        if "speed" in wanted:
+        if "speed" in kinds:
             source, counted = self._layer(parameters, SPEED_AREAS, context)
             expression = self.createExpressionContext(parameters, context, source)
             speed = speed_by(self.parameterAsString(parameters, SPEED, context), source, expression)

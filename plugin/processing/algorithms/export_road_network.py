@@ -31,11 +31,17 @@ from ....robot_bridge.core.roads.lanelet2_export import lanelet2_document, lanes
 from ....robot_bridge.core.roads.network import Network
 from ....robot_bridge.core.sites.frame import SiteFrame
 from ...ui.language import tr, tr_count, tr_page
-from ..common.algorithm import FleetAlgorithm, ParameterError, Parameters, shown_by_processing
+from ..common.algorithm import (
+    FleetAlgorithm,
+    ParameterError,
+    Parameters,
+    advanced,
+    enum_parameter,
+    shown_by_processing,
+)
 from ..common.map_files import MapPlace, PlacedMap
-from ..common.map_parameters import site_frame
 from ..common.outputs import WholeFolder
-from ..common.parameters import advanced, enum_parameter, frame_in_crs_parameters
+from ..common.parameters import frame_in_crs_parameters, site_frame
 from ..common.road_sources import (
     WARNING_COUNT,
     KeepoutAreas,

@@ -29,15 +29,22 @@ from ..common.export_parameters import (
     OUTDOOR_EXPRESSION,
     OUTPUT,
     SEMANTICS_EXPRESSION,
+    format_parameters,
     obstacle_layers,
     obstacle_outlines,
     obstacles_parameter,
     read_export_parameters,
+    shaping_parameters,
 )
 from ..common.map_files import obstacles_in_words
-from ..common.map_parameters import format_parameters, shaping_parameters, window_parameters, window_problem
 from ..common.outputs import write_whole
-from ..common.parameters import layers_problem, profile_parameter, warn_of_profile
+from ..common.parameters import (
+    layers_problem,
+    profile_parameter,
+    warn_of_profile,
+    window_parameters,
+    window_problem,
+)
 
 # --- The help of ``fleet:exportrobotmap`` ---
 

@@ -26,9 +26,16 @@ from ....robot_bridge.core.roads.network import Network
 from ....robot_bridge.core.roads.path_smoothing import DensePath, dense_path
 from ....robot_bridge.core.roads.routes import Route, Router
 from ...ui.language import tr, tr_count, tr_page
-from ..common.algorithm import FleetAlgorithm, Parameters, fields_of, shown_by_processing
+from ..common.algorithm import (
+    FleetAlgorithm,
+    Parameters,
+    advanced,
+    enum_parameter,
+    fields_of,
+    shown_by_processing,
+)
 from ..common.outputs import fill_sink, line
-from ..common.parameters import advanced, enum_parameter, point_in
+from ..common.parameters import point_in
 from ..common.road_sources import (
     WARNING_COUNT,
     KeepoutAreas,

@@ -42,18 +42,19 @@ from ...layers.roles import KEEPOUT, OBSTACLE_ROLES, ROAD_CENTRELINE, ROAD_SURFA
 from ...layers.site_transform import SiteGeoreference
 from ...ui.errors import FleetError, LayerTypeError
 from ...ui.language import tr, tr_count, tr_page
-from ..common.algorithm import FleetAlgorithm, ParameterError, Parameters, shown_by_processing
+from ..common.algorithm import FleetAlgorithm, ParameterError, Parameters, advanced, shown_by_processing
 from ..common.export_parameters import DEFAULT_HEIGHT, default_height
-from ..common.map_parameters import LOCAL, frame_parameters, site_frame
 from ..common.parameters import (
-    advanced,
+    LOCAL,
     check_vectors,
     chosen_crs,
     extent_in,
+    frame_parameters,
     layers_of_project,
     layers_problem,
     profile_parameter,
     setups_of,
+    site_frame,
     warn_of_profile,
 )
 

@@ -162,7 +162,7 @@ def _written(
     """
     counts, odd = {True: 0, False: 0}, 0
     for features in _batches(points, feedback):
-        found, notes = _told(features, surfaces, points.sourceCrs())
+        found, notes = _surfaces_of_points(features, surfaces, points.sourceCrs())
         for note in notes:
             feedback.pushWarning(note)
         odd += len(notes)
@@ -189,7 +189,7 @@ def _batches(
         yield batch
 
 
-def _told(
+def _surfaces_of_points(
     features: list[QgsFeature], surfaces: SurfaceMap, crs: QgsCoordinateReferenceSystem
 ) -> tuple[list[Surface | None], list[str]]:
     """Return the surface of each feature, and what is odd about some."""
@@ -199,11 +199,11 @@ def _told(
         own = _places(feature.geometry())
         places += own
         counts.append(len(own))
-    told = surfaces.at_many(np.array(places).reshape(-1, 2), surfaces.way_from(crs))
+    surfaces_found = surfaces.at_many(np.array(places).reshape(-1, 2), surfaces.way_from(crs))
     found: list[Surface | None] = []
     begin = 0
     for feature, count in zip(features, counts, strict=True):
-        own_surfaces = told[begin : begin + count]
+        own_surfaces = surfaces_found[begin : begin + count]
         begin += count
         if len({one and one.label for one in own_surfaces}) > 1:
             notes.append(
@@ -221,5 +221,5 @@ def _places(geometry: QgsGeometry) -> list[tuple[float, float]]:
 
 
 def _row(feature: QgsFeature, surface: Surface | None):
-    told = [None] * 3 if surface is None else [surface.label, surface.name or None, surface.origin]
-    return feature.geometry(), [*feature.attributes(), *told]
+    values = [None] * 3 if surface is None else [surface.label, surface.name or None, surface.origin]
+    return feature.geometry(), [*feature.attributes(), *values]

@@ -144,8 +144,8 @@ class Trajectories(FleetAlgorithm):
                 length=length,
             )
         )
-        told = dict(zip(NUMBERS, (lines, len(positions), length), strict=True))
-        return {OUTPUT: layer, **told, "WARNING_COUNT": int(odd > 0)}
+        counts = dict(zip(NUMBERS, (lines, len(positions), length), strict=True))
+        return {OUTPUT: layer, **counts, "WARNING_COUNT": int(odd > 0)}
 
     def _write(
         self,

@@ -95,6 +95,36 @@ def shortened_label(text: str, room: int) -> tuple[str, list[str]]:
     return text, notes
 
 
+# --- Choices among fixed values: scripts give a value, dialogs show its name ---
+
+
+def enum_parameter(
+    name: str, title: str, names: Mapping[str, str], default: str | Sequence[str], *, several: bool = False
+) -> QgsProcessingParameterEnum:
+    """Return the parameter ``name`` with the values that are the keys of ``names``, shown as these.
+
+    QGIS stores the value, in its history and in models, too: it is the same in every language.
+    """
+    choice = QgsProcessingParameterEnum(
+        name,
+        title,
+        options=list(names),
+        allowMultiple=several,
+        defaultValue=default,
+        usesStaticStrings=True,
+    )
+    # By its path: only a dialog loads what needs widgets.
+    widget = f"{__package__}.choice_widget.ChoiceWidget"
+    choice.setMetadata({"widget_wrapper": {"class": widget, "names": dict(names)}})
+    return choice
+
+
+def advanced(parameter: QgsProcessingParameterDefinition) -> QgsProcessingParameterDefinition:
+    """Return ``parameter``, which dialogs fold away from now on."""
+    parameter.setFlags(parameter.flags() | QgsProcessingParameterDefinition.Flag.FlagAdvanced)
+    return parameter
+
+
 # --- Parameters as people know them: dialogs show labels, scripts give names ---
 
 _NAME = re.compile(r"\b[A-Z][A-Z_]+\b")
@@ -163,13 +193,13 @@ def value_problem(
                 name=name,
                 names=", ".join(known),
             )
-        wanted = _wanted(known[name], value, context)
+        wanted = _expected(known[name], value, context)
         if wanted:
             return tr("{name} is {value}: give {wanted}.", name=name, value=value, wanted=wanted)
     return ""
 
 
-def _wanted(definition: QgsProcessingParameterDefinition, value: Any, context: QgsProcessingContext) -> str:
+def _expected(definition: QgsProcessingParameterDefinition, value: Any, context: QgsProcessingContext) -> str:
     """Return what should stand in the place of ``value``, nothing where that is fine or QGIS tells it."""
     if not isinstance(value, str) or not value:
         return ""
@@ -219,7 +249,7 @@ def put_above_areas(sources: Sequence[str], context: QgsProcessingContext) -> No
 class _Order:
     """The ids of the layers of one run from top to bottom, and of those that are in the layer tree."""
 
-    wanted: list[str]
+    ids: list[str]
     loaded: set[str] = field(default_factory=set)
 
 
@@ -237,7 +267,7 @@ class _Raising(QgsProcessingLayerPostProcessorInterface):
         if project is None or project.layerTreeRoot().findLayer(layer.id()) is None:
             return
         self._order.loaded.add(layer.id())
-        ids = [one for one in self._order.wanted if one in self._order.loaded]
+        ids = [one for one in self._order.ids if one in self._order.loaded]
         _raise_in_tree(project.layerTreeRoot(), ids)
         _raise_in_custom_order(project, ids)
 

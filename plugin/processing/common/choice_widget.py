@@ -61,9 +61,9 @@ class ChoiceWidget(WidgetWrapper):
         if not self._several:
             self.widget.setCurrentIndex(self.widget.findData(value))
             return
-        wanted = value.split(",") if isinstance(value, str) else value or ()
+        chosen = value.split(",") if isinstance(value, str) else value or ()
         for row in range(self.widget.count()):
-            state = Qt.CheckState.Checked if self.widget.itemData(row) in wanted else Qt.CheckState.Unchecked
+            state = Qt.CheckState.Checked if self.widget.itemData(row) in chosen else Qt.CheckState.Unchecked
             self.widget.setItemCheckState(row, state)
 
     def value(self) -> Any:

@@ -270,8 +270,8 @@ class ConeSetup:
 
 def _do_not_load(made: str, context: QgsProcessingContext) -> None:
     """Let QGIS not load the layer ``made`` when the algorithm has ended: an empty one says nothing."""
-    wanted = context.layersToLoadOnCompletion()
-    context.setLayersToLoadOnCompletion({key: wanted[key] for key in wanted if key != made})
+    details = context.layersToLoadOnCompletion()
+    context.setLayersToLoadOnCompletion({key: details[key] for key in details if key != made})
 
 
 def _point(what: Cone | ConeFinding) -> QgsGeometry:

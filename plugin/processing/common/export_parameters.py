@@ -1,46 +1,257 @@
-"""Parameters of an export, whole or in tiles, checked before it starts, and the obstacles that it reads."""
+"""Parameters of a robot map: format, simplification, obstacles, checked before an export; what it reads."""
 
 from __future__ import annotations
 
 import math
-import re
-from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-import numpy as np
 from qgis.core import (
-    QgsFeature,
-    QgsFeedback,
     QgsProcessing,
     QgsProcessingAlgorithm,
     QgsProcessingContext,
     QgsProcessingFeedback,
     QgsProcessingMultiStepFeedback,
-    QgsProcessingOutputLayerDefinition,
+    QgsProcessingParameterBoolean,
     QgsProcessingParameterDefinition,
     QgsProcessingParameterMultipleLayers,
+    QgsProcessingParameterNumber,
     QgsProviderRegistry,
     QgsVectorLayer,
 )
 
 from ....robot_bridge.core.errors import MapCancelledError
+from ....robot_bridge.core.robotmap.binary import CODEC_COLUMNS, CODEC_TEXT, encode
 from ....robot_bridge.core.robotmap.builder import build_map
 from ....robot_bridge.core.robotmap.model import Border, RobotMap, Window
 from ....robot_bridge.core.robotmap.outlines import Outlines
-from ....robot_bridge.core.robotmap.shaping import Shaping, shaped
-from ...layers.geometry import shapes_of
-from ...layers.layer_source import FeatureReader, ObstacleSource, obstacle_sources
+from ....robot_bridge.core.robotmap.shaping import Shaping, shaped, shapely_module
+from ....robot_bridge.core.robotmap.text_format import write_text
+from ...layers.layer_source import ObstacleSource, obstacle_sources
 from ...layers.obstacle_layers import ObstacleReading, check_sources, read_outlines
 from ...layers.roles import OBSTACLE_ROLES, LayerExpressions
 from ...layers.site_transform import SiteGeoreference
 from ...ui.errors import LayerTypeError
 from ...ui.language import tr
-from .algorithm import ParameterError, Parameters
+from .algorithm import ParameterError, Parameters, advanced, enum_parameter
 from .map_files import obstacles_in_words
-from .map_parameters import EXTENT, LOCAL, MapFormat, map_window, read_map_format, read_shaping, site_frame
 from .outputs import OutputError, check_target
-from .parameters import chosen_crs, filter_in, layers_of_project, layers_problem, setups_of
+from .parameters import (
+    LOCAL,
+    chosen_crs,
+    layers_of_project,
+    layers_problem,
+    map_window,
+    setups_of,
+    site_frame,
+)
+
+# --- The parameters that say how a map is written: as text, or in one of the two binary codecs ---
+
+_REAL = QgsProcessingParameterNumber.Type.Double
+FORMAT, STRICT = "FORMAT", "STRICT"
+# No comma in a choice: QGIS would take it for two.
+TEXT, BINARY, COMPACT = "text", "binary", "compact"
+_CODECS = {TEXT: None, BINARY: CODEC_TEXT, COMPACT: CODEC_COLUMNS}
+_NAMES = {
+    TEXT: tr("text"),
+    BINARY: tr("binary: the text compressed"),
+    COMPACT: tr("compact: binary in columns"),
+}
+_NOTHING = RobotMap(Border(0.0, 0.0, 1.0, 1.0), ())
+
+
+@dataclass(frozen=True)
+class MapFormat:
+    """How a map is written; ``codec`` is nothing for text."""
+
+    codec: int | None = None
+    strict: bool = False
+
+    @property
+    def suffix(self) -> str:
+        """The end of a file's name."""
+        return "txt" if self.codec is None else "rmap"
+
+    def written(self, robot_map: RobotMap) -> tuple[str, bytes]:
+        """Return the map's text, and the bytes of its file.
+
+        :raises RobotMapError: when it cannot be written so, or a package for it is missing.
+        """
+        text = write_text(robot_map, strict=self.strict)
+        if self.codec is None:
+            return text, text.encode()
+        whole = self.codec == CODEC_COLUMNS and not self.strict
+        return text, encode(robot_map if whole else text, self.codec)
+
+
+def format_parameters() -> list[QgsProcessingParameterDefinition]:
+    """Return the parameters."""
+    title = tr("Format (compact: binary in columns, about a third of binary)")
+    how = enum_parameter(FORMAT, title, _NAMES, TEXT)
+    how.setHelp(
+        tr(
+            "text: lines that people and scripts read. binary: that text compressed, with a check sum. "
+            "compact: the same map in columns of centimetres, also with a check sum (codec 2)."
+        )
+    )
+    strict = QgsProcessingParameterBoolean(
+        STRICT, tr("Bare map: no leading lines, no extras"), defaultValue=False
+    )
+    return [how, strict]
+
+
+def read_map_format(
+    algorithm: QgsProcessingAlgorithm, parameters: Parameters, context: QgsProcessingContext
+) -> MapFormat:
+    """Return the chosen format.
+
+    :raises MissingCodecError: when it needs a package that this Python does not have.
+    """
+    codec = _CODECS[algorithm.parameterAsEnumString(parameters, FORMAT, context)]
+    chosen = MapFormat(codec, algorithm.parameterAsBool(parameters, STRICT, context))
+    # Before the run: a city is read for nothing where its map cannot be written.
+    chosen.written(_NOTHING)
+    return chosen
+
+
+# --- The parameters that reduce outlines to what a robot needs, before a map is built of them ---
+
+PLANE_LOW, PLANE_HIGH, HEIGHT_STEP = "PLANE_LOW", "PLANE_HIGH", "HEIGHT_STEP"
+DISSOLVE, CHAIN, TOLERANCE, SHORTEST = "DISSOLVE", "CHAIN", "TOLERANCE", "SHORTEST"
+
+_HEIGHTS = {
+    PLANE_LOW: (
+        tr("Robot's plane from [m above the ground]"),
+        tr(
+            "What is not higher than this is left out: the robot drives over it. Stairs and ramps stay. "
+            "Give the lower and the upper height together, or neither."
+        ),
+    ),
+    PLANE_HIGH: (
+        tr("Robot's plane up to [m above the ground]"),
+        tr(
+            "What begins at this height or above it is left out: the robot drives under it. Where things "
+            "begin is said by the layers or by the parameter BASE_EXPRESSION."
+        ),
+    ),
+}
+_FLAGS = {
+    DISSOLVE: (
+        tr("Leave out walls that no robot outside can meet"),
+        tr(
+            "Those between buildings that touch, and lines inside or along buildings. What stays keeps its "
+            "height and its source. Needs the Python package shapely 2."
+        ),
+    ),
+    CHAIN: (
+        tr("Join lines that meet end to end into one obstacle"),
+        tr(
+            "Only lines that are alike in height, label and all else. The source of a joined line is that "
+            "of its first part and how many others are in it, such as walls:3+7."
+        ),
+    ),
+}
+_LENGTHS = {
+    TOLERANCE: (
+        tr("Fewer corners: how far an outline may then be from the drawn one [m]"),
+        tr(
+            "0 is off. An outline that would cross itself stays as it is. Needs the Python package shapely 2."
+        ),
+    ),
+    SHORTEST: (
+        tr("Shortest segment: corners nearer than this to the one before are left out [m]"),
+        tr("0 is off. Ends of lines stay and rings keep three corners. Needs the Python package shapely 2."),
+    ),
+    HEIGHT_STEP: (
+        tr("Heights are rounded up to a multiple of this [m]"),
+        tr("0 is off. Half a metre makes a compact map smaller still, and no obstacle lower than it is."),
+    ),
+}
+
+
+def shaping_parameters() -> list[QgsProcessingParameterDefinition]:
+    """Return the parameters: advanced, each off unless it is asked for."""
+    described: list[tuple[QgsProcessingParameterDefinition, str]] = [
+        *((QgsProcessingParameterNumber(n, t, _REAL, optional=True), h) for n, (t, h) in _HEIGHTS.items()),
+        *((QgsProcessingParameterBoolean(n, t, defaultValue=False), h) for n, (t, h) in _FLAGS.items()),
+        *((QgsProcessingParameterNumber(n, t, _REAL, 0.0), h) for n, (t, h) in _LENGTHS.items()),
+    ]
+    for parameter, help in described:
+        parameter.setHelp(help)
+    return [advanced(parameter) for parameter, _ in described]
+
+
+def read_shaping(
+    algorithm: QgsProcessingAlgorithm, parameters: Parameters, context: QgsProcessingContext
+) -> Shaping | None:
+    """Return what is asked for, None for nothing.
+
+    :raises ParameterError: when a value cannot be used.
+    :raises MissingGeometryError: when something asked for needs a package that this Python does not have.
+    """
+    lengths = {name: algorithm.parameterAsDouble(parameters, name, context) for name in _LENGTHS}
+    for name, value in lengths.items():
+        if not 0 <= value < math.inf:
+            raise ParameterError(
+                tr("{name} is {value:g}: give a number of metres of 0 or more.", name=name, value=value)
+            )
+    dissolve, chain = (algorithm.parameterAsBool(parameters, name, context) for name in _FLAGS)
+    if dissolve or lengths[TOLERANCE] or lengths[SHORTEST]:
+        _check_shapely()
+    plane = _plane(algorithm, parameters, context)
+    if plane is None and not (dissolve or chain or any(lengths.values())):
+        return None
+    return Shaping(
+        plane=plane,
+        height_step=lengths[HEIGHT_STEP],
+        dissolve=dissolve,
+        chain=chain,
+        tolerance=lengths[TOLERANCE],
+        shortest=lengths[SHORTEST],
+    )
+
+
+def _plane(
+    algorithm: QgsProcessingAlgorithm, parameters: Parameters, context: QgsProcessingContext
+) -> tuple[float, float] | None:
+    given = [parameters.get(name) not in (None, "") for name in _HEIGHTS]
+    if not any(given):
+        return None
+    if not all(given):
+        missing, other = (PLANE_HIGH, PLANE_LOW) if given[0] else (PLANE_LOW, PLANE_HIGH)
+        raise ParameterError(
+            tr(
+                "{other} is given and {missing} is not: give both heights in metres, or none.",
+                other=other,
+                missing=missing,
+            )
+        )
+    low, high = (algorithm.parameterAsDouble(parameters, name, context) for name in _HEIGHTS)
+    if not -math.inf < low < high < math.inf:
+        raise ParameterError(
+            tr(
+                "PLANE_LOW is {low:g} and PLANE_HIGH {high:g}: give the lower and the upper height in "
+                "metres.",
+                low=low,
+                high=high,
+            )
+        )
+    return low, high
+
+
+def _check_shapely() -> None:
+    version = shapely_module().__version__
+    if int(version.partition(".")[0]) < 2:
+        raise ParameterError(
+            tr(
+                "DISSOLVE, TOLERANCE and SHORTEST need the Python package shapely 2, and {version} is "
+                "installed here: install a newer one (python3 -m pip install 'shapely>=2'), or leave them "
+                "off.",
+                version=version,
+            )
+        )
+
 
 # --- What an export will do, settled and checked before it starts ---
 
@@ -254,239 +465,3 @@ def _reduced(
         )
     )
     return made, after
-
-
-# --- Where the tiles of a map lie: in a grid, or along a route ---
-
-MOST_TILES = 10_000
-
-
-@dataclass(frozen=True)
-class Tile:
-    """One window: its ``name``; its row and column in a grid, or how many metres along which route."""
-
-    name: str
-    window: Window
-    row: int | None = None
-    column: int | None = None
-    route: int | None = None
-    along: float | None = None
-
-
-@dataclass(frozen=True)
-class TileSize:
-    """Width along x, height along y, and what neighbours share; metres in the site frame."""
-
-    width: float
-    height: float
-    overlap: float = 0.0
-
-    def __post_init__(self) -> None:
-        for name in ("width", "height"):
-            value = getattr(self, name)
-            if not (math.isfinite(value) and value >= 1.0):
-                raise ParameterError(
-                    tr(
-                        "The {name} of a tile is {value} m: give at least 1 m, such as 100.",
-                        name=name,
-                        value=value,
-                    )
-                )
-        if not 0.0 <= self.overlap <= 0.9 * min(self.width, self.height):
-            raise ParameterError(
-                tr(
-                    "OVERLAP is {overlap} m: give 0 or more, and at most nine tenths of a tile's side.",
-                    overlap=self.overlap,
-                )
-            )
-
-
-def grid_tiles(area: Border, size: TileSize) -> list[Tile]:
-    """Return tiles of one size that cover ``area``, from its left-lower corner, row by row.
-
-    The last ones of a row or column reach beyond the area.
-
-    :raises ParameterError: when there would be too many.
-    """
-    step_x, step_y = size.width - size.overlap, size.height - size.overlap
-    columns = _steps(area.x_max - area.x_min - size.overlap, step_x)
-    rows = _steps(area.y_max - area.y_min - size.overlap, step_y)
-    _check_count(rows * columns)
-    return [
-        Tile(
-            f"tile_r{row + 1:03}_c{column + 1:03}",
-            _window(area.x_min + column * step_x, area.y_min + row * step_y, size),
-            row=row + 1,
-            column=column + 1,
-        )
-        for row in range(rows)
-        for column in range(columns)
-    ]
-
-
-def route_tiles(routes: Sequence[np.ndarray], size: TileSize) -> list[Tile]:
-    """Return tiles centred on points of each of ``routes``, (n, 2) metres in the site frame.
-
-    Two that follow each other share at least the overlap, and every point of a route is at least half of it
-    inside a tile. Where routes meet, a tile that is there already is left out.
-
-    :raises ParameterError: when there would be too many, or no route has a length.
-    """
-    step = min(size.width, size.height) - size.overlap
-    along = [np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(route, axis=0).T))]) for route in routes]
-    counts = [_steps(float(distance[-1]), step) for distance in along]
-    _check_count(sum(counts) + len(counts))
-    tiles: list[Tile] = []
-    seen: set[Border] = set()
-    for number, (route, distance, count) in enumerate(zip(routes, along, counts, strict=True), 1):
-        for at in np.linspace(0.0, distance[-1], count + 1):
-            x, y = (float(np.interp(at, distance, route[:, axis])) for axis in (0, 1))
-            window = _window(x - size.width / 2, y - size.height / 2, size)
-            if window.border not in seen:
-                seen.add(window.border)
-                name = f"route_{len(tiles) + 1:04}"
-                tiles.append(Tile(name, window, route=number, along=round(float(at), 2)))
-    if not tiles:
-        raise ParameterError(tr("ROUTE holds no line: choose a layer with the route to export along."))
-    return tiles
-
-
-def area_of(tiles: Sequence[Tile]) -> Border:
-    """Return the rectangle that holds all ``tiles``."""
-    corners = np.array([tile.window.border for tile in tiles])
-    low, high = corners[:, :2].min(axis=0), corners[:, 2:].max(axis=0)
-    return Border(float(low[0]), float(low[1]), float(high[0]), float(high[1]))
-
-
-def _window(x: float, y: float, size: TileSize) -> Window:
-    # In whole centimetres, so that neighbours without overlap share their side to the digit.
-    x, y = round(x, 2), round(y, 2)
-    return Window.from_bounds(x, y, x + size.width, y + size.height)
-
-
-def _steps(length: float, step: float) -> int:
-    # A millimetre more than whole steps is rounding, not a step.
-    return max(math.ceil((length - 1e-3) / step), 1)
-
-
-def _check_count(count: int) -> None:
-    if count > MOST_TILES:
-        raise ParameterError(
-            tr(
-                "That would be {count} tiles, and {most_tiles} are the most: choose larger tiles, less "
-                "overlap or a smaller area.",
-                count=count,
-                most_tiles=MOST_TILES,
-            )
-        )
-
-
-# --- What an export of tiles will do, settled and checked before it starts ---
-
-ROUTE, TILE_WIDTH, TILE_HEIGHT, OVERLAP = "ROUTE", "TILE_WIDTH", "TILE_HEIGHT", "OVERLAP"
-FOLDER, INDEX, SKIP_EMPTY = "OUTPUT", "INDEX", "SKIP_EMPTY"
-
-
-@dataclass(frozen=True)
-class TileParameters(ObstacleParameters):
-    """Everything that is needed of the parameters and layers to export tiles.
-
-    ``index`` is the file of the index, None where it is none; ``warnings`` are about the route.
-    """
-
-    tiles: list[Tile]
-    folder: Path
-    index: Path | None
-    warnings: list[str]
-
-
-def tiles_problem(parameters: Parameters) -> str:
-    """Return what is wrong with the choice of area, or nothing."""
-    has_extent, has_route = (parameters.get(name) not in (None, "") for name in (EXTENT, ROUTE))
-    if has_extent and has_route:
-        return tr("Both EXTENT and ROUTE are given: give one of them, for a grid or for tiles along a route.")
-    if not has_extent and not has_route:
-        return tr(
-            "Neither EXTENT nor ROUTE is given: give an extent for a grid, or a layer of lines to follow."
-        )
-    return ""
-
-
-def read_tile_parameters(
-    algorithm: QgsProcessingAlgorithm, parameters: Parameters, context: QgsProcessingContext
-) -> TileParameters:
-    """Return the plan for ``parameters``; to be called in the main thread.
-
-    :raises FleetError: when a parameter or a layer cannot be used.
-    :raises WindowError: when the extent encloses nothing.
-    """
-    plan = read_obstacle_parameters(algorithm, parameters, context)
-    numbers = (
-        algorithm.parameterAsDouble(parameters, n, context) for n in (TILE_WIDTH, TILE_HEIGHT, OVERLAP)
-    )
-    size = TileSize(*numbers)
-    warnings: list[str] = []
-    if parameters.get(ROUTE) not in (None, ""):
-        tiles = route_tiles(_routes(algorithm, parameters, context, plan.site, warnings), size)
-    else:
-        area = map_window(algorithm, parameters, context, plan.site.crs, plan.site.frame)
-        tiles = grid_tiles(area.border, size)
-    folder = Path(algorithm.parameterAsFileOutput(parameters, FOLDER, context))
-    if folder.exists() and not folder.is_dir():
-        raise ParameterError(tr("OUTPUT {folder} is a file: choose a folder for the tiles.", folder=folder))
-    index = _index_file(parameters)
-    if index is not None and index.parent != folder:
-        # It comes after the tiles are there.
-        check_target(index, tr("The index"))
-    return TileParameters(**vars(plan), tiles=tiles, folder=folder, index=index, warnings=warnings)
-
-
-def _index_file(parameters: Parameters) -> Path | None:
-    """Return the file of the index, None where it is none."""
-    value = parameters.get(INDEX)
-    if isinstance(value, QgsProcessingOutputLayerDefinition):
-        value = value.sink.staticValue()
-    # Neither TEMPORARY_OUTPUT nor what begins with a provider, such as memory: or postgres:, is a file.
-    is_file = isinstance(value, str) and Path(value).suffix and not re.match(r"\w{2,}:", value)
-    return Path(value) if is_file else None
-
-
-def _routes(
-    algorithm: QgsProcessingAlgorithm,
-    parameters: Parameters,
-    context: QgsProcessingContext,
-    site: SiteGeoreference,
-    warnings: list[str],
-) -> list[np.ndarray]:
-    """Return each line of ROUTE as (n, 2) metres in the site frame; ``warnings`` get what is left out."""
-    source = algorithm.parameterAsSource(parameters, ROUTE, context)
-    if source is None:
-        raise ParameterError(
-            tr("ROUTE {route} cannot be opened: choose a layer of lines.", route=parameters[ROUTE])
-        )
-    placing = site.of_layer(source.sourceName(), source.sourceCrs())
-    counted = filter_in(algorithm, parameters, ROUTE, context)
-    routes = []
-    for feature, counts, geometry, notes in FeatureReader(
-        source.sourceName(), source, placing, counted, QgsFeedback()
-    ):
-        if notes and not counts:
-            raise _doubtful(feature, source.sourceName(), notes[0])
-        shapes, odd = ([], []) if geometry is None else shapes_of(geometry)
-        warnings += [
-            tr("Layer {layer}, feature {id}: {note}", layer=source.sourceName(), id=feature.id(), note=note)
-            for note in (*notes, *odd)
-        ]
-        routes += [placing.to_site(shape.points) for shape in shapes]
-    return routes
-
-
-def _doubtful(feature: QgsFeature, layer: str, doubt: str) -> ParameterError:
-    return ParameterError(
-        tr(
-            "ROUTE: feature {id} of {layer}: {doubts}. Correct the filter of the layer.",
-            id=feature.id(),
-            layer=layer,
-            doubts=doubt,
-        )
-    )

@@ -32,16 +32,8 @@ from ...layers.crs import check_site_crs, is_engineering
 from ...layers.site_transform import SiteGeoreference
 from ...ui.errors import FleetError
 from ...ui.language import tr, tr_count
-from .algorithm import ParameterError, Parameters
-from .parameters import (
-    ORIGIN,
-    ROTATION,
-    advanced,
-    frame_in_crs_parameters,
-    given_crs,
-    point_in,
-    site_crs_parameter,
-)
+from .algorithm import ParameterError, Parameters, advanced
+from .parameters import ORIGIN, ROTATION, frame_in_crs_parameters, given_crs, point_in, site_crs_parameter
 
 # --- How large a map is, in words ---
 

@@ -1,9 +1,9 @@
-"""Parameters that algorithms share: named values, points and extents, site CRS, input layers, profile."""
+"""Parameters that algorithms share: points and extents, CRS and frame of the site, window, input layers."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from typing import Any
 
 import numpy as np
@@ -16,9 +16,10 @@ from qgis.core import (
     QgsProcessingContext,
     QgsProcessingFeatureSourceDefinition,
     QgsProcessingFeedback,
+    QgsProcessingParameterBoolean,
     QgsProcessingParameterCrs,
     QgsProcessingParameterDefinition,
-    QgsProcessingParameterEnum,
+    QgsProcessingParameterExtent,
     QgsProcessingParameterFile,
     QgsProcessingParameterNumber,
     QgsProcessingParameterPoint,
@@ -29,44 +30,15 @@ from qgis.core import (
     QgsWkbTypes,
 )
 
-from ...layers.crs import check_transform, crs_name, site_crs_for, stated_crs
+from ....robot_bridge.core.robotmap.model import Window
+from ....robot_bridge.core.sites.frame import SiteFrame
+from ...layers.crs import check_transform, crs_name, frame_in_project, site_crs_for, stated_crs
 from ...layers.layer_expressions import FeatureFilter
 from ...layers.layer_source import Setups
-from ...layers.profiles import SUFFIXES, find_profile, read_profile
-from ...layers.roles import setup_of
+from ...layers.roles import SUFFIXES, find_profile, read_profile, setup_of
 from ...ui.errors import LayerTypeError
 from ...ui.language import tr
-from .algorithm import ParameterError, Parameters
-
-# --- Choices among fixed values: scripts give a value, dialogs show its name ---
-
-
-def enum_parameter(
-    name: str, title: str, names: Mapping[str, str], default: str | Sequence[str], *, several: bool = False
-) -> QgsProcessingParameterEnum:
-    """Return the parameter ``name`` with the values that are the keys of ``names``, shown as these.
-
-    QGIS stores the value, in its history and in models, too: it is the same in every language.
-    """
-    choice = QgsProcessingParameterEnum(
-        name,
-        title,
-        options=list(names),
-        allowMultiple=several,
-        defaultValue=default,
-        usesStaticStrings=True,
-    )
-    # By its path: only a dialog loads what needs widgets.
-    widget = f"{__package__}.choice_widget.ChoiceWidget"
-    choice.setMetadata({"widget_wrapper": {"class": widget, "names": dict(names)}})
-    return choice
-
-
-def advanced(parameter: QgsProcessingParameterDefinition) -> QgsProcessingParameterDefinition:
-    """Return ``parameter``, which dialogs fold away from now on."""
-    parameter.setFlags(parameter.flags() | QgsProcessingParameterDefinition.Flag.FlagAdvanced)
-    return parameter
-
+from .algorithm import ParameterError, Parameters, advanced
 
 # --- Points and extents that parameters give, brought into one CRS ---
 
@@ -226,6 +198,119 @@ def chosen_crs(
         chosen = own[0]
     project = context.project()
     return site_crs_for(chosen, QgsCoordinateReferenceSystem() if project is None else project.crs(), own)
+
+
+# --- The window of a robot map, and the frame it lies in, from an algorithm's parameters ---
+
+CENTER, WIDTH, HEIGHT, EXTENT = "CENTER", "WIDTH", "HEIGHT", "EXTENT"
+LOCAL = "LOCAL"
+PAPERS_SIDE_M = 100.0
+
+_REAL = QgsProcessingParameterNumber.Type.Double
+
+
+def window_parameters() -> list[QgsProcessingParameterDefinition]:
+    """Return the parameters that say where the map is and in which frame."""
+    return [
+        QgsProcessingParameterPoint(CENTER, tr("Centre of the window (or choose an extent)"), optional=True),
+        QgsProcessingParameterNumber(WIDTH, tr("Width of the window, along x [m]"), _REAL, PAPERS_SIDE_M),
+        QgsProcessingParameterNumber(HEIGHT, tr("Height of the window, along y [m]"), _REAL, PAPERS_SIDE_M),
+        QgsProcessingParameterExtent(
+            EXTENT, tr("Extent (instead of centre, width and height)"), optional=True
+        ),
+        *frame_parameters(),
+    ]
+
+
+def frame_parameters() -> list[QgsProcessingParameterDefinition]:
+    """Return the advanced parameters that say which frame the site has."""
+    title = tr("Site CRS, in metres (default: the project's, else the layers')")
+    local = QgsProcessingParameterBoolean(
+        LOCAL, tr("Layers without a CRS are in metres of the site"), defaultValue=False
+    )
+    return [advanced(one) for one in (site_crs_parameter(title), *frame_in_crs_parameters(), local)]
+
+
+def window_problem(parameters: Parameters) -> str:
+    """Return what is wrong with the choice of window, or nothing."""
+    has_center, has_extent = _given(parameters, CENTER), _given(parameters, EXTENT)
+    if has_center and has_extent:
+        return tr("Both CENTER and EXTENT are given: give one of them, the window cannot be both.")
+    if not has_center and not has_extent:
+        return tr(
+            "Neither CENTER nor EXTENT is given: give the centre of the window with WIDTH and HEIGHT in "
+            "metres, or an extent."
+        )
+    for side in (WIDTH, HEIGHT):
+        if not _is_number(parameters.get(side, PAPERS_SIDE_M)):
+            return tr(
+                "{side} is {length}: give a finite number of metres.", side=side, length=parameters[side]
+            )
+    return ""
+
+
+def site_frame(
+    algorithm: QgsProcessingAlgorithm,
+    parameters: Parameters,
+    context: QgsProcessingContext,
+    crs: QgsCoordinateReferenceSystem,
+) -> SiteFrame:
+    """Return the site frame: from ORIGIN and ROTATION, else as the project has it, else ``crs`` itself."""
+    name = crs.authid() or (crs_name(crs) if crs.isValid() else "")
+    if not _given(parameters, ORIGIN) and not _given(parameters, ROTATION):
+        known = frame_in_project(context.project(), crs) if context.project() is not None else None
+        return known or SiteFrame(name, (0.0, 0.0))
+    origin = (0.0, 0.0)
+    if _given(parameters, ORIGIN):
+        origin = point_in(algorithm, parameters, ORIGIN, context, crs)
+    degrees = algorithm.parameterAsDouble(parameters, ROTATION, context)
+    if not math.isfinite(degrees):
+        raise ParameterError(tr("ROTATION {degrees} is not finite: give a number.", degrees=degrees))
+    return SiteFrame(name, origin, math.radians(degrees))
+
+
+def map_window(
+    algorithm: QgsProcessingAlgorithm,
+    parameters: Parameters,
+    context: QgsProcessingContext,
+    crs: QgsCoordinateReferenceSystem,
+    frame: SiteFrame,
+) -> Window:
+    """Return the window in the site frame.
+
+    Positions without a CRS of their own are in ``crs``. An extent whose sides are not parallel to the site's
+    axes becomes the smallest window that holds it.
+
+    :raises ParameterError: when the window has no place in ``crs``; WindowError when it encloses nothing.
+    """
+    if _given(parameters, EXTENT):
+        corners = frame.to_site(extent_in(algorithm, parameters, EXTENT, context, crs))
+        return Window.from_bounds(*_rounded(corners.min(axis=0)), *_rounded(corners.max(axis=0)))
+    ((x, y),) = frame.to_site([point_in(algorithm, parameters, CENTER, context, crs)])
+    return Window(
+        float(x),
+        float(y),
+        algorithm.parameterAsDouble(parameters, WIDTH, context),
+        algorithm.parameterAsDouble(parameters, HEIGHT, context),
+    )
+
+
+def _given(parameters: Parameters, name: str) -> bool:
+    value = parameters.get(name)
+    return value is not None and value != ""
+
+
+def _is_number(value: Any) -> bool:
+    try:
+        return math.isfinite(float(value))
+    except (TypeError, ValueError):
+        # None is the default, and QGIS knows more kinds of values than numbers, such as properties.
+        return not isinstance(value, str)
+
+
+def _rounded(corner: np.ndarray) -> list[float]:
+    """Return the corner without the noise of a rotation there and back."""
+    return [float(value) for value in np.round(corner, 6)]
 
 
 # --- Layers that a parameter names, before they are read ---

@@ -272,9 +272,9 @@ def extent_of(cones: Sequence[PlacedCone]) -> QgsRectangle:
 def factor_of(cones: Sequence[PlacedCone], width: float) -> int:
     """Return by how much deviations are to be drawn longer on a map that is ``width`` metres wide."""
     most = max(cone.deviation for cone in cones)
-    wanted = LONGEST_LINE * width / most if most > 0 else 1.0
-    power = 10.0 ** math.floor(math.log10(max(wanted, 1.0)))
-    return int(max(1, *(power * digit for digit in (1, 2, 5) if power * digit <= max(wanted, 1.0))))
+    factor = LONGEST_LINE * width / most if most > 0 else 1.0
+    power = 10.0 ** math.floor(math.log10(max(factor, 1.0)))
+    return int(max(1, *(power * digit for digit in (1, 2, 5) if power * digit <= max(factor, 1.0))))
 
 
 def map_layers(

@@ -41,8 +41,8 @@ from ...layers.road_layers import (
 from ...layers.roles import KEEPOUT, LayerExpressions, expressions_of
 from ...layers.site_transform import LayerToSiteTransform, SiteGeoreference
 from ...ui.language import tr, tr_count
-from .algorithm import ParameterError, Parameters
-from .parameters import advanced, chosen_crs, filter_in, layer_in, site_crs_parameter
+from .algorithm import ParameterError, Parameters, advanced
+from .parameters import chosen_crs, filter_in, layer_in, site_crs_parameter
 
 # --- How robots drive and which roads they may use: what routes and assignments ask alike ---
 
@@ -398,7 +398,7 @@ def network_of_roads(
     except RoadsCancelledError:
         return None
     for repair in repairs:
-        feature, text = reading.features[repair.road], repair.told(reading.features)
+        feature, text = reading.features[repair.road], repair.in_words(reading.features)
         where = f"({repair.x:.3f}, {repair.y:.3f})"
         feedback.pushInfo(
             tr(

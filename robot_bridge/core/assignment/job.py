@@ -198,8 +198,8 @@ def _check_target(target: ConeTarget, room: int) -> None:
 
 def _check_number(what: str, name: str, field: str, value: float, least: float) -> None:
     if not (math.isfinite(value) and value >= least):
-        wanted = f"a number of {least:g} or more" if math.isfinite(least) else "a number"
-        raise JobError(f"The {field} of {what} {name} is {value:g}: give {wanted}.")
+        expected = f"a number of {least:g} or more" if math.isfinite(least) else "a number"
+        raise JobError(f"The {field} of {what} {name} is {value:g}: give {expected}.")
 
 
 def _listed(names: Iterable[str]) -> str:
@@ -264,7 +264,7 @@ def straight_path(a: Floats, b: Floats, spacing: float) -> Floats:
 
 
 class RoadTravel:
-    """The shortest ways on the roads of ``router`` that ``wanted`` allows.
+    """The shortest ways on the roads of ``router`` that ``restrictions`` allow.
 
     From each place a straight line of at most ``reach`` metres leads to the nearest road. ``progress`` is
     told which share of the distances is known, and may raise to end it.
@@ -277,15 +277,15 @@ class RoadTravel:
         job: AssignmentJob,
         router: Router,
         driving: Driving | None = None,
-        wanted: Restrictions | None = None,
+        restrictions: Restrictions | None = None,
         reach: float = REACH,
         progress: Callable[[float], None] | None = None,
     ) -> None:
         self._job, self._router = job, router
         self._driving, self._reach = driving or Driving(), reach
-        self._wanted = replace(wanted or Restrictions(), fastest=False)
+        self._restrictions = replace(restrictions or Restrictions(), fastest=False)
         places = [(float(x), float(y)) for x, y in job.places]
-        found = road_matrix(router.network, places, self._wanted, reach, router.closed, progress)
+        found = road_matrix(router.network, places, self._restrictions, reach, router.closed, progress)
         far = np.flatnonzero(np.isinf(found.away)).tolist()
         if far:
             names = ", ".join(job.name(place) for place in far[:10]) + (
@@ -305,7 +305,7 @@ class RoadTravel:
         a, b = self._job.places[start], self._job.places[goal]
         if start == goal:
             return straight_path(a, b, self._driving.spacing)
-        route = self._router.route(_place(a), _place(b), self._wanted, self._reach)
+        route = self._router.route(_place(a), _place(b), self._restrictions, self._reach)
         path = dense_path(route.points, route.widths, self._driving).points
         spacing = self._driving.spacing
         parts = [straight_path(a, path[0], spacing), path, straight_path(path[-1], b, spacing)]

@@ -207,7 +207,7 @@ def replan(
     plan: ConePlan,
     travel_of: TravelOf,
     situation: PlanSituation,
-    wanted: Objective | None = None,
+    objective: Objective | None = None,
     progress: Progress | None = None,
 ) -> ConePlan:
     """Return the plan from now on: stops that are done are kept, the rest is shared out among who is left.
@@ -224,7 +224,7 @@ def replan(
     )
     so_far = replace(plan, robots=robots, left_out=(*plan.left_out, *failed))
     job = job_of(so_far)
-    made = assign(job, travel_of(job), wanted or Objective(plan.objective), progress)
+    made = assign(job, travel_of(job), objective or Objective(plan.objective), progress)
     anew = {one.robot.id: one.trips for one in made.robots}
     return replace(
         so_far,

@@ -6,7 +6,9 @@ import uuid
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 
-from ..messages import PlacementReport, QueueReport, QueueTask, RobotState, TaskKind, TaskReport, TaskState
+from ..messages.queues import QueueReport, QueueTask, TaskKind, TaskReport, TaskState
+from ..messages.records import PlacementReport
+from ..messages.safety import RobotState
 from .job import COLLECT, PLACE, PlanRobot
 from .plan import HOME, STORE, ConePlan, PlanSituation, PlanStop, RobotPlan
 

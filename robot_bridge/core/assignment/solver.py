@@ -260,7 +260,7 @@ class Objective:
 
 
 def assign(
-    job: AssignmentJob, travel: Travel, wanted: Objective | None = None, progress: Progress | None = None
+    job: AssignmentJob, travel: Travel, objective: Objective | None = None, progress: Progress | None = None
 ) -> ConePlan:
     """Return the plan by which the robots of ``job`` serve all its targets.
 
@@ -268,16 +268,16 @@ def assign(
         MissingSolverError when PyVRP is asked for and not installed; CancelledError when ``progress`` says
         so.
     """
-    wanted = wanted or Objective()
-    use_pyvrp = _use_pyvrp(wanted.method)
+    objective = objective or Objective()
+    use_pyvrp = _use_pyvrp(objective.method)
     days = ScheduleEvaluator(job, travel.metres)
     _refuse_unreachable(days)
     progress = progress or (lambda share: True)
-    plan, improved_by_pyvrp = _solved(days, wanted, use_pyvrp, progress)
+    plan, improved_by_pyvrp = _solved(days, objective, use_pyvrp, progress)
     method = PREVIEW
     if use_pyvrp:
         method = PYVRP if improved_by_pyvrp else PREVIEW_KEPT
-    return plan_of(days, CancellableTravel(travel, lambda: progress(1.0)), plan, wanted.objective, method)
+    return plan_of(days, CancellableTravel(travel, lambda: progress(1.0)), plan, objective.objective, method)
 
 
 def _use_pyvrp(method: str) -> bool:
@@ -287,7 +287,7 @@ def _use_pyvrp(method: str) -> bool:
 
 
 def _solved(
-    days: ScheduleEvaluator, wanted: Objective, use_pyvrp: bool, progress: Progress
+    days: ScheduleEvaluator, objective: Objective, use_pyvrp: bool, progress: Progress
 ) -> tuple[list[Schedule], bool]:
     job = days.job
     plan: list[Schedule] = [[[]] for _ in job.robots]
@@ -295,9 +295,9 @@ def _solved(
     for stage in job.stages:
         targets = [place for place in _places(job) if job.target(place).stage == stage]
         before, part = done / len(job.targets), len(targets) / len(job.targets)
-        aim = StageObjective(wanted.objective, last=stage == job.stages[-1])
+        aim = StageObjective(objective.objective, last=stage == job.stages[-1])
         tell = SearchProgress(progress, before, before + part)
-        effort = Effort(wanted.time_limit_s * part, use_pyvrp, tell, wanted.seed)
+        effort = Effort(objective.time_limit_s * part, use_pyvrp, tell, objective.seed)
         answer = solved_stage(days, targets, plan, aim, effort)
         if answer.left:
             _refuse(job, answer.left)

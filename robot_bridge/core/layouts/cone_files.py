@@ -172,9 +172,9 @@ _READERS: dict[str, Callable[[str, str], Iterator[dict[str, str]]]] = {
 def _pair_of(colour: str, head: list[str]) -> tuple[str, str] | None:
     found = []
     for axis in "xy":
-        wanted = {f"{colour}_{axis}", f"{axis}_{colour}"}
+        names = {f"{colour}_{axis}", f"{axis}_{colour}"}
         columns = [
-            name for name in head if name.strip().lower().replace(" ", "_").removesuffix("_m") in wanted
+            name for name in head if name.strip().lower().replace(" ", "_").removesuffix("_m") in names
         ]
         if not columns:
             return None
@@ -271,7 +271,7 @@ def cones_of(
     :raises ConeTableError: naming row and column, and what to do.
     """
     _check_columns(head, columns)
-    kept = _wanted(list(enumerate(rows, first)), columns)
+    kept = _kept_rows(list(enumerate(rows, first)), columns)
     cones = [_cone(_Row(number, row, columns), place, name) for place, (number, row) in enumerate(kept, 1)]
     _check_ids(cones, kept, columns)
     return sorted(cones, key=lambda cone: cone.order)
@@ -318,18 +318,18 @@ def _cone(row: _Row, place: int, name: str) -> Cone:
 
 
 def _check_columns(head: Sequence[str], columns: ConeColumns) -> None:
-    wanted = (columns.x, columns.y, columns.id, columns.order, columns.heading, columns.colour, columns.role)
+    names = (columns.x, columns.y, columns.id, columns.order, columns.heading, columns.colour, columns.role)
     if columns.only and not columns.layout:
         raise ConeTableError(
             f"Of several layouts {columns.only!r} is to be taken, and no column says which row is of which: "
             f"choose it among {', '.join(head) or 'none'}."
         )
-    for column in (*wanted, columns.layout):
+    for column in (*names, columns.layout):
         if column and column not in head:
             raise ConeTableError(f"There is no column {column!r}: choose among {', '.join(head) or 'none'}.")
 
 
-def _wanted(
+def _kept_rows(
     rows: list[tuple[int, Mapping[str, Any]]], columns: ConeColumns
 ) -> list[tuple[int, Mapping[str, Any]]]:
     """Return the rows of the layout to read, all without one; each with its number."""

@@ -37,7 +37,7 @@ class RoadMatrix:
 def road_matrix(
     network: Network,
     places: Sequence[Place],
-    wanted: Restrictions | None = None,
+    restrictions: Restrictions | None = None,
     reach: float = REACH,
     closed: NDArray[np.bool_] | None = None,
     progress: Callable[[float], None] | None = None,
@@ -47,8 +47,8 @@ def road_matrix(
     ``closed``, (edges,), says which edges are closed; by default it is what the roads themselves say.
     ``progress`` is told which share of the work is done, and may raise to end it.
     """
-    wanted = wanted or Restrictions()
-    allowed = wanted.fit(network) & ~(network.edges.closed if closed is None else closed)
+    restrictions = restrictions or Restrictions()
+    allowed = restrictions.fit(network) & ~(network.edges.closed if closed is None else closed)
     finder = NearestEdge(network)
     found = [finder.nearest(x, y, reach, allowed) for x, y in places]
     here = np.array([k for k, foothold in enumerate(found) if foothold is not None], dtype=np.int64)
@@ -56,7 +56,7 @@ def road_matrix(
     costs = np.full((len(places), len(places)), np.inf)
     if not len(here):
         return RoadMatrix(costs, away, "nothing")
-    per_edge = network.lengths / network.edges.speed if wanted.fastest else network.lengths
+    per_edge = network.lengths / network.edges.speed if restrictions.fastest else network.lengths
     ends = _Ends.of(network, [one for one in found if one is not None], per_edge)
     search = _search(network, np.where(allowed, per_edge, np.inf))
     between = _between(search, ends, progress or (lambda share: None))

@@ -125,8 +125,8 @@ def _setbacks(network: Network) -> Floats:
     for ends in (network.tail, network.head):
         np.maximum.at(widest, ends, network.edges.width)
     ends = np.stack([network.tail, network.head], axis=1)
-    wanted = np.where(network.degrees[ends] > 1, widest[ends], 0.0)
-    setbacks: Floats = np.minimum(wanted, _LARGEST_SHARE * network.lengths[:, None])
+    ideal = np.where(network.degrees[ends] > 1, widest[ends], 0.0)
+    setbacks: Floats = np.minimum(ideal, _LARGEST_SHARE * network.lengths[:, None])
     return setbacks
 
 

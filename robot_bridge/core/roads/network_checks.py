@@ -270,7 +270,7 @@ class RoadFinding:
         """What is odd, with the other road as a number."""
         return self.pattern.format(other=self.other)
 
-    def told(self, names: Sequence[object]) -> str:
+    def in_words(self, names: Sequence[object]) -> str:
         """Return what is odd, with ``names`` for the roads."""
         return self.pattern.format(other=names[self.other] if self.other >= 0 else "")
 
@@ -392,8 +392,8 @@ def repaired_network(
         breaks = breaks_of(network, tolerance)
         if not breaks.any():
             break
-        mended, told = _mended(network, breaks, ask)
-        done += findings_of_breaks(network, told)
+        mended, repairs = _mended(network, breaks, ask)
+        done += findings_of_breaks(network, repairs)
         network = mended
     return network, done
 

@@ -225,7 +225,7 @@ class Router:
         self,
         start: Place,
         goal: Place,
-        wanted: Restrictions | None = None,
+        restrictions: Restrictions | None = None,
         reach: float = REACH,
         avoid: Collection[int] = (),
     ) -> Route:
@@ -236,15 +236,15 @@ class Router:
         :raises OffNetworkError: when no road that may be used is within ``reach`` metres of one of them;
             NoRouteError when no way leads from one to the other.
         """
-        wanted = wanted or Restrictions()
-        ready = self._ready_for(wanted)
-        begin = self._foothold("start", start, reach, wanted)
-        end = self._foothold("goal", goal, reach, wanted)
+        restrictions = restrictions or Restrictions()
+        ready = self._ready_for(restrictions)
+        begin = self._foothold("start", start, reach, restrictions)
+        end = self._foothold("goal", goal, reach, restrictions)
         with self._without(avoid):
-            stretches = self._stretches(begin, end, ready.engine, wanted)
+            stretches = self._stretches(begin, end, ready.engine, restrictions)
         if stretches is None:
             raise NoRouteError(
-                f"No way leads from {_told(start)} to {_told(goal)} on the roads that may be used: "
+                f"No way leads from {_text(start)} to {_text(goal)} on the roads that may be used: "
                 "check closed roads, one-way roads, surfaces and widths, or repair the network."
             )
         return Route(self.network, *stretches, begin.away, end.away, ready.engine.name)
@@ -267,43 +267,47 @@ class Router:
         finally:
             self.open(shut)
 
-    def _foothold(self, what: str, place: Place, reach: float, wanted: Restrictions) -> Foothold:
+    def _foothold(self, what: str, place: Place, reach: float, restrictions: Restrictions) -> Foothold:
         if not all(math.isfinite(value) for value in place):
-            raise OffNetworkError(f"The {what} {_told(place)} is no place: give two numbers in metres.")
-        found = self._nearest.nearest(*place, reach, self._ready_for(wanted).open)
+            raise OffNetworkError(f"The {what} {_text(place)} is no place: give two numbers in metres.")
+        found = self._nearest.nearest(*place, reach, self._ready_for(restrictions).open)
         if found is None:
             shut = self._nearest.nearest(*place, reach)
-            why = "" if shut is None else f" (the road {shut.away:.1f} m away {self._bar(shut.edge, wanted)})"
+            why = (
+                ""
+                if shut is None
+                else f" (the road {shut.away:.1f} m away {self._bar(shut.edge, restrictions)})"
+            )
             raise OffNetworkError(
-                f"The {what} {_told(place)} is more than {reach:g} m from every road that may be used{why}: "
+                f"The {what} {_text(place)} is more than {reach:g} m from every road that may be used{why}: "
                 "choose a place nearer to a road, or allow a greater distance."
             )
         return found
 
-    def _bar(self, edge: int, wanted: Restrictions) -> str:
+    def _bar(self, edge: int, restrictions: Restrictions) -> str:
         """Return why ``edge`` may not be used."""
         if self._closed[edge]:
             return "is closed"
         edges = self.network.edges
-        if edges.width[edge] < wanted.least_width:
-            return f"is {edges.width[edge]:g} m wide, narrower than {wanted.least_width:g} m"
+        if edges.width[edge] < restrictions.least_width:
+            return f"is {edges.width[edge]:g} m wide, narrower than {restrictions.least_width:g} m"
         return f"has another surface, {str(edges.surface[edge]) or 'none'}"
 
-    def _costs(self, wanted: Restrictions) -> Floats:
+    def _costs(self, restrictions: Restrictions) -> Floats:
         """Return what each edge costs, whatever is forbidden."""
         lengths = self.network.lengths
-        return lengths / self.network.edges.speed if wanted.fastest else lengths
+        return lengths / self.network.edges.speed if restrictions.fastest else lengths
 
-    def _ready_for(self, wanted: Restrictions) -> _Ready:
-        if wanted not in self._ready:
-            fit = wanted.fit(self.network)
+    def _ready_for(self, restrictions: Restrictions) -> _Ready:
+        if restrictions not in self._ready:
+            fit = restrictions.fit(self.network)
             free = fit & ~self._closed
-            costs = np.where(free, self._costs(wanted), np.inf)
-            self._ready[wanted] = _Ready(self._engines(costs[self._edge]), fit, free)
+            costs = np.where(free, self._costs(restrictions), np.inf)
+            self._ready[restrictions] = _Ready(self._engines(costs[self._edge]), fit, free)
             while len(self._ready) > _KEPT:
                 self._ready.popitem(last=False)
-        self._ready.move_to_end(wanted)
-        return self._ready[wanted]
+        self._ready.move_to_end(restrictions)
+        return self._ready[restrictions]
 
     def _set_closed(self, edges: Sequence[int], closed: bool) -> None:
         changed = np.array(sorted(set(edges)), dtype=np.int64)
@@ -311,15 +315,15 @@ class Router:
         arcs = self._arcs_of_edge[changed].ravel()
         arcs = arcs[arcs >= 0]
         edge = self._edge[arcs]
-        for wanted, ready in self._ready.items():
+        for restrictions, ready in self._ready.items():
             ready.open[changed] = ready.fit[changed] & (not closed)
-            ready.engine.set_costs(arcs, np.where(ready.open[edge], self._costs(wanted)[edge], np.inf))
+            ready.engine.set_costs(arcs, np.where(ready.open[edge], self._costs(restrictions)[edge], np.inf))
 
     def _stretches(
-        self, begin: Foothold, end: Foothold, engine: Engine, wanted: Restrictions
+        self, begin: Foothold, end: Foothold, engine: Engine, restrictions: Restrictions
     ) -> Stretches | None:
-        starts = self._ends(begin, wanted, leaving=True)
-        goals = self._ends(end, wanted, leaving=False)
+        starts = self._ends(begin, restrictions, leaving=True)
+        goals = self._ends(end, restrictions, leaving=False)
         direct = self._direct(begin, end)
         way = self._way(starts, goals, engine)
         if way is None:
@@ -331,7 +335,7 @@ class Router:
             np.concatenate([[begin.station], low, [goals[last][1]]]),
             np.concatenate([[starts[first][1]], high, [end.station]]),
         )
-        if direct is not None and self._cost(direct, wanted) <= self._cost(made, wanted):
+        if direct is not None and self._cost(direct, restrictions) <= self._cost(made, restrictions):
             return direct
         return _without_nothing(*made)
 
@@ -342,7 +346,7 @@ class Router:
             return None
         return engine.way(_costs_only(starts), _costs_only(goals))
 
-    def _ends(self, foothold: Foothold, wanted: Restrictions, *, leaving: bool) -> Ends:
+    def _ends(self, foothold: Foothold, restrictions: Restrictions, *, leaving: bool) -> Ends:
         """Return the ends of its edge that lead on from ``foothold``, or from which it is reached."""
         edge, network = foothold.edge, self.network
         length = float(network.lengths[edge])
@@ -353,16 +357,16 @@ class Router:
             (int(network.head[edge]), length, BACKWARD if leaving else FORWARD),
         ):
             metres = abs(foothold.station - station)
-            cost = metres * self._pace(edge, wanted)
+            cost = metres * self._pace(edge, restrictions)
             # Who stands on a node stands on all its roads.
             allowed = direction != against or metres <= SAME
             if allowed and (node not in reached or cost < reached[node][0]):
                 reached[node] = cost, station
         return reached
 
-    def _pace(self, edge: int, wanted: Restrictions) -> float:
+    def _pace(self, edge: int, restrictions: Restrictions) -> float:
         """Return what a metre of ``edge`` costs."""
-        return 1.0 / float(self.network.edges.speed[edge]) if wanted.fastest else 1.0
+        return 1.0 / float(self.network.edges.speed[edge]) if restrictions.fastest else 1.0
 
     def _direct(self, begin: Foothold, end: Foothold) -> Stretches | None:
         """Return the way along one edge, if both are on it and its direction allows."""
@@ -388,10 +392,10 @@ class Router:
         high = np.where(arcs < self._along, length, 0.0)
         return edge, length - high, high
 
-    def _cost(self, stretches: Stretches, wanted: Restrictions) -> float:
+    def _cost(self, stretches: Stretches, restrictions: Restrictions) -> float:
         edge, begin, end = stretches
         metres = np.abs(end - begin)
-        return float((metres / self.network.edges.speed[edge] if wanted.fastest else metres).sum())
+        return float((metres / self.network.edges.speed[edge] if restrictions.fastest else metres).sum())
 
 
 def _without_nothing(edge: Ints, begin: Floats, end: Floats) -> Stretches:
@@ -415,5 +419,5 @@ def _arcs_of_edges(network: Network) -> Ints:
     return arcs
 
 
-def _told(place: Place) -> str:
+def _text(place: Place) -> str:
     return f"({place[0]:.2f}, {place[1]:.2f})"

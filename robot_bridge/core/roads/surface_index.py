@@ -370,7 +370,7 @@ class SurfaceIndex:
         found = np.full(len(places), NOWHERE, np.int64)
         if self._cells is not None:
             for begin in range(0, len(places), _AT_ONCE):
-                found[begin : begin + _AT_ONCE] = _told(self._cells, places[begin : begin + _AT_ONCE])
+                found[begin : begin + _AT_ONCE] = _first_cells(self._cells, places[begin : begin + _AT_ONCE])
         return found
 
     def _rank(self, edges: SurfaceEdges) -> Ints:
@@ -392,7 +392,7 @@ def _views(cells: SurfaceCells) -> tuple[Any, ...]:
     return (x_min, y_min, grid.side, grid.columns, grid.rows, *views)
 
 
-def _told(cells: SurfaceCells, places: Floats) -> Ints:
+def _first_cells(cells: SurfaceCells, places: Floats) -> Ints:
     grid = cells.grid
     x, y = (places - grid.low).T
     with np.errstate(invalid="ignore"):

@@ -99,8 +99,8 @@ def wrong_heights(table: SegmentTable, limits: MapCheckLimits) -> Iterator[MapFi
 
 def _height(table: SegmentTable, row: int, segments: NDArray[Any], text: str) -> MapFinding:
     id = table.obstacles[row].id
-    said = f"{counted(len(segments), 'segment')} with {text}"
-    return MapFinding(MapFindingKind.HEIGHT, Severity.WARNING, id, said, table.lines(segments))
+    statement = f"{counted(len(segments), 'segment')} with {text}"
+    return MapFinding(MapFindingKind.HEIGHT, Severity.WARNING, id, statement, table.lines(segments))
 
 
 def _by_obstacle(table: SegmentTable, odd: NDArray[Any]) -> Iterator[tuple[int, NDArray[Any]]]:

@@ -40,11 +40,6 @@ def ramp_normal(points: NDArray[Any]) -> str:
     return ",".join(f"{round(v / math.copysign(length, z), 4) + 0.0:g}" for v in (x, y, z))
 
 
-def _widest_angle(radius: float, sagitta: float) -> float:
-    """Return the angle of the longest chord within ``sagitta`` of its arc, at most a third of a turn."""
-    return min(2 * math.acos(max(1 - sagitta / radius, 0.5)), math.tau / 3)
-
-
 # --- Small closed shapes that stand for things drawn as points: by name, or by kind and size ---
 
 NAMED: Mapping[str, str] = MappingProxyType(

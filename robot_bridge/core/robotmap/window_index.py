@@ -96,7 +96,7 @@ class BoxGrid:
 
         Two arrays of int64: rectangle and box. For many small rectangles.
         """
-        asked = [np.repeat(np.arange(len(low)), len(self._always))]
+        queries = [np.repeat(np.arange(len(low)), len(self._always))]
         begins = [np.tile(np.array([one.start for one in self._always], dtype=np.int64), len(low))]
         ends = [np.tile(np.array([one.stop for one in self._always], dtype=np.int64), len(low))]
         for base, size in self._levels:
@@ -105,11 +105,11 @@ class BoxGrid:
             rectangle, row = _ranges(first[:, 1], last[:, 1] + 1)
             keys = base + row * _ROW + first[rectangle, 0]
             beyond = keys + (last - first)[rectangle, 0] + 1
-            asked.append(rectangle)
+            queries.append(rectangle)
             begins.append(self._starts[np.searchsorted(self._keys, keys)])
             ends.append(self._starts[np.searchsorted(self._keys, beyond)])
         span, box = _ranges(np.concatenate(begins), np.concatenate(ends))
-        return np.concatenate(asked)[span], box
+        return np.concatenate(queries)[span], box
 
 
 def levels_of(low: NDArray[Any], high: NDArray[Any]) -> NDArray[Any]:

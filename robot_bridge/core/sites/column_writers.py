@@ -144,8 +144,8 @@ class NoteColumns:
             raw, lengths = bytes_of_texts(found.notes[begin:end])
             row = found.note_row[begin:end]
             everywhere = found.note_everywhere[begin:end]
-            said = {"text": raw, "lengths": lengths, "low": found.low[row], "high": found.high[row]}
-            for name, rows in {**said, "everywhere": everywhere}.items():
+            columns = {"text": raw, "lengths": lengths, "low": found.low[row], "high": found.high[row]}
+            for name, rows in {**columns, "everywhere": everywhere}.items():
                 own[name].append(rows)
 
     def end(self, columns: ColumnFiles) -> None:

@@ -241,15 +241,17 @@ class FencedOutlines(FencedAreas):
 
         bounds = shapely.bounds(geometries).reshape(-1, 4)
         low, high = bounds[:, :2] - metres, bounds[:, 2:] + metres
-        asked, area = self._rows.grid.pairs(low, high)
-        touches = ((self._rows.high[area] >= low[asked]) & (self._rows.low[area] <= high[asked])).all(axis=1)
-        asked, area = asked[touches], area[touches]
+        queries, area = self._rows.grid.pairs(low, high)
+        touches = ((self._rows.high[area] >= low[queries]) & (self._rows.low[area] <= high[queries])).all(
+            axis=1
+        )
+        queries, area = queries[touches], area[touches]
         shapes = np.array([self._geometry(one) for one in area.tolist()], dtype=object)
         if metres > 0:
-            near = shapely.dwithin(geometries[asked], shapes, metres)
+            near = shapely.dwithin(geometries[queries], shapes, metres)
         else:
-            near = shapely.within(geometries[asked], shapes)
-        pairs: Indices = np.array([asked, area], dtype=np.int64)[:, near]
+            near = shapely.within(geometries[queries], shapes)
+        pairs: Indices = np.array([queries, area], dtype=np.int64)[:, near]
         return pairs
 
     def _geometry(self, area: int) -> Any:

@@ -266,10 +266,10 @@ def _geometries(wkb: Any, ids: Any, spec: LayerSpec, file: Path) -> np.ndarray[A
     return geometries
 
 
-def _check_crs(file: Path, spec: LayerSpec, found: str | None, wanted: str) -> None:
-    if found is None or crs_of(found) != crs_of(wanted):
+def _check_crs(file: Path, spec: LayerSpec, found: str | None, expected: str) -> None:
+    if found is None or crs_of(found) != crs_of(expected):
         raise LayerError(
-            f"{file}, layer {spec.name}: its CRS is {found or 'not stated'}, and site.crs is {wanted}. "
+            f"{file}, layer {spec.name}: its CRS is {found or 'not stated'}, and site.crs is {expected}. "
             f"{_REPAIR}"
         )
 

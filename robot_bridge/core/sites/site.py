@@ -310,8 +310,8 @@ def write_site_cache(folder: Path, settings: SiteSettings, text: str, obstacles:
     ``text`` is that of ``site.toml``, which says how large a map may be. What a gateway would refuse, or
     read otherwise, has no such file. Raises OSError.
     """
-    said = value_text(text, "maps", "largest_whole_bytes") or ""
-    most = int(said) if said.isdecimal() else settings.maps.largest_whole_bytes
+    largest = value_text(text, "maps", "largest_whole_bytes") or ""
+    most = int(largest) if largest.isdecimal() else settings.maps.largest_whole_bytes
     publication = _publication(settings)
     obstacles.write(folder / CACHE_FILE, folder / GEOPACKAGE_FILE, publication, whole_head(settings), most)
 

@@ -170,8 +170,8 @@ def read_cache(file: Path, geopackage: Path, publication: Publication) -> SiteCa
         raise CacheError(f"{file} is altered: {error!r} is wrong in it. {_NOT_USED}") from error
 
 
-def _check_same(file: Path, about: Mapping[str, Any], wanted: Mapping[str, Any]) -> None:
-    for name, value in wanted.items():
+def _check_same(file: Path, about: Mapping[str, Any], expected: Mapping[str, Any]) -> None:
+    for name, value in expected.items():
         if about.get(name) != value:
             raise CacheError(
                 f"{file} belongs to another publication, or to another version of this program: its {name} "

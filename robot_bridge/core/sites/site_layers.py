@@ -240,13 +240,13 @@ def centrelines_of(layer: Layer, frame: SiteFrame, place: str) -> tuple[Centreli
     :raises LayerError: naming a road whose width is not above 0 or that is not a line.
     """
     _require(layer, "LineString", place)
-    for name, wanted in (("width_m", "a road is wider than 0 m"), ("speed_ms", "a speed is above 0 m/s")):
+    for name, rule in (("width_m", "a road is wider than 0 m"), ("speed_ms", "a speed is above 0 m/s")):
         numbers = np.asarray(layer.values[name], dtype=np.float64)
         if (numbers <= 0).any():
             k = int(np.argmax(numbers <= 0))
             raise LayerError(
                 f"{place}, layer {layer.spec.name}, feature {layer.ids[k]}: {name} is {numbers[k]:g}; "
-                f"{wanted}. Correct it in the source layer and publish the site again."
+                f"{rule}. Correct it in the source layer and publish the site again."
             )
     columns = [layer.values[name] for name in layer.spec.fields]
     return tuple(

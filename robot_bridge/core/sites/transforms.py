@@ -184,8 +184,8 @@ def _numbers(meta: Mapping[str, str], key: str, default: str, count: int) -> lis
     except ValueError:
         numbers = []
     if len(numbers) != count or not all(math.isfinite(number) for number in numbers):
-        wanted = "'x,y' in metres" if count == 2 else "an angle in radians"
+        expected = "'x,y' in metres" if count == 2 else "an angle in radians"
         raise CrsError(
-            f"The map's line {key} is {text!r}: it must be {wanted}; correct it, or remove the line crs."
+            f"The map's line {key} is {text!r}: it must be {expected}; correct it, or remove the line crs."
         )
     return numbers

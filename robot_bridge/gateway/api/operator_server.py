@@ -18,29 +18,28 @@ from typing import Any, NamedTuple
 import msgspec
 from websockets.exceptions import ConnectionClosed
 
-from ...core.errors import BridgeError, BusyError, OutdatedError, OverridableError, RefusedError
-from ...core.logs import log_and_continue
-from ...core.messages import (
-    DESK_REQUESTS,
-    PROTOCOL_VERSION,
-    Abort,
-    DeskRequest,
-    EmergencyStop,
-    GetRoute,
-    Hello,
-    MessageError,
-    PositionForm,
-    Role,
-    Send,
-    Subscribe,
-    to_json,
+from ...core.errors import (
+    BridgeError,
+    BusyError,
+    ForbiddenError,
+    OutdatedError,
+    OverridableError,
+    RefusedError,
 )
-from ...core.messages.operator_requests import Priority
+from ...core.logs import log_and_continue
+from ...core.messages.administration import PROTOCOL_VERSION, Hello
+from ...core.messages.commands import Send
+from ...core.messages.json_values import to_json
+from ...core.messages.operator_requests import DESK_REQUESTS, DeskRequest, Priority, Role
+from ...core.messages.positions import PositionForm, Subscribe
+from ...core.messages.roads import GetRoute
+from ...core.messages.robots import Abort
+from ...core.messages.safety import EmergencyStop
+from ...core.messages.validation import MessageError
 from ...protocol import jsonrpc
 from ...protocol.codec import decode_desk_request, error_code
 from ..auth.client_connection import ClientConnection
 from ..auth.gate import AuthGate
-from ..auth.permissions import check_permission
 from ..fleet.operator_updates import EVERYTHING, Tick
 from ..fleet.service import Fleet
 from ..model.request_handlers import RequestHandlers
@@ -83,38 +82,38 @@ class RequestScheduler:
         self._aside = _Lane(settle)
         self._stopping: set[asyncio.Task[None]] = set()
 
-    async def submit(self, asked: ScheduledRequest) -> None:
+    async def submit(self, scheduled: ScheduledRequest) -> None:
         """See to a request; returns at once, or when one that cannot be taken has been refused."""
-        if asked.stops:
-            await self._stop(asked)
-        elif asked.request.priority is Priority.SLOW:
-            await self._ask_aside(asked)
-        elif not self._turn.submit(asked, MOST_WAITING):
-            await self._settle(asked, _too_many(asked))
+        if scheduled.stops:
+            await self._stop(scheduled)
+        elif scheduled.request.priority is Priority.SLOW:
+            await self._ask_aside(scheduled)
+        elif not self._turn.submit(scheduled, MOST_WAITING):
+            await self._settle(scheduled, _too_many(scheduled))
 
     async def finish(self) -> None:
         """Wait for what stops robots and for what has been begun; forget the rest, the operator is gone."""
         self._aside.cancel()
         await asyncio.gather(*self._stopping, self._turn.end(), return_exceptions=True)
 
-    async def _stop(self, asked: ScheduledRequest) -> None:
-        emergency = isinstance(asked.request, EmergencyStop)
+    async def _stop(self, scheduled: ScheduledRequest) -> None:
+        emergency = isinstance(scheduled.request, EmergencyStop)
         if not emergency and len(self._stopping) >= MOST_STOPPING:
-            await self._settle(asked, _too_many(asked))
+            await self._settle(scheduled, _too_many(scheduled))
             return
-        task = asyncio.create_task(self._settle(asked, None))
+        task = asyncio.create_task(self._settle(scheduled, None))
         self._stopping.add(task)
         task.add_done_callback(self._stopping.discard)
-        for late in self._turn.withdraw(lambda waiting: _is_overtaken(waiting, asked)):
-            await self._settle(late, _overtaken(late, asked))
+        for late in self._turn.withdraw(lambda waiting: _is_overtaken(waiting, scheduled)):
+            await self._settle(late, _overtaken(late, scheduled))
         while emergency and len(self._stopping) >= MOST_STOPPING + MOST_EMERGENCIES:
             await asyncio.wait(self._stopping, return_when=asyncio.FIRST_COMPLETED)
 
-    async def _ask_aside(self, asked: ScheduledRequest) -> None:
-        for older in self._aside.withdraw(lambda waiting: _is_renewed(waiting, asked)):
+    async def _ask_aside(self, scheduled: ScheduledRequest) -> None:
+        for older in self._aside.withdraw(lambda waiting: _is_renewed(waiting, scheduled)):
             await self._settle(older, RefusedError("get_route: it was asked again before this was begun"))
-        if not self._aside.submit(asked, MOST_ASIDE):
-            await self._settle(asked, _too_many(asked))
+        if not self._aside.submit(scheduled, MOST_ASIDE):
+            await self._settle(scheduled, _too_many(scheduled))
 
 
 class _Lane:
@@ -125,20 +124,20 @@ class _Lane:
         self._waiting: deque[ScheduledRequest] = deque()
         self._task: asyncio.Task[None] | None = None
 
-    def submit(self, asked: ScheduledRequest, most: int) -> bool:
+    def submit(self, scheduled: ScheduledRequest, most: int) -> bool:
         """Take a request; false when too much waits."""
         waiting = sum(one.size for one in self._waiting)
-        if len(self._waiting) >= most or (self._waiting and waiting + asked.size > MOST_BYTES):
+        if len(self._waiting) >= most or (self._waiting and waiting + scheduled.size > MOST_BYTES):
             return False
-        self._waiting.append(asked)
+        self._waiting.append(scheduled)
         if self._task is None or self._task.done():
             self._task = asyncio.create_task(self._run())
         return True
 
     def withdraw(self, which: Callable[[ScheduledRequest], bool]) -> list[ScheduledRequest]:
         """Return what waits and is not to be dealt with any more."""
-        gone = [asked for asked in self._waiting if which(asked)]
-        self._waiting = deque(asked for asked in self._waiting if not which(asked))
+        gone = [scheduled for scheduled in self._waiting if which(scheduled)]
+        self._waiting = deque(scheduled for scheduled in self._waiting if not which(scheduled))
         return gone
 
     def cancel(self) -> None:
@@ -167,9 +166,9 @@ def _is_overtaken(waiting: ScheduledRequest, stop: ScheduledRequest) -> bool:
     return several or one is None or other is None or one == other
 
 
-def _is_renewed(waiting: ScheduledRequest, asked: ScheduledRequest) -> bool:
-    """Tell whether ``asked`` is the same way with another goal, as while a mouse moves."""
-    old, new = waiting.request, asked.request
+def _is_renewed(waiting: ScheduledRequest, scheduled: ScheduledRequest) -> bool:
+    """Tell whether ``scheduled`` is the same way with another goal, as while a mouse moves."""
+    old, new = waiting.request, scheduled.request
     if not (isinstance(old, GetRoute) and isinstance(new, GetRoute)):
         return False
     return (old.robot, old.start) == (new.robot, new.start)
@@ -182,9 +181,9 @@ def _overtaken(late: ScheduledRequest, stop: ScheduledRequest) -> RefusedError:
     )
 
 
-def _too_many(asked: ScheduledRequest) -> BusyError:
+def _too_many(scheduled: ScheduledRequest) -> BusyError:
     return BusyError(
-        f"{asked.request.method}: too many requests of this connection wait to be answered; "
+        f"{scheduled.request.method}: too many requests of this connection wait to be answered; "
         "wait for answers, then ask again"
     )
 
@@ -250,28 +249,28 @@ class OperatorSession:
             call = jsonrpc.decode(frame)
             if not isinstance(call, jsonrpc.Call):
                 raise jsonrpc.FrameError(jsonrpc.INVALID_REQUEST, "a desk sends requests only", call.id)
-            asked = ScheduledRequest(call, decode_desk_request(call.method, call.params), len(frame))
+            scheduled = ScheduledRequest(call, decode_desk_request(call.method, call.params), len(frame))
         except Exception as error:
             await self._connection.send(self._refused(call, error))
             return
-        if isinstance(asked.request, OWN):
-            await self._settle(asked, None)
+        if isinstance(scheduled.request, OWN):
+            await self._settle(scheduled, None)
         else:
-            await self._lanes.submit(asked)
+            await self._lanes.submit(scheduled)
 
-    async def _settle(self, asked: ScheduledRequest, refusal: Exception | None) -> None:
+    async def _settle(self, scheduled: ScheduledRequest, refusal: Exception | None) -> None:
         """Do what is asked, unless it is refused, and tell what came of it."""
         with contextlib.suppress(ConnectionClosed):
-            await self._connection.send(await self._answer(asked, refusal))
+            await self._connection.send(await self._answer(scheduled, refusal))
 
-    async def _answer(self, asked: ScheduledRequest, refusal: Exception | None) -> str:
+    async def _answer(self, scheduled: ScheduledRequest, refusal: Exception | None) -> str:
         try:
             if refusal is not None:
                 raise refusal
-            result = jsonrpc.result(asked.call.id, await self._do(asked.request))
+            result = jsonrpc.result(scheduled.call.id, await self._do(scheduled.request))
         except Exception as error:
-            return self._refused(asked.call, error)
-        self._note(asked.call)
+            return self._refused(scheduled.call, error)
+        self._note(scheduled.call)
         return result
 
     def _refused(self, call: jsonrpc.Call | jsonrpc.Reply | None, error: Exception) -> str:
@@ -298,9 +297,9 @@ class OperatorSession:
         harmless = call.method in UNNOTED or call.method.startswith("get_")
         if call.method not in DESK_REQUESTS or (harmless and code != jsonrpc.FORBIDDEN):
             return
-        asked = call.params if isinstance(call.params, dict) else {}
-        names = (asked.get(name) for name in SUBJECTS)
-        params = msgspec.json.encode(asked).decode()
+        content = call.params if isinstance(call.params, dict) else {}
+        names = (content.get(name) for name in SUBJECTS)
+        params = msgspec.json.encode(content).decode()
         self._gate.journal.note(
             self._operator,
             call.method,
@@ -309,7 +308,7 @@ class OperatorSession:
             address=self._connection.address,
             subject=next((str(name) for name in names if name is not None), None),
             # First, since what is too long is cut at its end.
-            detail="; ".join(str(text) for text in (refusal, asked.get("override"), params) if text),
+            detail="; ".join(str(text) for text in (refusal, content.get("override"), params) if text),
         )
 
     async def _do(self, request: DeskRequest[Any]) -> dict[str, Any]:
@@ -386,3 +385,20 @@ def _data_of(error: Exception) -> dict[str, Any] | None:
     if isinstance(error, OutdatedError):
         return error.newer
     return {"found": error.found} if isinstance(error, OverridableError) else None
+
+
+def check_permission(request: DeskRequest[Any], operator: str, role: Role, override_role: Role) -> None:
+    """Raise ForbiddenError for a request, or an override in it, that an operator's role does not reach.
+
+    ``override_role`` is the least role that may override a check, by the site's settings.
+    """
+    if not role.includes(request.least_role):
+        raise ForbiddenError(
+            f"{request.method}: {operator} is {role.value}, and this takes {request.least_role.value}; "
+            "ask one, or have the role changed by 'robot-bridge operators role'"
+        )
+    if getattr(request, "override", None) is not None and not role.includes(override_role):
+        raise ForbiddenError(
+            f"{request.method}: {operator} is {role.value}, and an override takes {override_role.value}; "
+            "choose another place or way, or ask one (override_role in the site's settings)"
+        )

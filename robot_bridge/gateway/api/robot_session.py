@@ -12,23 +12,11 @@ from typing import Any
 from websockets.exceptions import ConnectionClosed, ConnectionClosedOK
 
 from ...core.errors import BridgeError, DataRefusedError, NotReadyError, StoreError
-from ...core.messages import (
-    REQUESTS,
-    MessageError,
-    OpAck,
-    Ready,
-    Request,
-    SendPos,
-    to_json,
-)
-from ...core.messages.validation import LARGEST_MESSAGE
+from ...core.messages.json_values import to_json
+from ...core.messages.robots import REQUESTS, OpAck, Ready, Request, SendPos
+from ...core.messages.validation import LARGEST_MESSAGE, MessageError
 from ...protocol import jsonrpc
-from ...protocol.codec import (
-    check_size,
-    decode_position,
-    decode_request,
-    error_code,
-)
+from ...protocol.codec import check_size, decode_position, decode_request, error_code
 from ..auth.client_connection import ClientConnection
 from ..fleet.outbox import RequestOutcome
 from ..fleet.registration import ConnectionClaims

@@ -16,7 +16,7 @@ from websockets.exceptions import ConnectionClosed
 from ...core.errors import BridgeError, BusyError, ForbiddenError, NotReadyError, RefusedError, SiteError
 from ...core.json_decoder import DecodingError
 from ...core.logs import log_and_continue
-from ...core.messages import MessageError, Ready, SendImage, check_robot_name, refuse_unknown_keys, to_json
+from ...core.messages.json_values import to_json
 from ...core.messages.links import (
     LINK_PROTOCOL,
     AbortOfAll,
@@ -26,7 +26,8 @@ from ...core.messages.links import (
     LinkStatus,
     LinkWelcome,
 )
-from ...core.messages.validation import LARGEST_MESSAGE
+from ...core.messages.robots import Ready, SendImage
+from ...core.messages.validation import LARGEST_MESSAGE, MessageError, check_robot_name, refuse_unknown_keys
 from ...core.position_frame import entries_in, poses_in_frame
 from ...core.sites.site import Site, areas_in_box
 from ...protocol import jsonrpc
@@ -49,7 +50,7 @@ log = logging.getLogger(__name__)
 
 ANSWER_WITHIN = 5.0
 """seconds that a link has to answer what it is asked for itself."""
-MOST_ASKED = 20
+MOST_CALLS = 20
 """questions to a link that wait for its answer."""
 
 Message = TypeVar("Message", LinkHello, LinkStatus, GetAreas)
@@ -77,11 +78,11 @@ class LinkConnection:
         self._gate = gate
         self._holders = sessions
         self._places: dict[str, LinkedRobotChannel] = {}
-        self._robots = gate.spoken_for(connection)
+        self._robots = gate.robots_of_link(connection)
         self._turn, self._large = asyncio.Lock(), asyncio.Lock()
         self._tasks: set[asyncio.Task[None]] = set()
         self._numbers = itertools.count(1)
-        self._asked: dict[str, asyncio.Future[jsonrpc.Reply]] = {}
+        self._pending_calls: dict[str, asyncio.Future[jsonrpc.Reply]] = {}
 
     # --- what the gateway asks of it --------------------------------------------------------------------
 
@@ -101,17 +102,17 @@ class LinkConnection:
             return
         finally:
             self._fleet.links.withdraw(self.name, self.ask)
-            for answer in self._asked.values():
+            for answer in self._pending_calls.values():
                 answer.cancel()
             for place in self._places.values():
                 place.end()
 
     async def ask(self, method: str, params: dict[str, Any]) -> Any:
         """Call a method of the link itself, and return its result; raises RefusedError."""
-        if len(self._asked) >= MOST_ASKED:
+        if len(self._pending_calls) >= MOST_CALLS:
             raise RefusedError(f"link {self.name} has not answered yet what it was asked before")
         id = f"link-{next(self._numbers)}"
-        answer = self._asked[id] = asyncio.get_running_loop().create_future()
+        answer = self._pending_calls[id] = asyncio.get_running_loop().create_future()
         try:
             async with asyncio.timeout(ANSWER_WITHIN):
                 await self.send(jsonrpc.call(method, params, id))
@@ -119,7 +120,7 @@ class LinkConnection:
         except (ConnectionClosed, TimeoutError):
             raise RefusedError(f"link {self.name} does not answer; is it connected?") from None
         finally:
-            del self._asked[id]
+            del self._pending_calls[id]
         if answer.cancelled():
             raise RefusedError(f"link {self.name} has just ended")
         reply = answer.result()
@@ -138,7 +139,7 @@ class LinkConnection:
 
     def update(self) -> None:
         """Let go the robots that it may not speak for any more."""
-        robots = self._gate.spoken_for(self._connection)
+        robots = self._gate.robots_of_link(self._connection)
         if robots == self._robots:
             return
         self._robots = robots
@@ -244,9 +245,9 @@ class LinkConnection:
             site.settings.observations.largest_image_bytes,
         )
 
-    async def _tell_areas(self, id: int | str | None, wanted: GetAreas) -> None:
+    async def _tell_areas(self, id: int | str | None, request: GetAreas) -> None:
         site = self._fleet.site.site
-        await self.send(await asyncio.to_thread(_areas_reply, id, site, wanted))
+        await self.send(await asyncio.to_thread(_areas_reply, id, site, request))
 
     async def _take_robot_call(self, call: jsonrpc.Call) -> None:
         robot = call.params.get("robot") if isinstance(call.params, dict) else None
@@ -312,7 +313,7 @@ class LinkConnection:
             await self._refuse(None, fault, robot)
 
     def _take_reply(self, reply: jsonrpc.Reply) -> None:
-        if (answer := self._asked.get(str(reply.id))) is not None:
+        if (answer := self._pending_calls.get(str(reply.id))) is not None:
             if not answer.done():
                 answer.set_result(reply)
             return
@@ -330,16 +331,16 @@ class LinkConnection:
     ) -> None:
         """Tell the link why a message counts for nothing, and which robot that concerns."""
         self._fleet.tally.refused[self.name] += 1
-        whom = f"link {self.name}:" if robot is None else f"link {self.name}: robot {str(robot)[:63]!r}:"
-        self._fleet.repeated.warn(log, (f"link {self.name}:", type(error).__name__), f"{whom} {error}")
+        sender = f"link {self.name}:" if robot is None else f"link {self.name}: robot {str(robot)[:63]!r}:"
+        self._fleet.repeated.warn(log, (f"link {self.name}:", type(error).__name__), f"{sender} {error}")
         data = None if robot is None else {"robot": robot}
         await self.send(jsonrpc.error(id, code or error_code(error), str(error), data))
 
 
-def _areas_reply(id: int | str | None, site: Site, wanted: GetAreas) -> str:
+def _areas_reply(id: int | str | None, site: Site, request: GetAreas) -> str:
     """Return the reply with what the site has in a box; may take long."""
     try:
-        return jsonrpc.result(id, to_json(areas_in_box(site, wanted.box)))
+        return jsonrpc.result(id, to_json(areas_in_box(site, request.box)))
     except SiteError as error:
         return jsonrpc.error(id, jsonrpc.REFUSED, str(error))
 

@@ -12,7 +12,8 @@ from fnmatch import fnmatchcase
 
 from sqlalchemy import Connection, func, insert, select, update
 
-from ...core.messages import Role, check_robot_name
+from ...core.messages.operator_requests import Role
+from ...core.messages.validation import check_robot_name
 from ...protocol.credentials import AccessError
 from ..storage.database import Database
 from ..storage.schema import links, operators, tokens
@@ -235,7 +236,7 @@ def grants(connection: Connection) -> list[Grant]:
     roles = {
         name: Role(role) for name, role in connection.execute(select(operators.c.name, operators.c.role))
     }
-    spoken_for = {
+    robots_of_link = {
         name: tuple(robots.split())
         for name, robots in connection.execute(select(links.c.name, links.c.robots))
     }
@@ -251,7 +252,7 @@ def grants(connection: Connection) -> list[Grant]:
             expires_at=row["expires_at"],
             revoked_at=row["revoked_at"],
             used_at=row["used_at"],
-            robots=spoken_for.get(row["owner"], ()) if row["kind"] == TokenKind.LINK.value else (),
+            robots=robots_of_link.get(row["owner"], ()) if row["kind"] == TokenKind.LINK.value else (),
         )
         for row in rows
     ]
@@ -266,8 +267,8 @@ def accounts_fingerprint(connection: Connection) -> tuple[object, ...]:
         func.max(tokens.c.revoked_at),
     ).select_from(tokens)
     roles = select(operators.c.name, operators.c.role).order_by(operators.c.name)
-    spoken_for = select(links.c.name, links.c.robots).order_by(links.c.name)
-    found = (*connection.execute(roles), *connection.execute(spoken_for))
+    robots_of_link = select(links.c.name, links.c.robots).order_by(links.c.name)
+    found = (*connection.execute(roles), *connection.execute(robots_of_link))
     return (*connection.execute(counts).one(), *map(tuple, found))
 
 

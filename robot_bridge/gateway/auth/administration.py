@@ -8,8 +8,9 @@ from typing import Any, TypeVar
 
 from sqlalchemy import Connection
 
-from ...core.messages import (
+from ...core.messages.administration import (
     AddOperator,
+    Audit,
     AuditReport,
     EndSession,
     GetAudit,
@@ -21,10 +22,10 @@ from ...core.messages import (
     RevokeToken,
     RotateToken,
     SessionReport,
+    Sessions,
     SetRole,
     TokenState,
 )
-from ...core.messages.administration import Audit, Sessions
 from ...protocol.credentials import AccessError
 from ..model.request_handlers import handles
 from ..storage.database import Database

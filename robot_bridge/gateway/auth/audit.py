@@ -166,9 +166,9 @@ _ENDED_OF = select(sessions.c.id, sessions.c.reason).where(
 def ended_sessions(connection: Connection, open_here: Collection[str]) -> dict[str, str]:
     """Return which of the sessions that a gateway holds open somebody has ended, each with the reason."""
     found: dict[str, str] = {}
-    wanted = sorted(open_here)
-    for begin in range(0, len(wanted), SESSIONS_AT_ONCE):
-        some = {"ids": wanted[begin : begin + SESSIONS_AT_ONCE]}
+    still_open = sorted(open_here)
+    for begin in range(0, len(still_open), SESSIONS_AT_ONCE):
+        some = {"ids": still_open[begin : begin + SESSIONS_AT_ONCE]}
         found.update({id: reason or "" for id, reason in connection.execute(_ENDED_OF, some)})
     return found
 

@@ -16,10 +16,42 @@ from websockets.asyncio.server import ServerConnection
 from websockets.frames import CloseCode, Frame, Opcode
 from websockets.protocol import OPEN
 
+from ...core.clock import SYSTEM_CLOCK, Clock
 from ...core.sites.settings_tables import LimitSettings
 from ...protocol import jsonrpc
 from .accounts import TokenKind
-from .rate_limit import RateLimit
+
+# --- How often something may happen: a token bucket, with some room for bursts ---
+
+
+class RateLimit:
+    """Allows ``rate`` takings a second on average and up to ``burst`` at once."""
+
+    __slots__ = ("_at", "_burst", "_left", "_now", "_rate")
+
+    def __init__(self, rate: float, burst: float, clock: Clock = SYSTEM_CLOCK) -> None:
+        self._rate, self._burst, self._now = rate, burst, clock.steady
+        self._left, self._at = burst, self._now()
+
+    def consume(self) -> bool:
+        """Take one, if there is one to take."""
+        now = self._now()
+        self._left = min(self._burst, self._left + (now - self._at) * self._rate)
+        self._at = now
+        if self._left < 1.0:
+            return False
+        self._left -= 1.0
+        return True
+
+    def give_back(self) -> None:
+        """Undo a taking."""
+        self._left = min(self._burst, self._left + 1.0)
+
+    def wait(self) -> float:
+        """Return the seconds until the next one can be taken."""
+        missing = 1.0 - min(self._burst, self._left + (self._now() - self._at) * self._rate)
+        return max(0.0, missing / self._rate)
+
 
 # --- Where the frames begin in what a client sends, and those that are a short message as they stand; no I/O
 # Frames are those of RFC 6455, section 5.2.
@@ -202,7 +234,7 @@ class ClientConnection(ServerConnection):
         self._limits = door.limits
         self._stuck: asyncio.TimerHandle | None = None
         self._silence: asyncio.TimerHandle | None = None
-        self._heard_at = 0.0
+        self._last_received_at = 0.0
         self._expelled = False
         self.is_gone = False
         """Whether the connection has ended; nobody gets a place after that."""
@@ -268,9 +300,9 @@ class ClientConnection(ServerConnection):
         """Take in bytes: short messages are dealt with at once where that is possible, the others queued."""
         start = self._deal_with(data)
         if start < len(data):
-            rest, asked = data[start:] if start else data, self.request is not None
+            rest, is_upgraded = data[start:] if start else data, self.request is not None
             super().data_received(rest)
-            if not asked and self.request is not None:
+            if not is_upgraded and self.request is not None:
                 self.short_cut.begin(rest)
             else:
                 self.short_cut.pass_over(rest)
@@ -280,7 +312,7 @@ class ClientConnection(ServerConnection):
             return 0
         start = self.short_cut.handle_messages(data, self._messages)
         if start:
-            self._heard_at = self.loop.time()
+            self._last_received_at = self.loop.time()
         return start
 
     async def __aiter__(self) -> AsyncIterator[Any]:
@@ -288,7 +320,7 @@ class ClientConnection(ServerConnection):
         async for frame in super().__aiter__():
             if self._expelled:
                 return
-            self._heard_at = self.loop.time()
+            self._last_received_at = self.loop.time()
             if self._messages.consume():
                 yield frame
             elif self._patience.consume():
@@ -322,9 +354,9 @@ class ClientConnection(ServerConnection):
         super().process_event(event)
 
     @property
-    def has_spoken(self) -> bool:
+    def has_sent(self) -> bool:
         """Whether a message has come since the connection was let in."""
-        return self._heard_at > 0
+        return self._last_received_at > 0
 
     @property
     def who(self) -> str:
@@ -349,9 +381,9 @@ class ClientConnection(ServerConnection):
 
     def _check_silence(self) -> None:
         limits, robot = self._limits, self.identity is not None and self.identity.kind is TokenKind.ROBOT
-        if self._heard_at and not robot:
+        if self._last_received_at and not robot:
             return
-        due = self._heard_at + limits.silent_s if self._heard_at else self.loop.time()
+        due = self._last_received_at + limits.silent_s if self._last_received_at else self.loop.time()
         if due <= self.loop.time():
             log.warning("%s from %s said nothing for too long; closed", self.who, self.address)
             self._ending = self.loop.create_task(

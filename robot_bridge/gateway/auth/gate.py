@@ -14,15 +14,14 @@ from websockets.http11 import Request, Response
 
 from ...core.clock import SYSTEM_CLOCK, Clock
 from ...core.errors import StoreError, counted
-from ...core.messages import Role
+from ...core.messages.operator_requests import Role
 from ...core.sites.settings_tables import LimitSettings
 from ...protocol.credentials import AccessError
 from ..storage.database import Database
 from . import audit
 from .accounts import AccountCache, TokenKind, new_id, token_in
 from .audit import AuditJournal, SessionRow
-from .client_connection import ClientConnection, Identity
-from .rate_limit import RateLimit
+from .client_connection import ClientConnection, Identity, RateLimit
 
 # --- Who is connected now, how many there are of each sort, and how a connection is ended ---
 
@@ -107,7 +106,7 @@ class ConnectionRegistry:
             # A fleet larger than the limit comes back in one moment: robots would end one another for ever.
             return False
         for visitor, identity in self._inside.items():
-            if not visitor.has_spoken and kind in _kinds(visitor, identity):
+            if not visitor.has_sent and kind in _kinds(visitor, identity):
                 self.end(visitor, CloseCode.TRY_AGAIN_LATER, "it said nothing, and others need its place")
                 return True
         return False
@@ -282,7 +281,7 @@ class AuthGate:
         grant = self.book.grant(visitor.identity.token)
         return (grant.role if grant is not None else None) or Role.VIEWER
 
-    def spoken_for(self, visitor: ClientConnection) -> tuple[str, ...]:
+    def robots_of_link(self, visitor: ClientConnection) -> tuple[str, ...]:
         """Return the patterns of the robots that a link may speak for now."""
         assert visitor.identity is not None
         if visitor.identity.token is None:

@@ -167,12 +167,12 @@ def _allow_connections(limits: LimitSettings) -> None:
     """Let this process hold so many connections beside its files, as far as the system allows."""
     soft, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
     needed = files_needed(limits)
-    wanted = needed + ONE_ADDRESS
+    limit = needed + ONE_ADDRESS
     if hard != resource.RLIM_INFINITY:
-        wanted = min(wanted, hard)
-    if soft < wanted:
-        resource.setrlimit(resource.RLIMIT_NOFILE, (wanted, hard))
-        soft = wanted
+        limit = min(limit, hard)
+    if soft < limit:
+        resource.setrlimit(resource.RLIMIT_NOFILE, (limit, hard))
+        soft = limit
     if soft < needed:
         log.warning("the system allows %d open files, fewer than the limits of the site take", soft)
 

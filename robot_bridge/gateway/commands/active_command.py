@@ -8,18 +8,9 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from ...core.geometry import Polyline
-from ...core.messages import (
-    Abort,
-    Command,
-    CommandReport,
-    CommandState,
-    CommandStep,
-    OpAck,
-    SendPos,
-    SetPath,
-    SetPosEnd,
-    to_json,
-)
+from ...core.messages.commands import CommandReport, CommandState, CommandStep
+from ...core.messages.json_values import to_json
+from ...core.messages.robots import Abort, Command, OpAck, SendPos, SetPath, SetPosEnd
 from ..model.arrival import Arrival, PathArrival, arrival_judge
 from ..model.command_states import advance, may_become, note
 

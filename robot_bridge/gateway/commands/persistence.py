@@ -11,7 +11,8 @@ from typing import Any, NamedTuple, Protocol, TypeVar
 from sqlalchemy import Connection
 
 from ...core.errors import RefusedError, UncertainError
-from ...core.messages import Abort, Answer, Command, CommandReport, SetPosIni
+from ...core.messages.commands import CommandReport
+from ...core.messages.robots import Abort, Answer, Command, SetPosIni
 from ...protocol.codec import decode_answer
 from ..model.command_states import is_open, note
 from ..storage.database import Database

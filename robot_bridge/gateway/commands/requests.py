@@ -10,21 +10,18 @@ from dataclasses import replace
 
 from ...core.errors import DataRefusedError, RefusedError, StoreError, listed_names
 from ...core.logs import log_and_continue
-from ...core.messages import (
-    COMMANDS,
-    Abort,
+from ...core.messages.commands import (
     AbortAll,
     AbortTask,
     CommandReport,
+    Commands,
     GetCommands,
-    MessageError,
     Send,
-    SetPath,
     SetPositions,
-    check_crs,
-    to_json,
 )
-from ...core.messages.commands import Commands
+from ...core.messages.json_values import to_json
+from ...core.messages.robots import COMMANDS, Abort, SetPath
+from ...core.messages.validation import MessageError, check_crs
 from ...protocol.codec import decode_command
 from ..model.request_handlers import handles
 from ..model.robots import Robots
@@ -69,8 +66,8 @@ class CommandRequests:
             order = await self._order(send.command, send.robot, send.op, send.params, operator)
         except RefusedError as refusal:
             return await self._issued_before(send.command, refusal)
-        told = [f"override: {send.override}" if send.override else None, send.reason]
-        reason = "; ".join(text for text in told if text) or None
+        remarks = [f"override: {send.override}" if send.override else None, send.reason]
+        reason = "; ".join(text for text in remarks if text) or None
         fenced = send.override is None
         order = replace(order, reason=reason, expires_in=send.expires_in, fenced=fenced)
         issue = self._issue_aborts if isinstance(order.message, Abort) else self._book.issue
@@ -128,13 +125,13 @@ class CommandRequests:
         try:
             return await storing
         except StoreError as error:
-            whom = (
+            recipients = (
                 f"sent to {listed_names(sent)} over the open connection all the same"
                 if sent
                 else "sent to no robot"
             )
             then = "" if isinstance(error, DataRefusedError) else f"; {STORED_LATER}"
-            raise StoreError(f"{error}. The Abort is not stored; it was {whom}{then}") from error
+            raise StoreError(f"{error}. The Abort is not stored; it was {recipients}{then}") from error
 
     def _send_unstored(self, order: CommandOrder) -> bool:
         is_sent = False

@@ -13,7 +13,8 @@ from sqlalchemy import Connection
 from ...core.clock import Clock
 from ...core.errors import DataRefusedError, RefusedError, StoreError
 from ...core.logs import log_and_continue
-from ...core.messages import Answer, CommandReport, CommandState, OpAck, SendPos, SetPath
+from ...core.messages.commands import CommandReport, CommandState
+from ...core.messages.robots import Answer, OpAck, SendPos, SetPath
 from ..model.arrival import PathArrival, arrival_judge
 from ..model.command_states import is_open
 from ..model.events import CommandChanged, EventBus, OutboxChanged
@@ -128,9 +129,9 @@ class CommandService(CommandReader):
 
     async def delivered(self, sa_ids: Iterable[int]) -> None:
         """Note that the messages ``sa_ids`` have reached their robots."""
-        wanted = [id for id in sa_ids if id in self._open.queued]
-        if wanted:
-            await to_its_end(self._delivered(wanted))
+        queued = [id for id in sa_ids if id in self._open.queued]
+        if queued:
+            await to_its_end(self._delivered(queued))
 
     async def acknowledged(self, robot: str, ack: OpAck) -> float | None:
         """Note a robot's OpAck: it took the message on, or (``ok`` false) will not do it, or gave it up.
@@ -156,7 +157,7 @@ class CommandService(CommandReader):
 
     def with_open_commands(self, poses: Iterable[RobotPose]) -> list[RobotPose]:
         """Return the poses of robots that have open commands."""
-        return [told for told in poses if told[0] in self._open.robots]
+        return [pose for pose in poses if pose[0] in self._open.robots]
 
     def await_again(self, robot: str, sa_id: int) -> None:
         """Judge the command with this message only by positions that come after its acknowledgement.

@@ -9,7 +9,9 @@ from typing import Protocol, runtime_checkable
 
 from ...core.errors import RefusedError
 from ...core.geometry import Polyline
-from ...core.messages import Ability, Abort, Command, CommandState, SetPath, SetPosEnd
+from ...core.messages.commands import CommandState
+from ...core.messages.robots import Abort, Command, SetPath, SetPosEnd
+from ...core.messages.safety import Ability
 from ..model.robots import Robots
 from ..site.places import ServedSite, keepout_refusals
 from ..storage.repositories.closures import HoldRow
@@ -204,11 +206,11 @@ class CommandValidator(CommandReader):
         """Raise RefusedError where a robot must not be told the ``way`` to its ``task``, or has another."""
         self._rules.check(way)
         if not self.is_carrying_out(robot, task):
-            raise _told_otherwise(robot)
+            raise _ordered_otherwise(robot)
 
     def _check_task(self, order: CommandOrder) -> None:
         if order.instead_of is not None and not self._is_open_to(order.robot, order.instead_of):
-            raise _told_otherwise(order.robot)
+            raise _ordered_otherwise(order.robot)
         if order.aborts is not None and order.aborts != self.busy_with(order.robot):
             raise RefusedError(
                 f"command {order.aborts} is no longer what robot {order.robot!r} is doing; look at the log, "
@@ -238,5 +240,5 @@ class CommandValidator(CommandReader):
         return self.is_carrying_out(robot, task)
 
 
-def _told_otherwise(robot: str) -> RefusedError:
+def _ordered_otherwise(robot: str) -> RefusedError:
     return RefusedError(f"robot {robot!r} has been told otherwise in the meantime")

@@ -15,15 +15,10 @@ from sqlalchemy import Connection
 from ...core.clock import Clock
 from ...core.errors import RefusedError, StoreError
 from ...core.logs import log_and_continue
-from ...core.messages import (
-    Abort,
-    ClearEmergencyStop,
-    CommandReport,
-    CommandState,
-    EmergencyReport,
-    EmergencyStop,
-    to_json,
-)
+from ...core.messages.commands import CommandReport, CommandState
+from ...core.messages.json_values import to_json
+from ...core.messages.robots import Abort
+from ...core.messages.safety import ClearEmergencyStop, EmergencyReport, EmergencyStop
 from ...core.messages.validation import LONGEST_OPERATOR, one_line
 from ..commands.active_command import CommandOrder
 from ..commands.service import CommandService
@@ -66,7 +61,7 @@ class StopAnswers:
         """Count from nought: these robots are told."""
         self._answers = dict.fromkeys(robots, StopAnswer.NONE)
 
-    def told(self, robot: str) -> None:
+    def note_sent(self, robot: str) -> None:
         """Count one robot from nought: it is new, or started again."""
         self._answers[robot] = StopAnswer.NONE
 
@@ -95,8 +90,8 @@ class StopAnswers:
             "refused": self._names(StopAnswer.REFUSED),
         }
 
-    def _names(self, wanted: StopAnswer) -> list[str]:
-        return sorted(robot for robot, answer in self._answers.items() if answer is wanted)[:MOST_NAMES]
+    def _names(self, kind: StopAnswer) -> list[str]:
+        return sorted(robot for robot, answer in self._answers.items() if answer is kind)[:MOST_NAMES]
 
     def _raise(self, robot: str, answer: StopAnswer) -> bool:
         if answer <= self._answers.get(robot, StopAnswer.NONE):
@@ -280,7 +275,7 @@ class EmergencyStops:
         stop = self._stop
         if stop is None or not self.in_force:
             return
-        self._tally.told(robot)
+        self._tally.note_sent(robot)
         if not self._book.awaits_stop(robot):
             order = CommandOrder(str(uuid.uuid4()), robot, Abort(emergency=True), stop.by, stop.reason)
             await self._book.issue([order])

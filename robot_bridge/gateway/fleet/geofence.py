@@ -15,8 +15,11 @@ from numpy.typing import NDArray
 
 from ...core.clock import Clock
 from ...core.errors import BridgeError, RefusedError
-from ...core.messages import AbortTask, MessageError, PauseRobot, RobotState, to_json
-from ...core.messages.safety import FenceAlarm, FenceKind, Geofence, StopAction, StopOutcome
+from ...core.messages.commands import AbortTask
+from ...core.messages.json_values import to_json
+from ...core.messages.queues import PauseRobot
+from ...core.messages.safety import FenceAlarm, FenceKind, Geofence, RobotState, StopAction, StopOutcome
+from ...core.messages.validation import MessageError
 from ...core.sites.fences import FencedAreas, Fences
 from ...core.sites.frame import Points
 from ...core.sites.settings_tables import GeofenceSettings
@@ -200,8 +203,8 @@ log = logging.getLogger(__name__)
 
 OPERATOR = "geofence"
 """Who stands in the log as the one who stopped a robot."""
-TOLD_EVERY_S = 1.0
-TOLD_UNCHANGED_EVERY_S = 3.0
+REPORT_EVERY_S = 1.0
+UNCHANGED_EVERY_S = 3.0
 """Operators who have connected since then hear of it, and that somebody watches at all."""
 RETRY_AFTER_S = 1.0
 MOST_ALARMS = 300
@@ -249,7 +252,7 @@ class GeofenceWatch:
         self._seen = -1
         """The revision of the robots that were judged."""
         self._acting: set[asyncio.Task[None]] = set()
-        self._told: tuple[float, Geofence | None] = (-TOLD_UNCHANGED_EVERY_S, None)
+        self._last_report: tuple[float, Geofence | None] = (-UNCHANGED_EVERY_S, None)
 
     async def watch(self) -> None:
         """Judge the robots that have moved since the last call, act on what that shows, and tell of it."""
@@ -372,14 +375,14 @@ class GeofenceWatch:
             self._note(OPERATOR, stay.action, done=done, subject=stay.robot, detail=detail)
 
     def _tell(self) -> None:
-        told_at, told = self._told
-        waited = time.monotonic() - told_at
-        if waited < TOLD_EVERY_S and told is not None and len(self._stays) == len(told.alarms) + told.more:
+        reported_at, last = self._last_report
+        waited = time.monotonic() - reported_at
+        if waited < REPORT_EVERY_S and last is not None and len(self._stays) == len(last.alarms) + last.more:
             return
         report = self.report()
-        changed = told is None or _without_time(report) != _without_time(told)
-        if changed or waited >= TOLD_UNCHANGED_EVERY_S:
-            self._told = time.monotonic(), report
+        changed = last is None or _without_time(report) != _without_time(last)
+        if changed or waited >= UNCHANGED_EVERY_S:
+            self._last_report = time.monotonic(), report
             self._listeners.announce("geofence", "geofence", to_json(report))
 
     def _alarm(self, stay: Stay) -> FenceAlarm:

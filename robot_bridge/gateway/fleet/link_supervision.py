@@ -18,7 +18,6 @@ import msgspec
 
 from ...core.clock import SYSTEM_CLOCK, Clock
 from ...core.errors import RefusedError
-from ...core.messages import to_json
 from ...core.messages.administration import (
     LinkReport,
     Links,
@@ -28,6 +27,7 @@ from ...core.messages.administration import (
     Suspension,
     Suspensions,
 )
+from ...core.messages.json_values import to_json
 from ...core.messages.links import LinkStatus
 from ...core.sites.settings_tables import LinkOptions
 from ..model.events import Listeners
@@ -91,7 +91,7 @@ class LinkWatch:
         self._listeners = listeners
         self._clock = clock
         self._known: dict[str, _Known] = {}
-        self._told = Links()
+        self._last_report = Links()
 
     def update(self, connected: Iterable[ConnectedLink], processes: Iterable[LinkProcess] = ()) -> None:
         """Take note of how things are, and tell operators what has changed."""
@@ -106,8 +106,8 @@ class LinkWatch:
             known.kind = link.kind or known.kind
             known.counts = {} if link.status is None else link.status.counts
         report = self.report()
-        if report != self._told:
-            self._told = report
+        if report != self._last_report:
+            self._last_report = report
             self._listeners.announce("links", "", to_json(report))
 
     def introduce(self, link: str, kind: str, ask: Ask) -> None:

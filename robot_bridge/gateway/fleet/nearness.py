@@ -13,8 +13,9 @@ from typing import NamedTuple
 import numpy as np
 
 from ...core.clock import Clock
-from ...core.messages import RobotState, SendPos, to_json
-from ...core.messages.safety import Nearness, NearnessAlarm
+from ...core.messages.json_values import to_json
+from ...core.messages.robots import SendPos
+from ...core.messages.safety import Nearness, NearnessAlarm, RobotState
 from ..model.events import Listeners
 from ..model.robots import Robot, Robots
 from ..site.places import ServedSite
@@ -115,7 +116,7 @@ def _near_now(
 
 log = logging.getLogger(__name__)
 
-TOLD_EVERY_S = 1.0
+REPORT_EVERY_S = 1.0
 MOST_ALARMS = 300
 SLOWEST_MS = 0.3
 """m/s below which somebody stands: receivers report some decimetres a second of who does not move."""
@@ -123,7 +124,7 @@ FASTEST_MS = 40.0
 """m/s that is assumed at most when it is sorted out who can meet at all."""
 REPLAY = "replay"
 """The kind of links whose robots were there once, and can be near to nobody."""
-HEARD = (RobotState.FRESH, RobotState.STALE)
+CONNECTED = (RobotState.FRESH, RobotState.STALE)
 
 
 class NearnessWatch:
@@ -151,7 +152,7 @@ class NearnessWatch:
         """Whether they are near now, and since when that or the prediction holds."""
         self._found: list[Meeting] = []
         self._fault: str | None = None
-        self._told: tuple[float, bool] = (-math.inf, False)
+        self._last_report: tuple[float, bool] = (-math.inf, False)
         """When operators were told last, and whether that was of something."""
 
     async def watch(self) -> None:
@@ -205,7 +206,7 @@ class NearnessWatch:
     def _is_seen(self, robot: Robot) -> bool:
         """Tell whether it is only seen, and heard now: where somebody is who is lost is not known."""
         replayed = self._links.kind_of(robot.link) == REPLAY
-        return robot.abilities == "" and robot.state in HEARD and not replayed
+        return robot.abilities == "" and robot.state in CONNECTED and not replayed
 
     def _note(self, found: list[Meeting]) -> None:
         now = self._clock.time()
@@ -219,10 +220,10 @@ class NearnessWatch:
         self._since, self._found = since, found
 
     def _tell(self) -> None:
-        told_at, told = self._told
+        reported_at, was_near = self._last_report
         something = bool(self._found or self._fault)
-        if something is not told or (something and time.monotonic() - told_at >= TOLD_EVERY_S):
-            self._told = time.monotonic(), something
+        if something is not was_near or (something and time.monotonic() - reported_at >= REPORT_EVERY_S):
+            self._last_report = time.monotonic(), something
             self._listeners.announce("nearness", "nearness", to_json(self.report()))
 
 

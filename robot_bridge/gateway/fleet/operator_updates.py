@@ -21,26 +21,28 @@ import numpy.typing as npt
 from ...core.clock import Clock
 from ...core.errors import RefusedError, UncertainError
 from ...core.images import check_size, media_type_of
-from ...core.messages import (
+from ...core.messages.json_values import to_json
+from ...core.messages.positions import (
+    PLACE_COLUMNS,
     POSITION_ALWAYS,
     POSITION_TEXTS,
-    GetImage,
-    GetObservations,
     GetPositions,
-    MessageError,
-    ObservationReport,
-    ObservationState,
-    Observed,
     PositionColumns,
     PositionForm,
-    ReviewObservation,
+    Positions,
     RobotReport,
-    SendImage,
-    SetObject,
-    to_json,
 )
-from ...core.messages.positions import PLACE_COLUMNS, Positions
-from ...core.messages.records import Image, Observations
+from ...core.messages.records import (
+    GetImage,
+    GetObservations,
+    Image,
+    ObservationReport,
+    Observations,
+    ObservationState,
+    ReviewObservation,
+)
+from ...core.messages.robots import Observed, SendImage, SetObject
+from ...core.messages.validation import MessageError
 from ...core.position_frame import METHOD, PLACE_VALUE, POSITION_VALUE, packed_frame
 from ...core.sites.settings import SiteSettings
 from ..model.events import EventBus, ObservationChanged
@@ -102,7 +104,7 @@ class ObservationService:
             async with self._lock:
                 await self.restore()
         for robot, source in list(self._unsure):
-            found = await self._database.run(records.find_told, robot, source)
+            found = await self._database.run(records.find_reported, robot, source)
             self._unsure.discard((robot, source))
             self._tell(found)
         for id in list(self._untold):
@@ -110,27 +112,27 @@ class ObservationService:
             self._untold.discard(id)
             self._tell(found)
 
-    async def add(self, robot: Robot, link: str, told: Observed, id: int | None) -> ObservationReport:
+    async def add(self, robot: Robot, link: str, observed: Observed, id: int | None) -> ObservationReport:
         """Store what a robot told by its message ``id``; what it told before is there already.
 
         :raises RefusedError: when an object is not on the site, an image too large, or too much waits;
             MessageError when an image is none.
         """
-        if isinstance(told, SetObject):
-            check_places(self._site, [(told.x, told.y)])
+        if isinstance(observed, SetObject):
+            check_places(self._site, [(observed.x, observed.y)])
         else:
-            self.check_size(len(told.image))
-        new = _new(robot.name, told, _occasion(robot, link, told, id), self._clock.time())
+            self.check_size(len(observed.image))
+        new = _new(robot.name, observed, _occasion(robot, link, observed, id), self._clock.time())
         most_pending = self._site.settings.observations.most_pending
-        told_before = new.robot, new.source
+        key = new.robot, new.source
         try:
             report, is_new = await self._database.run(records.add_observations, new, most_pending)
         except UncertainError:
-            self._unsure.add(told_before)
+            self._unsure.add(key)
             raise
-        if is_new or told_before in self._unsure:
+        if is_new or key in self._unsure:
             self._tell(report)
-        self._unsure.discard(told_before)
+        self._unsure.discard(key)
         return report
 
     def check_size(self, size: int) -> None:
@@ -138,9 +140,9 @@ class ObservationService:
         check_size(size, self._site.settings.observations.largest_image_bytes)
 
     @handles(GetObservations)
-    async def newest(self, wanted: GetObservations) -> Observations:
+    async def newest(self, query: GetObservations) -> Observations:
         """Return observations, newest first."""
-        return Observations(await self._database.run(records.newest_observations, wanted))
+        return Observations(await self._database.run(records.newest_observations, query))
 
     @handles(GetImage)
     async def image(self, request: GetImage) -> Encoded[Image]:
@@ -186,51 +188,53 @@ class ObservationService:
             self._events.publish(ObservationChanged(report))
 
 
-def _new(robot: str, told: Observed, occasion: str, now: float) -> NewObservation:
-    is_image = isinstance(told, SendImage)
-    said = () if is_image else ("label", "height", "radius", "doubts")
-    details = {name: getattr(told, name) for name in said}
+def _new(robot: str, observed: Observed, occasion: str, now: float) -> NewObservation:
+    is_image = isinstance(observed, SendImage)
+    fields = () if is_image else ("label", "height", "radius", "doubts")
+    details = {name: getattr(observed, name) for name in fields}
     return NewObservation(
         robot=robot,
-        source=_source(told, occasion),
-        kind=type(told).__name__,
-        object=told.object,
-        x=told.x,
-        y=told.y,
+        source=_source(observed, occasion),
+        kind=type(observed).__name__,
+        object=observed.object,
+        x=observed.x,
+        y=observed.y,
         details={name: value for name, value in details.items() if value is not None},
-        seen_at=told.t,
+        seen_at=observed.t,
         received_at=now,
-        image=told.image if isinstance(told, SendImage) else None,
-        media_type=media_type_of(told.image, told.media_type) if isinstance(told, SendImage) else None,
+        image=observed.image if isinstance(observed, SendImage) else None,
+        media_type=media_type_of(observed.image, observed.media_type)
+        if isinstance(observed, SendImage)
+        else None,
     )
 
 
-def _occasion(robot: Robot, link: str, told: Observed, id: int | None) -> str:
+def _occasion(robot: Robot, link: str, observed: Observed, id: int | None) -> str:
     """Return on what occasion a robot told something: its own source, else the message that it came with."""
-    if told.source is None and link == "sql":
+    if observed.source is None and link == "sql":
         return f"row {id}"
     # The ids of calls, and most sources, begin again with each run of a robot.
-    return f"run {robot.magic}" if told.source is not None else f"run {robot.magic} call {id}"
+    return f"run {robot.magic}" if observed.source is not None else f"run {robot.magic} call {id}"
 
 
-def _source(told: Observed, occasion: str) -> str:
+def _source(observed: Observed, occasion: str) -> str:
     """Return what two tellings have in common only if they are one.
 
     The content counts: a robot that uses a source or a call's id once more for something else loses nothing.
     """
-    said: dict[str, Any] = {"op": type(told).__name__, "occasion": occasion, **to_json(told)}
-    if told.source is not None:
-        said.pop("t", None)
-    content = hashlib.sha256(json.dumps(said, sort_keys=True).encode())
-    content.update(told.image if isinstance(told, SendImage) else b"")
+    identity: dict[str, Any] = {"op": type(observed).__name__, "occasion": occasion, **to_json(observed)}
+    if observed.source is not None:
+        identity.pop("t", None)
+    content = hashlib.sha256(json.dumps(identity, sort_keys=True).encode())
+    content.update(observed.image if isinstance(observed, SendImage) else b"")
     return content.hexdigest()
 
 
 def _says_the_same(report: ObservationReport, review: ReviewObservation, state: ObservationState) -> bool:
     if report.state is not state:
         return False
-    said = {name: getattr(review, name) for name in ("semantics", "height", "radius")}
-    return all(value is None or value == getattr(report, name) for name, value in said.items())
+    values = {name: getattr(review, name) for name in ("semantics", "height", "radius")}
+    return all(value is None or value == getattr(report, name) for name, value in values.items())
 
 
 def _check_review(report: ObservationReport, review: ReviewObservation) -> None:
@@ -286,10 +290,10 @@ def position_table(
         return {name: np.empty(0) for name in POSITION_ALWAYS}, []
     facts = zip(*[_ROBOT(robot) for robot in robots], strict=True)
     poses = zip(*[_NOWHERE if robot.pose is None else _POSE(robot.pose) for robot in robots], strict=True)
-    told = {**dict(zip(_OF_A_ROBOT, facts, strict=True)), **dict(zip(_OF_A_POSE, poses, strict=True))}
+    by_column = {**dict(zip(_OF_A_ROBOT, facts, strict=True)), **dict(zip(_OF_A_POSE, poses, strict=True))}
     words: dict[str | None, float] = {None: float("nan")}
     columns = {}
-    for name, values in told.items():
+    for name, values in by_column.items():
         if values.count(None) == len(values):
             continue
         columns[name] = _places(values, words) if name in POSITION_TEXTS else np.array(values, np.float64)
@@ -357,10 +361,10 @@ def positions(rows: Sequence[Any], removed: Sequence[str] = (), *, everything: b
 
     With ``everything`` they are all that there are; else ``removed`` are gone since what was told last.
     """
-    told: dict[str, Any] = {"t": round(time.time(), 3), "robots": rows}
+    message: dict[str, Any] = {"t": round(time.time(), 3), "robots": rows}
     if removed:
-        told["removed"] = removed
-    return {**told, "everything": True} if everything else told
+        message["removed"] = removed
+    return {**message, "everything": True} if everything else message
 
 
 class Snapshot(NamedTuple):

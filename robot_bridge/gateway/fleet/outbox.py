@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 from sqlalchemy import Connection
 
-from ...core.messages import Answer, OpAck, SetMap, Start
+from ...core.messages.robots import Answer, OpAck, SetMap, Start
 from ..commands.service import CommandService
 from ..model.robots import Robots
 from ..storage.database import Database

@@ -10,7 +10,8 @@ from typing import Protocol
 
 from ...core.clock import Clock
 from ...core.errors import RefusedError, StoreError, listed_names
-from ...core.messages import Answer, KeptRobot, OpAck, Ready, RemoveRobots, RobotsRemoved, SetMap, Start
+from ...core.messages.administration import KeptRobot, RemoveRobots, RobotsRemoved
+from ...core.messages.robots import Answer, OpAck, Ready, SetMap, Start
 from ..commands.service import CommandService
 from ..model.request_handlers import handles
 from ..model.robots import AWAY, Robot, Robots

@@ -9,23 +9,21 @@ from typing import NamedTuple, Protocol
 
 from ...core.errors import RefusedError, StoreError
 from ...core.logs import log_unforeseen
-from ...core.messages import (
+from ...core.messages.commands import CommandState, SendMap
+from ...core.messages.operator_requests import Done
+from ...core.messages.roads import GetSurface, SetSurface
+from ...core.messages.robots import (
     Answer,
-    CommandState,
     GetMap,
     GetPath,
     GetPosIni,
-    GetSurface,
     Question,
-    RobotState,
-    SendMap,
     SetMap,
     SetPath,
     SetPosEnd,
     SetPosIni,
-    SetSurface,
 )
-from ...core.messages.operator_requests import Done
+from ...core.messages.safety import RobotState
 from ...core.roads.centrelines import Surface
 from ...core.robotmap.model import Border, EncodedMap
 from ...protocol.codec import decode_answer
@@ -110,7 +108,7 @@ class RobotAnswers:
             raise RefusedError(f"GetPath: it is not known where robot {robot!r} is; send SendPos first")
         message, driven = task
         left = await asyncio.to_thread(remaining_path, message, (pose.x, pose.y), driven, self._planner)
-        self._ways.told(robot, message, left.message)
+        self._ways.note_reported(robot, message, left.message)
         return RobotReply(*left)
 
     async def _surfaces(self, question: GetSurface) -> SetSurface:
@@ -195,7 +193,7 @@ class MapSender:
             self._mailboxes.parts.put_nowait(robot)
 
     @handles(SendMap)
-    async def send_asked(self, request: SendMap) -> Done:
+    async def send_requested(self, request: SendMap) -> Done:
         """Return when the map for a robot is stored; it replaces one that still waits for it.
 
         :raises RefusedError: for a robot that is not known, or is not there.

@@ -15,20 +15,20 @@ from typing import Any
 from ...core.clock import SYSTEM_CLOCK, Clock
 from ...core.errors import RefusedError
 from ...core.logs import RepeatedLines
-from ...core.messages import (
+from ...core.messages.commands import CommandState
+from ...core.messages.json_values import to_json
+from ...core.messages.positions import RobotReport
+from ...core.messages.robots import (
     Answer,
-    CommandState,
     GetPath,
     Observed,
     OpAck,
     Question,
     Ready,
     Request,
-    RobotReport,
     SendGPS,
     SendPos,
     Stopped,
-    to_json,
 )
 from ...core.messages.validation import LONGEST_REFUSAL, one_line
 from ..commands.requests import CommandRequests
@@ -237,7 +237,7 @@ class Fleet:
             return RequestOutcome(robot)
         # Only driving sets a robot that said Stopped in motion.
         stopped = isinstance(request, Stopped) or self.robots.get(robot).ended_in_order
-        known = self.robots.heard(robot, link, now, stopped=stopped, waited=waited)
+        known = self.robots.note_received(robot, link, now, stopped=stopped, waited=waited)
         self._saving.touch(robot)
         answer, note = await self._deal_with(known, link, request, id)
         return RequestOutcome(

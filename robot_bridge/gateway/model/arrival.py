@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...core.geometry import Polyline
-from ...core.messages import Command, SendPos, SetPath, SetPosEnd, SetPosIni, path_to_end
+from ...core.messages.robots import Command, SendPos, SetPath, SetPosEnd, SetPosIni, path_to_end
 
 STANDING_SPEED = 0.05
 """m/s below which a robot counts as standing."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 
-from ...core.messages import CommandReport, CommandState, CommandStep
+from ...core.messages.commands import CommandReport, CommandState, CommandStep
 
 _ENDS = {
     CommandState.REACHED,

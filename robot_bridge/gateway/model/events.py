@@ -8,7 +8,8 @@ from dataclasses import dataclass
 from typing import Any, Protocol, TypeVar
 
 from ...core.logs import log_and_continue
-from ...core.messages import CommandReport, ObservationReport
+from ...core.messages.commands import CommandReport
+from ...core.messages.records import ObservationReport
 
 log = logging.getLogger(__name__)
 

@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 from typing import Literal
 
-from ...core.messages import SendGPS, SendPos
+from ...core.messages.robots import SendGPS, SendPos
 from ...core.messages.validation import SPEED
 from ...core.sites.settings import SettingsSource, SiteBounds
 from .robots import AcceptedArea, Robot

@@ -7,7 +7,8 @@ from collections.abc import Callable, Collection, Coroutine
 from dataclasses import dataclass
 from typing import Any, Generic, ParamSpec, TypeVar, overload
 
-from ...core.messages import DESK_REQUESTS, DeskRequest, to_json
+from ...core.messages.json_values import to_json
+from ...core.messages.operator_requests import DESK_REQUESTS, DeskRequest
 
 P = ParamSpec("P")
 R = TypeVar("R")

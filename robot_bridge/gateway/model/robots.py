@@ -7,17 +7,10 @@ from dataclasses import dataclass, field, replace
 from typing import NamedTuple, TypeVar
 
 from ...core.errors import NotReadyError, OtherRunError, RefusedError
-from ...core.messages import (
-    Ability,
-    Command,
-    PathDeclaration,
-    RobotReport,
-    RobotState,
-    SendPos,
-    SetPath,
-    SetPosEnd,
-    check_robot_name,
-)
+from ...core.messages.positions import RobotReport
+from ...core.messages.robots import Command, SendPos, SetPath, SetPosEnd
+from ...core.messages.safety import Ability, PathDeclaration, RobotState
+from ...core.messages.validation import check_robot_name
 from .arrival import standing
 from .clocks import ClockStep, PoseOrder
 from .events import EventBus, RobotReturned
@@ -227,7 +220,7 @@ class Robots:
         robot.magic, robot.link, robot.located, robot.says_magic = magic, link, False, False
         robot.doubt = None
         robot.paths, robot.abilities = paths, abilities
-        self.heard(name, link, now)
+        self.note_received(name, link, now)
 
     def check_run(self, name: str, magic: int | None, link: str) -> None:
         """Raise OtherRunError for what the run of the robot that was let in did not say.
@@ -244,7 +237,7 @@ class Robots:
                 "account, or one that has not said Ready; it counts for nothing until its Ready is taken"
             )
 
-    def heard(
+    def note_received(
         self, name: str, link: str, now: float, *, stopped: bool = False, waited: bool = False
     ) -> Robot:
         """Note that a message of the robot came in; ``stopped`` when it said Stopped.
@@ -268,7 +261,7 @@ class Robots:
         """
         robot = self.get(name)
         standing_still = robot.ended_in_order and standing(pose)
-        self.heard(name, link, now, stopped=standing_still, waited=waited)
+        self.note_received(name, link, now, stopped=standing_still, waited=waited)
         if not robot.order.admit(pose.fix_t, pose.t, link, now):
             return False
         robot.pose, robot.doubt = pose, None
@@ -289,8 +282,8 @@ class Robots:
         moved, others = [], []
         revision, stale_after = self.revision, self._stale_after
         x_min, y_min, x_max, y_max, step = near
-        for told in poses:
-            name, pose = told
+        for report in poses:
+            name, pose = report
             robot = self._robots.get(name)
             if (
                 robot is None
@@ -307,14 +300,14 @@ class Robots:
                 or pose.magic is not None
                 or robot.link != link
             ):
-                others.append(told)
+                others.append(report)
                 continue
             robot.received_at = now
             revision += 1
             robot.revision = revision
             if robot.order.admit(pose.fix_t, pose.t, link, now):
                 robot.pose, robot.pose_at = pose, now
-                moved.append(told)
+                moved.append(report)
         self.revision = revision
         return moved, others
 
@@ -322,7 +315,7 @@ class Robots:
         """Note that the robot is heard, and that the place that it says cannot be."""
         robot = self.get(name)
         robot.doubt = doubt
-        self.heard(name, link, now, stopped=robot.ended_in_order, waited=waited)
+        self.note_received(name, link, now, stopped=robot.ended_in_order, waited=waited)
 
     def remove(self, name: str) -> None:
         """Know a robot no more, until it says Ready again."""

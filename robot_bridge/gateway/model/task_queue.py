@@ -8,8 +8,8 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 from ...core.errors import RefusedError
-from ...core.messages import QueueReport, QueueState, QueueTask, RobotState, TaskReport, TaskState
-from ...core.messages.queues import LONGEST_QUEUE
+from ...core.messages.queues import LONGEST_QUEUE, QueueReport, QueueState, QueueTask, TaskReport, TaskState
+from ...core.messages.safety import RobotState
 
 # --- A robot's queue as the gateway holds it, and the reports that operators are told of it ---
 
@@ -173,16 +173,16 @@ def replace_tasks(
     """
     waiting = {task.id: task for task in queue.waiting}
     current = queue.current
-    wanted: list[QueuedTask] = []
+    tasks_now: list[QueuedTask] = []
     for task in tasks:
         found = known.get(task.task)
         if task.task in waiting:
-            wanted.append(_renewed(waiting[task.task], task))
+            tasks_now.append(_renewed(waiting[task.task], task))
         elif found is None:
-            wanted.append(QueuedTask(task, by, at))
+            tasks_now.append(QueuedTask(task, by, at))
         elif found.robot != queue.robot or found.state not in (TaskState.CURRENT, TaskState.DONE):
             raise RefusedError(_used(task.task, found))
-    return _fitting(queue.with_tasks([*([current] if current else []), *wanted], edited=True))
+    return _fitting(queue.with_tasks([*([current] if current else []), *tasks_now], edited=True))
 
 
 def add_tasks(

@@ -68,7 +68,7 @@ class RetryState:
         self._name = name
         self._pause = FIRST_PAUSE
         self._unforeseen = 0
-        self._told = ("", 0.0)
+        self._last_logged = ("", 0.0)
 
     def record_failure(self, error: Exception, lasted: float) -> float:
         """Log ``error`` and return the seconds to wait; ``lasted`` is how long the work went well before it.
@@ -90,14 +90,14 @@ class RetryState:
         return pause
 
     def _tell(self, error: Exception, foreseen: bool, pause: float) -> None:
-        text, told_at = self._told
+        text, logged_at = self._last_logged
         now = time.monotonic()
         if not foreseen:
             name = type(error).__name__
             log.exception("%s: unexpected %s; trying again in %g s", self._name, name, pause)
-        elif str(error) != text or now - told_at > SAY_AGAIN_AFTER:
+        elif str(error) != text or now - logged_at > SAY_AGAIN_AFTER:
             log.error("%s: %s; trying again until it works", self._name, error)
-            self._told = (str(error), now)
+            self._last_logged = (str(error), now)
 
 
 class Steps:
@@ -105,7 +105,7 @@ class Steps:
 
     def __init__(self, name: str) -> None:
         self._name = name
-        self._told: dict[str, tuple[str, float]] = {}
+        self._last_logged: dict[str, tuple[str, float]] = {}
 
     async def run(self, steps: Mapping[str, Work]) -> None:
         """Do every step in its order; the log is told of each that fails, once a minute while it does.
@@ -119,7 +119,7 @@ class Steps:
         for step, work in steps.items():
             try:
                 await work()
-                self._told.pop(step, None)
+                self._last_logged.pop(step, None)
             except BridgeError as error:
                 failed.append(error)
                 if self._is_news(step, error):
@@ -132,10 +132,10 @@ class Steps:
 
     def _is_news(self, step: str, error: Exception) -> bool:
         text, now = f"{type(error).__name__} {error}", time.monotonic()
-        told, at = self._told.get(step, ("", 0.0))
-        if text == told and now - at <= SAY_AGAIN_AFTER:
+        last_text, at = self._last_logged.get(step, ("", 0.0))
+        if text == last_text and now - at <= SAY_AGAIN_AFTER:
             return False
-        self._told[step] = text, now
+        self._last_logged[step] = text, now
         return True
 
 

@@ -25,17 +25,16 @@ from ...core.assignment.progress import (
 )
 from ...core.assignment.solver import Objective
 from ...core.errors import AssignmentCancelledError, RefusedError
-from ...core.messages import (
-    ClosureReport,
+from ...core.messages.plans import (
     PlanProblemKind,
     PlanProblemReport,
     PlanReport,
     PlanState,
     PlanStopReport,
-    QueueTask,
     SubmitPlan,
-    TaskState,
 )
+from ...core.messages.queues import QueueTask, TaskState
+from ...core.messages.roads import ClosureReport
 from ..traffic.road_planning import RoadPlanner
 from ..traffic.site_roads import ClosedRoads
 
@@ -255,8 +254,8 @@ class Replanning:
         """Return the plan; raises AssignmentError, RoadsError and RefusedError when there is none."""
         seconds = self._ground.terms.seconds
         self._until = time.monotonic() + PATIENCE * seconds
-        wanted = Objective(self._plan.objective, time_limit_s=seconds)
-        return replan(self._plan, self._travel, self._situation, wanted, lambda share: self._goes_on())
+        objective = Objective(self._plan.objective, time_limit_s=seconds)
+        return replan(self._plan, self._travel, self._situation, objective, lambda share: self._goes_on())
 
     def _travel(self, job: AssignmentJob) -> Travel:
         terms, planner = self._ground.terms, self._ground.planner

@@ -13,7 +13,7 @@ from ...core.assignment.plan import ConePlan, plan_from_json, plan_to_json, stop
 from ...core.assignment.progress import ConeFacts, SentStop
 from ...core.errors import PlanFileError
 from ...core.json_decoder import DOCUMENT, decode_json
-from ...core.messages import PlanState
+from ...core.messages.plans import PlanState
 from ..storage.rows import readable
 from ..storage.schema import plan_stops, plans
 from .model import ENDS, DrivenPlan, PlanTerms

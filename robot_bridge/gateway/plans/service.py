@@ -25,25 +25,24 @@ from ...core.assignment.progress import (
 )
 from ...core.errors import AssignmentError, OutdatedError, PlanFileError, RefusedError, RoadsError, StoreError
 from ...core.logs import log_and_continue, log_unforeseen
-from ...core.messages import (
+from ...core.messages.json_values import to_json
+from ...core.messages.plans import (
+    MOST_CONES,
     ClearPlan,
     ConfirmReplan,
     DiscardReplan,
-    GetPlacements,
     GetPlans,
-    MessageError,
     PausePlan,
-    PauseQueue,
     PlanReport,
+    Plans,
     PlanState,
-    QueueState,
     Replan,
     ResumePlan,
     SubmitPlan,
-    TaskState,
-    to_json,
 )
-from ...core.messages.plans import MOST_CONES, Plans
+from ...core.messages.queues import PauseQueue, QueueState, TaskState
+from ...core.messages.records import GetPlacements
+from ...core.messages.validation import MessageError
 from ..model.events import Listeners
 from ..model.request_handlers import handles
 from ..model.robots import AWAY
@@ -354,8 +353,8 @@ class PlanService:
                 progress.done.add(progress.stops[task].stop.id)
             if queued_task.state in TASK_ENDS:
                 one.ended.add(task)
-        wanted = GetPlacements(plan=one.plan.name, limit=MOST_PLACED)
-        for report in await self._context.database.run(records.newest_placed_cones, wanted):
+        query = GetPlacements(plan=one.plan.name, limit=MOST_PLACED)
+        for report in await self._context.database.run(records.newest_placed_cones, query):
             progress.take_placement(report)
 
     def _closed_now(self) -> dict[str, Any]:

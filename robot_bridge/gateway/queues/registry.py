@@ -10,7 +10,9 @@ from typing import TypeVar
 
 from ...core.clock import Clock
 from ...core.errors import OutdatedError
-from ...core.messages import PlacementReport, QueueReport, to_json
+from ...core.messages.json_values import to_json
+from ...core.messages.queues import QueueReport
+from ...core.messages.records import PlacementReport
 from ..commands.service import CommandService
 from ..commands.validation import WaitingRobots
 from ..model.arrival import Planner, StraightPlanner
@@ -25,7 +27,7 @@ from ..storage.repositories.queues import ChangedError
 # --- The queues of the fleet as they are stored; each change is stored before it is told ---
 
 T = TypeVar("T")
-ENDED_TOLD = 10
+REPORTED_ENDED = 10
 """tasks that ended which a queue's report holds."""
 
 
@@ -55,7 +57,7 @@ class QueueRegistry:
         """Take up the queues that an earlier gateway left."""
         self._queues = await self._database.run(queues.load)
         for robot in self._queues:
-            self._ended[robot] = await self._database.run(queues.newest_ended, robot, ENDED_TOLD)
+            self._ended[robot] = await self._database.run(queues.newest_ended, robot, REPORTED_ENDED)
         for robot in self.names():
             self._events.publish(QueueChanged(robot))
 
@@ -114,9 +116,9 @@ class QueueRegistry:
     def accept(self, queue: Queue, ended: Sequence[QueuedTask] = ()) -> QueueReport:
         """Take over a queue that is stored, and tell operators of it."""
         self._queues[queue.robot] = queue
-        told = self._ended.setdefault(queue.robot, [])
-        told[:0] = reversed(ended)
-        del told[ENDED_TOLD:]
+        ended_tasks = self._ended.setdefault(queue.robot, [])
+        ended_tasks[:0] = reversed(ended)
+        del ended_tasks[REPORTED_ENDED:]
         self._events.publish(QueueChanged(queue.robot))
         return self.announce(queue.robot)
 
@@ -135,7 +137,7 @@ class QueueRegistry:
         self._doubtful.discard(robot)
         if robot in found and found[robot] != self._queues.get(robot):
             self._queues[robot] = found[robot]
-            self._ended[robot] = await self._database.run(queues.newest_ended, robot, ENDED_TOLD)
+            self._ended[robot] = await self._database.run(queues.newest_ended, robot, REPORTED_ENDED)
             self.announce(robot)
 
 

@@ -11,31 +11,31 @@ from functools import partial
 from sqlalchemy import Connection
 
 from ...core.errors import OutdatedError, RefusedError
-from ...core.messages import (
-    Abort,
+from ...core.messages.queues import (
     AddTasks,
-    CollectingTasks,
-    CollectLayout,
-    GetPlacements,
     GetQueue,
     MakeCurrent,
     MoveTask,
     PauseQueue,
     PauseRobot,
-    PlacementReport,
-    Placements,
     QueueReport,
+    Queues,
     QueueTask,
     RemoveTask,
     ResumeQueue,
-    SetPath,
-    SetPosEnd,
     SetQueue,
     TakeOver,
     TaskKind,
     TaskState,
 )
-from ...core.messages.queues import Queues
+from ...core.messages.records import (
+    CollectingTasks,
+    CollectLayout,
+    GetPlacements,
+    PlacementReport,
+    Placements,
+)
+from ...core.messages.robots import Abort, SetPath, SetPosEnd
 from ..commands.active_command import ActiveCommand, CommandOrder, because
 from ..commands.persistence import Also
 from ..model import task_queue
@@ -249,7 +249,7 @@ class QueueEditor:
             before = {name: self._book.get(name) for name in names}
             after = task_life.transfer_tasks(before, request, operator, self._clock.time())
             for share in request.shares:
-                paths = [wanted.path for wanted in share.tasks if wanted.path]
+                paths = [task.path for task in share.tasks if task.path]
                 for path in paths:
                     check_places(self._site, path)
                 if request.override is None:
@@ -402,18 +402,18 @@ class QueueEditor:
             waiting = {queued.id: queued.task for queued in queue.tasks}
             new = [leg for task in tasks if waiting.get(task.task) != task for leg in driven[task.task]]
             await check_keepouts(self._site, new)
-        wanted = {task.placement: task.task for task in tasks if task.placement is not None}
+        tasks_by_placement = {task.placement: task.task for task in tasks if task.placement is not None}
         for name, queue in ((n, self._book.get(n)) for n in self._book.names()):
             for queued in queue.tasks:
-                if queued.id in leaving or queued.task.placement not in wanted:
+                if queued.id in leaving or queued.task.placement not in tasks_by_placement:
                     continue
-                if wanted[queued.task.placement] != queued.id:
+                if tasks_by_placement[queued.task.placement] != queued.id:
                     raise RefusedError(
                         f"placed cone {queued.task.placement} is collected by task {queued.id} of robot "
                         f"{name!r} already; leave it out"
                     )
-        standing = await self._database.read(records.standing_ids, sorted(wanted))
-        gone = sorted(wanted.keys() - standing)
+        standing = await self._database.read(records.standing_ids, sorted(tasks_by_placement))
+        gone = sorted(tasks_by_placement.keys() - standing)
         if gone:
             raise RefusedError(
                 f"placed cone {gone[0]} does not stand: it was collected, or never put down; "

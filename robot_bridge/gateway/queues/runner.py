@@ -11,19 +11,11 @@ from sqlalchemy import Connection
 
 from ...core.errors import OutdatedError, RefusedError, StoreError
 from ...core.logs import log_unforeseen
-from ...core.messages import (
-    CommandReport,
-    CommandState,
-    PlacementReport,
-    QueueTask,
-    RobotState,
-    SetPath,
-    SetPosEnd,
-    SetPosIni,
-    TaskKind,
-    TaskState,
-)
-from ...core.messages.queues import check_path
+from ...core.messages.commands import CommandReport, CommandState
+from ...core.messages.queues import QueueTask, TaskKind, TaskState, check_path
+from ...core.messages.records import PlacementReport
+from ...core.messages.robots import SetPath, SetPosEnd, SetPosIni
+from ...core.messages.safety import RobotState
 from ..commands.active_command import CommandOrder
 from ..commands.persistence import Also, AlsoOf
 from ..model.command_states import is_open
@@ -117,24 +109,24 @@ class QueueOutcomes:
 
 def _placed(robot: str, task: QueuedTask, report: CommandReport, offset: tuple[float, float]) -> NewPlacement:
     """Return the cone that a robot has put down by the command that ``report`` tells of."""
-    wanted = task.task
+    requested = task.task
     assert report.stood is not None
     x, y = cone_place(report.stood, offset)
     return NewPlacement(
         task=task.id,
         robot=robot,
         command=report.command,
-        planned_x=wanted.x,
-        planned_y=wanted.y,
+        planned_x=requested.x,
+        planned_y=requested.y,
         x=x,
         y=y,
         theta=report.stood[2],
-        deviation=math.hypot(x - wanted.x, y - wanted.y),
+        deviation=math.hypot(x - requested.x, y - requested.y),
         placed_at=report.steps[-1].at,
-        cone=wanted.cone,
-        label=wanted.label,
-        layout=wanted.layout,
-        plan=wanted.plan,
+        cone=requested.cone,
+        label=requested.label,
+        layout=requested.layout,
+        plan=requested.plan,
     )
 
 
@@ -155,7 +147,7 @@ def write_outcome(
 
 # --- What has to be done before a task: by whichever robot, and whenever that is given to one ---
 
-_SAID = 2
+_MOST_NAMED = 2
 """Tasks that are named of those that are waited for; the others are counted."""
 
 
@@ -173,29 +165,31 @@ class TaskPrecedence:
         What was taken out of its queue, or passed over, is not done: that nobody waits for it any more is for
         people to say. Raises StoreError.
         """
-        wanted = [id for id in task.after or () if id not in self._done]
-        if not wanted:
+        unfinished = [id for id in task.after or () if id not in self._done]
+        if not unfinished:
             return None
         queued = {one.id: (name, one) for name in self._book.names() for one in self._book.get(name).tasks}
-        elsewhere = [id for id in wanted if id not in queued]
+        elsewhere = [id for id in unfinished if id not in queued]
         known = await self._database.read(queues.whereabouts, elsewhere) if elsewhere else {}
         done = {id for id, found in known.items() if found.state is TaskState.DONE}
-        left = [id for id in wanted if id not in done]
+        left = [id for id in unfinished if id not in done]
         if not left:
             # It is sent now, and asks no more.
             self._done.difference_update(task.after or ())
             return None
         self._done |= done
-        told = []
-        for id in left[:_SAID]:
+        reasons = []
+        for id in left[:_MOST_NAMED]:
             name, one = queued.get(id, ("", None))
-            told.append(_gone(id, known.get(id)) if one is None else _queued(name, one, mine=name == robot))
-        return _in_words(told, len(left))
+            reasons.append(
+                _gone(id, known.get(id)) if one is None else _queued(name, one, mine=name == robot)
+            )
+        return _in_words(reasons, len(left))
 
 
-def _in_words(told: list[str], count: int) -> str:
-    more = f" and {count - len(told)} more" if count > len(told) else ""
-    return f"waits for {', '.join(told)}{more}"
+def _in_words(reasons: list[str], count: int) -> str:
+    more = f" and {count - len(reasons)} more" if count > len(reasons) else ""
+    return f"waits for {', '.join(reasons)}{more}"
 
 
 def _queued(robot: str, task: QueuedTask, *, mine: bool) -> str:
@@ -241,7 +235,7 @@ class QueueRunner:
         self._due: set[str] = set()
         self._event = asyncio.Event()
         self._sending: set[str] = set()
-        self._told: dict[str, RobotState] = {}
+        self._last_states: dict[str, RobotState] = {}
         self._returned: set[str] = set()
         """robots that are back after nobody had heard them for long."""
         self._waiting = context.waiting
@@ -281,11 +275,11 @@ class QueueRunner:
             if self._book.is_doubtful(robot):
                 self.schedule(robot)
             if not queue.tasks:
-                self._told.pop(robot, None)
+                self._last_states.pop(robot, None)
                 continue
             state = self._robots.get(robot).state
-            if self._told.setdefault(robot, state) is not state:
-                self._told[robot] = state
+            if self._last_states.setdefault(robot, state) is not state:
+                self._last_states[robot] = state
                 self._book.announce(robot)
             if queue.running or queue.current is not None:
                 self.schedule(robot)
@@ -486,8 +480,8 @@ class QueueRunner:
         task = after.tasks[0]
         assert task.command is not None
         what = f"task {task.id}" if reason is None else f"task {task.id}: {reason}"
-        told = (task.command, before.robot, message, operator, what)
-        order = CommandOrder(*told, task=task.id, instead_of=instead_of)
+        details = (task.command, before.robot, message, operator, what)
+        order = CommandOrder(*details, task=task.id, instead_of=instead_of)
         self._sending.add(order.command)
         try:
             more = None if also is None else also(order.command)

@@ -11,19 +11,9 @@ from dataclasses import dataclass
 
 from ...core.errors import RefusedError, counted
 from ...core.geometry import Polyline
-from ...core.messages import (
-    CommandReport,
-    CommandState,
-    QueueState,
-    QueueTask,
-    SetPath,
-    SetPosEnd,
-    Share,
-    TakeOver,
-    TaskKind,
-    TaskState,
-)
-from ...core.messages.queues import check_path
+from ...core.messages.commands import CommandReport, CommandState
+from ...core.messages.queues import QueueState, QueueTask, Share, TakeOver, TaskKind, TaskState, check_path
+from ...core.messages.robots import SetPath, SetPosEnd
 from ..commands.active_command import ActiveCommand, because
 from ..model.task_queue import Queue, QueuedTask, return_task
 
@@ -173,7 +163,7 @@ def transfer_tasks(queues: Mapping[str, Queue], request: TakeOver, by: str, at: 
     pool = {task.id: (giver.robot, task) for task in given}
     for share in request.shares:
         pool.update({task.id: (share.robot, task) for task in queues[share.robot].waiting})
-    _check_complete([wanted.task for share in request.shares for wanted in share.tasks], pool)
+    _check_complete([shared_task.task for share in request.shares for shared_task in share.tasks], pool)
     after = {share.robot: _with_share(queues[share.robot], share, pool) for share in request.shares}
     reason = because("its tasks were taken over", request.reason)
     kept = [task for task in giver.tasks if task.id not in pool]
@@ -185,7 +175,7 @@ def transfer_tasks(queues: Mapping[str, Queue], request: TakeOver, by: str, at: 
 def transferred_current_task(giver: Queue, request: TakeOver) -> QueuedTask | None:
     """Return the task that the giving robot is doing, if another one is to do it."""
     current = giver.current
-    shared = (wanted.task for share in request.shares for wanted in share.tasks)
+    shared = (shared_task.task for share in request.shares for shared_task in share.tasks)
     return current if current is not None and current.id in shared else None
 
 
@@ -206,9 +196,9 @@ def _check_complete(shared: list[str], pool: Mapping[str, object]) -> None:
 def _with_share(queue: Queue, share: Share, pool: Mapping[str, tuple[str, QueuedTask]]) -> Queue:
     current = queue.current
     tasks = [current] if current else []
-    for wanted in share.tasks:
-        owner, task = pool[wanted.task]
-        tasks.append(_adopted(task, wanted.path, moves=owner != share.robot))
+    for shared_task in share.tasks:
+        owner, task = pool[shared_task.task]
+        tasks.append(_adopted(task, shared_task.path, moves=owner != share.robot))
     return queue.with_tasks(tasks, edited=True)
 
 

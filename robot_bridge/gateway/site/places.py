@@ -9,18 +9,12 @@ from typing import Protocol
 
 from ...core.errors import OverridableError, RefusedError
 from ...core.geometry import Track
-from ...core.messages import (
-    Abort,
-    Command,
-    GetRoute,
-    ObservationReport,
-    QueueTask,
-    SetPath,
-    SetPosEnd,
-    SetPosIni,
-    SiteReport,
-    TargetPosition,
-)
+from ...core.messages.administration import SiteReport
+from ...core.messages.commands import TargetPosition
+from ...core.messages.queues import QueueTask
+from ...core.messages.records import ObservationReport
+from ...core.messages.roads import GetRoute
+from ...core.messages.robots import Abort, Command, SetPath, SetPosEnd, SetPosIni
 from ...core.roads.centrelines import Surface
 from ...core.robotmap.model import EncodedMap
 from ...core.sites.fences import Fences

@@ -15,7 +15,8 @@ from numpy.typing import NDArray
 
 from ...core.errors import CrsError, MapBinaryError, RefusedError, RobotMapError
 from ...core.geometry import Track
-from ...core.messages import ObservationReport, SiteReport
+from ...core.messages.administration import SiteReport
+from ...core.messages.records import ObservationReport
 from ...core.roads.centrelines import Surface
 from ...core.roads.surface_index import NOWHERE
 from ...core.robotmap.binary import encode

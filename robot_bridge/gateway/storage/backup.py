@@ -133,9 +133,9 @@ class ServerBackups:
                 process.wait()
                 raise
             errors.seek(0)
-            said = errors.read(4096).decode(errors="replace")
+            stderr = errors.read(4096).decode(errors="replace")
         if status:
-            reason = " ".join(said.split())[:600] or f"status {status}"
+            reason = " ".join(stderr.split())[:600] or f"status {status}"
             raise StoreError(f"database {shown(self._url)}: {Path(command[0]).name} failed: {reason}")
 
     def _program(self, name: str) -> str:
@@ -515,9 +515,11 @@ def _check_kind(url: URL, file: Path) -> None:
             head = source.read(64)
     except OSError as error:
         raise BridgeError(f"backup {file} cannot be read: {error.strerror}") from error
-    wanted = url.get_backend_name()
-    if KINDS[wanted](url).recognises(head):
+    kind_expected = url.get_backend_name()
+    if KINDS[kind_expected](url).recognises(head):
         return
     of = next((name for name in KINDS if KINDS[name](url).recognises(head)), None)
     what = f"is of {of}" if of == "sqlite" else "is of a database server" if of else "is no backup"
-    raise StoreError(f"file {file} {what}, and database {shown(url)} is {wanted}; give a backup of {wanted}")
+    raise StoreError(
+        f"file {file} {what}, and database {shown(url)} is {kind_expected}; give a backup of {kind_expected}"
+    )

@@ -153,12 +153,12 @@ def _differs(
     _inspected_column: Any,
     _metadata_column: Any,
     inspected: TypeEngine[Any],
-    wanted: TypeEngine[Any],
+    expected: TypeEngine[Any],
 ) -> bool | None:
     """Tell whether two types of a column differ; SQLite only knows whole families of types."""
     if context.dialect.name != "sqlite":
         return None
-    return inspected._type_affinity is not wanted._type_affinity and _family(inspected) != _family(wanted)
+    return inspected._type_affinity is not expected._type_affinity and _family(inspected) != _family(expected)
 
 
 def _family(kind: TypeEngine[Any]) -> type[Any]:

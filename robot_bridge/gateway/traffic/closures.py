@@ -17,24 +17,20 @@ from sqlalchemy import Connection
 
 from ...core.clock import Clock
 from ...core.errors import BridgeError, RefusedError, StoreError, UncertainError
-from ...core.messages import (
-    AbortTask,
+from ...core.messages.commands import AbortTask, CommandReport
+from ...core.messages.json_values import to_json
+from ...core.messages.queues import QueueTask
+from ...core.messages.roads import (
     CloseRoad,
     ClosureReport,
     Closures,
-    Command,
-    CommandReport,
     GetClosures,
-    MessageError,
     OpenRoad,
-    QueueTask,
     ReplannedRobot,
     RoadClosed,
-    SetPath,
-    SetPosEnd,
-    path_to_end,
-    to_json,
 )
+from ...core.messages.robots import Command, SetPath, SetPosEnd, path_to_end
+from ...core.messages.validation import MessageError
 from ..commands.active_command import NOTHING, CommandOrder, because
 from ..commands.persistence import Also, AlsoOf
 from ..commands.requests import CommandRequests
@@ -144,7 +140,7 @@ class Detours:
         if isinstance(way.task, SetPosEnd) and way.command != NOTHING:
             more = None if also is None else also(way.command)
             await self._book.lead(way.robot, way.command, path, partial(_tell, way.robot, path, more))
-            self._ways.told(way.robot, way.task, path)
+            self._ways.note_reported(way.robot, way.task, path)
             return way.command
         done = await self.queues.redirect(way.robot, path, operator, reason)
         if done is None:

@@ -13,7 +13,7 @@ from typing import NamedTuple, Protocol
 import numpy as np
 
 from ...core.errors import NoRouteError, OffNetworkError, RefusedError, RoadsError
-from ...core.messages import GetRoute, RouteReport, SurfaceMetres
+from ...core.messages.roads import GetRoute, RouteReport, SurfaceMetres
 from ...core.roads.centrelines import Floats
 from ...core.roads.path_smoothing import DensePath, Driving, dense_path
 from ...core.roads.routes import Restrictions, Route, Router, with_ends
@@ -112,20 +112,20 @@ class RoadPlanner:
                 return None
         return self._planned(found, start, goal)
 
-    def route(self, start: Point, goal: Point, wanted: RouteOptions | None = None) -> RouteReport:
+    def route(self, start: Point, goal: Point, options: RouteOptions | None = None) -> RouteReport:
         """Return the way as operators are shown it.
 
         :raises RefusedError: as :meth:`path`; and at once while a new publication's roads are being read.
         """
-        wanted = wanted or RouteOptions()
+        options = options or RouteOptions()
         with self._in_use(patient=False) as roads:
-            avoid = {edge for path in wanted.avoid for edge in roads.edges_of(path)}
+            avoid = {edge for path in options.avoid for edge in roads.edges_of(path)}
             try:
-                found = self._found(roads, start, goal, wanted.restrictions, avoid)
+                found = self._found(roads, start, goal, options.restrictions, avoid)
             except NoOpenRouteError as error:
                 more = " Roads on which other robots' tasks lead were left out." if avoid else ""
                 raise RefusedError(f"{error}{more}") from error
-        speed = max(wanted.speed, self._served.site.settings.routes.speed_ms)
+        speed = max(options.speed, self._served.site.settings.routes.speed_ms)
         if isinstance(found, str):
             why = f" and not along roads: {found}" if found else "; the site has no roads"
             return _straight(start, goal, speed, f"the way is a straight line{why}")
@@ -196,7 +196,7 @@ class RoadPlanner:
         roads: SiteRoads,
         start: Point,
         goal: Point,
-        wanted: Restrictions = ANY,
+        options: Restrictions = ANY,
         avoid: Collection[int] = (),
     ) -> Route | str:
         """Return the way along the roads, or why there are none to go along, empty for a site without any."""
@@ -206,9 +206,9 @@ class RoadPlanner:
         robot_width = self._how().robot_width
         if _is_beside(roads.site, start, goal, robot_width / 2):
             return f"the place is {math.dist(start, goal):.1f} m away"
-        width = max(wanted.least_width, robot_width)
+        width = max(options.least_width, robot_width)
         try:
-            return roads.router.route(start, goal, replace(wanted, least_width=width), avoid=avoid)
+            return roads.router.route(start, goal, replace(options, least_width=width), avoid=avoid)
         except OffNetworkError as error:
             if not all(roads.is_near(*place) for place in (start, goal)):
                 return str(error)

@@ -10,7 +10,8 @@ from typing import NamedTuple
 import numpy as np
 
 from ...core.geometry import Polyline
-from ...core.messages import ConflictReport, HoldReport, SetPath, SetPosEnd
+from ...core.messages.roads import ConflictReport, HoldReport
+from ...core.messages.robots import SetPath, SetPosEnd
 from ...core.sites.settings_tables import RouteSettings
 from ..commands.service import CommandService
 from ..model.arrival import Floats, Point, remaining_line
@@ -58,13 +59,13 @@ class DrivenTask(NamedTuple):
     task: SetPosEnd | SetPath
     place: Point
     driven: float
-    told: ReportedPath | None
+    reported: ReportedPath | None
     line: Polyline | None = None
 
     @property
     def known(self) -> bool:
         """Whether the gateway knows the way; else the robot finds it itself."""
-        return isinstance(self.task, SetPath) or self.told is not None
+        return isinstance(self.task, SetPath) or self.reported is not None
 
     def way(self) -> RobotPath:
         """Return what is left; takes as long as the path has points, and may be called in any thread."""
@@ -75,10 +76,10 @@ class DrivenTask(NamedTuple):
         """Return the points of what is left, (n, 2), as quickly as can be."""
         if isinstance(self.task, SetPath):
             return remaining_line(self.line or Polyline(self.task.points), self.place, self.driven)
-        if self.told is not None:
+        if self.reported is not None:
             # Nothing counts the metres of it that are driven, so that the robot is looked for on all of it.
-            station, off = self.told.line.feet(*self.place)
-            return remaining_line(self.told.line, self.place, float(station[int(off.argmin())]))
+            station, off = self.reported.line.feet(*self.place)
+            return remaining_line(self.reported.line, self.place, float(station[int(off.argmin())]))
         return np.array([self.place, (self.task.x, self.task.y)])
 
 
@@ -88,16 +89,16 @@ class RobotPaths:
     def __init__(self, robots: Robots, book: CommandService) -> None:
         self._robots = robots
         self._book = book
-        self._told: dict[str, tuple[SetPosEnd, ReportedPath]] = {}
+        self._reported: dict[str, tuple[SetPosEnd, ReportedPath]] = {}
 
     def is_placed(self, robot: str) -> bool:
         """Tell whether it is known where a robot is now, so that its way can be changed from there."""
         return self._robots.is_placed(robot)
 
-    def told(self, robot: str, task: SetPosEnd | SetPath, way: SetPath) -> None:
+    def note_reported(self, robot: str, task: SetPosEnd | SetPath, way: SetPath) -> None:
         """Note the way to ``task`` that a robot was told."""
         if isinstance(task, SetPosEnd):
-            self._told[robot] = task, ReportedPath(way)
+            self._reported[robot] = task, ReportedPath(way)
 
     def of(self, robot: str) -> DrivenTask | None:
         """Return what a robot is doing, None for one that has no task or has not said where it is."""
@@ -106,8 +107,8 @@ class RobotPaths:
         if given is None or command is None or pose is None:
             return None
         task, driven = given
-        told = self._told.get(robot)
-        known_way = told[1] if told is not None and told[0] == task else None
+        reported = self._reported.get(robot)
+        known_way = reported[1] if reported is not None and reported[0] == task else None
         line = self._book.line(robot)
         return DrivenTask(robot, command, task, (pose.x, pose.y), driven, known_way, line)
 

@@ -76,10 +76,10 @@ class ProcessEngines:
         self._child: _Child | None = None
         self._closed = threading.Event()
         self._starts = 0
-        self._wanted = (
+        self._enabled = (
             len(graph.tail) >= LEAST_ARCS and importlib.util.find_spec("routingkit_cch") is not None
         )
-        if self._wanted:
+        if self._enabled:
             threading.Thread(target=self._keep, name="routes", daemon=True).start()
 
     def __call__(self, costs: Floats) -> ProcessEngine:
@@ -99,7 +99,7 @@ class ProcessEngines:
         """How ways are found now."""
         ready = self._ready_child() is not None
         name = ContractionEngines.name if ready else self._local_name
-        return EngineReport(name, ready or not self._wanted, self._starts)
+        return EngineReport(name, ready or not self._enabled, self._starts)
 
     @property
     def process_id(self) -> int | None:
@@ -111,7 +111,7 @@ class ProcessEngines:
         """End the process. Engines go on finding ways, in this process."""
         self._closed.set()
         with self._lock:
-            self._wanted = False
+            self._enabled = False
             if self._child is not None:
                 self._child.process.kill()
 

@@ -10,8 +10,9 @@ from typing import Any, NamedTuple
 
 from ...core.clock import Clock
 from ...core.errors import RefusedError
-from ...core.messages import (
-    CommandReport,
+from ...core.messages.commands import CommandReport
+from ...core.messages.json_values import to_json
+from ...core.messages.roads import (
     ConflictResolved,
     Conflicts,
     GetConflicts,
@@ -24,9 +25,8 @@ from ...core.messages import (
     Surfaces,
     WayOut,
     WaysOut,
-    path_to_end,
-    to_json,
 )
+from ...core.messages.robots import path_to_end
 from ...core.sites.site import Site
 from ..commands.requests import CommandRequests
 from ..commands.service import CommandService
@@ -90,7 +90,7 @@ class TrafficControl:
         self._site = site
         self._listeners = listeners
         self._lock = asyncio.Lock()
-        self._told = False
+        self._had_conflicts = False
         self._next = 0.0
 
     @handles(GetConflicts)
@@ -113,9 +113,9 @@ class TrafficControl:
         self._next = time.monotonic() + (time.monotonic() - began) / SHARE
         report = Conflicts(seen.now, found, self._waiting.report())
         something = bool(report.conflicts or report.waiting)
-        if something or self._told:
+        if something or self._had_conflicts:
             self._listeners.announce("conflicts", "conflicts", to_json(report))
-        self._told = something
+        self._had_conflicts = something
 
     @handles(GetWaysOut)
     async def ways_out(self, request: GetWaysOut) -> WaysOut:

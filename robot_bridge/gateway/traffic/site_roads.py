@@ -41,13 +41,15 @@ class ClosedRoads:
 
     def along(self, path: Sequence[Place], among: Collection[str] | None = None) -> list[str]:
         """Return the closures, of ``among`` or all, along whose road ``path`` leads."""
-        asked = {id: self.closures.get(id, frozenset()) for id in (self.closures if among is None else among)}
-        shut = frozenset().union(*asked.values())
+        closures = {
+            id: self.closures.get(id, frozenset()) for id in (self.closures if among is None else among)
+        }
+        shut = frozenset().union(*closures.values())
         if self.nearest is None or not shut or len(path) < 2:
             return []
         points = np.asarray(path, dtype=np.float64)
         found = set(edges_along(self.nearest, points, self._flags(shut)).tolist())
-        return [id for id, edges in asked.items() if edges & found]
+        return [id for id, edges in closures.items() if edges & found]
 
     def at(self, place: Place) -> str | None:
         """Return the closure whose road ``place`` is on, if it is on no road that is open."""

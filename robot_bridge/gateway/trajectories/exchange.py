@@ -178,18 +178,18 @@ PAGE = 20_000
 
 
 async def export_trajectories(
-    database: Database, wanted: TrajectoryQuery, frame: SiteFrame, file: Path, gap: float
+    database: Database, query: TrajectoryQuery, frame: SiteFrame, file: Path, gap: float
 ) -> TrajectoryFile:
-    """Write what is ``wanted`` into the new GeoPackage ``file``; return what was written.
+    """Write what ``query`` asks for into the new GeoPackage ``file``; return what was written.
 
     :raises BridgeError: for a robot of which nothing is stored, and when the file cannot be written;
         StoreError for the database.
     """
-    await _check_robots(database, wanted.robots)
+    await _check_robots(database, query.robots)
     try:
         with replacement(file) as partial:
             written = TrajectoryFile(partial, frame, gap)
-            await _copy(database, wanted, written)
+            await _copy(database, query, written)
     except OSError as error:
         raise BridgeError(f"{file} cannot be written: {error.strerror or error}; check its folder") from error
     return written
@@ -205,10 +205,10 @@ async def _check_robots(database: Database, robots: Sequence[str]) -> None:
         )
 
 
-async def _copy(database: Database, wanted: TrajectoryQuery, written: TrajectoryFile) -> None:
+async def _copy(database: Database, query: TrajectoryQuery, written: TrajectoryFile) -> None:
     after = None
     while True:
-        places = await database.run(trajectories.read, wanted, PAGE, after)
+        places = await database.run(trajectories.read, query, PAGE, after)
         await asyncio.to_thread(written.add, places)
         if len(places) < PAGE:
             break

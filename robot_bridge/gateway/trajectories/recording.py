@@ -13,8 +13,8 @@ from sqlalchemy import Connection
 
 from ...core.clock import Clock
 from ...core.errors import DataRefusedError
-from ...core.messages import GetTrajectory, SendPos, Trajectory, TrajectoryPlace
-from ...core.messages.records import mark_text
+from ...core.messages.records import GetTrajectory, Trajectory, TrajectoryPlace, mark_text
+from ...core.messages.robots import SendPos
 from ...core.sites.settings import SettingsSource
 from ...core.sites.settings_tables import TrajectorySettings
 from ..model.arrival import standing
@@ -96,7 +96,7 @@ class TrajectoryRecorder:
         self._site = site
         self._thinning = PositionThinning()
         self._waiting: deque[PackedFix] = deque()
-        self._told = False
+        self._warned = False
         self._looked_at = 0.0
         self.given_up = 0
 
@@ -120,7 +120,9 @@ class TrajectoryRecorder:
         if not 0 <= now - self._looked_at < LOOK_INTERVAL:
             self._looked_at = now
             self._wait(self._thinning.silent(now - self._site.settings.trajectories.max_interval_s))
-        self._told = self._told and len(self._waiting) > self._site.settings.trajectories.largest_backlog / 2
+        self._warned = (
+            self._warned and len(self._waiting) > self._site.settings.trajectories.largest_backlog / 2
+        )
         return [self._waiting.popleft() for _ in range(min(BATCH, len(self._waiting)))]
 
     def finish(self) -> None:
@@ -142,14 +144,14 @@ class TrajectoryRecorder:
             return
         for _ in range(too_many):
             self._waiting.popleft()
-        if not self._told:
+        if not self._warned:
             log.error(
                 "positions are given up, the oldest first: more than %d wait to be stored, since the "
                 "database is away or takes them more slowly than they come "
                 "(trajectories.largest_backlog of site.toml)",
                 len(self._waiting),
             )
-        self._told = True
+        self._warned = True
         self.given_up += too_many
 
 
@@ -341,10 +343,10 @@ class TrajectoryPages:
     @handles(GetTrajectory)
     async def read(self, request: GetTrajectory) -> Trajectory:
         """Return the page of stored positions that ``request`` asks for; raises StoreError."""
-        wanted = TrajectoryQuery(tuple(request.robots), request.since, request.until, request.bounds)
+        query = TrajectoryQuery(tuple(request.robots), request.since, request.until, request.bounds)
         mark = request.mark()
         after = None if mark is None else PageMark(*mark)
-        places = await self._database.run(trajectories.read, wanted, request.limit, after)
+        places = await self._database.run(trajectories.read, query, request.limit, after)
         more = len(places) == request.limit
         return Trajectory(
             places=[TrajectoryPlace(*place[1:]) for place in places],

@@ -7,9 +7,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import ClassVar, Protocol
 
-from ...core.messages import Ability, Answer, OpAck, Request, SendGPS, SendPos, SiteReport
-from ...core.messages.administration import Playback, PlaybackReport
+from ...core.messages.administration import Playback, PlaybackReport, SiteReport
 from ...core.messages.links import SiteAreas
+from ...core.messages.robots import Answer, OpAck, Request, SendGPS, SendPos
+from ...core.messages.safety import Ability
 from .errors import CommandRefusedError
 from .frames import LinkFrame
 from .settings import LinkSettings

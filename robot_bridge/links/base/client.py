@@ -19,25 +19,12 @@ from websockets.asyncio.client import ClientConnection, connect
 from websockets.exceptions import ConnectionClosed, InvalidHandshake, InvalidStatus, InvalidURI
 
 from ...core.logs import log_and_continue
-from ...core.messages import (
-    Ability,
-    Abort,
-    Alive,
-    MessageError,
-    OpAck,
-    Ready,
-    Request,
-    SendGPS,
-    SendPos,
-    SiteReport,
-    Start,
-    Stopped,
-    check_robot_name,
-    to_json,
-)
-from ...core.messages.administration import Playback
-from ...core.messages.json_values import site_report
+from ...core.messages.administration import Playback, SiteReport
+from ...core.messages.json_values import site_report, to_json
 from ...core.messages.links import LINK_PROTOCOL, GetAreas, LinkHello, LinkStatus, Released, SiteAreas
+from ...core.messages.robots import Abort, Alive, OpAck, Ready, Request, SendGPS, SendPos, Start, Stopped
+from ...core.messages.safety import Ability
+from ...core.messages.validation import MessageError, check_robot_name
 from ...core.sites.frame import SiteFrame
 from ...core.systemd import notify
 from ...protocol import jsonrpc
@@ -81,14 +68,14 @@ class LinkClient:
         self._robots: dict[str, LinkedRobot] = {}
         self._commanding = Commanding(adapter, memory, settings.answer_within_s, self._post)
         self._ids = itertools.count(1)
-        self._asked: dict[int, Callable[[jsonrpc.Reply], None]] = {}
+        self._pending_calls: dict[int, Callable[[jsonrpc.Reply], None]] = {}
         self._urgent: deque[str] = deque()
         self._outgoing: deque[str] = deque()
         self._wake = asyncio.Event()
         self._waking: asyncio.TimerHandle | None = None
         self._is_welcome = False
         self._status = LinkStatus(ok=True)
-        self._said_fault: str | None = None
+        self._reported_fault: str | None = None
         self._site: SiteReport | None = None
         self._frame: LinkFrame | None = None
         self._is_known = asyncio.Event()
@@ -245,7 +232,7 @@ class LinkClient:
     async def _carry(self, connection: ClientConnection) -> None:
         self._urgent.clear()
         self._outgoing.clear()
-        self._asked.clear()
+        self._pending_calls.clear()
         writing = asyncio.create_task(self._write(connection))
         try:
             async for frame in connection:
@@ -307,7 +294,7 @@ class LinkClient:
 
     def _call(self, method: str, params: Any, answered: Callable[[jsonrpc.Reply], None]) -> int:
         id = next(self._ids)
-        self._asked[id] = answered
+        self._pending_calls[id] = answered
         self._post(jsonrpc.call(method, params, id))
         return id
 
@@ -327,7 +314,7 @@ class LinkClient:
             log.error("the gateway said what cannot be understood: %s", error)
 
     def _take_reply(self, reply: jsonrpc.Reply) -> None:
-        answered = self._asked.pop(reply.id, None) if isinstance(reply.id, int) else None
+        answered = self._pending_calls.pop(reply.id, None) if isinstance(reply.id, int) else None
         if answered is not None:
             answered(reply)
         elif reply.error is not None:
@@ -423,9 +410,9 @@ class LinkClient:
     # --- robots ---------------------------------------------------------------------------------------------
 
     def _say_status(self) -> None:
-        status, self._said_fault = self._status, self._memory.fault
-        if self._said_fault is not None:
-            text = f"{self._said_fault}; its robots take on nothing, and can be stopped"
+        status, self._reported_fault = self._status, self._memory.fault
+        if self._reported_fault is not None:
+            text = f"{self._reported_fault}; its robots take on nothing, and can be stopped"
             status = LinkStatus(False, "; ".join(filter(None, (text, status.text))), status.counts, True)
         self._post(jsonrpc.call(LinkStatus.method, to_json(status) | {"counts": status.counts}))
 
@@ -433,7 +420,7 @@ class LinkClient:
         while True:
             await asyncio.sleep(MEMORY_EVERY)
             await self._memory.recover()
-            if self._is_welcome and self._memory.fault != self._said_fault:
+            if self._is_welcome and self._memory.fault != self._reported_fault:
                 self._say_status()
 
     def _say_ready(self, robot: LinkedRobot) -> None:
@@ -513,8 +500,8 @@ def _areas_came(answer: asyncio.Future[SiteAreas], reply: jsonrpc.Reply) -> None
 def _reason(error: OSError | InvalidHandshake) -> str:
     """Return why there is no connection, in the gateway's own words where it gave some."""
     if isinstance(error, InvalidStatus):
-        said = bytes(error.response.body or b"").decode("utf-8", "replace").strip()
-        return f"the gateway refuses (HTTP {error.response.status_code}): {said[:300]}"
+        text = bytes(error.response.body or b"").decode("utf-8", "replace").strip()
+        return f"the gateway refuses (HTTP {error.response.status_code}): {text[:300]}"
     return str(error)
 
 
@@ -526,7 +513,7 @@ def run(settings: LinkSettings, adapter: Adapter, *, until_stdin_closes: bool = 
 
     Also ``until_stdin_closes``, which it does when the gateway that started this ends, however that ends.
     """
-    asyncio.run(_until_told(serve(settings, adapter), until_stdin_closes))
+    asyncio.run(_run_until_stdin_closes(serve(settings, adapter), until_stdin_closes))
 
 
 async def serve(settings: LinkSettings, adapter: Adapter) -> None:
@@ -551,7 +538,7 @@ async def _adapt(client: LinkClient, adapter: Adapter) -> None:
     await adapter.run(client)
 
 
-async def _until_told(work: Coroutine[Any, Any, None], until_stdin_closes: bool) -> None:
+async def _run_until_stdin_closes(work: Coroutine[Any, Any, None], until_stdin_closes: bool) -> None:
     stop = asyncio.Event()
     if until_stdin_closes:
         asyncio.get_running_loop().add_reader(0, _read_stdin, stop)

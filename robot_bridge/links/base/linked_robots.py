@@ -14,8 +14,10 @@ import msgspec
 import numpy as np
 import numpy.typing as npt
 
-from ...core.messages import Ability, Answer, OpAck, Ready, Request, SendGPS, SendPos, Stopped, to_json
+from ...core.messages.json_values import to_json
 from ...core.messages.links import LinkColumns
+from ...core.messages.robots import Answer, OpAck, Ready, Request, SendGPS, SendPos, Stopped
+from ...core.messages.safety import Ability
 from ...core.position_frame import METHOD, NEEDED, NUMBERS, TEXTS, packed_frame
 from ...protocol import jsonrpc
 from .adapter import Adapter, Command
@@ -227,14 +229,14 @@ class Commanding:
         except LinkError as error:
             return CompletedCall(str(error))
         try:
-            done = await self._told(Command(robot, id, message, again))
+            done = await self._carried_out(Command(robot, id, message, again))
         except asyncio.CancelledError:
             await asyncio.shield(self._memory.finish(robot, id, CompletedCall(OVERTAKEN)))
             raise
         await self._memory.finish(robot, id, done)
         return done
 
-    async def _told(self, command: Command) -> CompletedCall:
+    async def _carried_out(self, command: Command) -> CompletedCall:
         what = type(command.message).__name__
         longest = self._answer_within + self._adapter.holds_s
         try:

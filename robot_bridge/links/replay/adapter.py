@@ -17,9 +17,9 @@ from typing import ClassVar
 
 import msgspec
 
-from ...core.messages import MessageError, SendPos, check_robot_name
 from ...core.messages.administration import Playback, PlaybackReport
-from ...core.messages.validation import SPEED
+from ...core.messages.robots import SendPos
+from ...core.messages.validation import SPEED, MessageError, check_robot_name
 from ...core.sites.frame import SiteFrame
 from ...recordings.csv_table import TableForm
 from ...recordings.readers import ReadingOptions, read_recording
@@ -178,7 +178,7 @@ class _Cursor:
 
 
 @dataclass(frozen=True)
-class Told:
+class ReplayedPosition:
     """Position number ``at`` of a track is told; ``is_new`` unless it was told before."""
 
     track: Track
@@ -198,11 +198,11 @@ class Player:
         self._largest_gap = largest_gap
         self.begin, self.end = recording.begin, recording.end
 
-    def advance(self, place: float) -> Iterator[Told]:
+    def advance(self, place: float) -> Iterator[ReplayedPosition]:
         """Yield for each robot where it is at ``place``, seconds of the recording."""
         for cursor in self._cursors:
             is_new = cursor.move(place)
-            yield Told(cursor.track, cursor.at, cursor.presence(place, self._largest_gap), is_new)
+            yield ReplayedPosition(cursor.track, cursor.at, cursor.presence(place, self._largest_gap), is_new)
 
     def next_place(self) -> float:
         """Return when the recording says something new, infinite at its end."""
@@ -238,7 +238,7 @@ class ReplayAdapter(Adapter):
         """seconds that a position was told too late, at most, since the last report."""
         self._has_sought = True
         self._looked_at = 0.0
-        self._told = 0
+        self._sent_count = 0
         self._clock: PlayClock | None = None
         self._is_changed = asyncio.Event()
 
@@ -248,7 +248,7 @@ class ReplayAdapter(Adapter):
         begin = self._recording.begin + settings.start_s
         clock = PlayClock(begin, settings.speed, time.monotonic(), paused=settings.paused)
         self._clock = clock
-        told_at = -math.inf
+        reported_at = -math.inf
         while True:
             now = time.monotonic()
             is_look = now - self._looked_at >= LOOK_EVERY
@@ -258,11 +258,11 @@ class ReplayAdapter(Adapter):
                 # It begins anew at the very moment it ended, however late this is noticed.
                 clock.seek(self._player.begin, clock.when(self._player.end))
             if self._tell(link, clock, now, again=is_look):
-                told_at = now
+                reported_at = now
             if is_look:
                 self._looked_at = now
                 self._report(link, clock, now)
-            due = max(clock.when(self._player.next_place()), told_at + LEAST_STEP)
+            due = max(clock.when(self._player.next_place()), reported_at + LEAST_STEP)
             await self._wait_until(min(due, self._looked_at + LOOK_EVERY))
 
     def playback(self, change: Playback) -> PlaybackReport:
@@ -313,33 +313,33 @@ class ReplayAdapter(Adapter):
 
         Return whether any was somewhere else.
         """
-        told_before = self._told
+        sent_before = self._sent_count
         known = set(link.robots)
         status = self._status(clock)
-        for told in self._player.advance(clock.place(now)):
-            name = self._names[told.track.robot]
-            if told.presence is ReplayPresence.HERE and (told.is_new or (again and clock.is_paused)):
+        for position in self._player.advance(clock.place(now)):
+            name = self._names[position.track.robot]
+            if position.presence is ReplayPresence.HERE and (position.is_new or (again and clock.is_paused)):
                 if name not in known:
                     link.add(name)
-                if told.is_new:
-                    self._told += 1
-                    self._note_delay(now - clock.when(float(told.track.t[told.at])))
-                self._place(link, name, told, status, stands=clock.is_paused)
-            elif told.presence is ReplayPresence.HERE and again:
+                if position.is_new:
+                    self._sent_count += 1
+                    self._note_delay(now - clock.when(float(position.track.t[position.at])))
+                self._place(link, name, position, status, stands=clock.is_paused)
+            elif position.presence is ReplayPresence.HERE and again:
                 link.alive(name)
-            elif told.presence in (ReplayPresence.BEFORE, ReplayPresence.OVER) and name in known:
+            elif position.presence in (ReplayPresence.BEFORE, ReplayPresence.OVER) and name in known:
                 link.stopped(name)
                 link.remove(name)
         self._has_sought = False
-        return self._told > told_before
+        return self._sent_count > sent_before
 
     def _note_delay(self, seconds: float) -> None:
         # After a jump the last position before that place is told: it is as old as it is.
         if not self._has_sought:
             self._latest = max(self._latest, seconds)
 
-    def _place(self, link: Link, name: str, told: Told, status: str, *, stands: bool) -> None:
-        track, at = told.track, told.at
+    def _place(self, link: Link, name: str, position: ReplayedPosition, status: str, *, stands: bool) -> None:
+        track, at = position.track, position.at
         try:
             place = self._frame(link).pose_to_site(
                 float(track.x[at]), float(track.y[at]), float(track.theta[at])
@@ -401,7 +401,7 @@ class ReplayAdapter(Adapter):
         if recording.remarks.count:
             text = f"{text}; {recording.remarks.count} rows left out, the first: {recording.remarks.texts[0]}"
         counts = {
-            "told": float(self._told),
+            "told": float(self._sent_count),
             "place_s": round(min(place, length), 1),
             "length_s": round(length, 1),
             "latest_ms": round(1e3 * self._latest, 1),

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from enum import Enum
 
-from ...core.messages import SetPath, SetPosEnd
+from ...core.messages.robots import SetPath, SetPosEnd
 
 
 class RosAction(str, Enum):

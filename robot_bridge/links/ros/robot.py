@@ -10,18 +10,9 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import Any, Generic, Protocol, TypeVar, cast
 
-from ...core.messages import (
-    Ability,
-    MessageError,
-    SendGPS,
-    SendImage,
-    SendPos,
-    SetMap,
-    SetPath,
-    SetPosEnd,
-    SetPosIni,
-)
-from ...core.messages.validation import LONGEST_LABEL, one_line
+from ...core.messages.robots import SendGPS, SendImage, SendPos, SetMap, SetPath, SetPosEnd, SetPosIni
+from ...core.messages.safety import Ability
+from ...core.messages.validation import LONGEST_LABEL, MessageError, one_line
 from ...core.sites.frame import SiteFrame
 from ..base.adapter import Command, Link
 from ..base.errors import CommandRefusedError
@@ -90,19 +81,19 @@ class RobotActions(Protocol[Network]):
     def poll(self, tasks: Tasks, now: float, fault: Callable[[str, str], None]) -> list[Effect]:
         """Take in what servers have said; return the effects."""
 
-    def send_goal(self, asked: SendGoal, here: Pose | None) -> None:
+    def send_goal(self, request: SendGoal, here: Pose | None) -> None:
         """Send a goal; ``here`` is where the robot is. Raises ValueError where it has no place there."""
 
-    def ask_result(self, asked: SendGoal) -> None:
+    def ask_result(self, request: SendGoal) -> None:
         """Ask for the result of a goal that was taken on."""
 
-    def cancel(self, asked: CancelGoals) -> None:
+    def cancel(self, request: CancelGoals) -> None:
         """Cancel goals."""
 
     def call(self, setting: str) -> None:
         """Call a service of type Trigger."""
 
-    def publish_task(self, asked: PublishTask, here: Pose | None) -> None:
+    def publish_task(self, request: PublishTask, here: Pose | None) -> None:
         """Publish a target or a path; raises ValueError where it has no place there."""
 
     def publish_target(self, target: SetPosEnd, here: Pose | None) -> None:
@@ -167,8 +158,10 @@ class Camera:
             digest = hashlib.sha256(image).hexdigest()[:16]
             x, y = place
             seen = one_line(str(message.header.frame_id), LONGEST_LABEL) or "camera"
-            told = SendImage(image, x, y, seen, t=stamp(message.header), source=f"{topic[-100:]} {digest}")
-            await self._link.ask(self._robot, told)
+            image_message = SendImage(
+                image, x, y, seen, t=stamp(message.header), source=f"{topic[-100:]} {digest}"
+            )
+            await self._link.ask(self._robot, image_message)
         except (FaultError, MessageError, CommandRefusedError) as error:
             self._sensing.refuse(topic, error)
         else:
@@ -224,8 +217,8 @@ class RosRobot(Generic[Network]):
         self._sent: dict[int, SendGoal] = {}
         self._act_at = 0.0
         self._seen_at: float | None = None
-        self._heard_at = 0.0
-        self._told: tuple[Ability, ...] | None = None
+        self._received_at = 0.0
+        self._declared: tuple[Ability, ...] | None = None
         self._introduce_at = 0.0
         self._more_at: float | None = None
         """Since when it can do more than was told."""
@@ -262,7 +255,7 @@ class RosRobot(Generic[Network]):
             log.warning("robot %s: its action server has started anew", self.name)
             self._tasks.forget()
             self._acting.forget_feedback()
-            if self._told is None:
+            if self._declared is None:
                 self._is_anew = True
             elif not self._tasks.is_only_held:
                 # What is held it has never had: that would only be refused, and sent once more.
@@ -273,23 +266,23 @@ class RosRobot(Generic[Network]):
         position = self._hearing.poll()
         if position is not None:
             self._seen_at = now if self._seen_at is None else self._seen_at
-            self._heard_at = now
+            self._received_at = now
             self._last = position
             self._tasks.seen(position.v if not isinstance(position, SendGPS) else None)
         self._introduce(now)
-        if self._camera is not None and self._told is not None:
+        if self._camera is not None and self._declared is not None:
             self._camera.step(now)
-        if self._told is not None and position is not None:
+        if self._declared is not None and position is not None:
             self._link.position(self.name, replace(position, status=self._status()))
         # Who is not told of has no commands yet, and what became of earlier ones could not be told.
-        if self._told is not None and (self._tasks.is_busy or now >= self._act_at):
+        if self._declared is not None and (self._tasks.is_busy or now >= self._act_at):
             self._act_at = now + IDLE_EVERY
             self._run(self._acting.poll(self._tasks, now, self._fault))
             self._run(self._tasks.step(self._acting.abilities, now))
 
     def admitted(self) -> None:
         """Tell where it is: the gateway has let it in."""
-        if self._last is not None and time.monotonic() - self._heard_at < ALIVE_EVERY:
+        if self._last is not None and time.monotonic() - self._received_at < ALIVE_EVERY:
             self._link.position(self.name, self._last)
 
     async def command(self, command: Command) -> None:
@@ -388,22 +381,22 @@ class RosRobot(Generic[Network]):
         """
         if self._seen_at is None or now < self._introduce_at:
             return
-        self._introduce_at = now + (IDLE_EVERY if self._told is None else ABLE_EVERY)
+        self._introduce_at = now + (IDLE_EVERY if self._declared is None else ABLE_EVERY)
         can = self._acting.abilities
         abilities = self._abilities(can)
         whole = {"targets", "paths"} <= set(abilities)
-        if self._told is None and now - self._seen_at < ABLE_WITHIN and not whole:
+        if self._declared is None and now - self._seen_at < ABLE_WITHIN and not whole:
             return
-        told = self._told or ()
-        both = (*told, *(one for one in abilities if one not in told))
-        if both == self._told:
+        declared = self._declared or ()
+        both = (*declared, *(one for one in abilities if one not in declared))
+        if both == self._declared:
             self._more_at = None
             return
         # Servers are found one after the other, and are told together.
         self._more_at = now if self._more_at is None else self._more_at
-        if self._told is not None and now - self._more_at < ABLE_WITHIN and not whole:
+        if self._declared is not None and now - self._more_at < ABLE_WITHIN and not whole:
             return
-        first, self._told, self._more_at = self._told is None, both, None
+        first, self._declared, self._more_at = self._declared is None, both, None
         self._link.add(self.name, both, path_cones="cones" in both)
         if first and self._is_anew:
             self._link.restarted(self.name)
@@ -445,7 +438,7 @@ class RosRobot(Generic[Network]):
             case StopEnded():
                 self._end_stops(effect.refusal)
             case Idle():
-                if self._told is not None:
+                if self._declared is not None:
                     self._link.stopped(self.name)
             case Remark():
                 log.warning("robot %s: %s", self.name, effect.text)
@@ -486,7 +479,7 @@ class RosRobot(Generic[Network]):
                 waiting.set_result(None)
         elif waiting is not None and not waiting.done():
             waiting.set_exception(CommandRefusedError(answered.refusal))
-        elif answered.message not in self._overtaken and self._told is not None:
+        elif answered.message not in self._overtaken and self._declared is not None:
             self._link.give_up(self.name, answered.message, answered.refusal)
 
     def _end_stops(self, refusal: str | None) -> None:

@@ -8,8 +8,8 @@ import time
 from dataclasses import dataclass, replace
 from typing import Any
 
-from ...core.messages import MessageError, SendGPS, SendPos
-from ...core.messages.validation import ACCURACY, ALTITUDE, COORDINATE, SPEED
+from ...core.messages.robots import SendGPS, SendPos
+from ...core.messages.validation import ACCURACY, ALTITUDE, COORDINATE, SPEED, MessageError
 from ..base.frames import LinkFrame
 from .errors import FaultError
 from .messages import FIX, ODOMETRY, POSE, POSE_WITH_COVARIANCE, READ, TF
@@ -126,8 +126,8 @@ def diagnosis(message: Any) -> str | None:
     worst = max(message.status, key=_severity, default=None)
     if worst is None or _severity(worst) == 0:
         return None
-    said = f": {worst.message}" if worst.message else ""
-    return f"{words.get(_level(worst), 'unknown level')}: {worst.name}{said}"
+    remark = f": {worst.message}" if worst.message else ""
+    return f"{words.get(_level(worst), 'unknown level')}: {worst.name}{remark}"
 
 
 def yaw(q: Any, where: str) -> float:
@@ -306,8 +306,6 @@ class Sensing:
         """The image that came: topic, type, message."""
         self.wants_image = False
         """Whether an image is waited for; others are passed over."""
-        self.own_pose: FramePose | None = None
-        """Where it is in its own map frame."""
 
     def topics(self) -> dict[str, str]:
         """Return the robot's topics that are read, by what they are."""
@@ -317,14 +315,14 @@ class Sensing:
             found["tf_static"] = TopicPattern(f"{patterns['tf'].pattern}_static")
         return {kind: pattern.topic_of(self._robot) for kind, pattern in found.items()}
 
-    def check_type(self, kind: str, topic: str, type_name: str | None, told: str) -> str | None:
+    def check_type(self, kind: str, topic: str, type_name: str | None, declared: str) -> str | None:
         """Return a topic's type if it can be read as what it is; else None, and it is a fault.
 
-        ``told`` is the type as the network has it.
+        ``declared`` is the type as the network has it.
         """
         if type_name in READ[kind]:
             return type_name
-        self.fault(topic, f"{topic} has type {told[:80]}; {kind} is one of {', '.join(READ[kind])}")
+        self.fault(topic, f"{topic} has type {declared[:80]}; {kind} is one of {', '.join(READ[kind])}")
         return None
 
     def receive(self, kind: str, topic: str, type_name: str, message: Any) -> SendPos | SendGPS | None:
@@ -333,13 +331,13 @@ class Sensing:
             self.image = (topic, type_name, message) if self.wants_image else None
             return None
         try:
-            told = self._read(kind, topic, type_name, message)
+            reading = self._read(kind, topic, type_name, message)
         except (FaultError, MessageError) as error:
             self.refuse(topic, error)
             return None
-        if kind != "position" or told is not None:
+        if kind != "position" or reading is not None:
             self.faults.pop(topic, None)
-        return told
+        return reading
 
     def refuse(self, topic: str, error: Exception) -> None:
         """Note that a message of a topic cannot be used."""
@@ -381,7 +379,6 @@ class Sensing:
             x, y, theta = self._frame.pose_to_site(pose.x, pose.y, pose.theta)
         except ValueError as error:
             raise FaultError(f"its position {error}") from None
-        self.own_pose = pose
         self.pose = SendPos(
             x=x,
             y=y,

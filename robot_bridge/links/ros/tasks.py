@@ -6,7 +6,7 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
-from ...core.messages import SetPath, SetPosEnd
+from ...core.messages.robots import SetPath, SetPosEnd
 from .effects import (
     PATH_ACTIONS,
     Abilities,
@@ -54,7 +54,7 @@ class Stop:
         self._canceled: set[RosAction] = set()
         self._stopped_by_service = False
         self._stood = 0
-        self._service_said = ""
+        self._service_reply = ""
         self.is_over = False
         self.is_refused = False
 
@@ -71,7 +71,7 @@ class Stop:
     def stop_answered(self, success: bool, text: str) -> None:
         """Take in what the stop service said."""
         self._stopped_by_service |= success
-        self._service_said = text
+        self._service_reply = text
 
     def seen(self, speed: float | None) -> None:
         """Take in a speed of the robot, m/s; None where its positions tell none."""
@@ -105,11 +105,11 @@ class Stop:
             elif active:
                 missing.append(f"its server of {action.value} still has a goal")
         if abilities.stop_service and not self._stopped_by_service:
-            said = f", it said {self._service_said[:120]!r}" if self._service_said else ""
-            missing.append(f"its stop service did not confirm{said}")
+            reply = f", it said {self._service_reply[:120]!r}" if self._service_reply else ""
+            missing.append(f"its stop service did not confirm{reply}")
         if not abilities.actions and not abilities.stop_service and self._stood < 2:
-            told = "it was sent speed 0" if abilities.velocity else "nobody listens there to any stop"
-            missing.append(f"{told}, and it is not seen to stand")
+            sent = "it was sent speed 0" if abilities.velocity else "nobody listens there to any stop"
+            missing.append(f"{sent}, and it is not seen to stand")
         return missing
 
     def _end(self) -> list[Effect]:
@@ -356,10 +356,6 @@ class Tasks:
         self._given_up.clear()
         self._unanswered.clear()
 
-    def server_left(self, action: RosAction) -> None:
-        """Forget the goals of an action server that is gone."""
-        self._goals.pop(action, None)
-
     def step(self, abilities: Abilities, now: float) -> list[Effect]:
         """Let time pass: repeat a stop, send what waits, give up what nobody answers."""
         held = self._held
@@ -421,8 +417,8 @@ class Tasks:
 
     def _action_for(self, order: SetPosEnd | SetPath, abilities: Abilities) -> RosAction | None:
         """Return the action that carries out an order, None where the robot has none for it."""
-        wanted = self._path_actions if isinstance(order, SetPath) else (RosAction.TO_POSE,)
-        return next((action for action in wanted if action in abilities.driving), None)
+        actions = self._path_actions if isinstance(order, SetPath) else (RosAction.TO_POSE,)
+        return next((action for action in actions if action in abilities.driving), None)
 
     def _refusal(self, order: SetPosEnd | SetPath, abilities: Abilities) -> str | None:
         if (order.cone or order.collect) and not (self._cones and abilities.cone_service):
@@ -430,8 +426,8 @@ class Tasks:
             return f"the robot can place and collect no cones: {why}"
         if self._action_for(order, abilities) is not None:
             return None
-        heard = abilities.path_topic if isinstance(order, SetPath) else abilities.goal_topic
-        return None if heard else (_NO_PATHS if isinstance(order, SetPath) else _NO_TARGETS)
+        topic_read = abilities.path_topic if isinstance(order, SetPath) else abilities.goal_topic
+        return None if topic_read else (_NO_PATHS if isinstance(order, SetPath) else _NO_TARGETS)
 
     def _leave(self, following: RosTask, now: float) -> list[Effect]:
         """Return what ends the task before, where the action server does not see to that by itself."""

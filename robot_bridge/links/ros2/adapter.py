@@ -12,7 +12,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any, ClassVar
 
-from ...core.messages import SendGPS, SendPos, SetPath, SetPosEnd, SetPosIni
+from ...core.messages.robots import SendGPS, SendPos, SetPath, SetPosEnd, SetPosIni
 from ..base.adapter import Adapter, Link
 from ..base.errors import LinkError
 from ..base.settings import LinkSettings, read_settings
@@ -87,7 +87,7 @@ Offers = Mapping[tuple[str, bool], list[Endpoint]]
 
 
 @dataclass
-class _Heard:
+class _Subscription:
     """A topic that is read."""
 
     topic: str
@@ -104,7 +104,7 @@ class DdsSubscriptions:
         self._sensing = sensing
         self._participant = participant
         self._types = types
-        self._heard: dict[str, _Heard] = {}
+        self._subscriptions: dict[str, _Subscription] = {}
         self._camera: tuple[str, list[Endpoint]] | None = None
         """The topic of its images, and who offers it."""
 
@@ -116,34 +116,37 @@ class DdsSubscriptions:
                 self._camera = (topic, offered) if offered else None
             elif offered:
                 self._read(kind, topic, offered)
-            elif self._heard.pop(kind, None) is not None:
+            elif self._subscriptions.pop(kind, None) is not None:
                 self._sensing.faults.pop(topic, None)
 
     def poll(self) -> SendPos | SendGPS | None:
         """Take in what has come; return the robot's newest position, None where none came."""
         self._watch()
         newest: SendPos | SendGPS | None = None
-        for kind, heard in list(self._heard.items()):
-            for data in heard.reader.read_samples():
+        for kind, subscription in list(self._subscriptions.items()):
+            for data in subscription.reader.read_samples():
                 try:
-                    message = self._types.decode(heard.type_name, data)
+                    message = self._types.decode(subscription.type_name, data)
                 except FaultError as error:
-                    self._sensing.refuse(heard.topic, error)
+                    self._sensing.refuse(subscription.topic, error)
                 else:
-                    newest = self._sensing.receive(kind, heard.topic, heard.type_name, message) or newest
+                    newest = (
+                        self._sensing.receive(kind, subscription.topic, subscription.type_name, message)
+                        or newest
+                    )
         return newest
 
     def _watch(self) -> None:
         """Read images only while one is waited for: a camera sends more than a network should carry twice."""
         if self._camera is not None and self._sensing.wants_image:
             self._read("image", *self._camera)
-        elif (heard := self._heard.pop("image", None)) is not None:
-            heard.reader.close()
+        elif (subscription := self._subscriptions.pop("image", None)) is not None:
+            subscription.reader.close()
 
     def _read(self, kind: str, topic: str, offered: list[Endpoint]) -> None:
         keys = frozenset(one.key for one in offered)
-        heard = self._heard.get(kind)
-        if heard is not None and heard.offers == keys:
+        subscription = self._subscriptions.get(kind)
+        if subscription is not None and subscription.offers == keys:
             return
         # Another node that publishes nonsense under the topic's name takes no robot's own away.
         strange = [one for one in offered if type_from_dds(one.type_name) not in READ[kind]]
@@ -151,7 +154,7 @@ class DdsSubscriptions:
         found = type_from_dds(offered[0].type_name)
         type_name = self._sensing.check_type(kind, topic, found, offered[0].type_name)
         if type_name is None:
-            self._heard.pop(kind, None)
+            self._subscriptions.pop(kind, None)
             return
         if strange:
             self._sensing.check_type(kind, topic, None, strange[0].type_name)
@@ -160,16 +163,16 @@ class DdsSubscriptions:
         elif kind != "image":
             self._sensing.faults.pop(topic, None)
         quality = quality_for(offered, depth=1 if kind == "image" else 10)
-        if heard is None or heard.quality != quality or heard.type_name != type_name:
+        if subscription is None or subscription.quality != quality or subscription.type_name != type_name:
             try:
                 reader = self._participant.reader(topic_to_dds(topic), offered[0].type_name, quality)
             except FaultError as error:
-                self._heard.pop(kind, None)
+                self._subscriptions.pop(kind, None)
                 self._sensing.fault(f"permission {topic}", str(error))
                 return
-            self._heard[kind] = _Heard(topic, type_name, reader, quality, keys)
+            self._subscriptions[kind] = _Subscription(topic, type_name, reader, quality, keys)
         else:
-            heard.offers = keys
+            subscription.offers = keys
 
 
 # --- What one robot is told: clients of its actions and services, and writers of its topics ---
@@ -207,7 +210,7 @@ class DdsActions:
         self._writers: dict[str, tuple[str, RawWriter]] = {}
         self._other_goals: dict[RosAction, str] = {}
         """The hash of goals that are laid out otherwise than those that are sent."""
-        self._wanted: set[str] = set()
+        self._listened_to: set[str] = set()
         self._map_server: ServiceServer | None = None
         self.server: bytes | None = None
         self.feedback: str | None = None
@@ -233,9 +236,9 @@ class DdsActions:
         return Abilities(
             frozenset(action for action, client in self._actions.items() if client.is_matched),
             frozenset(self._other_goals),
-            goal_topic="goal_pose" in self._wanted,
-            path_topic="path" in self._wanted,
-            velocity="cmd_vel" in self._wanted,
+            goal_topic="goal_pose" in self._listened_to,
+            path_topic="path" in self._listened_to,
+            velocity="cmd_vel" in self._listened_to,
             stop_service="stop" in self._services,
             cone_service="place_cone" in self._services,
         )
@@ -246,7 +249,7 @@ class DdsActions:
 
     def hears(self, setting: str) -> bool:
         """Tell whether somebody listens to the topic of a setting."""
-        return setting in self._wanted
+        return setting in self._listened_to
 
     def poll(self, tasks: Tasks, now: float, fault: Callable[[str, str], None]) -> list[Any]:
         """Take in what servers have said; return the effects."""
@@ -264,32 +267,32 @@ class DdsActions:
                     effects += tasks.cone_answered(bool(reply.success), str(reply.message))
         return effects
 
-    def send_goal(self, asked: SendGoal, here: Pose | None) -> None:
+    def send_goal(self, request: SendGoal, here: Pose | None) -> None:
         """Send a goal; ``here`` is where the robot is. Raises ValueError where it has no place there."""
-        client = self._actions[asked.action]
-        client.send_goal(asked.goal_id, **self._outgoing.goal(asked.action, asked.task, here))
+        client = self._actions[request.action]
+        client.send_goal(request.goal_id, **self._outgoing.goal(request.action, request.task, here))
 
-    def ask_result(self, asked: SendGoal) -> None:
+    def ask_result(self, request: SendGoal) -> None:
         """Ask for the result of a goal that was taken on."""
-        if asked.action in self._actions:
-            self._actions[asked.action].ask_result(asked.goal_id)
+        if request.action in self._actions:
+            self._actions[request.action].ask_result(request.goal_id)
 
-    def cancel(self, asked: CancelGoals) -> None:
+    def cancel(self, request: CancelGoals) -> None:
         """Cancel goals."""
-        if asked.action in self._actions:
-            self._actions[asked.action].cancel_goals(asked.goal_id)
+        if request.action in self._actions:
+            self._actions[request.action].cancel_goals(request.goal_id)
 
     def call(self, setting: str) -> None:
         """Call a service of type Trigger."""
         if setting in self._services:
             self._services[setting].call(self._types.make(f"{TRIGGER}_Request"))
 
-    def publish_task(self, asked: PublishTask, here: Pose | None) -> None:
+    def publish_task(self, request: PublishTask, here: Pose | None) -> None:
         """Publish a target or a path; raises ValueError where it has no place there."""
-        if isinstance(asked.task, SetPath):
-            self._publish("path", self._outgoing.path(asked.task))
+        if isinstance(request.task, SetPath):
+            self._publish("path", self._outgoing.path(request.task))
         else:
-            self.publish_target(asked.task, here)
+            self.publish_target(request.task, here)
 
     def publish_target(self, target: SetPosEnd, here: Pose | None) -> None:
         """Publish a target."""
@@ -371,13 +374,13 @@ class DdsActions:
 
     def _reads_goals(self, action: RosAction, topic: str, server: Endpoint) -> bool:
         """Tell whether a server's goals are laid out as those that are sent; else it is a fault."""
-        told, types = server.type_hash, self._types
-        if told is None or told == types.goal_hash(action.value):
+        type_hash, types = server.type_hash, self._types
+        if type_hash is None or type_hash == types.goal_hash(action.value):
             self._other_goals.pop(action, None)
             return True
-        if self._other_goals.get(action) != told:
-            self._other_goals[action] = told
-            named = " or ".join(types.distributions_of(action.value, told)) or "none that is known"
+        if self._other_goals.get(action) != type_hash:
+            self._other_goals[action] = type_hash
+            named = " or ".join(types.distributions_of(action.value, type_hash)) or "none that is known"
             text = f"{topic} has the {action.value} of {named}, and distribution is {types.distribution!r}"
             self._sensing.faults.pop(topic, None)
             self._sensing.fault(topic, f"{text}; correct that, or give the robot a link of its own")
@@ -387,11 +390,11 @@ class DdsActions:
         listeners = self._listeners(setting, offers)
         types = [name for name in map(type_from_dds, (one.type_name for one in listeners)) if name in known]
         if not types:
-            self._wanted.discard(setting)
+            self._listened_to.discard(setting)
             return
         if setting not in self._writers or self._writers[setting][0] != types[0]:
             self._write_to(setting, str(types[0]))
-        self._wanted.add(setting)
+        self._listened_to.add(setting)
 
     def _listeners(self, setting: str, offers: Offers) -> list[Endpoint]:
         return offers.get((topic_to_dds(self._topic(setting)), True), [])
@@ -426,9 +429,9 @@ class DdsActions:
             if GoalStatus.EXECUTING not in known.values():
                 self.feedback = None
             effects += tasks.statuses_came(action, known, now)
-        told = client.newest_feedback(refuse)
-        if told is not None and tasks.is_busy:
-            self.feedback = feedback_text(told[1])
+        feedback = client.newest_feedback(refuse)
+        if feedback is not None and tasks.is_busy:
+            self.feedback = feedback_text(feedback[1])
         return effects
 
 

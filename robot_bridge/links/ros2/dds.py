@@ -70,7 +70,7 @@ class DdsSettings:
             '<CycloneDDS><Domain Id="any"><General>'
             f"<Interfaces>{''.join(map(_interface, interfaces))}</Interfaces>"
             f"<AllowMulticast>{multicast}</AllowMulticast></General>"
-            f"<Discovery>{_asked(peers)}</Discovery>"
+            f"<Discovery>{_peers_xml(peers)}</Discovery>"
             f"<Compatibility>{ignored}</Compatibility>"
             f"<Internal><MaxSampleSize>{LARGEST_MESSAGE} B</MaxSampleSize></Internal>"
             "</Domain></CycloneDDS>"
@@ -271,8 +271,8 @@ def _endpoint(sample: Any, wants: bool) -> Endpoint:
     )
 
 
-def _type_hash(told: Any) -> str | None:
-    found = _TYPE_HASH.search(b"" if told is None else told.data)
+def _type_hash(declared: Any) -> str | None:
+    found = _TYPE_HASH.search(b"" if declared is None else declared.data)
     return None if found is None else found[1].decode("ascii")
 
 
@@ -370,11 +370,11 @@ def _interface(name: str) -> str:
     return f"<NetworkInterface {by}={quoteattr(name)}/>"
 
 
-def _asked(peers: list[str]) -> str:
+def _peers_xml(peers: list[str]) -> str:
     if not peers:
         return "<ParticipantIndex>auto</ParticipantIndex>"
-    asked = "".join(f"<Peer address={quoteattr(peer)}/>" for peer in peers)
+    peer_tags = "".join(f"<Peer address={quoteattr(peer)}/>" for peer in peers)
     return (
         f"<ParticipantIndex>auto</ParticipantIndex><MaxAutoParticipantIndex>{MOST_PARTICIPANTS}"
-        f"</MaxAutoParticipantIndex><Peers>{asked}</Peers>"
+        f"</MaxAutoParticipantIndex><Peers>{peer_tags}</Peers>"
     )

@@ -18,9 +18,8 @@ from ..ros.settings import DISTRIBUTIONS, check_topic, distribution_names, is_to
 _TYPE = re.compile(r"([A-Za-z][A-Za-z0-9_]*)/(msg|srv|action)/([A-Za-z][A-Za-z0-9_]*)")
 _DDS_TYPE = re.compile(r"([A-Za-z][A-Za-z0-9_]*)::(msg|srv|action)::dds_::([A-Za-z][A-Za-z0-9_]*)_")
 
-VENDORS = {(1, 1): "RTI Connext", (1, 15): "Fast DDS", (1, 16): "Cyclone DDS"}
-"""By the first two bytes of a participant's id; others are not known to be used with ROS 2."""
 CYCLONE = (1, 16)
+"""The first two bytes of the id of a participant that is Cyclone DDS."""
 
 
 @dataclass(frozen=True)
@@ -94,11 +93,6 @@ def action_names(name: str, type_name: str) -> ActionNames:
         f"rt{inner}/status",
         type_to_dds("action_msgs/msg/GoalStatusArray"),
     )
-
-
-def vendor_of(key: bytes) -> str:
-    """Return which DDS a participant or endpoint with this id, 16 bytes, is of."""
-    return VENDORS.get((key[0], key[1]), f"vendor {key[0]}.{key[1]}")
 
 
 # --- The types of ROS 2 by distribution, and the codec of their messages: what is decoded is bounded ---

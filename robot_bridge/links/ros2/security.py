@@ -90,7 +90,7 @@ class DdsSecurity:
 
     def properties(self) -> dict[str, str]:
         """Return the properties of a participant, by their names in DDS Security."""
-        told = {
+        names = {
             "dds.sec.auth.identity_ca": self.identity_ca,
             "dds.sec.auth.identity_certificate": self.certificate,
             "dds.sec.auth.private_key": self.private_key,
@@ -98,7 +98,7 @@ class DdsSecurity:
             "dds.sec.access.governance": self.governance,
             "dds.sec.access.permissions": self.permissions,
         }
-        properties = {key: f"file:{path.resolve()}" for key, path in told.items()}
+        properties = {key: f"file:{path.resolve()}" for key, path in names.items()}
         for plugin in PLUGINS:
             library, function = _LIBRARIES[plugin]
             where = library if self.plugins is None else str(self.plugins.resolve() / f"lib{library}.so")

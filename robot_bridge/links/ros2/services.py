@@ -147,8 +147,8 @@ class ActionClient:
     def newest_feedback(self, refuse: Refuse) -> tuple[bytes, Any] | None:
         """Return the newest feedback with its goal's id, None where none has come."""
         named = f"nav2_msgs/action/{self.kind}_FeedbackMessage"
-        told = _readable(self._types, named, self.feedback.read_samples()[-1:], refuse)
-        return (bytes(told[0].goal_id.uuid), told[0]) if told else None
+        samples = _readable(self._types, named, self.feedback.read_samples()[-1:], refuse)
+        return (bytes(samples[0].goal_id.uuid), samples[0]) if samples else None
 
     def results(self) -> list[Any]:
         """Return the results that have come; one laid out as in another distribution is left out."""

@@ -14,7 +14,7 @@ from typing import ClassVar
 
 import msgspec
 
-from ...core.messages import SendGPS, SendPos, SetPath, SetPosEnd, SetPosIni
+from ...core.messages.robots import SendGPS, SendPos, SetPath, SetPosEnd, SetPosIni
 from ..base.adapter import Adapter, Command, Link
 from ..base.errors import CommandRefusedError
 from ..base.settings import LinkSettings, read_settings
@@ -37,7 +37,7 @@ from .settings import RosbridgeSettings, Server, check, server_of
 
 
 @dataclass
-class _Heard:
+class _Subscription:
     """A topic that is read."""
 
     topic: str
@@ -54,58 +54,61 @@ class RosbridgeSubscriptions:
         self._sensing = sensing
         self._settings = settings
         self._connection = connection
-        self._heard: dict[str, _Heard] = {}
+        self._subscriptions: dict[str, _Subscription] = {}
         self._camera: tuple[str, str] | None = None
         """The topic of its images, and its type."""
 
     def connect(self, network: Graph) -> None:
         """Read what is offered under the robot's names now; what has another type now is read anew."""
         for kind, topic in self._sensing.topics().items():
-            told = network.topics.get(topic)
+            declared = network.topics.get(topic)
             if kind == "image":
-                self._camera = None if told is None else (topic, told)
+                self._camera = None if declared is None else (topic, declared)
                 continue
-            known = self._heard.get(kind)
-            if told is None or (known is not None and known.type_name == told):
+            known = self._subscriptions.get(kind)
+            if declared is None or (known is not None and known.type_name == declared):
                 # A topic that is gone stays asked for: the server tells it as soon as it is there again.
                 continue
-            self._read(kind, topic, told)
+            self._read(kind, topic, declared)
 
     def poll(self) -> SendPos | SendGPS | None:
         """Take in what has come; return the robot's newest position, None where none came."""
         self._watch()
         newest: SendPos | SendGPS | None = None
-        for kind, heard in list(self._heard.items()):
-            for content in heard.inbox.drain():
-                where = f"{heard.topic} ({heard.type_name})"
+        for kind, subscription in list(self._subscriptions.items()):
+            for content in subscription.inbox.drain():
+                where = f"{subscription.topic} ({subscription.type_name})"
                 try:
-                    message = convert(content, READABLE[heard.type_name], where)
+                    message = convert(content, READABLE[subscription.type_name], where)
                 except FaultError as error:
-                    self._sensing.refuse(heard.topic, error)
+                    self._sensing.refuse(subscription.topic, error)
                 else:
-                    newest = self._sensing.receive(kind, heard.topic, heard.type_name, message) or newest
+                    newest = (
+                        self._sensing.receive(kind, subscription.topic, subscription.type_name, message)
+                        or newest
+                    )
         return newest
 
     def _watch(self) -> None:
         """Read images only while one is waited for: a camera sends more than a network should carry."""
         if self._camera is not None and self._sensing.wants_image:
-            if "image" not in self._heard:
+            if "image" not in self._subscriptions:
                 self._read("image", *self._camera)
-        elif (heard := self._heard.pop("image", None)) is not None:
-            self._connection.unsubscribe(heard.topic)
+        elif (subscription := self._subscriptions.pop("image", None)) is not None:
+            self._connection.unsubscribe(subscription.topic)
 
-    def _read(self, kind: str, topic: str, told: str) -> None:
+    def _read(self, kind: str, topic: str, declared: str) -> None:
         """Read a topic of which rosapi has told the type."""
-        if self._heard.pop(kind, None) is not None:
+        if self._subscriptions.pop(kind, None) is not None:
             self._connection.unsubscribe(topic)
-        type_name = self._sensing.check_type(kind, topic, told, told)
+        type_name = self._sensing.check_type(kind, topic, declared, declared)
         if type_name is not None:
             if kind != "image":
                 self._sensing.faults.pop(topic, None)
-            inbox = self._connection.subscribe(topic, self._wanted(kind, type_name))
-            self._heard[kind] = _Heard(topic, type_name, inbox)
+            inbox = self._connection.subscribe(topic, self._subscription_of(kind, type_name))
+            self._subscriptions[kind] = _Subscription(topic, type_name, inbox)
 
-    def _wanted(self, kind: str, type_name: str) -> Subscription:
+    def _subscription_of(self, kind: str, type_name: str) -> Subscription:
         own = self._settings
         if kind in ("tf", "tf_static"):
             # Each message has other frames: none may be left out.
@@ -138,7 +141,7 @@ class RosbridgeActions:
         self._outgoing = outgoing
         self._goals = goals
         self._services: set[str] = set()
-        self._wanted: set[str] = set()
+        self._listened_to: set[str] = set()
         self._types: dict[str, str] = {}
         self._answers: deque[tuple[str, RosAction | None, ServiceResponse]] = deque(maxlen=MOST_ANSWERS)
         self.server: bytes | None = None
@@ -176,16 +179,16 @@ class RosbridgeActions:
         """Who of the robot's side was there when the network was last looked at."""
         return Abilities(
             self._goals.actions,
-            goal_topic="goal_pose" in self._wanted,
-            path_topic="path" in self._wanted,
-            velocity="cmd_vel" in self._wanted,
+            goal_topic="goal_pose" in self._listened_to,
+            path_topic="path" in self._listened_to,
+            velocity="cmd_vel" in self._listened_to,
             stop_service="stop" in self._services,
             cone_service="place_cone" in self._services,
         )
 
     def hears(self, setting: str) -> bool:
         """Tell whether somebody listens to the topic of a setting."""
-        return setting in self._wanted
+        return setting in self._listened_to
 
     def poll(self, tasks: Tasks, now: float, fault: Callable[[str, str], None]) -> list[Effect]:
         """Take in what servers have said; return the effects."""
@@ -198,33 +201,33 @@ class RosbridgeActions:
                 fault(what, str(error))
         return effects
 
-    def send_goal(self, asked: SendGoal, here: Pose | None) -> None:
+    def send_goal(self, request: SendGoal, here: Pose | None) -> None:
         """Send a goal; ``here`` is where the robot is. Raises ValueError where it has no place there."""
-        self._goals.send(asked, self._outgoing.goal(asked.action, asked.task, here))
+        self._goals.send(request, self._outgoing.goal(request.action, request.task, here))
 
-    def ask_result(self, asked: SendGoal) -> None:
+    def ask_result(self, request: SendGoal) -> None:
         """Nothing is to be asked: rosbridge tells the result to who sent the goal."""
 
-    def cancel(self, asked: CancelGoals) -> None:
+    def cancel(self, request: CancelGoals) -> None:
         """Cancel goals."""
-        wanted = self._goals.cancel(asked)
-        if wanted is None:
+        cancelled = self._goals.cancel(request)
+        if cancelled is None:
             return
-        answered = self._note("cancel" if asked.goal_id is None else "cancel one", asked.action)
-        topic = self._topic(ACTIONS[asked.action])
-        self._connection.call(f"{topic}/_action/cancel_goal", wanted, answered, urgent=True)
+        answered = self._note("cancel" if request.goal_id is None else "cancel one", request.action)
+        topic = self._topic(ACTIONS[request.action])
+        self._connection.call(f"{topic}/_action/cancel_goal", cancelled, answered, urgent=True)
 
     def call(self, setting: str) -> None:
         """Call a service of type Trigger."""
         if setting in self._services:
             self._connection.call(self._topic(setting), {}, self._note(setting), urgent=True)
 
-    def publish_task(self, asked: PublishTask, here: Pose | None) -> None:
+    def publish_task(self, request: PublishTask, here: Pose | None) -> None:
         """Publish a target or a path; raises ValueError where it has no place there."""
-        if isinstance(asked.task, SetPath):
-            self._publish("path", self._outgoing.path(asked.task))
+        if isinstance(request.task, SetPath):
+            self._publish("path", self._outgoing.path(request.task))
         else:
-            self.publish_target(asked.task, here)
+            self.publish_target(request.task, here)
 
     def publish_target(self, target: SetPosEnd, here: Pose | None) -> None:
         """Publish a target."""
@@ -257,15 +260,15 @@ class RosbridgeActions:
         topic = self._topic(setting)
         type_name = network.topics.get(topic)
         if type_name not in known or not network.listeners.get(topic):
-            self._wanted.discard(setting)
+            self._listened_to.discard(setting)
             return
-        self._wanted.add(setting)
+        self._listened_to.add(setting)
         if self._types.get(setting) != type_name:
             self._types[setting] = type_name
             self._connection.advertise(topic, type_name)
 
     def _publish(self, setting: str, message: object) -> None:
-        if setting in self._wanted:
+        if setting in self._listened_to:
             self._connection.publish(self._topic(setting), message, urgent=True)
 
     def _note(self, what: str, action: RosAction | None = None) -> Callable[[Answer], None]:
@@ -286,13 +289,13 @@ class RosbridgeActions:
             if what == "cancel":
                 tasks.cancel_answered(action, reply.return_code)
             return []
-        said = TriggerReply(False, str(came.values)[:200])
+        answer = TriggerReply(False, str(came.values)[:200])
         if came.result:
-            said = convert(came.values, TriggerReply, f"its service {what}")
+            answer = convert(came.values, TriggerReply, f"its service {what}")
         if what == "stop":
-            tasks.stop_answered(said.success, said.message)
+            tasks.stop_answered(answer.success, answer.message)
             return []
-        return tasks.cone_answered(said.success, said.message)
+        return tasks.cone_answered(answer.success, answer.message)
 
 
 # --- The adapter of ROS 2 robots behind a rosbridge server: finds them there and leads each, in one loop

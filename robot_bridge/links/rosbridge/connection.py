@@ -93,7 +93,7 @@ MOST_WAITING = 2_000
 """operations that wait to be sent; further ones are thrown away, but for what robots are told."""
 MOST_ANSWERS_WAITING = 100
 """operations that wait beyond which no service is answered."""
-MOST_ASKED = 10_000
+MOST_CALLS = 10_000
 """services and goals whose answers are waited for."""
 MOST_FAULTS = 100
 LATELY = 10.0
@@ -153,7 +153,7 @@ class RosbridgeConnection:
         self._latched: dict[str, Frame] = {}
         self._served: dict[str, tuple[str, Any]] = {}
         """Type and reply of the services that are served here."""
-        self._asked: dict[str, Callable[[Answer], None]] = {}
+        self._pending_calls: dict[str, Callable[[Answer], None]] = {}
         self._ids = itertools.count(1)
         self._commands: deque[Frame] = deque()
         """What robots are told, in order: a cancel never comes before the goal that it cancels."""
@@ -172,23 +172,23 @@ class RosbridgeConnection:
 
     # --- topics ---------------------------------------------------------------------------------------------
 
-    def subscribe(self, topic: str, wanted: Subscription) -> Inbox:
+    def subscribe(self, topic: str, subscription: Subscription) -> Inbox:
         """Read a topic, now and after each reconnect."""
         known = self._subscribed.get(topic)
-        if known is not None and known[0] == wanted:
+        if known is not None and known[0] == subscription:
             return known[1]
         if known is not None:
             self.unsubscribe(topic)
         inbox = Inbox()
-        self._subscribed[topic] = (wanted, inbox)
-        self._post(_encoded(_subscribe(topic, wanted)), kept=True)
+        self._subscribed[topic] = (subscription, inbox)
+        self._post(_encoded(_subscribe(topic, subscription)), kept=True)
         return inbox
 
     def renew(self, topic: str) -> None:
         """Read a topic anew: a server that knows who publishes it asks for what is latched."""
-        wanted = self._subscribed[topic][0]
+        subscription = self._subscribed[topic][0]
         self._send(_unsubscribe(topic))
-        self._send(_subscribe(topic, wanted))
+        self._send(_subscribe(topic, subscription))
 
     def unsubscribe(self, topic: str) -> None:
         """Read a topic no more."""
@@ -197,13 +197,13 @@ class RosbridgeConnection:
 
     def advertise(self, topic: str, type_name: str, *, latched: bool = False) -> None:
         """Say that a topic will be written, now and after each reconnect."""
-        wanted = _encoded({"op": "advertise", "topic": topic, "type": type_name, "latch": latched})
-        if self._advertised.get(topic) == wanted:
+        advertisement = _encoded({"op": "advertise", "topic": topic, "type": type_name, "latch": latched})
+        if self._advertised.get(topic) == advertisement:
             return
         if topic in self._advertised:
             self._send({"op": "unadvertise", "topic": topic})
-        self._advertised[topic] = wanted
-        self._post(wanted, kept=True)
+        self._advertised[topic] = advertisement
+        self._post(advertisement, kept=True)
 
     def publish(self, topic: str, message: Any, *, urgent: bool = False, latched: bool = False) -> None:
         """Publish a message; one that is ``latched`` again after each reconnect."""
@@ -288,7 +288,7 @@ class RosbridgeConnection:
     async def _carry(self, connection: ClientConnection) -> None:
         self._commands.clear()
         self._others.clear()
-        self._asked.clear()
+        self._pending_calls.clear()
         self._sent, self._dealt_with, self._is_answering = 0, 0, True
         for _, inbox in self._subscribed.values():
             inbox.waiting.clear()
@@ -309,7 +309,7 @@ class RosbridgeConnection:
             await asyncio.gather(writing, return_exceptions=True)
 
     def _subscriptions(self) -> list[tuple[str, Subscription]]:
-        return [(topic, wanted) for topic, (wanted, _) in self._subscribed.items()]
+        return [(topic, subscription) for topic, (subscription, _) in self._subscribed.items()]
 
     async def _read(self, connection: ClientConnection) -> None:
         count = 0
@@ -334,7 +334,7 @@ class RosbridgeConnection:
                 self._note(f"the server said {came.msg[:200]!r}")
         else:
             last = not isinstance(came, ActionFeedback)
-            answered = self._asked.pop(came.id, None) if last else self._asked.get(came.id)
+            answered = self._pending_calls.pop(came.id, None) if last else self._pending_calls.get(came.id)
             if answered is not None:
                 answered(came)
 
@@ -393,9 +393,9 @@ class RosbridgeConnection:
 
     def _expect(self, id: str, answered: Callable[[Answer], None]) -> None:
         if self.away is None:
-            while len(self._asked) >= MOST_ASKED:
-                self._asked.pop(next(iter(self._asked)))
-            self._asked[id] = answered
+            while len(self._pending_calls) >= MOST_CALLS:
+                self._pending_calls.pop(next(iter(self._pending_calls)))
+            self._pending_calls[id] = answered
 
     def _send(self, operation: dict[str, Any], *, urgent: bool = False) -> None:
         self._post(_encoded(operation), urgent=urgent)
@@ -408,15 +408,15 @@ class RosbridgeConnection:
         self._wake.set()
 
 
-def _subscribe(topic: str, wanted: Subscription) -> dict[str, Any]:
+def _subscribe(topic: str, subscription: Subscription) -> dict[str, Any]:
     return {
         "op": "subscribe",
         "id": f"read:{topic}",
         "topic": topic,
-        "type": wanted.type_name,
-        "throttle_rate": wanted.throttle_ms,
-        "queue_length": wanted.queue_length,
-        "compression": wanted.compression,
+        "type": subscription.type_name,
+        "throttle_rate": subscription.throttle_ms,
+        "queue_length": subscription.queue_length,
+        "compression": subscription.compression,
     }
 
 

@@ -129,10 +129,10 @@ def check_cbor() -> None:
         ) from None
 
 
-def convert(content: Any, wanted: type[T], what: str) -> T:
-    """Return the fields of a decoded ROS message as ``wanted``; raises FaultError, naming ``what`` it is."""
+def convert(content: Any, kind: type[T], what: str) -> T:
+    """Return the fields of a decoded ROS message as ``kind``; raises FaultError, naming ``what`` it is."""
     try:
-        return msgspec.convert(content, wanted)
+        return msgspec.convert(content, kind)
     except msgspec.ValidationError as error:
         raise FaultError(f"{what}: {error}") from None
 

@@ -219,24 +219,24 @@ class ActionGoals:
         if not is_same:
             self._since[action] = time.monotonic()
 
-    def send(self, asked: SendGoal, goal: Any) -> None:
+    def send(self, request: SendGoal, goal: Any) -> None:
         """Send a goal as soon as those are known that are there; one that was sent is not sent again."""
-        entry = self._book.find(asked.goal_id)
+        entry = self._book.find(request.goal_id)
         if entry is None or entry.is_over or entry.doomed:
-            self._held = (asked, goal)
+            self._held = (request, goal)
 
-    def cancel(self, asked: CancelGoals) -> dict[str, Any] | None:
+    def cancel(self, request: CancelGoals) -> dict[str, Any] | None:
         """Return what its service is to be asked, None where that says nothing to it."""
-        if self._held is not None and asked.goal_id in (None, self._held[0].goal_id):
+        if self._held is not None and request.goal_id in (None, self._held[0].goal_id):
             self._held = None
-        if asked.goal_id is None:
+        if request.goal_id is None:
             return {}
-        entry = self._book.find(asked.goal_id)
+        entry = self._book.find(request.goal_id)
         if entry is None:
             return None
         if entry.real is None:
             entry.doomed = True
-            self._connection.cancel_goal(self._id(entry.goal), self._topics[asked.action])
+            self._connection.cancel_goal(self._id(entry.goal), self._topics[request.action])
             return None
         return {"goal_info": {"goal_id": {"uuid": list(entry.real)}}}
 
@@ -250,11 +250,11 @@ class ActionGoals:
         for action, inbox in self._statuses.items():
             for content in inbox.drain():
                 try:
-                    told = convert(content, GoalStatusArray, f"the status of {action.value}")
+                    status_array = convert(content, GoalStatusArray, f"the status of {action.value}")
                 except FaultError as error:
                     fault(action.value, str(error))
                 else:
-                    effects += self._statuses_came(action, statuses_of(told), tasks, now)
+                    effects += self._statuses_came(action, statuses_of(status_array), tasks, now)
         effects += self._read_answers(tasks, now, fault)
         effects += self._missing(tasks, now)
         self._send_held(now)
@@ -336,19 +336,21 @@ class ActionGoals:
         """Send the goal that waits: one that is new afterwards must be told from those before it."""
         if self._held is None:
             return
-        asked, goal = self._held
-        if asked.action not in self._known and not self._is_settled(asked.action, now):
+        request, goal = self._held
+        if request.action not in self._known and not self._is_settled(request.action, now):
             return
         self._held = None
-        entry = self._book.add(asked.action, asked.goal_id, frozenset(self._known.get(asked.action, {})))
-        self._sent_in[asked.goal_id] = self._session
+        entry = self._book.add(
+            request.action, request.goal_id, frozenset(self._known.get(request.action, {}))
+        )
+        self._sent_in[request.goal_id] = self._session
         while len(self._sent_in) > len(self._book.entries):
             self._sent_in.pop(next(iter(self._sent_in)))
         self._notes.note_goals()
         self._connection.send_goal(
-            self._id(asked.goal_id),
-            self._topics[asked.action],
-            action_type(asked.action),
+            self._id(request.goal_id),
+            self._topics[request.action],
+            action_type(request.action),
             goal,
             partial(self._keep, entry),
         )
@@ -367,8 +369,8 @@ class ActionGoals:
                 continue
             try:
                 if isinstance(came, ActionFeedback):
-                    told = convert(came.values, NavigationFeedback, f"feedback of {entry.action.value}")
-                    self.feedback = feedback_text(told)
+                    feedback = convert(came.values, NavigationFeedback, f"feedback of {entry.action.value}")
+                    self.feedback = feedback_text(feedback)
                     effects += self._stand_in(entry, GoalStatus.EXECUTING, tasks, now)
                 elif isinstance(came, ActionResult):
                     effects += self._result_came(entry, came, tasks, now)
@@ -384,11 +386,11 @@ class ActionGoals:
             entry.is_over = True
             tasks.goal_answered(entry.action, False, now)
             return []
-        told = NavigationResult()
+        result = NavigationResult()
         if isinstance(came.values, dict):
-            told = convert(came.values, NavigationResult, f"result of {entry.action.value}")
-        missed = told.missed_waypoints
-        tasks.result_came(entry.action, came.status, told.error_code, told.error_msg, missed)
+            result = convert(came.values, NavigationResult, f"result of {entry.action.value}")
+        missed = result.missed_waypoints
+        tasks.result_came(entry.action, came.status, result.error_code, result.error_msg, missed)
         return self._stand_in(entry, GoalStatus(came.status), tasks, now)
 
     def _stand_in(self, entry: Entry, status: GoalStatus, tasks: Tasks, now: float) -> list[Effect]:

@@ -12,13 +12,7 @@ from typing import Protocol, TypeVar
 from ..ros.errors import FaultError
 from .connection import Answer, RosbridgeConnection
 from .decoding import ServiceResponse, convert
-from .messages import (
-    ActionServersReply,
-    PublishersReply,
-    ServicesReply,
-    SubscribersReply,
-    TopicsReply,
-)
+from .messages import ActionServersReply, PublishersReply, ServicesReply, SubscribersReply, TopicsReply
 
 log = logging.getLogger(__name__)
 
@@ -109,15 +103,15 @@ class GraphWatch:
             graph.listeners = dict(known.listeners)
         for topic in self._interest.written_topics:
             if topic in graph.topics and topic not in graph.listeners:
-                heard = await self._ask("subscribers", {"topic": topic}, SubscribersReply)
-                graph.listeners[topic] = len(heard.subscribers)
+                subscribers = await self._ask("subscribers", {"topic": topic}, SubscribersReply)
+                graph.listeners[topic] = len(subscribers.subscribers)
         for topic in self._interest.watched_topics:
-            told = await self._ask("publishers", {"topic": topic}, PublishersReply)
-            graph.publishers[topic] = len(told.publishers)
+            publishers = await self._ask("publishers", {"topic": topic}, PublishersReply)
+            graph.publishers[topic] = len(publishers.publishers)
         self.looks += 1
         self.graph = graph
 
-    async def _ask(self, service: str, args: dict[str, str], wanted: type[Reply]) -> Reply:
+    async def _ask(self, service: str, args: dict[str, str], kind: type[Reply]) -> Reply:
         """Return what a service of rosapi says; raises FaultError."""
         reply: asyncio.Future[Answer] = asyncio.get_running_loop().create_future()
 
@@ -135,4 +129,4 @@ class GraphWatch:
             ) from None
         if not isinstance(came, ServiceResponse) or not came.result:
             raise FaultError(f"/rosapi/{service} failed: {str(came.values)[:200]}")
-        return convert(came.values, wanted, f"/rosapi/{service}")
+        return convert(came.values, kind, f"/rosapi/{service}")

@@ -14,7 +14,7 @@ from typing import ClassVar
 
 import msgspec
 
-from ...core.messages import LONGEST_OPERATOR, MessageError, check_robot_name, one_line
+from ...core.messages.validation import LONGEST_OPERATOR, MessageError, check_robot_name, one_line
 from ..base.adapter import Adapter, Command, Link
 from ..base.errors import CommandRefusedError, LinkError
 from ..base.settings import LinkSettings, read_settings
@@ -95,7 +95,7 @@ MOST_TRACKERS = 2000
 ALIVE_EVERY = 1.0
 REPORT_EVERY = 5.0
 """seconds between two reports of what was counted."""
-SAID_OF_ONE = 5
+MOST_REFUSALS_LOGGED = 5
 """lines of the log about what one device does wrong."""
 ONLY_SEEN = "a tracker is seen and not commanded"
 _UNUSABLE = re.compile(r"[^A-Za-z0-9_.-]")
@@ -110,12 +110,12 @@ class TrackerAdapter(Adapter):
         self._settings = settings
         self._where = where
         self._link: Link | None = None
-        self._heard: dict[str, float] = {}
+        self._last_seen: dict[str, float] = {}
         """when each was heard last, by a clock that only goes forward."""
         self._devices: dict[str, str] = {}
         """the device that each name stands for."""
         self._counts: Counter[str] = Counter()
-        self._said: Counter[str] = Counter()
+        self._refusals: Counter[str] = Counter()
 
     async def run(self, link: Link) -> None:
         """Listen until cancelled."""
@@ -124,7 +124,7 @@ class TrackerAdapter(Adapter):
             await self._listen(stack, group)
             group.create_task(self._keep_alive(link))
             while True:
-                link.report(ok=True, text=f"{len(self._heard)} seen", counts=dict(self._counts))
+                link.report(ok=True, text=f"{len(self._last_seen)} seen", counts=dict(self._counts))
                 await asyncio.sleep(REPORT_EVERY)
 
     async def command(self, command: Command) -> None:
@@ -144,16 +144,16 @@ class TrackerAdapter(Adapter):
             # A phone that was out of reach tells all that it kept, and would keep it if this were refused.
             self._counts["too_old"] += 1
             return
-        if name not in self._heard:
+        if name not in self._last_seen:
             self._link.add(name)
-        self._heard[name] = time.monotonic()
+        self._last_seen[name] = time.monotonic()
         self._link.position(name, report.fix)
 
     def refuse(self, source: str, error: Exception) -> None:
         """Count what cannot be shown of a source, and say so in the log for the first few."""
         self._counts["refused"] += 1
-        if len(self._said) < MOST_TRACKERS and self._said[source] < SAID_OF_ONE:
-            self._said[source] += 1
+        if len(self._refusals) < MOST_TRACKERS and self._refusals[source] < MOST_REFUSALS_LOGGED:
+            self._refusals[source] += 1
             log.warning("%s: %s", one_line(source, LONGEST_OPERATOR), error)
 
     def _name(self, device: str) -> str:
@@ -205,8 +205,8 @@ class TrackerAdapter(Adapter):
         while True:
             await asyncio.sleep(ALIVE_EVERY)
             now = time.monotonic()
-            for name, heard in self._heard.items():
-                if now - heard < self._settings.reports_every_s:
+            for name, last_seen in self._last_seen.items():
+                if now - last_seen < self._settings.reports_every_s:
                     link.alive(name)
 
 

@@ -15,7 +15,8 @@ from collections.abc import Callable
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
 
-from ...core.messages import MessageError, SendGPS
+from ...core.messages.robots import SendGPS
+from ...core.messages.validation import MessageError
 from .osmand import KNOT, MOVING, ReportError, TrackerReport
 
 # --- NMEA 0183 as GPS receivers speak it: sentences in, fixes out; no I/O ---
@@ -113,12 +114,12 @@ def _fields(line: str) -> tuple[list[str], str]:
     if found is None:
         why = "a sentence without its checksum" if _UNCHECKED.fullmatch(line) else "this is no NMEA sentence"
         raise ReportError(f"{why}: {line[:40]!r}")
-    talker, kind, content, told = found.groups()
+    talker, kind, content, checksum = found.groups()
     total = 0
     for character in f"{talker}{kind},{content}":
         total ^= ord(character)
-    if total != int(told, 16):
-        raise ReportError(f"the checksum is {told}, and {total:02X} would be right: {line[:40]!r}")
+    if total != int(checksum, 16):
+        raise ReportError(f"the checksum is {checksum}, and {total:02X} would be right: {line[:40]!r}")
     return content.split(","), kind
 
 

@@ -12,7 +12,8 @@ from pathlib import Path
 from typing import ClassVar
 
 from ...core.logs import RepeatedLines
-from ...core.messages import Ability, Alive, SendPos, SetPath, SetPosEnd, SetPosIni, Stopped
+from ...core.messages.robots import Alive, SendPos, SetPath, SetPosEnd, SetPosIni, Stopped
+from ...core.messages.safety import Ability
 from ...core.sites.frame import SiteFrame
 from ..base.adapter import Adapter, Command, Link, summary
 from ..base.errors import CommandRefusedError
@@ -61,8 +62,8 @@ class Vehicle:
         self.robot = robot
         self.controller = controller
         self.writer = MessageWriter(controller.vehicle)
-        self.heard_at = now
-        self.is_told = False
+        self.received_at = now
+        self.is_introduced = False
         self._commands: dict[int, asyncio.Future[str | None]] = {}
         self._halts: list[asyncio.Future[None]] = []
 
@@ -293,11 +294,11 @@ class Vda5050Adapter(Adapter):
     def _tell(self, vehicle: Vehicle, now: float) -> None:
         """Have the gateway know a vehicle once it is known what it can do."""
         controller, link = vehicle.controller, self._link
-        if vehicle.is_told or link is None or not controller.is_known:
+        if vehicle.is_introduced or link is None or not controller.is_known:
             return
-        if controller.factsheet is None and now - vehicle.heard_at < FACTSHEET_WITHIN:
+        if controller.factsheet is None and now - vehicle.received_at < FACTSHEET_WITHIN:
             return
-        vehicle.is_told = True
+        vehicle.is_introduced = True
         abilities: list[Ability] = ["targets", "paths"]
         if controller.factsheet is None or controller.factsheet.supports("initPosition"):
             abilities.append("start")
@@ -343,7 +344,7 @@ class Vda5050Adapter(Adapter):
                 link.give_up(vehicle.robot, effect.command_id, effect.reason)
         elif isinstance(effect, Halted):
             vehicle.halted()
-        elif isinstance(effect, VehicleReport) and link is not None and vehicle.is_told:
+        elif isinstance(effect, VehicleReport) and link is not None and vehicle.is_introduced:
             if isinstance(effect.request, SendPos):
                 link.position(vehicle.robot, effect.request)
             elif isinstance(effect.request, Alive):
@@ -365,8 +366,10 @@ class Vda5050Adapter(Adapter):
         if self._link is None:
             return
         counts = {"vehicles": float(len(self._vehicles)), "faults": float(self._faults)}
-        told = [(one.robot, one.controller.alarm(now)) for one in self._vehicles.values() if one.is_told]
-        text = self._trouble or summary([f"{robot}: {alarm}" for robot, alarm in told if alarm])
+        alarms = [
+            (one.robot, one.controller.alarm(now)) for one in self._vehicles.values() if one.is_introduced
+        ]
+        text = self._trouble or summary([f"{robot}: {alarm}" for robot, alarm in alarms if alarm])
         with contextlib.suppress(ValueError):
             self._link.report(ok=text is None, text=text, counts=counts, reached=self._trouble is None)
 

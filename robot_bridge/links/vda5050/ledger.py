@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal
 
-from ...core.messages import Request, SetPosIni
+from ...core.messages.robots import Request, SetPosIni
 from .messages import Action, ActionParameter, FreshNames, InstantActions, Order, State
 from .presence import VehiclePresence
 from .tasks import Remembered, VehicleTask, recalled

@@ -36,7 +36,7 @@ BOUNDS = JsonBounds(depth=16, length=1 << 20, values=60_000)
 """A state with a thousand nodes, each with its position, is half as large."""
 MOST_LISTED = 10_000
 LONGEST_TEXT = 4_096
-SPOKEN = {"2": "versions 2.0 and 2.1", "3": "versions 3.x"}
+SUPPORTED = {"2": "versions 2.0 and 2.1", "3": "versions 3.x"}
 """What is read by the major version that the link's settings name."""
 LEVELS = ("FATAL", "CRITICAL", "URGENT", "WARNING")
 """Levels of errors, the worst first; 2.x has the first and the last."""
@@ -337,7 +337,7 @@ def _check_version(topic: str, body: Any, major: str) -> None:
     version = body.get("version") if isinstance(body, dict) else None
     if isinstance(version, str) and version.split(".")[0] != major:
         raise VehicleMessageError(
-            f"{topic}: version {version[:20]!r} is not spoken here; {SPOKEN[major]} are "
+            f"{topic}: version {version[:20]!r} is not spoken here; {SUPPORTED[major]} are "
             "(major_version of the link's settings says which)"
         )
 
@@ -348,13 +348,13 @@ def _as_2_1(body: Any) -> Any:
         return [_as_2_1(one) for one in body]
     if not isinstance(body, dict):
         return body
-    told = {}
+    fields_2_1 = {}
     for name, value in body.items():
         values = _RENAMED_VALUES.get(name, {})
-        told[_RENAMED.get(name, name)] = (
+        fields_2_1[_RENAMED.get(name, name)] = (
             values.get(value, value) if isinstance(value, str) else _as_2_1(value)
         )
-    return told
+    return fields_2_1
 
 
 # --- What the adapter publishes: orders and instant actions of VDA 5050 2.0 to 3.0, and on which topics

@@ -7,7 +7,7 @@ from collections import deque
 from collections.abc import Mapping
 from typing import Protocol
 
-from ...core.messages import SendPos
+from ...core.messages.robots import SendPos
 from ...core.messages.validation import LONGEST_STATUS, one_line
 from .messages import LEVELS, Connection, Factsheet, Position, State, VehicleFault, Velocity, Visualization
 
@@ -86,7 +86,7 @@ class VehiclePresence:
         self._silent_after = silent_after
         self._serials = SerialWatch()
         self._connection: str | None = None
-        self._heard_at = self._asked_at = -math.inf
+        self._received_at = self._requested_at = -math.inf
         self.state: State | None = None
         """the last one that was not retained by the broker."""
         self.state_at = -math.inf
@@ -103,7 +103,7 @@ class VehiclePresence:
         if not retained:
             self._serials.note_connection(message, now)
             if message.connection_state == "ONLINE":
-                self._heard_at = now
+                self._received_at = now
 
     def note_state(self, message: State, now: float) -> None:
         """Note a state; it shows that the vehicle is there.
@@ -112,12 +112,12 @@ class VehiclePresence:
         """
         self._serials.note_state(message.header_id, now)
         self.state, self.state_at, self.version = message, now, message.version
-        self._connection, self._heard_at = "ONLINE", now
+        self._connection, self._received_at = "ONLINE", now
         self._place(message.agv_position, message.velocity, message.sent_at, now)
 
     def note_visualization(self, message: Visualization, now: float) -> None:
         """Note a position between two states."""
-        self._heard_at = now
+        self._received_at = now
         self._place(message.agv_position, message.velocity, message.sent_at, now)
 
     def note_factsheet(self, message: Factsheet) -> None:
@@ -126,22 +126,22 @@ class VehiclePresence:
 
     def lose_broker(self) -> None:
         """Note that nothing is known of the vehicle until the broker is back."""
-        self._connection, self._heard_at = None, -math.inf
+        self._connection, self._received_at = None, -math.inf
 
     @property
     def connection(self) -> str | None:
         """ONLINE, OFFLINE, HIBERNATING, CONNECTIONBROKEN; None where nothing is known."""
         return self._connection
 
-    def note_asked(self, now: float) -> None:
+    def note_request(self, now: float) -> None:
         """Note that the vehicle was asked for its state; the first question without an answer counts."""
-        if self._asked_at <= self._heard_at:
-            self._asked_at = now
+        if self._requested_at <= self._received_at:
+            self._requested_at = now
 
     def is_there(self, now: float) -> bool:
         """Tell whether the vehicle is connected, was heard lately, and answers what it was asked."""
-        unanswered = self._asked_at > self._heard_at and now - self._asked_at > ANSWERS_WITHIN
-        silent = now - self._heard_at > self._silent_after
+        unanswered = self._requested_at > self._received_at and now - self._requested_at > ANSWERS_WITHIN
+        silent = now - self._received_at > self._silent_after
         return self._connection == "ONLINE" and not (unanswered or silent)
 
     def frame(self) -> MapFrame | None:

@@ -32,7 +32,7 @@ class StopProcedure:
         self._can_pause = can_pause
         self._emergency = False
         self._state: State | None = None
-        self._heard_at = begun_at
+        self._received_at = begun_at
         self._cancels: list[str] = []
         self._cancelled_at: float | None = None
         self._paused_at: float | None = None
@@ -64,7 +64,7 @@ class StopProcedure:
 
     def note_state(self, state: State, now: float) -> None:
         """Note what the vehicle shows since the stop began."""
-        self._state, self._heard_at = state, now
+        self._state, self._received_at = state, now
         for action_id in self._cancels:
             if state.action(action_id) is not None:
                 self._evident = True
@@ -79,7 +79,7 @@ class StopProcedure:
         """
         if self._state is None or self._state.driving or self._state.has_active_order:
             return False
-        return self._evident or self._heard_at - self._begun_at >= self._limits.repeat_after
+        return self._evident or self._received_at - self._begun_at >= self._limits.repeat_after
 
     @property
     def stands(self) -> bool:

@@ -9,7 +9,8 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
-from ...core.messages import Alive, MessageError, Request, SetPath, SetPosEnd, SetPosIni, Stopped
+from ...core.messages.robots import Alive, Request, SetPath, SetPosEnd, SetPosIni, Stopped
+from ...core.messages.validation import MessageError
 from .ledger import Effect, Ledger, PositionInit
 from .messages import Connection, Factsheet, FreshNames, Inbound, State, VehicleId, Visualization
 from .presence import MapFrame, VehiclePresence
@@ -228,7 +229,7 @@ class VehicleController:
         quiet = now - presence.state_at >= self._settings.poll_every
         if presence.connection == "ONLINE" and busy and quiet and now >= self._next_poll:
             self._next_poll = now + self._settings.poll_every
-            presence.note_asked(now)
+            presence.note_request(now)
             self._ledger.publish_action("stateRequest", self._names.draw())
             if unknown and presence.factsheet is None:
                 self._ledger.publish_action("factsheetRequest", self._names.draw())
@@ -311,8 +312,8 @@ class VehicleController:
 
     def _unpause(self, state: State, now: float) -> str | None:
         """Lift a pause of ours, also where the vehicle does not show it; return what is against driving."""
-        asked = self._next_unpause > -math.inf
-        if now >= self._next_unpause and (state.is_held or not asked):
+        unpause_sent = self._next_unpause > -math.inf
+        if now >= self._next_unpause and (state.is_held or not unpause_sent):
             self._next_unpause = now + REPEAT_EVERY
             self._ledger.publish_action("stopPause", self._names.draw())
         return "the vehicle does not end its pause" if state.is_held else None
@@ -351,8 +352,8 @@ class VehicleController:
     def _is_surely_paused(self) -> bool:
         """Tell whether a pause of ours holds, which the vehicle shows and nothing was sent to lift."""
         state = self._presence.state
-        asked = self._next_unpause > -math.inf
-        return self._ledger.is_paused and not asked and state is not None and state.paused
+        unpause_sent = self._next_unpause > -math.inf
+        return self._ledger.is_paused and not unpause_sent and state is not None and state.paused
 
     def _publish_stop(self, stop: StopProcedure, now: float) -> None:
         for actions in stop.due(now):

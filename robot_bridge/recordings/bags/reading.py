@@ -413,21 +413,21 @@ def _decoder() -> Callable[[Message], Any]:
     return decode
 
 
-def _bag_sample(message: Message, robot: str, said: Any) -> Sample:
+def _bag_sample(message: Message, robot: str, content: Any) -> Sample:
     number, t = message.number, message.t
     if message.kind == EARTH:
-        if said.status.status <= _NO_FIX:
+        if content.status.status <= _NO_FIX:
             raise ValueRefusedError("status", "the receiver has no fix")
         lon, lat = (
-            _finite(said.longitude, "longitude", LONGITUDE),
-            _finite(said.latitude, "latitude", LATITUDE),
+            _finite(content.longitude, "longitude", LONGITUDE),
+            _finite(content.latitude, "latitude", LATITUDE),
         )
         return Sample(number, robot, t, lon, lat)
-    pose = said.pose if message.kind == KINDS[1] else said.pose.pose
+    pose = content.pose if message.kind == KINDS[1] else content.pose.pose
     x, y = (_finite(getattr(pose.position, name), f"position.{name}", COORDINATE) for name in "xy")
     v = math.nan
     if message.kind == KINDS[0]:
-        ahead, aside = said.twist.twist.linear.x, said.twist.twist.linear.y
+        ahead, aside = content.twist.twist.linear.x, content.twist.twist.linear.y
         v = _finite(math.copysign(math.hypot(ahead, aside), ahead or 1.0), "twist.linear", SPEED_BOUNDS)
     return Sample(number, robot, t, x, y, _yaw(pose.orientation), v)
 

@@ -117,10 +117,10 @@ class Avoidance:
             return 0.0, 0.0
         return min(ROUND_SPEED, fastest), AIMS * self._heading
 
-    def _look_round(self, wanted: float) -> None:
+    def _look_round(self, speed_wanted: float) -> None:
         free = [side for side in SIDEWAYS if self.free_ahead(side) > ROUND + self._shape.radius]
         if free:
-            self._heading = min(free, key=lambda side: abs(side - wanted))
+            self._heading = min(free, key=lambda side: abs(side - speed_wanted))
             self._left = ROUND
 
     def _fastest(self, bearing: float) -> float:

@@ -14,7 +14,7 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
-from ...core.messages import Observed, SendImage, SetObject
+from ...core.messages.robots import Observed, SendImage, SetObject
 from ...core.robotmap.model import RobotMap
 from ..body import Body, BodyLimits, Pose
 from .avoidance import Avoidance, Discs, MovingObstacles, ObstacleShape, ranges_to
@@ -54,7 +54,7 @@ class InlineExecutor(Executor):
         return future
 
 
-BLOCKED_SAID = 1.0
+BLOCKED_REMARK_S = 1.0
 """seconds after which a robot says that something is in its way."""
 LASER_UP = 0.1
 """metres above its laser: as high at least is what that sees."""
@@ -120,7 +120,7 @@ class LocalisedBody:
         self._felt = Motion(0.0, 0.0)
         """What was measured since the newest scan."""
         self._partial: list[Motion] = []
-        self._wanted = 0.0, 0.0
+        self._target_speeds = 0.0, 0.0
         self._t = 0.0
         self._next_scan = 0.0
         self._next_fix = 0.0
@@ -169,7 +169,7 @@ class LocalisedBody:
     @property
     def remark(self) -> str | None:
         """What keeps it from driving on although it knows its place."""
-        if not self.avoidance.waits or self.avoidance.blocked_for < BLOCKED_SAID:
+        if not self.avoidance.waits or self.avoidance.blocked_for < BLOCKED_REMARK_S:
             return None
         return f"waits: something is in its way, {self.avoidance.free_ahead(0.0):.1f} m ahead"
 
@@ -245,11 +245,11 @@ class LocalisedBody:
         """Ask for a motion, m/s and rad/s; it stands where it must not drive, and keeps off what it sees."""
         if self.localiser.trouble is not None:
             v = turn_rate = 0.0
-        self._wanted = v, turn_rate
+        self._target_speeds = v, turn_rate
 
     def step(self, dt: float) -> None:
         """Let ``dt`` seconds pass, and scan when it is time."""
-        self._body.drive(*self.avoidance.adjusted(*self._wanted, dt))
+        self._body.drive(*self.avoidance.adjusted(*self._target_speeds, dt))
         before = self._body.pose
         self._body.step(dt)
         true = motion_between(before, self._body.pose)

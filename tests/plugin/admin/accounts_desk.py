@@ -5,13 +5,7 @@ from __future__ import annotations
 from qgis.PyQt import sip
 from qgis.PyQt.QtCore import QCoreApplication, QEvent, Qt
 from qgis.PyQt.QtTest import QTest
-from qgis.PyQt.QtWidgets import (
-    QAction,
-    QApplication,
-    QDialog,
-    QLineEdit,
-    QPushButton,
-)
+from qgis.PyQt.QtWidgets import QAction, QApplication, QDialog, QLineEdit, QPushButton
 
 MADE_AT = 1_790_000_000.0
 CHANGES = ("fleet_account_set_role", "fleet_account_rotate", "fleet_account_revoke")
@@ -23,7 +17,7 @@ class AccountsDesk:
 
     def __init__(self, plugin, iface, gateway, wait):
         self._plugin, self._iface, self._gateway, self.wait = plugin, iface, gateway, wait
-        self.said = self.window().said
+        self.status = self.window().status
 
     def connect(self) -> None:
         panel = self._plugin.window.dock.connection_panel
@@ -65,7 +59,7 @@ class AccountsDesk:
 
     def press(self, name: str) -> None:
         button = self.button(name)
-        assert button.isEnabled(), f"{name}: {self.said.text()}"
+        assert button.isEnabled(), f"{name}: {self.status.text()}"
         QTest.mouseClick(button, Qt.MouseButton.LeftButton)
 
     def question(self, name: str) -> QDialog:
@@ -86,8 +80,8 @@ class AccountsDesk:
         self.wait(lambda: len(self.tokens()) == 1, what="the token")
         return self.tokens()[0]
 
-    def told(self, text: str) -> None:
-        self.wait(lambda: text in self.said.text(), what=f"{text!r} in place of {self.said.text()!r}")
+    def wait_for_status(self, text: str) -> None:
+        self.wait(lambda: text in self.status.text(), what=f"{text!r} in place of {self.status.text()!r}")
 
 
 def confirm(question: QDialog) -> None:

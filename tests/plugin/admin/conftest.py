@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 import pytest
-from fleet_supervisor.robot_bridge.core.messages import (
+from fleet_supervisor.robot_bridge.core.messages.administration import (
     NewToken,
     OperatorReport,
     Operators,
-    Role,
     SessionReport,
     TokenState,
-    to_json,
 )
+from fleet_supervisor.robot_bridge.core.messages.json_values import to_json
+from fleet_supervisor.robot_bridge.core.messages.operator_requests import Role
 
 from tests.plugin.admin.accounts_desk import MADE_AT, AccountsDesk
 

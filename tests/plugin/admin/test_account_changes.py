@@ -5,16 +5,9 @@ from __future__ import annotations
 import pytest
 from qgis.PyQt.QtCore import Qt
 from qgis.PyQt.QtTest import QTest
-from qgis.PyQt.QtWidgets import (
-    QComboBox,
-    QLabel,
-    QLineEdit,
-)
+from qgis.PyQt.QtWidgets import QComboBox, QLabel, QLineEdit
 
-from tests.plugin.admin.accounts_desk import (
-    confirm,
-    is_closed,
-)
+from tests.plugin.admin.accounts_desk import confirm, is_closed
 
 
 def test_another_role_is_chosen_and_asked_for(at_accounts, gateway):
@@ -24,10 +17,10 @@ def test_another_role_is_chosen_and_asked_for(at_accounts, gateway):
     assert not any("your own" in label.text() for label in question.findChildren(QLabel))
     question.findChild(QComboBox, "fleet_account_role").setCurrentText("operator")
     confirm(question)
-    at_accounts.told("Ben is operator now.")
-    assert gateway.asked("set_role") == [{"operator": "Ben", "role": "operator"}]
+    at_accounts.wait_for_status("Ben is operator now.")
+    assert gateway.requests_of("set_role") == [{"operator": "Ben", "role": "operator"}]
     at_accounts.wait(lambda: at_accounts.rows()[1][1] == "operator")
-    assert at_accounts.said.text() == "Ben is operator now."
+    assert at_accounts.status.text() == "Ben is operator now."
 
 
 def test_a_new_token_takes_the_old_ones_place(at_accounts, gateway, book):
@@ -37,7 +30,7 @@ def test_a_new_token_takes_the_old_ones_place(at_accounts, gateway, book):
     question.findChild(QComboBox, "fleet_account_validity").setCurrentIndex(3)
     confirm(question)
     shown = at_accounts.token()
-    assert gateway.asked("rotate_token") == [{"operator": "Ben", "expires_in": 30 * 86_400.0}]
+    assert gateway.requests_of("rotate_token") == [{"operator": "Ben", "expires_in": 30 * 86_400.0}]
     assert shown.findChild(QLineEdit, "fleet_new_token").text() == book.made[0]
     assert not any("is cut off" in label.text() for label in shown.findChildren(QLabel))
 
@@ -56,8 +49,8 @@ def test_what_cuts_somebody_off_is_not_behind_enter(at_accounts, gateway, button
     QTest.keyClick(asked, Qt.Key.Key_Return)
     assert is_closed(asked)
     at_accounts.press("fleet_accounts_refresh")
-    at_accounts.told("2 accounts")
-    assert gateway.asked(method) == []
+    at_accounts.wait_for_status("2 accounts")
+    assert gateway.requests_of(method) == []
 
 
 def test_a_token_is_revoked_when_that_is_confirmed(at_accounts, gateway):
@@ -66,8 +59,8 @@ def test_a_token_is_revoked_when_that_is_confirmed(at_accounts, gateway):
     question = at_accounts.question("fleet_revocation")
     assert not any("your own" in label.text() for label in question.findChildren(QLabel))
     confirm(question)
-    at_accounts.told("The token of Ben is revoked.")
-    assert gateway.asked("revoke_token") == [{"operator": "Ben"}]
+    at_accounts.wait_for_status("The token of Ben is revoked.")
+    assert gateway.requests_of("revoke_token") == [{"operator": "Ben"}]
     at_accounts.wait(lambda: at_accounts.rows()[1][4].startswith("revoked"))
 
 
@@ -88,7 +81,12 @@ def test_ones_own_account_is_said_to_be_that_and_enter_leaves_it(
     assert any(says in label.text() for label in asked.findChildren(QLabel))
     QTest.keyClick(asked, Qt.Key.Key_Return)
     assert is_closed(asked)
-    assert gateway.asked("revoke_token") + gateway.asked("rotate_token") + gateway.asked("set_role") == []
+    assert (
+        gateway.requests_of("revoke_token")
+        + gateway.requests_of("rotate_token")
+        + gateway.requests_of("set_role")
+        == []
+    )
 
 
 def test_the_last_supervisor_stays_and_the_gateway_says_why(at_accounts, gateway):
@@ -96,5 +94,5 @@ def test_the_last_supervisor_stays_and_the_gateway_says_why(at_accounts, gateway
     at_accounts.choose("Ada")
     at_accounts.press("fleet_account_revoke")
     confirm(at_accounts.question("fleet_revocation"))
-    at_accounts.told("Revoke Ada: that would leave no supervisor")
+    at_accounts.wait_for_status("Revoke Ada: that would leave no supervisor")
     assert at_accounts.rows()[0][4] == "holds"

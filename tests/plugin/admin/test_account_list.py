@@ -4,17 +4,11 @@ from __future__ import annotations
 
 import pytest
 from fleet_supervisor.plugin.admin.token_dialog import day_and_time
-from fleet_supervisor.robot_bridge.core.messages import Role, TokenState
-from qgis.PyQt.QtWidgets import (
-    QAction,
-    QToolButton,
-)
+from fleet_supervisor.robot_bridge.core.messages.administration import TokenState
+from fleet_supervisor.robot_bridge.core.messages.operator_requests import Role
+from qgis.PyQt.QtWidgets import QAction, QToolButton
 
-from tests.plugin.admin.accounts_desk import (
-    BUTTONS,
-    CHANGES,
-    MADE_AT,
-)
+from tests.plugin.admin.accounts_desk import BUTTONS, CHANGES, MADE_AT
 
 
 def test_every_account_is_listed_with_its_role_times_and_token(at_accounts, book):
@@ -31,7 +25,7 @@ def test_every_account_is_listed_with_its_role_times_and_token(at_accounts, book
         ("Dan", "operator", since, "–", f"expired {day_and_time(MADE_AT + 40)}"),
         ("Eve", "operator", since, "–", "none"),
     ]
-    at_accounts.told("5 accounts")
+    at_accounts.wait_for_status("5 accounts")
 
 
 def test_it_is_in_the_menu_of_the_connections_too(at_accounts, plugin):
@@ -76,7 +70,7 @@ def test_the_selection_stays_with_its_account_when_others_come(at_accounts, book
 def test_a_list_that_is_refused_says_why(at_accounts, gateway):
     gateway.refuse["get_operators"] = "the database is away; ask again"
     at_accounts.press("fleet_accounts_refresh")
-    at_accounts.told("Accounts: the database is away; ask again")
+    at_accounts.wait_for_status("Accounts: the database is away; ask again")
 
 
 @pytest.mark.parametrize(
@@ -99,11 +93,11 @@ def test_without_a_link_it_says_so_and_fills_when_there_is_one(operator, book, g
     assert_closed(operator, gateway, "not connected")
     operator.connect()
     operator.listed("Ada", "Ben")
-    operator.told("2 accounts")
+    operator.wait_for_status("2 accounts")
 
 
 def assert_closed(operator, gateway, why):
-    operator.told(why)
+    operator.wait_for_status(why)
     assert not any(operator.button(name).isEnabled() for name in BUTTONS)
     assert operator.rows() == []
-    assert gateway.asked("get_operators") == []
+    assert gateway.requests_of("get_operators") == []

@@ -7,26 +7,16 @@ import threading
 import numpy as np
 import zxingcpp
 from fleet_supervisor.plugin.admin.token_dialog import TokenDialog, day_and_time
-from fleet_supervisor.robot_bridge.core.messages import NewToken, Role
+from fleet_supervisor.robot_bridge.core.messages.administration import NewToken
+from fleet_supervisor.robot_bridge.core.messages.operator_requests import Role
 from qgis.core import QgsApplication, QgsSettings
 from qgis.PyQt import sip
 from qgis.PyQt.QtCore import Qt
 from qgis.PyQt.QtGui import QImage
 from qgis.PyQt.QtTest import QTest
-from qgis.PyQt.QtWidgets import (
-    QApplication,
-    QComboBox,
-    QLabel,
-    QLineEdit,
-    QPushButton,
-)
+from qgis.PyQt.QtWidgets import QApplication, QComboBox, QLabel, QLineEdit, QPushButton
 
-from tests.plugin.admin.accounts_desk import (
-    MADE_AT,
-    confirm,
-    let_deleted_go,
-    make_account,
-)
+from tests.plugin.admin.accounts_desk import MADE_AT, confirm, let_deleted_go, make_account
 from tests.plugin.admin.conftest import secret
 
 
@@ -45,7 +35,9 @@ def test_an_account_is_made_by_keys_alone_and_its_token_shown(at_accounts, gatew
     QTest.keyClick(question.focusWidget(), Qt.Key.Key_Down)
     QTest.keyClick(question.focusWidget(), Qt.Key.Key_Return)
     token = at_accounts.token()
-    assert gateway.asked("add_operator") == [{"operator": "Cleo", "role": "operator", "expires_in": 86_400.0}]
+    assert gateway.requests_of("add_operator") == [
+        {"operator": "Cleo", "role": "operator", "expires_in": 86_400.0}
+    ]
     field = token.findChild(QLineEdit, "fleet_new_token")
     assert field.isReadOnly()
     assert field.text() == f"fleet_op_{0:043d}"
@@ -83,7 +75,7 @@ def test_a_token_is_copied_by_enter_and_gone_when_its_window_closes(at_accounts,
 def test_a_name_that_is_taken_is_refused_in_the_gateways_words(at_accounts, gateway):
     gateway.refuse["add_operator"] = "operator 'Ben' is there already"
     make_account(at_accounts, "ben")
-    at_accounts.told("New account ben: operator 'Ben' is there already")
+    at_accounts.wait_for_status("New account ben: operator 'Ben' is there already")
     assert at_accounts.tokens() == []
 
 
@@ -91,7 +83,7 @@ def test_the_first_account_is_a_supervisors_and_says_that_it_ends_the_link(opera
     book.accounts.clear()
     operator.connect()
     operator.open()
-    operator.told("has no accounts")
+    operator.wait_for_status("has no accounts")
     operator.press("fleet_account_add")
     question = operator.question("fleet_new_account")
     assert question.findChild(QComboBox, "fleet_account_role").currentText() == "supervisor"
@@ -100,7 +92,7 @@ def test_the_first_account_is_a_supervisors_and_says_that_it_ends_the_link(opera
     confirm(question)
     shown = operator.token()
     assert any("is cut off" in label.text() for label in shown.findChildren(QLabel))
-    assert gateway.asked("add_operator") == [{"operator": "Ada", "role": "supervisor"}]
+    assert gateway.requests_of("add_operator") == [{"operator": "Ada", "role": "supervisor"}]
 
 
 def test_a_token_that_comes_when_the_window_is_closed_is_shown_all_the_same(at_accounts, gateway, book):
@@ -131,7 +123,7 @@ def test_an_answer_that_cannot_be_read_says_so_and_shows_nothing_of_it(at_accoun
     token = f"fleet_op_{7:043d}"
     gateway.answers["add_operator"] = lambda params: {"result": {"role": "viewer", "token": token}}
     make_account(at_accounts, "Cleo")
-    at_accounts.told("New account Cleo: the gateway's answer cannot be read (TypeError)")
+    at_accounts.wait_for_status("New account Cleo: the gateway's answer cannot be read (TypeError)")
     assert token not in everything_said()
 
 

@@ -5,20 +5,9 @@ from __future__ import annotations
 from qgis.PyQt import sip
 from qgis.PyQt.QtCore import Qt
 from qgis.PyQt.QtTest import QTest
-from qgis.PyQt.QtWidgets import (
-    QAction,
-    QDialog,
-    QLabel,
-    QLineEdit,
-)
+from qgis.PyQt.QtWidgets import QAction, QDialog, QLabel, QLineEdit
 
-from tests.plugin.admin.accounts_desk import (
-    BUTTONS,
-    confirm,
-    is_closed,
-    let_deleted_go,
-    make_account,
-)
+from tests.plugin.admin.accounts_desk import BUTTONS, confirm, is_closed, let_deleted_go, make_account
 
 
 def test_ones_own_new_token_outlives_the_link_that_it_ends(at_accounts, gateway, book, plugin, wait):
@@ -27,7 +16,7 @@ def test_ones_own_new_token_outlives_the_link_that_it_ends(at_accounts, gateway,
     confirm(at_accounts.question("fleet_another_token"))
     shown = at_accounts.token()
     gateway.stop()
-    at_accounts.told("not connected")
+    at_accounts.wait_for_status("not connected")
     assert shown.isVisible()
     assert shown.findChild(QLineEdit, "fleet_new_token").text() == book.made[0]
     assert any("is cut off" in label.text() for label in shown.findChildren(QLabel))
@@ -38,13 +27,13 @@ def test_what_was_asked_when_the_link_went_is_not_waited_for(at_accounts, gatewa
     at_accounts.choose("Ben")
     at_accounts.press("fleet_account_revoke")
     confirm(at_accounts.question("fleet_revocation"))
-    at_accounts.wait(lambda: gateway.asked("revoke_token"))
+    at_accounts.wait(lambda: gateway.requests_of("revoke_token"))
     gateway.stop()
-    at_accounts.told("not connected")
+    at_accounts.wait_for_status("not connected")
     assert at_accounts.rows() == []
     assert not any(at_accounts.button(name).isEnabled() for name in BUTTONS)
     plugin.window.actions.connect.trigger()
-    at_accounts.told("Revoke Ben: The link was closed before the gateway answered")
+    at_accounts.wait_for_status("Revoke Ben: The link was closed before the gateway answered")
 
 
 def test_a_question_about_one_gateways_account_is_not_answered_for_another(at_accounts, gateway):
@@ -52,7 +41,7 @@ def test_a_question_about_one_gateways_account_is_not_answered_for_another(at_ac
     at_accounts.press("fleet_account_revoke")
     question = at_accounts.question("fleet_revocation")
     gateway.stop()
-    at_accounts.told("not connected")
+    at_accounts.wait_for_status("not connected")
     assert is_closed(question)
 
 
@@ -70,7 +59,7 @@ def test_robots_can_be_stopped_whatever_is_open(at_accounts, gateway, wait):
     for number, window in enumerate((shown, at_accounts.window(), at_accounts.question("fleet_revocation"))):
         window.activateWindow()
         QTest.keyClick(window, Qt.Key.Key_F10)
-        wait(lambda number=number: len(gateway.asked("emergency_stop")) == number + 1, what="the stop")
+        wait(lambda number=number: len(gateway.requests_of("emergency_stop")) == number + 1, what="the stop")
 
 
 def test_only_one_question_is_open(at_accounts):

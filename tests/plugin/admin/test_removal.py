@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 from fleet_supervisor.plugin.admin.robot_removal import RemovalDialog
-from fleet_supervisor.robot_bridge.core.messages import RobotState
+from fleet_supervisor.robot_bridge.core.messages.safety import RobotState
 from qgis.PyQt.QtCore import Qt
 from qgis.PyQt.QtTest import QTest
 from qgis.PyQt.QtWidgets import QAction, QComboBox, QLabel, QLineEdit, QPushButton
@@ -65,10 +65,10 @@ def test_one_that_is_selected_is_removed_with_the_reason(asked, gone, gateway, i
     assert offered == ["the selected one", "all 61 that are lost or offline"]
     assert names(dialog) == "old-07"
     QTest.keyClicks(dialog.findChild(QLineEdit, "fleet_removal_reason"), "sold")
-    assert gateway.asked("remove_robots") == []
+    assert gateway.requests_of("remove_robots") == []
     confirm(dialog)
-    wait(lambda: gateway.asked("remove_robots"), what="the request")
-    assert gateway.asked("remove_robots") == [{"robots": ["old-07"], "reason": "sold"}]
+    wait(lambda: gateway.requests_of("remove_robots"), what="the request")
+    assert gateway.requests_of("remove_robots") == [{"robots": ["old-07"], "reason": "sold"}]
     wait(lambda: any("1 robot was removed: old-07" in text for text in iface.texts()), what="the word of it")
 
 
@@ -83,8 +83,8 @@ def test_all_that_are_lost_or_offline_are_removed_together(asked, gateway, iface
     QTest.qWait(10)
     assert button.pos() == before
     confirm(dialog)
-    wait(lambda: gateway.asked("remove_robots"), what="the request")
-    (asked_for,) = gateway.asked("remove_robots")
+    wait(lambda: gateway.requests_of("remove_robots"), what="the request")
+    (asked_for,) = gateway.requests_of("remove_robots")
     assert asked_for["robots"] == [*(f"old-{k:02}" for k in range(60)), "stored"]
     wait(lambda: any("61 robots were removed" in text for text in iface.texts()), what="the word of it")
 
@@ -103,7 +103,7 @@ def test_enter_and_escape_remove_nobody(asked, gateway, key):
     QTest.keyClick(dialog, key)
     assert not dialog.isVisible()
     QTest.qWait(50)
-    assert gateway.asked("remove_robots") == []
+    assert gateway.requests_of("remove_robots") == []
 
 
 def test_what_the_gateway_refuses_is_said(asked, gateway, iface, wait):

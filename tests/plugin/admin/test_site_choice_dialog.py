@@ -5,7 +5,8 @@ from __future__ import annotations
 from dataclasses import replace
 
 import pytest
-from fleet_supervisor.robot_bridge.core.messages import SiteOffer, Sites, to_json
+from fleet_supervisor.robot_bridge.core.messages.administration import SiteOffer, Sites
+from fleet_supervisor.robot_bridge.core.messages.json_values import to_json
 from qgis.PyQt import sip
 from qgis.PyQt.QtCore import Qt
 from qgis.PyQt.QtTest import QTest
@@ -72,8 +73,8 @@ class Choice:
             one for one in self.window().findChildren(QDialog, "fleet_site_question") if one.isVisible()
         )
 
-    def told(self, text: str) -> None:
-        said = self.window().said
+    def wait_for_status(self, text: str) -> None:
+        said = self.window().status
         self.wait(lambda: text in said.text(), what=f"{text!r} in place of {said.text()!r}")
 
 
@@ -102,7 +103,7 @@ def test_the_sites_are_listed_with_what_keeps_them_from_being_chosen(at_choice):
         ("South field", "south", "4", "can be chosen"),
         ("Yard", "yard", "1", "served now"),
     ]
-    at_choice.told("3 sites")
+    at_choice.wait_for_status("3 sites")
     view = at_choice.window().view
     assert view.rowHeight(0) > view.rowHeight(1), "why it cannot be chosen takes more than a line"
 
@@ -120,12 +121,12 @@ def test_a_site_is_served_once_that_is_confirmed(at_choice, gateway):
     words = " ".join(label.text() for label in question.findChildren(QLabel))
     assert "Every robot is sent the map of South field" in words and "No robot is stopped" in words
     confirm(question)
-    at_choice.told("South field is served now.")
-    assert gateway.asked("choose_site") == [{"site": "south"}]
+    at_choice.wait_for_status("South field is served now.")
+    assert gateway.requests_of("choose_site") == [{"site": "south"}]
     at_choice.wait(lambda: at_choice.states()["south"] == "served now")
     assert at_choice.states()["yard"] == "can be chosen"
     assert not at_choice.serve().isEnabled()
-    assert at_choice.window().said.text() == "South field is served now."
+    assert at_choice.window().status.text() == "South field is served now."
 
 
 def test_enter_changes_no_site(at_choice, gateway):
@@ -133,19 +134,19 @@ def test_enter_changes_no_site(at_choice, gateway):
     question = at_choice.question()
     QTest.keyClick(question, Qt.Key.Key_Return)
     assert sip.isdeleted(question) or not question.isVisible()
-    asked = len(gateway.asked("get_sites"))
+    asked = len(gateway.requests_of("get_sites"))
     QTest.mouseClick(
         at_choice.window().findChild(QPushButton, "fleet_sites_refresh"), Qt.MouseButton.LeftButton
     )
-    at_choice.wait(lambda: len(gateway.asked("get_sites")) > asked)
-    assert gateway.asked("choose_site") == []
+    at_choice.wait(lambda: len(gateway.requests_of("get_sites")) > asked)
+    assert gateway.requests_of("choose_site") == []
 
 
 def test_a_refusal_is_shown_in_the_gateways_words(at_choice, gateway):
     gateway.refuse["choose_site"] = "south/site.gpkg cannot be read; yard is served on"
     at_choice.choose("south")
     confirm(at_choice.question())
-    at_choice.told("Serve South field: south/site.gpkg cannot be read; yard is served on")
+    at_choice.wait_for_status("Serve South field: south/site.gpkg cannot be read; yard is served on")
     assert at_choice.states()["yard"] == "served now"
 
 
@@ -160,16 +161,16 @@ def test_who_is_no_supervisor_reads_why_and_nothing_is_asked(choice, gateway):
     gateway.who = {"operator": "Ben", "role": "operator"}
     choice.connect()
     choice.open()
-    choice.told("takes a supervisor, and Ben is operator here")
+    choice.wait_for_status("takes a supervisor, and Ben is operator here")
     assert choice.rows() == [] and not choice.serve().isEnabled()
-    assert gateway.asked("get_sites") == []
+    assert gateway.requests_of("get_sites") == []
 
 
 def test_when_the_link_goes_the_question_and_the_sites_go_too(at_choice, gateway):
     at_choice.choose("south")
     question = at_choice.question()
     gateway.stop()
-    at_choice.told("not connected")
+    at_choice.wait_for_status("not connected")
     assert sip.isdeleted(question) or not question.isVisible()
     assert at_choice.rows() == [] and not at_choice.serve().isEnabled()
 

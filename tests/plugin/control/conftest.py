@@ -24,7 +24,7 @@ class Hand:
         return self.drafts.draft.points if self.drafts.draft else None
 
     @property
-    def told(self) -> str:
+    def draft_text(self) -> str:
         self.wait(self.iface.is_settled, what="the check of the draft")
         return self.window.dock.findChild(QLabel, "fleet_draft_text").text()
 
@@ -80,19 +80,19 @@ class Hand:
         self.wait(self.iface.is_settled, what="the check of the draft")
 
     def sent(self, count: int = 1) -> dict:
-        self.wait(lambda: len(self.gateway.asked("send")) >= count, what="the command")
-        return self.gateway.asked("send")[-1]
+        self.wait(lambda: len(self.gateway.requests_of("send")) >= count, what="the command")
+        return self.gateway.requests_of("send")[-1]
 
     def nothing_sent(self) -> bool:
         QTest.qWait(150)
-        return self.gateway.asked("send") == [] and self.gateway.asked("add_tasks") == []
+        return self.gateway.requests_of("send") == [] and self.gateway.requests_of("add_tasks") == []
 
     def complained(self, *parts: str) -> bool:
         """Wait until one of ``parts`` stands in the message bar: a check may take its time."""
-        self.wait(lambda: any(map(self.is_told, parts)), what=" or ".join(parts))
+        self.wait(lambda: any(map(self.has_message, parts)), what=" or ".join(parts))
         return True
 
-    def is_told(self, part: str) -> bool:
+    def has_message(self, part: str) -> bool:
         return any(part in text for text in self.iface.texts())
 
 

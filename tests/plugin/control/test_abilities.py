@@ -6,7 +6,7 @@ import pytest
 from fleet_supervisor.plugin.control.pending_command import CONE, ROUTE, START, TARGETS, PendingCommand
 from fleet_supervisor.plugin.control.robot_checks import check_abilities
 from fleet_supervisor.plugin.gateway_client.robot_states import RobotView
-from fleet_supervisor.robot_bridge.core.messages import RobotState
+from fleet_supervisor.robot_bridge.core.messages.safety import RobotState
 
 POINTS = ((1.0, 2.0), (3.0, 4.0))
 

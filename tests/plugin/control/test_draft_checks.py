@@ -5,7 +5,8 @@ from __future__ import annotations
 from dataclasses import replace
 
 import pytest
-from fleet_supervisor.robot_bridge.core.messages import CommandState, RobotState
+from fleet_supervisor.robot_bridge.core.messages.commands import CommandState
+from fleet_supervisor.robot_bridge.core.messages.safety import RobotState
 from qgis.core import QgsCoordinateReferenceSystem, QgsProject, QgsVectorLayer
 from qgis.PyQt.QtCore import Qt
 from qgis.PyQt.QtTest import QTest
@@ -26,20 +27,20 @@ def test_a_target_on_an_obstacle_is_refused_and_the_feature_named(cone, layer_of
     layer_of("Polygon", SQUARE, role=role, names=["Hall 3"])
     cone.click((70, 55))
     assert cone.complained("is on Hall 3. Choose a place or way beside it.")
-    assert "Not to be sent" in cone.told
+    assert "Not to be sent" in cone.draft_text
     cone.key(Qt.Key.Key_Return)
     assert cone.nothing_sent()
     assert cone.points is not None
     cone.click((50, 70))
-    assert "Not to be sent" not in cone.told
+    assert "Not to be sent" not in cone.draft_text
 
 
 def test_where_no_layer_has_a_role_it_is_said_that_nobody_has_looked(cone, layer_of):
     cone.click((70, 55))
-    assert "No layer of the project says where obstacles and keepouts are" in cone.told
+    assert "No layer of the project says where obstacles and keepouts are" in cone.draft_text
     layer_of("Polygon", SQUARE, role="keepout")
     cone.click((20, 20))
-    assert "No layer of the project" not in cone.told
+    assert "No layer of the project" not in cone.draft_text
     cone.key(Qt.Key.Key_Return)
     assert cone.sent()["robot"] == "r1"
 
@@ -80,7 +81,7 @@ def test_a_target_beside_a_wall_is_too_near_by_metres_whatever_the_layers_crs(co
     cone.click((70, 55))
     assert cone.complained("from Fence", "is on Fence")
     cone.click((69, 55))
-    assert "Not to be sent" not in cone.told
+    assert "Not to be sent" not in cone.draft_text
 
 
 @pytest.mark.parametrize(("x", "is_free"), [(69.8, False), (70.2, False), (69.7, True)])
@@ -88,21 +89,21 @@ def test_half_a_robot_has_to_fit_beside_a_wall(cone, layer_of, x, is_free):
     layer_of("LineString", "LineString (70 40, 70 70)", role="obstacle", names=["Wall"])
     cone.iface.canvas.mapTool().add_point((x, 55.0))
     cone.wait(cone.iface.is_settled, what="the check of the draft")
-    assert ("Not to be sent" not in cone.told) is is_free
+    assert ("Not to be sent" not in cone.draft_text) is is_free
     assert is_free or cone.complained("is 0.20 m from Wall")
 
 
 def test_a_ramp_can_be_driven_to(cone, layer_of):
     layer_of("Polygon", SQUARE, role="ramp", names=["Ramp"])
     cone.click((70, 55))
-    assert "Not to be sent" not in cone.told
+    assert "Not to be sent" not in cone.draft_text
 
 
 def test_a_drawn_route_through_an_obstacle_is_refused_though_its_points_are_beside(hand, layer_of):
     layer_of("Polygon", SQUARE, role="obstacle", names=["Hall 3"])
     hand.take("route").click((50, 55), (90, 55))
     assert hand.complained("The way to")
-    assert "is on Hall 3" in hand.told
+    assert "is on Hall 3" in hand.draft_text
 
 
 def test_a_drawn_leg_that_leaves_the_road_between_two_points_on_it_is_warned_of(hand, layer_of):
@@ -111,20 +112,20 @@ def test_a_drawn_leg_that_leaves_the_road_between_two_points_on_it_is_warned_of(
     roads = [box.format(*between) for between in ((10, 40), (40.2, 60), (70, 100))]
     layer_of("Polygon", *roads, role="road_surface")
     hand.take("route").click((20, 30), (50, 35))
-    assert "road surface" not in hand.told
+    assert "road surface" not in hand.draft_text
     hand.click((80, 30))
-    assert "The way to (80" in hand.told and "leaves the road surface" in hand.told
+    assert "The way to (80" in hand.draft_text and "leaves the road surface" in hand.draft_text
     hand.click((85, 60), (50, 60))
-    assert "2 of 4 legs leave the road surface" in hand.told
+    assert "2 of 4 legs leave the road surface" in hand.draft_text
     hand.click((65, 60))
-    assert "is not on a road surface" in hand.told and "legs" not in hand.told
+    assert "is not on a road surface" in hand.draft_text and "legs" not in hand.draft_text
 
 
 def test_only_what_the_filter_of_a_layer_keeps_is_an_obstacle(cone, layer_of):
     layer = layer_of("Polygon", SQUARE, role="obstacle", names=["Hall 3"])
     layer.setCustomProperty("fleet/filter", "\"name\" <> 'Hall 3'")
     cone.click((70, 55))
-    assert "Not to be sent" not in cone.told
+    assert "Not to be sent" not in cone.draft_text
 
 
 def test_a_target_too_near_to_that_of_another_robot_is_refused_and_that_one_named(cone, hand):
@@ -135,27 +136,27 @@ def test_a_target_too_near_to_that_of_another_robot_is_refused_and_that_one_name
     cone.window.desk.selection.select("r2")
     cone.click((70, 55.5))
     assert cone.complained("m from the target of r1 at ")
-    assert "Not to be sent" in cone.told
+    assert "Not to be sent" in cone.draft_text
     cone.window.desk.selection.select("r1")
     cone.click((70, 55.5))
-    assert "Not to be sent" not in cone.told
+    assert "Not to be sent" not in cone.draft_text
 
 
 def test_a_target_too_near_to_the_end_of_another_robots_route_is_refused(cone, gateway):
-    from fleet_supervisor.robot_bridge.core.messages import CommandState
+    from fleet_supervisor.robot_bridge.core.messages.commands import CommandState
 
     gateway._queue("elsewhere", "r2", "SetPath", {"points": [[20.0, 20.0], [70.0, 55.0]]})
     gateway.step("elsewhere", CommandState.DELIVERED, "r2")
     cone.wait(lambda: len(cone.window.desk.state.commands) == 1)
     cone.click((70, 55.5))
-    assert "m from the end of the route of r2 at 70.00, 55.00" in cone.told
+    assert "m from the end of the route of r2 at 70.00, 55.00" in cone.draft_text
     cone.click((20, 20))
-    assert "Not to be sent" not in cone.told
+    assert "Not to be sent" not in cone.draft_text
     # What has come to its end is nobody's target any more.
     gateway.step("elsewhere", CommandState.REACHED, "r2")
     cone.wait(lambda: cone.window.desk.state.commands.task_of("r2") is None)
     cone.click((70, 55.5))
-    assert "Not to be sent" not in cone.told
+    assert "Not to be sent" not in cone.draft_text
 
 
 def asked_for_by(gateway, operator, robot="r1"):
@@ -176,14 +177,14 @@ def test_a_robot_that_works_for_somebody_else_is_told_before_it_is_taken_from_th
     asked_for_by(gateway, "bert")
     wait(lambda: cone.window.desk.state.commands.task_of("r1") is not None)
     cone.click((70, 55))
-    assert "r1 is at work for bert (cone at 90.00, 20.00): sending this takes its place." in cone.told
+    assert "r1 is at work for bert (cone at 90.00, 20.00): sending this takes its place." in cone.draft_text
     cone.key(Qt.Key.Key_Return)
     assert cone.sent()["robot"] == "r1"
 
 
 def test_who_takes_it_meanwhile_is_told_in_place_of_sending(known, cone, gateway, wait):
     cone.click((70, 55))
-    assert "is at work for" not in cone.told
+    assert "is at work for" not in cone.draft_text
     asked_for_by(gateway, "bert")
     wait(lambda: cone.window.desk.state.commands.task_of("r1") is not None)
     cone.key(Qt.Key.Key_Return)
@@ -197,21 +198,21 @@ def test_ones_own_order_is_replaced_without_a_word(known, cone, gateway, wait):
     asked_for_by(gateway, "anna")
     wait(lambda: cone.window.desk.state.commands.task_of("r1") is not None)
     cone.click((70, 55))
-    assert "is at work for" not in cone.told
+    assert "is at work for" not in cone.draft_text
 
 
 def test_a_draft_is_looked_at_once_more_when_it_is_sent(cone, gateway):
-    from fleet_supervisor.robot_bridge.core.messages import CommandState
+    from fleet_supervisor.robot_bridge.core.messages.commands import CommandState
 
     cone.click((70, 55))
-    assert "Not to be sent" not in cone.told
+    assert "Not to be sent" not in cone.draft_text
     # Meanwhile somebody else has sent the other robot there.
     gateway._queue("elsewhere", "r2", "SetPosEnd", {"x": 70.0, "y": 55.0})
     gateway.step("elsewhere", CommandState.DELIVERED, "r2")
     cone.wait(lambda: len(cone.window.desk.state.commands) == 1)
     cone.key(Qt.Key.Key_Return)
     assert cone.nothing_sent()
-    assert "from the target of r2" in cone.told
+    assert "from the target of r2" in cone.draft_text
 
 
 def override(hand, why="the bay is cleared"):
@@ -228,7 +229,7 @@ def test_what_can_be_overridden_is_sent_with_what_was_found_and_why(cone, layer_
     cone.click((70, 55))
     QTest.mouseClick(override(cone), Qt.MouseButton.LeftButton)
     assert cone.nothing_sent()
-    assert "OVERRIDDEN" in cone.told
+    assert "OVERRIDDEN" in cone.draft_text
     cone.key(Qt.Key.Key_Return)
     text = cone.sent()["override"]
     assert "enters the keepout Loading bay" in text
@@ -246,7 +247,7 @@ def test_an_override_is_gone_when_the_draft_is_moved(cone, layer_of):
     cone.click((70, 55))
     QTest.mouseClick(override(cone), Qt.MouseButton.LeftButton)
     cone.click((72, 55))
-    assert "Not to be sent" in cone.told
+    assert "Not to be sent" in cone.draft_text
     cone.key(Qt.Key.Key_Return)
     assert cone.nothing_sent()
 
@@ -258,8 +259,8 @@ def test_an_override_is_gone_when_something_else_is_in_the_way(cone, layer_of):
     layer_of("Polygon", SQUARE, role="obstacle", names=["New fence"])
     cone.key(Qt.Key.Key_Return)
     assert cone.nothing_sent()
-    assert "New fence" in cone.told
-    assert "OVERRIDDEN" not in cone.told
+    assert "New fence" in cone.draft_text
+    assert "OVERRIDDEN" not in cone.draft_text
 
 
 def test_an_override_of_a_draft_that_changed_behind_the_dialog_is_none(cone, layer_of):
@@ -276,7 +277,7 @@ def test_what_lies_outside_the_site_cannot_be_overridden(cone, iface):
     iface.look_at(-60, -60, 260, 200)
     cone.click((-20, 30))
     assert not cone.window.actions.override.isEnabled()
-    assert "Override" not in cone.told
+    assert "Override" not in cone.draft_text
 
 
 def test_a_refused_override_comes_back_as_a_draft(cone, layer_of, gateway):
@@ -292,7 +293,7 @@ def test_a_refused_override_comes_back_as_a_draft(cone, layer_of, gateway):
 def test_a_draft_for_a_robot_of_which_nothing_is_heard_says_so(hand, gateway, make_robot):
     cone = hand.take("cone")
     cone.click((20, 20))
-    assert "last heard" not in cone.told
+    assert "last heard" not in cone.draft_text
     gateway.show(make_robot("r1", 50, 40, age=125.0, state=RobotState.LOST))
     hand.wait(
         lambda: (
@@ -300,5 +301,5 @@ def test_a_draft_for_a_robot_of_which_nothing_is_heard_says_so(hand, gateway, ma
         )
     )
     cone.click((22, 20))
-    assert "r1 is lost, last heard 2 min ago: it is told this when it is heard again" in cone.told
+    assert "r1 is lost, last heard 2 min ago: it is told this when it is heard again" in cone.draft_text
     assert not hand.drafts.draft.findings.refused

@@ -26,7 +26,7 @@ def test_either_enter_sends_once(tool, key):
     assert tool.sent()["op"] == tool.op
     tool.key(key)
     QTest.qWait(150)
-    assert len(tool.gateway.asked("send")) == 1
+    assert len(tool.gateway.requests_of("send")) == 1
 
 
 def test_an_enter_that_is_held_down_sends_once(tool):
@@ -35,7 +35,7 @@ def test_an_enter_that_is_held_down_sends_once(tool):
     assert tool.sent()["op"] == tool.op
     QTest.keyRelease(tool.iface.canvas, Qt.Key.Key_Return)
     QTest.qWait(150)
-    assert len(tool.gateway.asked("send")) == 1
+    assert len(tool.gateway.requests_of("send")) == 1
 
 
 def test_escape_takes_the_draft_away_and_undo_brings_it_back(tool):

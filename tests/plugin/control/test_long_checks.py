@@ -51,13 +51,13 @@ def test_the_panel_says_that_it_is_checked_and_nothing_goes_out_before(slow, lay
     layer_of("Polygon", SQUARE, role="keepout", names=["Bay"])
     slow.take("cone").click((20, 20))
     assert slow.window.desk.checks.is_under_way
-    assert ". Being checked: " in slow.told
+    assert ". Being checked: " in slow.draft_text
     assert not slow.window.actions.override.isEnabled()
     with pytest.raises(NotSentError, match="it has not been checked to its end"):
         slow.window.desk.orders.send(slow.drafts.draft)
     slow.key(ENTER)
-    assert "It goes out when nothing speaks against it; Esc keeps it back." in slow.told
-    assert slow.gateway.asked("send") == []
+    assert "It goes out when nothing speaks against it; Esc keeps it back." in slow.draft_text
+    assert slow.gateway.requests_of("send") == []
     assert slow.sent()["params"]["x"] == pytest.approx(20, abs=0.3)
     assert slow.points is None
 
@@ -68,7 +68,7 @@ def test_what_is_found_at_last_keeps_it_here_although_it_was_ordered(slow, layer
     slow.key(ENTER)
     settle(slow)
     assert slow.nothing_sent()
-    assert "enters the keepout Bay" in slow.told
+    assert "enters the keepout Bay" in slow.draft_text
     assert slow.complained("enters the keepout Bay")
 
 
@@ -85,7 +85,7 @@ def test_a_draft_that_was_moved_meanwhile_has_nothing_of_the_check_before(slow, 
     assert slow.drafts.draft.findings.faults == ()
     slow.click((70, 55))
     settle(slow)
-    assert "enters the keepout Bay" in slow.told
+    assert "enters the keepout Bay" in slow.draft_text
 
 
 def test_a_cancelled_draft_is_not_sent_by_its_check(slow, layer_of):
@@ -96,13 +96,13 @@ def test_a_cancelled_draft_is_not_sent_by_its_check(slow, layer_of):
     assert not slow.window.desk.checks.is_under_way
     assert slow.nothing_sent()
     assert slow.points is None
-    assert not slow.is_told("was not sent")
+    assert not slow.has_message("was not sent")
 
 
 def ends(slow, count=1):
     """Wait for so many commands; return robot and x of each, in the order in which they were sent."""
     slow.sent(count)
-    return [(sent["robot"], round(sent["params"]["x"])) for sent in slow.gateway.asked("send")]
+    return [(sent["robot"], round(sent["params"]["x"])) for sent in slow.gateway.requests_of("send")]
 
 
 def test_a_cone_for_another_robot_does_not_undo_the_send_of_the_first(slow, layer_of):
@@ -118,7 +118,7 @@ def test_a_cone_for_another_robot_does_not_undo_the_send_of_the_first(slow, laye
     assert slow.drafts.draft.robot == "r2"
     assert ends(slow) == [("r1", 20)]
     settle(slow)
-    assert not slow.is_told("was not sent")
+    assert not slow.has_message("was not sent")
     assert slow.drafts.draft.robot == "r2" and slow.drafts.draft.is_checked
     slow.key(ENTER)
     assert ends(slow, 2) == [("r1", 20), ("r2", 30)]
@@ -132,7 +132,7 @@ def test_what_was_sent_goes_out_in_the_order_of_the_presses(slow, layer_of):
         slow.key(ENTER)
     assert ends(slow, 3) == [("r1", 20), ("r1", 25), ("r1", 30)]
     QTest.qWait(150)
-    assert len(slow.gateway.asked("send")) == 3
+    assert len(slow.gateway.requests_of("send")) == 3
     assert slow.points is None
 
 
@@ -156,7 +156,7 @@ def test_a_stop_keeps_back_what_is_checked_beside_the_draft_too(slow, layer_of, 
     getattr(slow.window.actions, how).trigger()
     settle(slow)
     QTest.qWait(150)
-    assert slow.gateway.asked("send") == []
+    assert slow.gateway.requests_of("send") == []
     assert slow.complained("was not sent: robots were told to stop")
 
 
@@ -180,11 +180,11 @@ def test_a_double_click_or_enter_twice_sends_once(hand, how):
         wait_until_back(hand)
         QTest.mouseDClick(button, Qt.MouseButton.LeftButton)
     QTest.qWait(100)
-    assert len(hand.gateway.asked("send")) == 1
+    assert len(hand.gateway.requests_of("send")) == 1
 
 
 def wait_until_back(hand):
-    hand.wait(lambda: hand.points is not None and hand.gateway.asked("send"), what="the refused draft")
+    hand.wait(lambda: hand.points is not None and hand.gateway.requests_of("send"), what="the refused draft")
 
 
 @pytest.mark.parametrize("how", ["abort", "abort_all", "emergency"])
@@ -194,9 +194,11 @@ def test_who_stops_robots_wants_nothing_sent_any_more(slow, layer_of, how):
     slow.key(ENTER)
     getattr(slow.window.actions, how).trigger()
     settle(slow)
-    assert slow.gateway.asked("send") == [] or {s["op"] for s in slow.gateway.asked("send")} == {"Abort"}
+    assert slow.gateway.requests_of("send") == [] or {s["op"] for s in slow.gateway.requests_of("send")} == {
+        "Abort"
+    }
     QTest.qWait(150)
-    assert "SetPosEnd" not in {sent["op"] for sent in slow.gateway.asked("send")}
+    assert "SetPosEnd" not in {sent["op"] for sent in slow.gateway.requests_of("send")}
     assert slow.points is not None
     assert slow.complained("was not sent: robots were told to stop")
 
@@ -217,7 +219,7 @@ def test_a_warning_that_nobody_has_seen_is_shown_before_it_is_sent(slow, layer_o
     settle(slow)
     assert slow.nothing_sent()
     assert slow.complained("was not sent, since only now this is known")
-    assert "is not on a road surface" in slow.told
+    assert "is not on a road surface" in slow.draft_text
     slow.key(ENTER)
     assert slow.sent()["params"]["x"] == pytest.approx(20, abs=0.3)
 
@@ -233,7 +235,7 @@ def test_only_what_has_changed_of_a_route_is_looked_at_again(hand, layer_of, loo
     looked_at.clear()
     hand.drag((50, 30), (70, 55))
     assert looked_at == [("KeepoutCheck", 1), ("ObstacleCheck", 1), ("SurfaceCheck", 2)]
-    assert "4 of 5 points are not on a road surface" not in hand.told
+    assert "4 of 5 points are not on a road surface" not in hand.draft_text
     assert len(hand.drafts.draft.findings.overridable) == 2
     hand.key(ENTER)
     # What goes out is looked at afresh, all of it, with the way of the robot to its beginning.
@@ -254,7 +256,7 @@ def test_a_layer_that_changes_is_looked_at_anew(hand, layer_of, looked_at):
     hand.drag((20, 20), (20, 25))
     # The first leg, the one behind the layer's change, and the way of the robot to where they begin.
     assert looked_at == [("ObstacleCheck", 3)]
-    assert "is on things" in hand.told
+    assert "is on things" in hand.draft_text
 
 
 def test_a_layer_that_changes_under_a_check_has_it_begin_anew(slow, layer_of):
@@ -281,7 +283,7 @@ def test_a_layer_that_cannot_be_read_any_more_keeps_the_draft_here(slow, layer_o
     slow.take("cone").click((20, 20))
     layer.setCustomProperty("fleet/filter", "1 +")
     settle(slow)
-    assert "The filter expression '1 +' for the layer things" in slow.told
+    assert "The filter expression '1 +' for the layer things" in slow.draft_text
     slow.key(ENTER)
     settle(slow)
     assert slow.nothing_sent()
@@ -296,7 +298,7 @@ def test_a_draft_that_is_come_back_to_before_it_was_checked_is_checked_then(slow
     slow.key(Qt.Key.Key_Z, CTRL)
     assert not slow.drafts.draft.is_checked
     settle(slow)
-    assert "enters the keepout Bay" in slow.told
+    assert "enters the keepout Bay" in slow.draft_text
 
 
 def test_what_the_mouse_drags_is_looked_at_when_it_is_let_go(slow, layer_of):
@@ -311,7 +313,7 @@ def test_what_the_mouse_drags_is_looked_at_when_it_is_let_go(slow, layer_of):
     none = Qt.KeyboardModifier.NoModifier
     QTest.mouseRelease(view, Qt.MouseButton.LeftButton, none, slow.iface.pixel(70, 55))
     settle(slow)
-    assert "The route enters the keepout Bay" in slow.told
+    assert "The route enters the keepout Bay" in slow.draft_text
 
 
 def test_the_vertex_in_hand_stays_there_when_the_check_ends(slow, layer_of):

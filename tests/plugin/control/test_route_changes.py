@@ -77,7 +77,7 @@ def test_a_right_click_after_one_point_says_what_is_missing_and_keeps_it(hand):
 def test_a_right_click_before_the_first_point_does_nothing(hand):
     hand.take("route").right_click(60, 30)
     assert hand.points is None
-    assert not hand.is_told("A route needs")
+    assert not hand.has_message("A route needs")
     hand.click((40, 30))
     hand.move(60, 30)
     assert hand.drafts.cursor == pytest.approx((60, 30), abs=0.3)
@@ -178,7 +178,7 @@ def test_a_cancelled_route_comes_back_and_one_that_was_sent_does_not(route):
     route.sent()
     route.key(Qt.Key.Key_Z, CTRL)
     assert route.points is None
-    assert len(route.gateway.asked("send")) == 1
+    assert len(route.gateway.requests_of("send")) == 1
 
 
 def test_undo_and_paste_over_the_map_are_the_tools_and_not_those_of_qgis(route):

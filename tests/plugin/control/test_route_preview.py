@@ -17,7 +17,7 @@ from fleet_supervisor.plugin.control.route_queries import (
     route_in_words,
 )
 from fleet_supervisor.plugin.gateway_client.fleet_state import RequestResult
-from fleet_supervisor.robot_bridge.core.messages import RouteReport, SurfaceMetres
+from fleet_supervisor.robot_bridge.core.messages.roads import RouteReport, SurfaceMetres
 from qgis.PyQt.QtWidgets import QLineEdit, QPushButton, QWidget
 
 

@@ -18,7 +18,7 @@ def start(hand):
 def test_a_click_and_enter_tell_the_robot_where_it_stands(start):
     start.click((70, 55))
     assert start.nothing_sent()
-    assert start.told.startswith("Start position of r1 at ")
+    assert start.draft_text.startswith("Start position of r1 at ")
     start.key(Qt.Key.Key_Return)
     sent = start.sent()
     assert (sent["robot"], sent["op"]) == ("r1", "SetPosIni")
@@ -39,10 +39,10 @@ def test_a_drag_gives_the_heading_and_sends_nothing(start):
 def test_a_start_position_may_be_where_a_robot_may_not_go_but_not_outside_the_site(start, layer_of, iface):
     layer_of("Polygon", "Polygon ((60 50, 80 50, 80 60, 60 60, 60 50))", role="keepout", names=["Bay"])
     start.click((70, 55))
-    assert "Not to be sent" not in start.told
+    assert "Not to be sent" not in start.draft_text
     iface.look_at(-60, -60, 260, 200)
     start.click((-20, 30))
-    assert "Not to be sent" in start.told
+    assert "Not to be sent" in start.draft_text
 
 
 def test_escape_and_leaving_the_tool_send_nothing(start):
@@ -66,7 +66,7 @@ def test_a_start_position_does_not_wipe_out_a_route(hand):
 def test_the_map_is_sent_to_every_selected_robot(hand, gateway, wait):
     hand.window.desk.selection.select_all(["r1", "r2"])
     hand.window.actions.send_map.trigger()
-    wait(lambda: gateway.asked("send_map") == [{"robot": "r1"}, {"robot": "r2"}])
+    wait(lambda: gateway.requests_of("send_map") == [{"robot": "r1"}, {"robot": "r2"}])
     hand.window.desk.selection.select(None)
     hand.window.actions.send_map.trigger()
     assert hand.complained("No robot is selected, so none was sent the map")

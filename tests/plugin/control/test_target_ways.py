@@ -8,7 +8,7 @@ from types import SimpleNamespace
 import pytest
 from fleet_supervisor.plugin.control.pending_command import CONE, ApproachKind, PendingCommand
 from fleet_supervisor.plugin.control.request_tracker import SLOW_AFTER
-from fleet_supervisor.robot_bridge.core.messages import CommandState
+from fleet_supervisor.robot_bridge.core.messages.commands import CommandState
 from qgis.PyQt.QtCore import QEvent, Qt
 from qgis.PyQt.QtTest import QTest
 from qgis.PyQt.QtWidgets import QApplication
@@ -89,7 +89,7 @@ def rounded(points):
 def test_the_way_that_is_drawn_is_what_is_sent_with_the_cone_at_its_end(roads, paths):
     draft = roads.declare(paths).click()
     assert rounded(draft.outline) == [AT, tuple(CORNER), GOAL]
-    assert "Cone for r1 at" in roads.hand.told and "along the roads 40.0 m" in roads.hand.told
+    assert "Cone for r1 at" in roads.hand.draft_text and "along the roads 40.0 m" in roads.hand.draft_text
     roads.hand.key(Qt.Key.Key_Return)
     sent = roads.hand.sent()
     assert (sent["op"], sent["params"]["cone"]) == ("SetPath", True)
@@ -107,8 +107,8 @@ def test_a_robot_that_asks_for_its_path_is_sent_the_target_and_shown_the_way(roa
 def test_one_that_declared_nothing_is_shown_straight_and_told_so(roads, gateway):
     draft = roads.click()
     assert (draft.way.kind, rounded(draft.way.line)) == (ApproachKind.STRAIGHT, [AT, GOAL])
-    assert gateway.asked("get_route") == []
-    assert "r1 has not declared that it asks for its path" in roads.hand.told
+    assert gateway.requests_of("get_route") == []
+    assert "r1 has not declared that it asks for its path" in roads.hand.draft_text
     roads.hand.key(Qt.Key.Key_Return)
     assert roads.hand.sent()["op"] == "SetPosEnd"
 
@@ -118,12 +118,12 @@ def test_what_is_on_the_straight_way_is_named_and_keeps_it_here_unless_overridde
     layer_of("Polygon", BETWEEN, role=role, names=["Basin"])
     draft = roads.click()
     assert roads.hand.complained("Basin. Choose a place or way")
-    assert "The way to (69." in roads.hand.told and draft.can_be_overridden
+    assert "The way to (69." in roads.hand.draft_text and draft.can_be_overridden
     roads.hand.key(Qt.Key.Key_Return)
     assert roads.hand.nothing_sent()
     # By the road it is another way, and a task of a queue is driven from elsewhere.
     roads.hand.push("fleet_enqueue")
-    roads.hand.wait(lambda: roads.gateway.asked("add_tasks"), what="the task")
+    roads.hand.wait(lambda: roads.gateway.requests_of("add_tasks"), what="the task")
 
 
 @pytest.mark.parametrize("role", ["keepout", "obstacle"])
@@ -135,7 +135,7 @@ def test_along_the_roads_what_lies_straight_ahead_is_no_matter(roads, layer_of, 
 def test_a_keepout_of_the_project_on_the_way_along_the_roads_is_named(roads, layer_of):
     layer_of("Polygon", "Polygon ((49 50, 51 50, 51 52, 49 52, 49 50))", role="keepout", names=["New pit"])
     roads.declare("cones").click()
-    assert "enters the keepout New pit" in roads.hand.told
+    assert "enters the keepout New pit" in roads.hand.draft_text
 
 
 def test_what_is_at_the_target_is_named_once(roads, layer_of):
@@ -147,7 +147,7 @@ def test_with_shift_it_is_straight_for_any_robot(roads, layer_of):
     layer_of("Polygon", BETWEEN, role="keepout", names=["Basin"])
     draft = roads.declare("cones").click(GOAL, Qt.KeyboardModifier.ShiftModifier)
     assert (draft.way.kind, draft.is_direct) == (ApproachKind.STRAIGHT, True)
-    assert "keepout Basin" in roads.hand.told
+    assert "keepout Basin" in roads.hand.draft_text
     roads.hand.key(Qt.Key.Key_Left, Qt.KeyboardModifier.ControlModifier)
     assert roads.draft.is_direct
     assert roads.click().way.kind is ApproachKind.PATH
@@ -158,7 +158,7 @@ def test_where_no_way_leads_the_straight_one_is_shown_with_the_reason(roads, how
     setattr(roads, how, "no road is near")
     draft = roads.declare("cones").click()
     assert draft.way.kind is ApproachKind.STRAIGHT
-    assert "No way along the roads leads there: no road is near." in roads.hand.told
+    assert "No way along the roads leads there: no road is near." in roads.hand.draft_text
     roads.hand.key(Qt.Key.Key_Return)
     assert roads.hand.sent()["op"] == "SetPosEnd"
 
@@ -166,7 +166,7 @@ def test_where_no_way_leads_the_straight_one_is_shown_with_the_reason(roads, how
 def test_one_that_asks_is_sent_nowhere_where_it_would_be_told_no_way(roads):
     roads.refusal = "closed"
     roads.declare("asks").click()
-    assert "Not to be sent: No way along the roads leads there: closed." in roads.hand.told
+    assert "Not to be sent: No way along the roads leads there: closed." in roads.hand.draft_text
     roads.hand.key(Qt.Key.Key_Return)
     assert roads.hand.nothing_sent()
 
@@ -174,7 +174,7 @@ def test_one_that_asks_is_sent_nowhere_where_it_would_be_told_no_way(roads):
 def test_no_newer_question_of_the_robot_has_the_one_for_the_target_refused(roads, gateway):
     # A gateway refuses a get_route that waits when a newer one of the same robot comes.
     roads.declare("cones").click()
-    asked = gateway.asked("get_route")
+    asked = gateway.requests_of("get_route")
     assert [one for one in asked if "start" in one and "robot" not in one] != []
 
 
@@ -182,14 +182,14 @@ def test_a_send_before_the_way_is_known_is_done_when_it_is(roads, gateway):
     roads.declare("cones")
     gateway.mute.add("get_route")
     roads.hand.take("cone").click(GOAL)
-    assert "the way there is being found" in roads.hand.told
+    assert "the way there is being found" in roads.hand.draft_text
     QTest.keyClick(roads.hand.iface.canvas, Qt.Key.Key_Return)
     assert roads.hand.nothing_sent()
     desk = roads.hand.window.desk
     assert desk.sending.awaits_way
-    assert "It goes out when that is found" in roads.hand.told
+    assert "It goes out when that is found" in roads.hand.draft_text
     gateway.mute.clear()
-    desk.target_ways._asked = None
+    desk.target_ways._pending = None
     assert roads.hand.sent()["op"] == "SetPath"
     roads.hand.wait(lambda: roads.draft is None, what="the draft to be gone")
     assert not desk.sending.awaits_way
@@ -202,8 +202,8 @@ def test_it_goes_out_though_another_target_is_set_meanwhile(roads, gateway):
     QTest.keyClick(roads.hand.iface.canvas, Qt.Key.Key_Return)
     gateway.mute.clear()
     roads.hand.take("cone", "r2").click((90.0, 70.0))
-    roads.hand.wait(lambda: gateway.asked("send"), what="the first")
-    sent = gateway.asked("send")[-1]
+    roads.hand.wait(lambda: gateway.requests_of("send"), what="the first")
+    sent = gateway.requests_of("send")[-1]
     assert (sent["robot"], sent["op"]) == ("r1", "SetPath")
     assert roads.draft.robot == "r2"
 
@@ -217,10 +217,10 @@ def test_who_lets_robots_stop_meanwhile_sends_it_no_more(roads, gateway, stop):
     desk = roads.hand.window.desk
     {"abort": desk.abort_selected}.get(stop, getattr(desk, stop, None))()
     gateway.mute.clear()
-    desk.target_ways._asked = None
+    desk.target_ways._pending = None
     roads.settle()
     QTest.qWait(200)
-    assert [one for one in gateway.asked("send") if one["op"] != "Abort"] == []
+    assert [one for one in gateway.requests_of("send") if one["op"] != "Abort"] == []
 
 
 def test_a_gateway_that_does_not_answer_keeps_the_target_here(roads, gateway, monkeypatch):
@@ -231,7 +231,7 @@ def test_a_gateway_that_does_not_answer_keeps_the_target_here(roads, gateway, mo
     now = ways._clock
     monkeypatch.setattr(ways, "_clock", SimpleNamespace(steady=lambda: now.steady() + SLOW_AFTER + 1))
     roads.settle()
-    assert "The gateway does not answer which way leads there" in roads.hand.told
+    assert "The gateway does not answer which way leads there" in roads.hand.draft_text
     assert roads.draft.fault is not None
 
 
@@ -250,7 +250,7 @@ def test_so_does_the_straight_one(roads, layer_of):
     roads.declare(None, x=70.0, y=40.0)
     roads.hand.wait(lambda: rounded(roads.draft.way.line)[0] == (70, 40), what="the way from there")
     roads.settle()
-    assert "Basin" not in roads.hand.told
+    assert "Basin" not in roads.hand.draft_text
 
 
 def test_a_way_that_its_robot_has_left_is_not_sent(roads, monkeypatch):
@@ -328,7 +328,7 @@ def test_the_target_of_an_unplaced_robot_says_that_nobody_looked_at_its_way(road
     desk = roads.hand.window.desk
     roads.hand.wait(lambda: desk.state.robots.view("r9", desk.clock.steady()) is not None, what="r9")
     roads.hand.take("cone", "r9").click(GOAL)
-    assert "It is not known where r9 is, so nobody has looked at the way" in roads.hand.told
+    assert "It is not known where r9 is, so nobody has looked at the way" in roads.hand.draft_text
 
 
 @pytest.mark.parametrize("role", ["keepout", "obstacle"])
@@ -343,7 +343,7 @@ def test_what_is_on_the_way_to_where_a_route_begins_keeps_it_here_unless_overrid
     assert roads.hand.nothing_sent()
     # A task of a queue is driven when its robot stands at the beginning.
     roads.hand.push("fleet_enqueue")
-    roads.hand.wait(lambda: roads.gateway.asked("add_tasks"), what="the task")
+    roads.hand.wait(lambda: roads.gateway.requests_of("add_tasks"), what="the task")
 
 
 def test_it_is_looked_at_again_as_the_robot_moves_and_the_leg_to_the_mouse_stays(roads, layer_of):

@@ -196,7 +196,7 @@ def test_a_place_beside_the_site_can_still_be_set_and_is_checked_as_any_other(ha
     enter(dialog, "{:.8f}, {:.8f}".format(*earth(300, 55)))
     QTest.mouseClick(dialog.findChild(QPushButton, "fleet_coordinates_set"), Qt.MouseButton.LeftButton)
     assert hand.points == (pytest.approx((300, 55), abs=0.01),)
-    assert "is outside the site Yard" in hand.told
+    assert "is outside the site Yard" in hand.draft_text
 
 
 def test_what_is_no_place_cannot_be_set(dialog):
@@ -238,8 +238,8 @@ def test_a_whole_layer_of_points_are_targets_and_sending_says_that_they_are_queu
     layer = layer_of("Point", "Point (10 10)", "Point (70 55)", "Point (30 20)", names=("A", "B", "C"))
     take_from(hand, layer)
     assert hand.drafts.draft.names == ("A", "B", "C")
-    assert hand.told.startswith("3 cones for r1. ")
-    assert hand.told.endswith("Add to queue lets them be placed one after the other.")
+    assert hand.draft_text.startswith("3 cones for r1. ")
+    assert hand.draft_text.endswith("Add to queue lets them be placed one after the other.")
     hand.window.actions.send.trigger()
     assert hand.complained("3 cones for r1 were not sent")
     assert hand.nothing_sent()

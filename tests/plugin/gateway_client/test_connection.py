@@ -57,7 +57,7 @@ def test_an_order_that_is_too_large_comes_back_and_keeps_no_other_from_the_gatew
 
     wait(answered, 15, what="both answers")
     assert "no message as large as this one of 2001 kB" in answers["large"] and answers["a2"] is None
-    assert gateway.asked("abort") == [{"robot": "r1"}]
+    assert gateway.requests_of("abort") == [{"robot": "r1"}]
 
 
 def test_a_gateway_is_greeted_and_its_site_and_robots_arrive(connection, gateway, make_robot, wait):
@@ -173,7 +173,7 @@ def test_another_protocol_ends_the_attempts_and_says_what_to_update(connection, 
     connection.open(gateway.url, "anna")
     reason = reason_when(connection, wait, ConnectionPhase.FAILED)
     assert "speaks protocol 2, this plugin protocol 1" in reason
-    assert len(gateway.asked("hello")) == 1
+    assert len(gateway.requests_of("hello")) == 1
 
 
 @pytest.mark.parametrize(
@@ -196,7 +196,7 @@ def test_what_knows_no_desk_ends_the_attempts_and_names_the_path(connection, gat
     connection.open(gateway.url, "anna")
     reason = reason_when(connection, wait, ConnectionPhase.FAILED)
     assert "knows no desk" in reason and "ws://127.0.0.1:8765/desk" in reason
-    assert len(gateway.asked("hello")) == 1
+    assert len(gateway.requests_of("hello")) == 1
 
 
 def test_a_hello_that_cannot_be_right_is_not_said_for_ever(connection, gateway, wait):
@@ -205,7 +205,7 @@ def test_a_hello_that_cannot_be_right_is_not_said_for_ever(connection, gateway, 
     gateway.answers["hello"] = lambda _params: {"error": error}
     connection.open(gateway.url, "anna")
     assert "required field `kind`" in reason_when(connection, wait, ConnectionPhase.FAILED)
-    assert len(gateway.asked("hello")) == 1
+    assert len(gateway.requests_of("hello")) == 1
 
 
 def test_a_gateway_that_turns_the_desk_away_is_quoted(connection, gateway, wait):
@@ -229,7 +229,7 @@ def test_a_killed_gateway_is_found_again_on_its_port(connection, gateway, make_r
         return news.link.phase is ConnectionPhase.CONNECTED and "r9" in robots
 
     wait(again, 6, what="the second link")
-    assert len(gateway.asked("hello")) == 2
+    assert len(gateway.requests_of("hello")) == 2
 
 
 def test_an_unanswered_order_is_repeated_with_its_id_and_done_once(connection, gateway, wait):
@@ -238,14 +238,14 @@ def test_an_unanswered_order_is_repeated_with_its_id_and_done_once(connection, g
     gateway.mute.add("send")
     params = {"command": "command-1", "robot": "r1", "op": "SetPosEnd", "params": {"x": 1.0, "y": 2.0}}
     connection.submit(OperatorRequest("command-1", "send", params, steady_time()))
-    wait(lambda: gateway.asked("send"))
+    wait(lambda: gateway.requests_of("send"))
     gateway.stop()
     wait(lambda: phase_of(connection) is ConnectionPhase.RETRYING, 3)
     gateway.mute.clear()
     gateway.start()
     answers = []
     wait(lambda: answers.extend(connection.collect_updates().answers) or answers, 6, what="the answer")
-    assert [params["command"] for params in gateway.asked("send")] == ["command-1", "command-1"]
+    assert [params["command"] for params in gateway.requests_of("send")] == ["command-1", "command-1"]
     assert list(gateway.commands) == ["command-1"]
     assert answers[0].result["state"] == "queued"
 
@@ -260,8 +260,8 @@ def test_an_answered_order_is_not_repeated_on_the_next_link(connection, gateway,
     gateway.stop()
     wait(lambda: phase_of(connection) is ConnectionPhase.RETRYING, 3)
     gateway.start()
-    wait(lambda: len(gateway.asked("get_commands")) == 2, 6)
-    assert len(gateway.asked("send")) == 1
+    wait(lambda: len(gateway.requests_of("get_commands")) == 2, 6)
+    assert len(gateway.requests_of("send")) == 1
 
 
 def test_an_order_that_became_old_without_a_link_is_handed_back_and_not_sent(connection, gateway, wait):
@@ -270,14 +270,14 @@ def test_an_order_that_became_old_without_a_link_is_handed_back_and_not_sent(con
     gateway.mute.add("send")
     params = {"command": "command-1", "robot": "r1", "op": "Abort", "params": {}}
     connection.submit(OperatorRequest("command-1", "send", params, steady_time() - 60.0))
-    wait(lambda: gateway.asked("send"))
+    wait(lambda: gateway.requests_of("send"))
     gateway.stop()
     wait(lambda: phase_of(connection) is ConnectionPhase.RETRYING, 3)
     gateway.start()
     answers = []
     wait(lambda: answers.extend(connection.collect_updates().answers) or answers, 6)
     assert "it was not repeated" in answers[0].error
-    assert len(gateway.asked("send")) == 1
+    assert len(gateway.requests_of("send")) == 1
 
 
 def test_closing_hands_back_what_was_not_answered(connection, gateway, wait):
@@ -286,7 +286,7 @@ def test_closing_hands_back_what_was_not_answered(connection, gateway, wait):
     gateway.mute.add("send")
     params = {"command": "command-1", "robot": "r1", "op": "Abort", "params": {}}
     connection.submit(OperatorRequest("command-1", "send", params, steady_time()))
-    wait(lambda: gateway.asked("send"))
+    wait(lambda: gateway.requests_of("send"))
     connection.close()
     answers = []
     wait(lambda: answers.extend(connection.collect_updates().answers) or answers)

@@ -23,15 +23,9 @@ from fleet_supervisor.plugin.gateway_client.robot_table import STATES, table_fro
 from fleet_supervisor.plugin.ui.errors import GatewayLinkError
 from fleet_supervisor.robot_bridge.core.assignment.plan import ConePlan, document_of
 from fleet_supervisor.robot_bridge.core.clock import ManualClock
-from fleet_supervisor.robot_bridge.core.messages import (
-    CommandReport,
-    CommandState,
-    CommandStep,
-    RobotState,
-    placement_report,
-    queue_report,
-    to_json,
-)
+from fleet_supervisor.robot_bridge.core.messages.commands import CommandReport, CommandState, CommandStep
+from fleet_supervisor.robot_bridge.core.messages.json_values import placement_report, queue_report, to_json
+from fleet_supervisor.robot_bridge.core.messages.safety import RobotState
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -67,7 +61,7 @@ def test_the_same_order_is_kept_once_and_answered_once():
 def test_orders_are_repeated_in_the_order_in_which_they_were_asked():
     outbox = RequestOutbox()
     for number in range(5):
-        outbox.add(OperatorRequest(f"order {number}", "send", asked_at=float(number)))
+        outbox.add(OperatorRequest(f"order {number}", "send", requested_at=float(number)))
     again, too_old = outbox.renew(now=32.5)
     assert [order.key for order in again] == ["order 3", "order 4"]
     assert [order.key for order in too_old] == ["order 0", "order 1", "order 2"]

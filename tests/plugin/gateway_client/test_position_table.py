@@ -15,7 +15,8 @@ from fleet_supervisor.plugin.gateway_client.robot_table import (
     table_from_rows,
 )
 from fleet_supervisor.robot_bridge.core.clock import ManualClock
-from fleet_supervisor.robot_bridge.core.messages import PositionForm, SendPos
+from fleet_supervisor.robot_bridge.core.messages.positions import PositionForm
+from fleet_supervisor.robot_bridge.core.messages.robots import SendPos
 from fleet_supervisor.robot_bridge.gateway.fleet.operator_updates import EVERYTHING, Snapshots
 from fleet_supervisor.robot_bridge.gateway.model.robots import Robots
 
@@ -39,7 +40,7 @@ def test_it_is_what_the_rows_are():
     by_row = table_from_rows(json.loads(rows)["params"]["robots"], 7.0)
     by_column = table_from_frame(table, 7.0)
     assert by_column.names == by_row.names == ["r0", "r1", "r2"]
-    assert [by_column.told(row) for row in range(3)] == [by_row.told(row) for row in range(3)]
+    assert [by_column.row_values(row) for row in range(3)] == [by_row.row_values(row) for row in range(3)]
     assert by_column.report(1) == by_row.report(1)
     numbers = [name for name in COLUMNS if name not in ("link", "status", "command", "theta_from")]
     for name in numbers:
@@ -52,9 +53,9 @@ def test_the_newer_form_replaces_the_older_of_the_same_robots():
     later = gateway()
     later.observe("r1", SendPos(9.0, 2.5, 0.5, 1.0, status="docked"), "sql", 102.0)
     known.merge(table_from_frame(frames(later)[1], 8.0))
-    assert (known.told(1)["x"], known.told(1)["status"]) == (9.0, "docked")
-    assert known.told(2)["command"] == "target-7"
-    assert "battery" not in known.told(1)
+    assert (known.row_values(1)["x"], known.row_values(1)["status"]) == (9.0, "docked")
+    assert known.row_values(2)["command"] == "target-7"
+    assert "battery" not in known.row_values(1)
 
 
 def test_a_part_of_the_robots_changes_those_alone():
@@ -65,8 +66,8 @@ def test_a_part_of_the_robots_changes_those_alone():
     part = Snapshots(robots, ManualClock(wall=102.5)).after(seen, form=PositionForm.COLUMNS).frame
     known.merge(table_from_frame(part, 8.0))
     assert known.names == ["r0", "r1", "r2"]
-    assert [known.told(row).get("status") for row in range(3)] == ["new", "docking", None]
-    assert known.told(1)["x"] == 1.25
+    assert [known.row_values(row).get("status") for row in range(3)] == ["new", "docking", None]
+    assert known.row_values(1)["x"] == 1.25
 
 
 def test_the_words_of_a_day_do_not_pile_up():
@@ -79,8 +80,8 @@ def test_the_words_of_a_day_do_not_pile_up():
         mailbox.add(robots=table_from_frame(frame, float(minute)))
         known.merge(mailbox.collect().robots)
         assert len(known._words) <= SPARE_WORDS + 6
-    assert known.told(2)["command"] == f"target-{SPARE_WORDS + 98}"
-    assert known.told(1)["status"] == "docking"
+    assert known.row_values(2)["command"] == f"target-{SPARE_WORDS + 98}"
+    assert known.row_values(1)["status"] == "docking"
 
 
 def head_of(table):

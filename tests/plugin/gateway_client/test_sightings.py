@@ -7,7 +7,7 @@ import pytest
 from fleet_supervisor.plugin.gateway_client.fleet_state import UpdateBuffer
 from fleet_supervisor.plugin.gateway_client.robot_states import RobotStates
 from fleet_supervisor.plugin.gateway_client.robot_table import STATES, RobotTable, table_from_rows
-from fleet_supervisor.robot_bridge.core.messages import RobotState
+from fleet_supervisor.robot_bridge.core.messages.safety import RobotState
 from fleet_supervisor.robot_bridge.gateway.model.robots import liveness
 from hypothesis import given
 from hypothesis import strategies as st
@@ -88,8 +88,8 @@ def test_words_that_are_told_in_another_order_stay_what_they_are():
             [told("a", link="websocket"), told("b", status="driving"), told("c", status="new")], 1.0
         )
     )
-    assert [table.told(row).get("status") for row in range(3)] == [None, "driving", "new"]
-    assert [table.told(row)["link"] for row in range(3)] == ["websocket", "sql", "sql"]
+    assert [table.row_values(row).get("status") for row in range(3)] == [None, "driving", "new"]
+    assert [table.row_values(row)["link"] for row in range(3)] == ["websocket", "sql", "sql"]
 
 
 def test_the_names_are_the_same_list_until_there_are_more_of_them():

@@ -9,7 +9,8 @@ import pytest
 from fleet_supervisor.plugin.gateway_client import connection
 from fleet_supervisor.plugin.gateway_client.robot_table import STATES
 from fleet_supervisor.robot_bridge.core import clock as clock_module
-from fleet_supervisor.robot_bridge.core.messages import RobotState, to_json
+from fleet_supervisor.robot_bridge.core.messages.json_values import to_json
+from fleet_supervisor.robot_bridge.core.messages.safety import RobotState
 from qgis.PyQt.QtWidgets import QToolButton
 
 from tests.support.fleet_panel import press
@@ -56,7 +57,7 @@ def test_robots_are_lost_at_once_and_come_back_with_the_link(laptop, lid, gatewa
     assert states(laptop) == {RobotState.FRESH}
     lid.asleep = HOUR
     assert states(laptop) == {RobotState.LOST}
-    wait(lambda: len(gateway.asked("hello")) == 2, 10, "another link")
+    wait(lambda: len(gateway.requests_of("hello")) == 2, 10, "another link")
     wait(lambda: states(laptop) == {RobotState.FRESH}, what="the robots")
 
 
@@ -70,8 +71,8 @@ def test_what_had_come_in_before_is_not_taken_for_new(lid, monkeypatch, plugin, 
     wait(lambda: gateway._sockets and window.desk.state.link.phase.value == "connected", what="the link")
     lid.asleep = HOUR
     gateway.tell("positions", {"t": time.time(), "robots": [to_json(make_robot("r9"))]})
-    wait(lambda: len(gateway.asked("hello")) == 2, 10, "another link")
-    wait(lambda: len(gateway.asked("get_commands")) == 2, what="its questions")
+    wait(lambda: len(gateway.requests_of("hello")) == 2, 10, "another link")
+    wait(lambda: len(gateway.requests_of("get_commands")) == 2, what="its questions")
     assert window.desk.state.robots.row("r9") is None
 
 
@@ -81,9 +82,9 @@ def test_an_order_from_before_is_handed_back_and_not_sent_again(laptop, lid, gat
     iface.click(70, 55)
     gateway.mute.add("send")
     press(laptop, QToolButton, "fleet_send_button")
-    wait(lambda: gateway.asked("send"), what="the order")
+    wait(lambda: gateway.requests_of("send"), what="the order")
     lid.asleep = HOUR
     gateway.mute.clear()
     wait(lambda: any("it was not repeated" in text for text in iface.texts()), 10, "the order")
-    assert len(gateway.asked("send")) == 1 and gateway.commands == {}
+    assert len(gateway.requests_of("send")) == 1 and gateway.commands == {}
     assert laptop.desk.drafts.draft is not None

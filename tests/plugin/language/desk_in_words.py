@@ -191,7 +191,7 @@ def arrange_as_qgis_does(window) -> None:
 
 
 def yard():
-    from fleet_supervisor.robot_bridge.core.messages import SiteReport
+    from fleet_supervisor.robot_bridge.core.messages.administration import SiteReport
 
     return SiteReport(
         id="yard",
@@ -281,7 +281,7 @@ def alarm_bar(window) -> QWidget | None:
 
 def order(desk, gateway, desk_tests) -> None:
     """Put a command, a queue, observations and a conflict before the operator."""
-    from fleet_supervisor.robot_bridge.core.messages import CommandState
+    from fleet_supervisor.robot_bridge.core.messages.commands import CommandState
 
     gateway._queue("c1", "r1", "SetPosEnd", {"x": 60.0, "y": 50.0, "cone": True})
     gateway.step("c1", CommandState.DELIVERED, "r1")

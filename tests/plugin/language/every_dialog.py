@@ -30,14 +30,14 @@ from fleet_supervisor.plugin.panel.pending_command_panel import OverrideDialog
 from fleet_supervisor.plugin.settings.connections import Connections, GatewayConnection
 from fleet_supervisor.plugin.settings.connections_widget import ConnectionDialog, ConnectionsDialog
 from fleet_supervisor.plugin.ui.language import tr
-from fleet_supervisor.robot_bridge.core.messages import (
-    EmergencyReport,
+from fleet_supervisor.robot_bridge.core.messages.administration import (
     NewToken,
     OperatorReport,
-    Role,
     SiteOffer,
     TokenState,
 )
+from fleet_supervisor.robot_bridge.core.messages.operator_requests import Role
+from fleet_supervisor.robot_bridge.core.messages.safety import EmergencyReport
 from qgis.core import QgsProject
 from qgis.PyQt.QtWidgets import QDialog
 

@@ -9,7 +9,9 @@ from fleet_supervisor.plugin.gateway_client.robot_states import (
     TASK_STATES,
     longest_word,
 )
-from fleet_supervisor.robot_bridge.core.messages import CommandState, RobotState, TaskState
+from fleet_supervisor.robot_bridge.core.messages.commands import CommandState
+from fleet_supervisor.robot_bridge.core.messages.queues import TaskState
+from fleet_supervisor.robot_bridge.core.messages.safety import RobotState
 
 
 @pytest.mark.parametrize(

@@ -8,9 +8,8 @@ import pytest
 from fleet_supervisor.plugin.layers.layer_expressions import LONGEST_TEXT, as_metres, read_tags
 from fleet_supervisor.plugin.layers.layer_source import obstacle_sources
 from fleet_supervisor.plugin.layers.obstacle_layers import read_outlines
-from fleet_supervisor.plugin.layers.profiles import find_profile, read_profile
 from fleet_supervisor.plugin.layers.road_layers import read_centrelines
-from fleet_supervisor.plugin.layers.roles import LayerExpressions
+from fleet_supervisor.plugin.layers.roles import LayerExpressions, find_profile, read_profile
 from fleet_supervisor.plugin.layers.site_transform import SiteGeoreference
 from fleet_supervisor.robot_bridge.core.roads.centrelines import BACKWARD, BOTH, FORWARD
 from fleet_supervisor.robot_bridge.core.sites.frame import SiteFrame

@@ -42,7 +42,7 @@ def click(window, name):
 
 
 def told(operator, window, text):
-    operator.wait(f"{text!r}, not {window.said.text()!r}", lambda: text in window.said.text(), SECONDS)
+    operator.wait(f"{text!r}, not {window.status.text()!r}", lambda: text in window.status.text(), SECONDS)
 
 
 def take_token(operator, iface):

@@ -14,7 +14,8 @@ import pytest
 from fleet_supervisor.plugin.planning.layouts.layout_layer import MARK
 from fleet_supervisor.plugin.plugin import FleetPlugin
 from fleet_supervisor.robot_bridge.core.layouts.catalogue import LAYOUTS
-from fleet_supervisor.robot_bridge.core.messages import PlanState, TaskState
+from fleet_supervisor.robot_bridge.core.messages.plans import PlanState
+from fleet_supervisor.robot_bridge.core.messages.queues import TaskState
 from qgis.core import QgsFeature, QgsGeometry, QgsPointXY, QgsProject, QgsVectorLayer
 from qgis.PyQt.QtCore import Qt
 from qgis.PyQt.QtTest import QTest

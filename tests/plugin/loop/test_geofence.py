@@ -5,7 +5,7 @@ from __future__ import annotations
 import shutil
 
 import pytest
-from fleet_supervisor.robot_bridge.core.messages import CommandState, Send
+from fleet_supervisor.robot_bridge.core.messages.commands import CommandState, Send
 from qgis.PyQt.QtWidgets import QLabel, QTableView
 
 OVERRIDE = "the path enters the keepout; because: this is what is tried out"

@@ -8,7 +8,7 @@ from urllib.request import urlopen
 
 import pytest
 from fleet_supervisor.plugin.panel.emergency import ClearDialog
-from fleet_supervisor.robot_bridge.core.messages import CommandState
+from fleet_supervisor.robot_bridge.core.messages.commands import CommandState
 from qgis.PyQt.QtWidgets import QLabel, QLineEdit, QPushButton
 
 from tests.robot_bridge.links.vda5050.peers import Yard, require_peers

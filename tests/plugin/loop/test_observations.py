@@ -6,7 +6,7 @@ import base64
 import json
 
 import pytest
-from fleet_supervisor.robot_bridge.core.messages import ObservationState
+from fleet_supervisor.robot_bridge.core.messages.records import ObservationState
 from qgis.core import QgsProject, QgsRenderContext
 from qgis.PyQt.QtCore import Qt
 from qgis.PyQt.QtGui import QColor, QImage

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from fleet_supervisor.robot_bridge.core.messages import CommandState
+from fleet_supervisor.robot_bridge.core.messages.commands import CommandState
 from qgis.PyQt.QtCore import Qt
 from qgis.PyQt.QtTest import QTest
 

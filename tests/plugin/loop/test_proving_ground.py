@@ -10,7 +10,7 @@ import sys
 import numpy as np
 import pytest
 import shapely
-from fleet_supervisor.robot_bridge.core.messages import CommandState
+from fleet_supervisor.robot_bridge.core.messages.commands import CommandState
 from qgis.core import QgsProject
 
 EVERY = 6

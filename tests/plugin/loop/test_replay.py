@@ -9,7 +9,7 @@ import time
 import numpy as np
 import pytest
 from fleet_supervisor.plugin.replay.time_controls import ReplayClock
-from fleet_supervisor.robot_bridge.core.messages import CommandState
+from fleet_supervisor.robot_bridge.core.messages.commands import CommandState
 from qgis.core import QgsProject, QgsTemporalNavigationObject
 from qgis.gui import QgsMapCanvas, QgsTemporalControllerWidget
 from qgis.PyQt.QtCore import QPoint, Qt

@@ -10,7 +10,7 @@ import math
 import pytest
 from fleet_supervisor.plugin.control.pending_command import ApproachKind
 from fleet_supervisor.robot_bridge.core.geometry import Polyline
-from fleet_supervisor.robot_bridge.core.messages import CommandState
+from fleet_supervisor.robot_bridge.core.messages.commands import CommandState
 from qgis.core import QgsProject
 from qgis.PyQt.QtCore import QEvent
 from qgis.PyQt.QtWidgets import QApplication, QLabel

@@ -7,7 +7,7 @@ import signal
 import threading
 from functools import partial
 
-from fleet_supervisor.robot_bridge.core.messages import CommandState
+from fleet_supervisor.robot_bridge.core.messages.commands import CommandState
 from qgis.core import QgsProject
 from qgis.PyQt.QtCore import QRegularExpression, Qt
 from qgis.PyQt.QtTest import QTest

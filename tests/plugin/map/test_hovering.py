@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import pytest
 from fleet_supervisor.plugin.map.tools.road_route_tool import BESIDE
-from fleet_supervisor.robot_bridge.core.messages import CommandState
+from fleet_supervisor.robot_bridge.core.messages.commands import CommandState
 from qgis.PyQt.QtCore import QEvent, QPoint, QPointF, QRect, QSize, Qt
 from qgis.PyQt.QtGui import QMouseEvent
 from qgis.PyQt.QtWidgets import QApplication, QLabel

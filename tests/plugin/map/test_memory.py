@@ -9,7 +9,7 @@ import pytest
 from fleet_supervisor.plugin.gateway_client.robot_table import STATES
 from fleet_supervisor.plugin.map.overlay.labels import MOST
 from fleet_supervisor.plugin.map.overlay.scene import SceneTransformer
-from fleet_supervisor.robot_bridge.core.messages import RobotState
+from fleet_supervisor.robot_bridge.core.messages.safety import RobotState
 from qgis.core import QgsCoordinateReferenceSystem, QgsProject, QgsRectangle
 from qgis.PyQt.QtGui import QImage, QPainter
 from qgis.PyQt.QtWidgets import QApplication

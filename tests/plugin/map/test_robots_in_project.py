@@ -5,9 +5,7 @@ from __future__ import annotations
 import pytest
 from qgis.core import QgsProject
 from qgis.PyQt.QtCore import QTimer
-from qgis.PyQt.QtWidgets import (
-    QLineEdit,
-)
+from qgis.PyQt.QtWidgets import QLineEdit
 
 
 def test_the_layer_carries_the_robots_in_the_sites_crs(at_desk, wait):

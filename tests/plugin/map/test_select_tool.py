@@ -167,6 +167,6 @@ def test_the_table_and_the_layer_show_the_same_selection(desk, at_desk, iface, w
 def test_abort_asks_every_selected_robot_and_no_other(desk, at_desk, gateway, wait):
     desk.selection.select_all(["r1", "r3"])
     at_desk.actions.abort.trigger()
-    wait(lambda: len(gateway.asked("send")) == 2)
-    sent = [(params["robot"], params["op"]) for params in gateway.asked("send")]
+    wait(lambda: len(gateway.requests_of("send")) == 2)
+    sent = [(params["robot"], params["op"]) for params in gateway.requests_of("send")]
     assert sent == [("r1", "Abort"), ("r3", "Abort")]

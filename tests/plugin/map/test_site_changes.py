@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import pytest
 from fleet_supervisor.plugin.ui import scheduling
-from fleet_supervisor.robot_bridge.core.messages import to_json
+from fleet_supervisor.robot_bridge.core.messages.json_values import to_json
 from qgis.PyQt.QtCore import Qt
 from qgis.PyQt.QtTest import QTest
 from qgis.PyQt.QtWidgets import QLabel
@@ -50,7 +50,7 @@ def test_a_draft_is_held_against_the_site_that_was_published_anew(drawn, gateway
     assert "is outside the site Yard" in drawn.dock.findChild(QLabel, "fleet_draft_text").text()
     QTest.keyClick(iface.canvas, Qt.Key.Key_Return)
     QTest.qWait(100)
-    assert gateway.asked("send") == []
+    assert gateway.requests_of("send") == []
 
 
 def test_an_order_to_send_outlasts_it(drawn, gateway, site, wait, monkeypatch):
@@ -59,8 +59,8 @@ def test_an_order_to_send_outlasts_it(drawn, gateway, site, wait, monkeypatch):
     drawn.desk.connection._buffer.add(site=replace(site, version="2"))
     drawn.desk.state.pull()
     assert drawn.desk.state.site.version == "2" and drawn.desk.checks.has_order
-    wait(lambda: gateway.asked("send"), what="the command")
-    assert len(gateway.asked("send")) == 1
+    wait(lambda: gateway.requests_of("send"), what="the command")
+    assert len(gateway.requests_of("send")) == 1
 
 
 @pytest.mark.parametrize("is_chosen", [True, False])

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from fleet_supervisor.robot_bridge.core.messages import CommandState, PlacementReport, to_json
+from fleet_supervisor.robot_bridge.core.messages.commands import CommandState
+from fleet_supervisor.robot_bridge.core.messages.json_values import to_json
+from fleet_supervisor.robot_bridge.core.messages.records import PlacementReport
 from qgis.core import QgsProject
 
 E, N = 488000.0, 5190000.0

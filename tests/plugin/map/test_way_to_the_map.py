@@ -69,4 +69,4 @@ def test_in_a_project_without_a_crs_a_draft_says_what_the_map_is_taken_for(at_de
     assert "The project has no CRS, so the map is taken to be in the site's, EPSG:32633" in told.text()
     np.testing.assert_allclose(at_desk.desk.drafts.draft.points, [(70, 56)], atol=0.5)
     QTest.keyClick(iface.canvas, Qt.Key.Key_Return)
-    wait(lambda: gateway.asked("send"), what="the command")
+    wait(lambda: gateway.requests_of("send"), what="the command")

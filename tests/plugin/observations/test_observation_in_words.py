@@ -9,7 +9,7 @@ from fleet_supervisor.plugin.observations.observation_views import (
     observation_text,
     style_observations,
 )
-from fleet_supervisor.robot_bridge.core.messages import ObservationReport, ObservationState
+from fleet_supervisor.robot_bridge.core.messages.records import ObservationReport, ObservationState
 from qgis.core import QgsExpression, QgsExpressionContext, QgsFeature, QgsVectorLayer
 from qgis.PyQt.QtGui import QColor, QImage
 
@@ -74,10 +74,10 @@ def test_what_is_missing_is_told_and_accepted_as_such(qgis_app):
     )
     assert "not there any more: bench" in observation_text(doubt)
     form = ReviewForm()
-    form.show_report(doubt, (), asked=False)
+    form.show_report(doubt, (), pending=False)
     assert "looks through bench (furniture:14) of its map" in form.about.text()
     assert form.accept.toolTip().startswith("It is gone")
     request = form.request(accept=True)
     assert (request.semantics, request.height, request.radius) == (None, None, None)
-    form.show_report(dataclasses.replace(doubt, doubts=None), (), asked=False)
+    form.show_report(dataclasses.replace(doubt, doubts=None), (), pending=False)
     assert form.accept.toolTip().startswith("It stands there")

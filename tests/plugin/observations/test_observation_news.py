@@ -11,7 +11,7 @@ from fleet_supervisor.plugin.gateway_client.protocol import GatewayProtocol
 from fleet_supervisor.plugin.gateway_client.report_caches import ObservationCache
 from fleet_supervisor.plugin.ui.errors import GatewayLinkError
 from fleet_supervisor.robot_bridge.core.clock import ManualClock
-from fleet_supervisor.robot_bridge.core.messages import ObservationState
+from fleet_supervisor.robot_bridge.core.messages.records import ObservationState
 
 
 def told(number, state="pending", **more):

@@ -3,15 +3,8 @@
 from __future__ import annotations
 
 from fleet_supervisor.plugin.ui.language import short_time
-from fleet_supervisor.robot_bridge.core.messages import CommandState
-from qgis.PyQt.QtWidgets import (
-    QApplication,
-    QLabel,
-    QLineEdit,
-    QPushButton,
-    QToolButton,
-    QTreeView,
-)
+from fleet_supervisor.robot_bridge.core.messages.commands import CommandState
+from qgis.PyQt.QtWidgets import QApplication, QLabel, QLineEdit, QPushButton, QToolButton, QTreeView
 
 from tests.support.fleet_panel import press
 
@@ -19,21 +12,21 @@ from tests.support.fleet_panel import press
 def test_abort_asks_the_selected_robot_only(at_desk, gateway, wait):
     at_desk.desk.selection.select("r2")
     press(at_desk, QToolButton, "fleet_abort_button")
-    wait(lambda: gateway.asked("send"))
-    (params,) = gateway.asked("send")
+    wait(lambda: gateway.requests_of("send"))
+    (params,) = gateway.requests_of("send")
     assert (params["robot"], params["op"], params["params"]) == ("r2", "Abort", {})
 
 
 def test_abort_without_a_robot_says_so(at_desk, iface, gateway):
     press(at_desk, QToolButton, "fleet_abort_button")
     assert any("none was aborted" in text for text in iface.texts())
-    assert gateway.asked("send") == []
+    assert gateway.requests_of("send") == []
 
 
 def test_abort_all_is_one_press_and_no_question(at_desk, gateway, wait):
     press(at_desk, QPushButton, "fleet_abort_all_button")
     assert QApplication.activeModalWidget() is None
-    wait(lambda: gateway.asked("abort_all"))
+    wait(lambda: gateway.requests_of("abort_all"))
     wait(lambda: len(at_desk.desk.state.commands) == 2, what="both aborts")
     assert at_desk.dock.findChild(QLabel, "fleet_draft_text").text() == "ABORT ALL: sent to 2 robots"
 
@@ -48,13 +41,13 @@ def test_abort_all_without_a_link_says_loudly_that_nothing_was_sent(plugin, ifac
 def test_abort_all_is_repeated_when_the_link_broke_before_the_answer(at_desk, gateway, wait):
     gateway.mute.add("abort_all")
     press(at_desk, QPushButton, "fleet_abort_all_button")
-    wait(lambda: gateway.asked("abort_all"))
+    wait(lambda: gateway.requests_of("abort_all"))
     gateway.stop()
     gateway.mute.clear()
     wait(lambda: at_desk.desk.state.link.phase.value == "retrying")
     gateway.start()
-    wait(lambda: len(gateway.asked("abort_all")) == 2, 8)
-    first, again = gateway.asked("abort_all")
+    wait(lambda: len(gateway.requests_of("abort_all")) == 2, 8)
+    first, again = gateway.requests_of("abort_all")
     assert first["command"] == again["command"]
     wait(lambda: len(at_desk.desk.orders) == 0)
 

@@ -8,10 +8,7 @@ from itertools import pairwise
 
 from qgis.PyQt.QtCore import QCoreApplication, QEvent, Qt, QTimer
 from qgis.PyQt.QtTest import QTest
-from qgis.PyQt.QtWidgets import (
-    QLabel,
-    QPushButton,
-)
+from qgis.PyQt.QtWidgets import QLabel, QPushButton
 
 from tests.support.fleet_panel import press
 

@@ -6,7 +6,7 @@ import time
 
 import pytest
 from fleet_supervisor.plugin.control.pending_command import CONE, ROUTE, Findings, PendingCommand
-from fleet_supervisor.robot_bridge.core.messages import CommandState
+from fleet_supervisor.robot_bridge.core.messages.commands import CommandState
 from qgis.PyQt.QtTest import QTest
 from qgis.PyQt.QtWidgets import QAbstractButton, QToolButton
 

@@ -9,7 +9,7 @@ import pytest
 from fleet_supervisor.plugin.gateway_client.command_cache import CommandCache
 from fleet_supervisor.plugin.panel.command_log import COMMAND_CHOICES
 from fleet_supervisor.plugin.panel.command_log_model import CommandChoice, summary
-from fleet_supervisor.robot_bridge.core.messages import CommandReport, CommandState, CommandStep
+from fleet_supervisor.robot_bridge.core.messages.commands import CommandReport, CommandState, CommandStep
 from qgis.PyQt.QtCore import Qt
 from qgis.PyQt.QtTest import QTest
 from qgis.PyQt.QtWidgets import QComboBox, QLabel, QToolButton, QTreeView
@@ -222,16 +222,16 @@ def test_older_commands_are_asked_for_and_sorted_in(log, gateway, wait):
     gateway.commands = {"command-0": old, **gateway.commands}
     QTest.mouseClick(log.findChild(QToolButton, "fleet_log_older"), LEFT)
     wait(lambda: len(rows(log)) == 3)
-    assert {"robot": "r1", "limit": 1000} in gateway.asked("get_commands")
+    assert {"robot": "r1", "limit": 1000} in gateway.requests_of("get_commands")
     assert rows(log)[-1] == ("r1 · target at 3.00, 4.00", "expired")
 
 
 def test_older_commands_of_each_selected_robot_are_asked_for(log, at_desk, gateway, wait):
     def asked(count):
-        before = len(gateway.asked("get_commands"))
+        before = len(gateway.requests_of("get_commands"))
         QTest.mouseClick(log.findChild(QToolButton, "fleet_log_older"), LEFT)
-        wait(lambda: len(gateway.asked("get_commands")) == before + count)
-        return [question.get("robot") for question in gateway.asked("get_commands")[before:]]
+        wait(lambda: len(gateway.requests_of("get_commands")) == before + count)
+        return [question.get("robot") for question in gateway.requests_of("get_commands")[before:]]
 
     choose(log, "fleet_log_robot", "Selected robots")
     at_desk.desk.selection.select_all(["r2", "r1"])
@@ -302,7 +302,7 @@ def test_of_several_robots_it_is_told_once(log, at_desk, gateway, wait):
     at_desk.desk.selection.select_all(["r2", "r1"])
     press_older(log)
     press_older(log)
-    wait(lambda: len(gateway.asked("get_commands")) == 5 and len(told) == 2, what="what came of it")
+    wait(lambda: len(gateway.requests_of("get_commands")) == 5 and len(told) == 2, what="what came of it")
 
 
 def test_it_is_told_where_the_log_reaches_no_further_back(log, at_desk, gateway, wait, monkeypatch):
@@ -380,7 +380,7 @@ def test_what_a_lost_link_kept_back_is_told_and_comes_when_it_is_there_again(
     later(-40)
     gateway.mute.add("get_commands")
     press_older(log)
-    wait(lambda: len(gateway.asked("get_commands")) == 2, what="the question")
+    wait(lambda: len(gateway.requests_of("get_commands")) == 2, what="the question")
     gateway.stop()
     later(46)
     wait(lambda: NO_ANSWER in complaints, what="that nothing was answered")
@@ -396,7 +396,7 @@ def test_one_answer_of_several_that_are_refused_is_told(log, at_desk, gateway, w
     at_desk.desk.selection.select_all(["r2", "r1"])
     gateway.refuse["get_commands"] = "the database is away"
     press_older(log)
-    wait(lambda: len(gateway.asked("get_commands")) == 3 and complaints, what="the refusal")
+    wait(lambda: len(gateway.requests_of("get_commands")) == 3 and complaints, what="the refusal")
     QTest.qWait(300)
     assert complaints == ["Older commands: the database is away"]
 

@@ -103,8 +103,8 @@ def test_a_button_that_is_held_down_outlasts_news_of_the_same_conflict(conflicts
     tell(meeting("r1", "r2", x=51.0))
     assert "at 51, 40 m" in texts(conflicts)[0]
     QTest.mouseRelease(button, LEFT)
-    wait(lambda: gateway.asked("resolve_conflict"), what="the request")
-    assert gateway.asked("resolve_conflict")[-1]["robot"] == "r2"
+    wait(lambda: gateway.requests_of("resolve_conflict"), what="the request")
+    assert gateway.requests_of("resolve_conflict")[-1]["robot"] == "r2"
 
 
 def test_a_more_urgent_conflict_leaves_rows_and_buttons_to_the_one_that_was_chosen(
@@ -117,8 +117,8 @@ def test_a_more_urgent_conflict_leaves_rows_and_buttons_to_the_one_that_was_chos
     assert [text.split("  ")[1].split(":")[0] for text in texts(conflicts)] == ["r1 × r2", "r3 × r4"]
     assert gives_way(conflicts, "r2").mapToGlobal(button.rect().center()) == where
     QTest.mouseClick(button, LEFT)
-    wait(lambda: gateway.asked("resolve_conflict"), what="the request")
-    asked = gateway.asked("resolve_conflict")[-1]
+    wait(lambda: gateway.requests_of("resolve_conflict"), what="the request")
+    asked = gateway.requests_of("resolve_conflict")[-1]
     assert (asked["robot"], asked["other"]) == ("r2", "r1")
 
 
@@ -131,8 +131,8 @@ def test_a_button_stays_its_robot_s_when_the_other_one_is_told_first(conflicts, 
     assert gives_way(conflicts, "r1").geometry() == where
     assert [text.split("  ")[1].split(":")[0] for text in texts(conflicts)] == ["r2 × r1"]
     QTest.mouseRelease(gives_way(conflicts, "r1"), LEFT)
-    wait(lambda: gateway.asked("resolve_conflict"), what="the request")
-    asked = gateway.asked("resolve_conflict")[-1]
+    wait(lambda: gateway.requests_of("resolve_conflict"), what="the request")
+    asked = gateway.requests_of("resolve_conflict")[-1]
     assert (asked["robot"], asked["other"]) == ("r1", "r2")
 
 
@@ -207,10 +207,10 @@ def test_a_robot_is_sent_aside_by_a_route_that_is_shown_first(conflicts, tell, g
     draft = conflicts.desk.drafts.draft
     assert (draft.robot, draft.points) == ("r2", ((80.0, 60.0), (80.0, 61.5)))
     wait(lambda: conflicts.desk.drafts.draft.is_checked, what="its check")
-    assert gateway.asked("send") == []
+    assert gateway.requests_of("send") == []
     conflicts.actions.send.trigger()
-    wait(lambda: gateway.asked("send"), what="the command")
-    (sent,) = gateway.asked("send")
+    wait(lambda: gateway.requests_of("send"), what="the command")
+    (sent,) = gateway.requests_of("send")
     assert (sent["robot"], sent["op"], sent["params"]["points"]) == (
         "r2",
         "SetPath",
@@ -222,7 +222,7 @@ def test_either_robot_is_stopped_by_its_button(conflicts, tell, gateway, wait):
     tell(meeting("r1", "r2", "standing"))
     for robot in ("r1", "r2"):
         QTest.mouseClick(button(conflicts, f"fleet_stop_{robot}"), LEFT)
-        wait(lambda: [one["robot"] for one in gateway.asked("pause_robot")][-1:] == [robot], what=robot)  # noqa: B023
+        wait(lambda: [one["robot"] for one in gateway.requests_of("pause_robot")][-1:] == [robot], what=robot)  # noqa: B023
 
 
 def test_the_buttons_keep_their_places_whatever_is_known(conflicts, tell, answer, wait):
@@ -257,20 +257,20 @@ def test_what_the_robots_can_do_is_asked_again_while_somebody_looks(
 ):
     monkeypatch.setattr("fleet_supervisor.plugin.panel.conflict_panel.ASK_EVERY", 0.2)
     tell(meeting("r1", "r2"))
-    wait(lambda: len(gateway.asked("get_ways_out")) >= 3, what="three questions")
-    assert gateway.asked("get_ways_out")[-1] == {"robot": "r1", "other": "r2"}
+    wait(lambda: len(gateway.requests_of("get_ways_out")) >= 3, what="three questions")
+    assert gateway.requests_of("get_ways_out")[-1] == {"robot": "r1", "other": "r2"}
     conflicts.dock.tabs.setCurrentIndex(0)
     QTest.qWait(300)
-    asked = len(gateway.asked("get_ways_out"))
+    asked = len(gateway.requests_of("get_ways_out"))
     QTest.qWait(600)
-    assert len(gateway.asked("get_ways_out")) == asked
+    assert len(gateway.requests_of("get_ways_out")) == asked
 
 
 def test_two_that_meet_in_another_way_are_asked_about_at_once(conflicts, tell, gateway, wait):
     tell(meeting("r1", "r2", "standing"))
-    wait(lambda: len(gateway.asked("get_ways_out")) == 1, what="the question")
+    wait(lambda: len(gateway.requests_of("get_ways_out")) == 1, what="the question")
     tell(meeting("r1", "r2", "head-on", x=51.0))
-    wait(lambda: len(gateway.asked("get_ways_out")) == 2, 2.0 / BUSY, what="another question")
+    wait(lambda: len(gateway.requests_of("get_ways_out")) == 2, 2.0 / BUSY, what="another question")
 
 
 def test_what_is_known_of_one_pair_is_not_said_of_another(conflicts, tell, gateway, answer, wait):

@@ -54,7 +54,7 @@ def test_no_button_of_the_observations_moves(opened, at_desk, gateway, wait):
     dock.choose(2)
     QTest.mouseClick(dock.findChild(QPushButton, "fleet_observation_accept"), Qt.MouseButton.LeftButton)
     watched.check("a review is on its way")
-    wait(lambda: not dock.feed.is_asked(2), what="the refusal")
+    wait(lambda: not dock.feed.awaits_answer(2), what="the refusal")
     watched.check("it was refused")
     dock.reviewed.setChecked(True)
     watched.check("reviewed ones are shown, too")

@@ -7,7 +7,8 @@ import sys
 import pytest
 from fleet_supervisor.plugin.panel.emergency import ClearDialog, in_words
 from fleet_supervisor.plugin.ui.dialogs import ShrinkableScrollArea
-from fleet_supervisor.robot_bridge.core.messages import EmergencyReport, SetPosEnd
+from fleet_supervisor.robot_bridge.core.messages.robots import SetPosEnd
+from fleet_supervisor.robot_bridge.core.messages.safety import EmergencyReport
 from qgis.PyQt.QtCore import QEvent, Qt
 from qgis.PyQt.QtTest import QTest
 from qgis.PyQt.QtWidgets import (
@@ -77,8 +78,8 @@ def test_one_click_and_no_question_stops_everything_and_the_banner_says_what_was
 ):
     assert banner(at_desk) == ""
     press_stop(at_desk)
-    wait(lambda: gateway.asked("emergency_stop"), what="the request")
-    (asked,) = gateway.asked("emergency_stop")
+    wait(lambda: gateway.requests_of("emergency_stop"), what="the request")
+    (asked,) = gateway.requests_of("emergency_stop")
     assert len(asked["command"]) == 36
     wait(lambda: "in force" in banner(at_desk))
     first, counts, waiting = banner(at_desk).splitlines()
@@ -111,15 +112,15 @@ def test_no_listener_that_fails_keeps_a_stop_or_an_abort_from_robots_or_from_the
         state.commands_changed,
     ):
         signals.append((signal, signal.connect(fail)))
-    for signal in (desk.emergency_changed, desk.orders.asked_again, desk.drafts.changed):
+    for signal in (desk.emergency_changed, desk.orders.retried, desk.drafts.changed):
         signals.append((signal, signal.connect(fail)))
     desk.selection.select_all(["r1", "r2"])
     desk.abort_selected()
     desk.abort_all()
     press_stop(at_desk)
     wait(lambda: "in force" in banner(at_desk), what="the banner")
-    assert [one["robot"] for one in gateway.asked("send")] == ["r1", "r2"]
-    assert len(gateway.asked("abort_all")) == len(gateway.asked("emergency_stop")) == 1
+    assert [one["robot"] for one in gateway.requests_of("send")] == ["r1", "r2"]
+    assert len(gateway.requests_of("abort_all")) == len(gateway.requests_of("emergency_stop")) == 1
     monkeypatch.setattr(state.robots, "merge", fail_once)
     gateway.stand(in_force=False)
     wait(lambda: banner(at_desk) == "", what="what came with a report that failed")
@@ -147,10 +148,10 @@ def test_the_banner_is_red_in_a_dark_theme_too(dark, at_desk, wait):
 @pytest.mark.parametrize("key", [Qt.Key.Key_F10, Qt.Key.Key_Pause])
 def test_one_key_does_the_same_wherever_the_focus_is(at_desk, gateway, iface, wait, key):
     for widget in (iface.canvas, at_desk.dock.findChild(QLineEdit, "fleet_url")):
-        before = len(gateway.asked("emergency_stop"))
+        before = len(gateway.requests_of("emergency_stop"))
         widget.setFocus()
         QTest.keyClick(widget, key)
-        wait(lambda before=before: len(gateway.asked("emergency_stop")) == before + 1)
+        wait(lambda before=before: len(gateway.requests_of("emergency_stop")) == before + 1)
 
 
 def opened_box(window):
@@ -181,7 +182,7 @@ def test_the_key_works_over_whatever_blocks_the_window(at_desk, gateway, iface, 
     dialog = opened(iface)
     wait(lambda: QApplication.activeWindow() is dialog, what="the dialog")
     QTest.keyClick(dialog, Qt.Key.Key_F10)
-    wait(lambda: len(gateway.asked("emergency_stop")) == 1, what="the request")
+    wait(lambda: len(gateway.requests_of("emergency_stop")) == 1, what="the request")
     assert dialog.isVisible()
 
 
@@ -244,7 +245,7 @@ def test_a_stop_pressed_while_the_link_is_down_is_sent_when_it_is_back_and_says_
     assert "not confirmed it yet" in banner(at_desk)
     gateway.start()
     wait(lambda: "in force" in banner(at_desk), 10)
-    assert len(gateway.asked("emergency_stop")) == 1
+    assert len(gateway.requests_of("emergency_stop")) == 1
     over = ("NOT sent yet", "The link to the gateway", "Nothing listens")
     assert [text for text in iface.texts() if any(part in text for part in over)] == []
 
@@ -260,10 +261,10 @@ def test_it_is_cleared_by_who_confirms_with_a_reason(stopped, gateway, iface, wa
     asks = dialog(iface)
     assert any("0 of 2 robots acknowledged" in label.text() for label in asks.findChildren(QLabel))
     QTest.keyClicks(asks.findChild(QLineEdit, "fleet_clear_reason"), "track is free")
-    assert gateway.asked("clear_emergency_stop") == []
+    assert gateway.requests_of("clear_emergency_stop") == []
     QTest.mouseClick(asks.findChild(QPushButton, "fleet_clear_confirm"), LEFT)
-    wait(lambda: gateway.asked("clear_emergency_stop"))
-    (asked,) = gateway.asked("clear_emergency_stop")
+    wait(lambda: gateway.requests_of("clear_emergency_stop"))
+    (asked,) = gateway.requests_of("clear_emergency_stop")
     assert asked == {"reason": "track is free", "stop": gateway.emergency.stop}
     wait(lambda: banner(stopped) == "")
 
@@ -278,7 +279,7 @@ def test_who_does_not_confirm_clears_nothing(stopped, gateway, iface, how):
         key = Qt.Key.Key_Escape if how == "escape" else Qt.Key.Key_Return
         QTest.keyClick(asks.findChild(QLineEdit, "fleet_clear_reason"), key)
     QTest.qWait(200)
-    assert gateway.asked("clear_emergency_stop") == []
+    assert gateway.requests_of("clear_emergency_stop") == []
     assert "in force" in banner(stopped)
 
 
@@ -291,10 +292,10 @@ def test_enter_after_a_reason_keeps_it_and_goes_on_to_the_button_that_clears(sto
     assert asks.isVisible()
     assert reason.text() == "track is free"
     assert asks.focusWidget() is asks.findChild(QPushButton, "fleet_clear_confirm")
-    assert gateway.asked("clear_emergency_stop") == []
+    assert gateway.requests_of("clear_emergency_stop") == []
     QTest.keyClick(asks.focusWidget(), Qt.Key.Key_Return)
-    wait(lambda: gateway.asked("clear_emergency_stop"))
-    assert gateway.asked("clear_emergency_stop")[0]["reason"] == "track is free"
+    wait(lambda: gateway.requests_of("clear_emergency_stop"))
+    assert gateway.requests_of("clear_emergency_stop")[0]["reason"] == "track is free"
 
 
 def test_enter_on_the_button_that_keeps_the_stop_keeps_it_also_after_a_reason(stopped, gateway, iface):
@@ -306,7 +307,7 @@ def test_enter_on_the_button_that_keeps_the_stop_keeps_it_also_after_a_reason(st
     keep.setFocus()
     QTest.keyClick(keep, Qt.Key.Key_Return)
     assert not asks.isVisible()
-    assert gateway.asked("clear_emergency_stop") == []
+    assert gateway.requests_of("clear_emergency_stop") == []
 
 
 def test_who_may_not_clear_it_is_told_so_and_it_stays(stopped, gateway, iface, wait):
@@ -331,7 +332,7 @@ def test_what_is_not_stored_and_who_is_missing_is_said_in_words():
     report = EmergencyReport(
         True, "stop", None, "eve", robots=9, stored=False, waiting=[f"r{k}" for k in range(9)]
     )
-    assert in_words(report, asked=True, connected=False).splitlines() == [
+    assert in_words(report, pending=True, connected=False).splitlines() == [
         "EMERGENCY STOP asked for. The gateway has not confirmed it yet: watch the robots, and use their own "
         "emergency stops.",
         "EMERGENCY STOP in force, by eve",
@@ -361,7 +362,7 @@ def test_of_many_robots_it_counts_all_that_have_not_answered(robots, acknowledge
         waiting=[f"r{k}" for k in range(waiting)],
         refused=[f"x{k}" for k in range(refused)],
     )
-    assert in_words(report, asked=False, connected=True).splitlines()[2:] == lines
+    assert in_words(report, pending=False, connected=True).splitlines()[2:] == lines
 
 
 def test_the_latency_of_each_link_stands_in_the_table(at_desk, gateway, make_robot, wait):

@@ -18,7 +18,7 @@ def test_typing_an_address_and_pressing_connect_shows_the_site(plugin, gateway, 
         QTest.keyClicks(field, text)
     press(window, QToolButton, "fleet_connect_button")
     wait(lambda: "Yard" in state_line(window), what="the site's name")
-    assert gateway.asked("hello") == [{"operator": "anna", "protocol": 1}]
+    assert gateway.requests_of("hello") == [{"operator": "anna", "protocol": 1}]
 
 
 def test_while_there_is_a_link_the_fields_make_room_for_the_robots(plugin, gateway, wait):

@@ -16,7 +16,7 @@ from fleet_supervisor.plugin.panel.command_log_model import (
     step_cells,
 )
 from fleet_supervisor.plugin.panel.robot_details import command_rows
-from fleet_supervisor.robot_bridge.core.messages import CommandReport, CommandState, CommandStep
+from fleet_supervisor.robot_bridge.core.messages.commands import CommandReport, CommandState, CommandStep
 from qgis.PyQt.QtCore import QModelIndex, QPersistentModelIndex
 from qgis.PyQt.QtTest import QAbstractItemModelTester
 

@@ -6,7 +6,7 @@ from types import SimpleNamespace
 import pytest
 from fleet_supervisor.plugin.panel import robot_details
 from fleet_supervisor.plugin.panel.robot_details import received_rows
-from fleet_supervisor.robot_bridge.core.messages import CommandState
+from fleet_supervisor.robot_bridge.core.messages.commands import CommandState
 from qgis.PyQt.QtCore import QBuffer, QIODevice, Qt
 from qgis.PyQt.QtGui import QColor, QImage
 from qgis.PyQt.QtTest import QTest
@@ -94,7 +94,7 @@ def test_nothing_received_is_left_out():
 
 def test_commands_from_before_this_desk_are_asked_for(details, at_desk, gateway, wait):
     at_desk.desk.selection.select("r1")
-    wait(lambda: {"robot": "r1", "limit": 200} in gateway.asked("get_commands"))
+    wait(lambda: {"robot": "r1", "limit": 200} in gateway.requests_of("get_commands"))
     gateway._queue("command-1", "r1", "SetPosEnd", {"x": 1.0, "y": 2.0, "cone": True})
     gateway._queue("command-2", "r2", "Abort", {})
     gateway.step("command-1", CommandState.FAILED, "r1", reason="the wheel is blocked")
@@ -118,7 +118,7 @@ def test_the_last_image_is_fetched_decoded_and_shown(details, at_desk, gateway, 
     at_desk.desk.selection.select("r1")
     picture = details.findChild(QLabel, "fleet_last_image")
     wait(lambda: picture.isVisible())
-    assert gateway.asked("get_image") == [{"observation": 8}]
+    assert gateway.requests_of("get_image") == [{"observation": 8}]
     assert details.findChild(QLabel, "fleet_image_text").text() == "bin at 51.0, 42.0 m"
     shown = picture.pixmap().toImage()
     assert QColor(shown.pixel(shown.width() // 2, shown.height() // 2)) == QColor("#ff0000")

@@ -10,7 +10,8 @@ from fleet_supervisor.plugin.gateway_client.command_cache import (
 from fleet_supervisor.plugin.gateway_client.robot_states import ROBOT_STATES
 from fleet_supervisor.plugin.panel.robot_model import COLUMNS, TITLES, RobotChoice, number_in_words
 from fleet_supervisor.plugin.panel.robot_table import AROUND_SEARCH, ROBOT_CHOICES, WIDEST_NAME
-from fleet_supervisor.robot_bridge.core.messages import CommandReport, CommandState, CommandStep, RobotState
+from fleet_supervisor.robot_bridge.core.messages.commands import CommandReport, CommandState, CommandStep
+from fleet_supervisor.robot_bridge.core.messages.safety import RobotState
 from qgis.core import (
     QgsCoordinateReferenceSystem,
     QgsCoordinateTransform,

@@ -4,7 +4,7 @@ import time
 
 from fleet_supervisor.plugin.panel.emergency import in_words
 from fleet_supervisor.plugin.ui.language import date_and_time, short_time, time_of_day
-from fleet_supervisor.robot_bridge.core.messages import EmergencyReport
+from fleet_supervisor.robot_bridge.core.messages.safety import EmergencyReport
 
 NOON = time.mktime((2026, 11, 22, 12, 0, 0, 0, 0, -1))
 HOUR = 3600.0
@@ -36,4 +36,4 @@ def test_no_time_is_no_text():
 
 def test_an_emergency_stop_of_another_day_says_since_when():
     report = EmergencyReport(in_force=True, stop="s1", at=1_600_000_000.0, by="anna", robots=1, waiting=[])
-    assert " since 2020-09-1" in in_words(report, asked=False, connected=True)
+    assert " since 2020-09-1" in in_words(report, pending=False, connected=True)

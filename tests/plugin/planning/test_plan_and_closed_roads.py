@@ -8,17 +8,10 @@ import numpy as np
 import pytest
 from fleet_supervisor.plugin.planning.proposal import _Road, closed_ways
 from fleet_supervisor.plugin.ui import scheduling
-from fleet_supervisor.robot_bridge.core.messages import ClosureReport
+from fleet_supervisor.robot_bridge.core.messages.roads import ClosureReport
 from qgis.PyQt import sip
 
-from tests.plugin.planning.panel_parts import (
-    SHORT,
-    answer,
-    closing,
-    planned,
-    question,
-    way_to,
-)
+from tests.plugin.planning.panel_parts import SHORT, answer, closing, planned, question, way_to
 
 
 def test_a_plan_is_made_round_the_roads_that_are_closed_at_the_gateway(far_cones, gateway, wait):

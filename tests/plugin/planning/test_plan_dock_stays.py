@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from fleet_supervisor.plugin.control.messages import PLAN_ASKED
+from fleet_supervisor.plugin.control.messages import PLAN_REQUEST
 from qgis.PyQt.QtCore import Qt
 from qgis.PyQt.QtTest import QTest
 
@@ -47,5 +47,5 @@ def test_no_button_of_the_cone_plan_moves(panel, plans, gateway, iface, wait):
     watched.check("it is followed no more")
     panel._refuse(LONG)
     watched.check("something was refused")
-    panel._desk.messages.end(PLAN_ASKED)
+    panel._desk.messages.end(PLAN_REQUEST)
     watched.check("that is over")

@@ -5,15 +5,7 @@ from __future__ import annotations
 import pytest
 from qgis.PyQt.QtCore import Qt
 
-from tests.plugin.planning.panel_parts import (
-    ABOARD,
-    child,
-    cones_of,
-    drop,
-    key,
-    planned,
-    write,
-)
+from tests.plugin.planning.panel_parts import ABOARD, child, cones_of, drop, key, planned, write
 
 
 def test_a_cone_is_moved_by_keys_and_the_times_are_made_anew(panel, wait):

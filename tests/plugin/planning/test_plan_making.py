@@ -6,23 +6,11 @@ import threading
 
 import pytest
 from fleet_supervisor.plugin.planning import proposal
-from qgis.core import (
-    QgsProject,
-)
+from qgis.core import QgsProject
 from qgis.PyQt.QtCore import QEvent
 from qgis.PyQt.QtWidgets import QAction, QApplication, QDockWidget
 
-from tests.plugin.planning.panel_parts import (
-    ABOARD,
-    CARRIES,
-    E,
-    N,
-    cones_of,
-    planned,
-    press,
-    untick,
-    write,
-)
+from tests.plugin.planning.panel_parts import ABOARD, CARRIES, E, N, cones_of, planned, press, untick, write
 
 
 def test_a_preview_gives_each_robot_the_cones_near_to_it_and_sends_nothing(panel, gateway, wait, iface):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from fleet_supervisor.plugin.control.messages import PLAN_ASKED
+from fleet_supervisor.plugin.control.messages import PLAN_REQUEST
 from qgis.PyQt.QtCore import Qt
 from qgis.PyQt.QtTest import QTest
 
@@ -70,8 +70,8 @@ def test_a_cone_that_failed_is_told_and_given_up_or_tried_again(
     assert under_way.bar.again.isEnabled() and not under_way.bar.again.isChecked()
     under_way.bar.again.setChecked(again)
     press(under_way, "fleet_plan_rest")
-    wait(lambda: gateway.asked("replan"), 5)
-    assert gateway.asked("replan")[0]["try_again"] is again
+    wait(lambda: gateway.requests_of("replan"), 5)
+    assert gateway.requests_of("replan")[0]["try_again"] is again
 
 
 def test_a_road_that_was_closed_is_told_until_it_is_open_again(under_way, plans, wait, iface):
@@ -87,7 +87,7 @@ def test_going_on_as_before_discards_the_new_plan(under_way, plans, gateway, wai
     offered(under_way, plans, wait)
     press(under_way, "fleet_plan_discard")
     wait(lambda: state_of(under_way) == "driven", 5)
-    assert gateway.asked("discard_replan") == [{"plan": plans.name, "revision": 3}]
+    assert gateway.requests_of("discard_replan") == [{"plan": plans.name, "revision": 3}]
     assert "New plan" not in under_way.bar.text.text()
 
 
@@ -172,7 +172,7 @@ def test_what_is_sent_by_itself_is_chosen_before_and_told_when_it_happened(
     panel.driven.remarked.connect(told.append)
     panel.bar.by_itself.click()
     submitted(panel, plans, wait)
-    assert gateway.asked("submit_plan")[0]["by_itself"] is True
+    assert gateway.requests_of("submit_plan")[0]["by_itself"] is True
     assert panel.bar.by_itself.isChecked() and not panel.bar.by_itself.isEnabled()
     why = "plan of what is left: r1 is lost or offline"
     plans.tell(steps=3, by="gateway", reason=why, robots=["r2"])
@@ -189,7 +189,7 @@ def test_what_is_sent_by_itself_is_chosen_before_and_told_when_it_happened(
 
 def berts(plans, gateway, name="berts", robots=("r1", "r2")):
     """Have bert submit once more what was submitted first."""
-    params = {**gateway.asked("submit_plan")[0], "plan": name}
+    params = {**gateway.requests_of("submit_plan")[0], "plan": name}
     report = plans.submit(params, by="bert")["result"]
     report["robots"] = list(robots)
     return report
@@ -208,7 +208,7 @@ def test_the_plan_of_another_operator_is_shown_and_can_be_steered(under_way, pla
     assert under_way.which.currentText().startswith("bert, ") and own != under_way.driven.shown
     assert child(under_way, "r1", "row-1") and under_way.tree.topLevelItemCount() == 2
     press(under_way, "fleet_plan_pause")
-    wait(lambda: gateway.asked("pause_plan") == [{"plan": "berts"}], 5)
+    wait(lambda: gateway.requests_of("pause_plan") == [{"plan": "berts"}], 5)
     plans.tell(state="cleared", by="bert")
     wait(lambda: hung(iface, "bert cleared the cone plan"), 5)
     assert under_way.driven.known is None and under_way.which.count() == 1
@@ -248,14 +248,14 @@ def test_a_plan_that_ended_while_the_link_was_down_is_shown_as_done(under_way, p
     wait(lambda: gateway.subscriptions > subscribed, 15, "the link")
     wait(lambda: under_way.bar.text.text() == "Done: 6 of 6 cones", 10)
     press(under_way, "fleet_plan_clear")
-    assert gateway.asked("clear_plan") == [] and under_way.driven.known is None
+    assert gateway.requests_of("clear_plan") == [] and under_way.driven.known is None
 
 
 def test_nothing_of_a_question_is_left_when_something_else_is_asked(under_way, plans, gateway, wait, iface):
     gateway.refuse["replan"] = "nobody is left"
     press(under_way, "fleet_plan_rest")
     wait(lambda: hung(iface, "nobody is left"), 5)
-    under_way._desk.messages.end(PLAN_ASKED)
+    under_way._desk.messages.end(PLAN_REQUEST)
     assert hung(iface, "nobody is left")
     press(under_way, "fleet_plan_pause")
     wait(lambda: not hung(iface, "nobody is left"), 5)

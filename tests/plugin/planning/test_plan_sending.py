@@ -7,21 +7,13 @@ from dataclasses import replace
 import pytest
 from fleet_supervisor.plugin.planning import plan_views
 from fleet_supervisor.robot_bridge.core.assignment.plan import plan_of_document
-from fleet_supervisor.robot_bridge.core.messages import TaskState, to_json
+from fleet_supervisor.robot_bridge.core.messages.json_values import to_json
+from fleet_supervisor.robot_bridge.core.messages.queues import TaskState
 from qgis.PyQt.QtCore import Qt
 from qgis.PyQt.QtTest import QTest
 from qgis.PyQt.QtWidgets import QDialog, QLabel, QLineEdit, QPushButton
 
-from tests.plugin.planning.panel_parts import (
-    answer,
-    child,
-    cones_of,
-    hung,
-    key,
-    planned,
-    press,
-    question,
-)
+from tests.plugin.planning.panel_parts import answer, child, cones_of, hung, key, planned, press, question
 
 
 def test_only_send_and_a_second_send_submit_the_plan_whole(panel, plans, gateway, wait):
@@ -30,16 +22,16 @@ def test_only_send_and_a_second_send_submit_the_plan_whole(panel, plans, gateway
     assert "r1: 3 cones" in box.text() and "The robots set off at once" in box.text()
     answer(box, send=False)
     QTest.qWait(200)
-    assert gateway.asked("submit_plan") == []
+    assert gateway.requests_of("submit_plan") == []
     answer(question(panel), send=True)
     wait(lambda: panel.driven.known is not None and not panel.driven.busy, 10, "the gateway's report")
-    (sent,) = gateway.asked("submit_plan")
+    (sent,) = gateway.requests_of("submit_plan")
     assert plan_of_document(sent["document"]) == plan
     assert sent["revisions"] == {"r1": 0, "r2": 0} and sent["by_itself"] is False
     assert {(one["id"], one["cone"], one["layout"]) for one in sent["cones"]} == {
         (f"row-{n}", f"row-{n}", "row") for n in range(1, 7)
     }
-    assert gateway.asked("set_queue") == [] and "Under way: 0 of 6 cones" in panel.bar.text.text()
+    assert gateway.requests_of("set_queue") == [] and "Under way: 0 of 6 cones" in panel.bar.text.text()
     assert panel.drafts.draft is None, "it is the gateway's from now on"
     key(panel, child(panel, "r1", cones_of(plan)["r1"][0]), Qt.Key.Key_Delete)
     assert not panel.drafts.busy, "what is driven is not edited"
@@ -100,10 +92,10 @@ def test_what_can_be_overridden_waits_and_is_told_once_with_where_that_is_done(f
 
 def test_an_override_sends_the_same_plan_with_what_was_found_and_why(fenced, gateway, wait, iface):
     confirm = override(fenced)
-    assert len(gateway.asked("submit_plan")) == 1
+    assert len(gateway.requests_of("submit_plan")) == 1
     press_it(confirm)
     wait(lambda: fenced.driven.known is not None and not fenced.driven.busy, what="the plan")
-    refused, done = gateway.asked("submit_plan")
+    refused, done = gateway.requests_of("submit_plan")
     assert done.pop("override") == " ".join(f"{text}." for text in FOUND) + " because: the basin is drained"
     assert done == refused
     wait(lambda: hung(iface, "Water basin") == [], what="the text of what is over")
@@ -118,7 +110,7 @@ def test_a_plan_that_was_changed_is_not_sent_by_the_override_of_another(fenced, 
     assert not fenced.bar.override.isEnabled()
     press_it(confirm)
     wait(lambda: hung(iface, "Nothing was overridden"), what="the text")
-    assert len(gateway.asked("submit_plan")) == 1
+    assert len(gateway.requests_of("submit_plan")) == 1
 
 
 def test_an_override_that_is_refused_leaves_the_plan_and_says_why(fenced, gateway, wait, iface):
@@ -159,13 +151,13 @@ def test_a_plan_that_is_driven_is_not_thrown_away_by_another_preview(under_way, 
     wait(lambda: hung(iface, "A plan is being driven"), 5)
     assert under_way.driven.known is driven and not under_way.drafts.busy
     under_way.collect(None)
-    assert gateway.asked("collect_layout") == []
+    assert gateway.requests_of("collect_layout") == []
 
 
 def test_a_plan_that_is_cleared_is_asked_of_the_gateway_and_shown_no_longer(under_way, plans, gateway, wait):
     press(under_way, "fleet_plan_clear")
     wait(lambda: under_way.driven.known is None, 5)
-    assert gateway.asked("clear_plan") == [{"plan": plans.name}]
+    assert gateway.requests_of("clear_plan") == [{"plan": plans.name}]
     assert "No plan" in under_way.bar.text.text()
 
 
@@ -179,7 +171,7 @@ def test_a_site_that_is_published_anew_or_chosen_keeps_the_plan_and_another_does
         assert under_way.driven.shown == name
     gateway.tell("site", to_json(replace(site, origin=(1.0, 2.0))))
     wait(lambda: under_way.driven.known is None, 5)
-    assert gateway.asked("clear_plan") == []
+    assert gateway.requests_of("clear_plan") == []
 
 
 def test_what_is_done_is_counted_and_off_the_map_in_every_language(under_way, plans, wait, monkeypatch):
@@ -207,10 +199,10 @@ def test_a_plan_whose_answer_was_lost_is_the_gateways_all_the_same(panel, plans,
     planned(panel, wait)
     gateway.mute.add("submit_plan")
     answer(question(panel), send=True)
-    wait(lambda: gateway.asked("submit_plan"), 10)
+    wait(lambda: gateway.requests_of("submit_plan"), 10)
     assert "Being sent" in panel.bar.text.text() and not panel.bar.send.isEnabled()
     assert not panel.preview.isEnabled(), "the draft stays until it is known what became of it"
-    plans.submit(gateway.asked("submit_plan")[0])
+    plans.submit(gateway.requests_of("submit_plan")[0])
     plans.tell(steps=0)
     wait(lambda: panel.driven.known is not None and panel.drafts.draft is None, 10, "the plan")
     assert panel.driven.shown == plans.name
@@ -226,4 +218,4 @@ def test_a_gateway_that_knows_no_plans_is_named_and_nothing_is_sent(panel, gatew
     assert "older than this plugin and drives no cone plans" in panel.bar.trouble.text()
     answer(question(panel), send=True)
     wait(lambda: hung(iface, "with Add to queue"), 5)
-    assert gateway.asked("submit_plan") == [] and panel.drafts.draft is not None
+    assert gateway.requests_of("submit_plan") == [] and panel.drafts.draft is not None

@@ -28,20 +28,22 @@ from fleet_supervisor.robot_bridge.core.assignment.progress import (
     tasks_of,
 )
 from fleet_supervisor.robot_bridge.core.assignment.solver import Objective, assign
-from fleet_supervisor.robot_bridge.core.messages import (
-    PlacementReport,
+from fleet_supervisor.robot_bridge.core.messages.plans import (
     PlanProblemKind,
     PlanProblemReport,
     PlanReport,
     PlanState,
     PlanStopReport,
+)
+from fleet_supervisor.robot_bridge.core.messages.queues import (
     QueueReport,
     QueueState,
-    RobotState,
     TaskKind,
     TaskReport,
     TaskState,
 )
+from fleet_supervisor.robot_bridge.core.messages.records import PlacementReport
+from fleet_supervisor.robot_bridge.core.messages.safety import RobotState
 
 BEGAN = 1_700_000_000.0
 

@@ -11,7 +11,8 @@ from fleet_supervisor.plugin.gateway_client.robot_table import table_from_rows
 from fleet_supervisor.plugin.planning.forms import SHOWN, RobotsForm
 from fleet_supervisor.plugin.planning.plan_settings import PlanSettings
 from fleet_supervisor.robot_bridge.core.clock import ManualClock
-from fleet_supervisor.robot_bridge.core.messages import RobotState, to_json
+from fleet_supervisor.robot_bridge.core.messages.json_values import to_json
+from fleet_supervisor.robot_bridge.core.messages.safety import RobotState
 from qgis.PyQt.QtCore import Qt
 from qgis.PyQt.QtTest import QTest
 from qgis.PyQt.QtWidgets import QLineEdit

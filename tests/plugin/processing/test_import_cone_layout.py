@@ -5,13 +5,7 @@ from __future__ import annotations
 from functools import partial
 
 import pytest
-from qgis.core import (
-    QgsFeature,
-    QgsGeometry,
-    QgsProcessingContext,
-    QgsProcessingException,
-    QgsVectorLayer,
-)
+from qgis.core import QgsFeature, QgsGeometry, QgsProcessingContext, QgsProcessingException, QgsVectorLayer
 
 UTM = "EPSG:32633"
 X, Y = 640500.0, 5193500.0

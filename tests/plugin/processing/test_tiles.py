@@ -7,13 +7,13 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from fleet_supervisor.plugin.processing.common.algorithm import ParameterError
-from fleet_supervisor.plugin.processing.common.export_parameters import (
+from fleet_supervisor.plugin.processing.algorithms.export_robot_map_tiles import (
     TileSize,
     area_of,
     grid_tiles,
     route_tiles,
 )
+from fleet_supervisor.plugin.processing.common.algorithm import ParameterError
 from fleet_supervisor.robot_bridge.core.robotmap.binary import decode
 from fleet_supervisor.robot_bridge.core.robotmap.model import Border
 from fleet_supervisor.robot_bridge.core.robotmap.text_format import read_text

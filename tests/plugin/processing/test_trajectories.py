@@ -9,7 +9,7 @@ import sys
 import time
 
 import pytest
-from fleet_supervisor.robot_bridge.core.messages import SendPos
+from fleet_supervisor.robot_bridge.core.messages.robots import SendPos
 from osgeo import ogr
 from qgis.core import (
     QgsCoordinateTransformContext,

@@ -9,7 +9,7 @@ import pytest
 from fleet_supervisor.plugin.gateway_client.robot_table import STATES
 from fleet_supervisor.plugin.replay.history import SILENT_AFTER, History
 from fleet_supervisor.plugin.replay.replay_map import PIECE, line_pieces
-from fleet_supervisor.robot_bridge.core.messages import RobotState
+from fleet_supervisor.robot_bridge.core.messages.safety import RobotState
 
 T0 = 1_790_000_000.0
 FRESH, LOST = STATES.index(RobotState.FRESH), STATES.index(RobotState.LOST)

@@ -7,7 +7,7 @@ import pytest
 from fleet_supervisor.plugin.gateway_client.command_cache import UNDER_WAY, CommandCache
 from fleet_supervisor.plugin.replay.history import AT_ONCE, CommandSorter, sort_commands
 from fleet_supervisor.plugin.ui.scheduling import run_to_end
-from fleet_supervisor.robot_bridge.core.messages import CommandReport, CommandState, CommandStep
+from fleet_supervisor.robot_bridge.core.messages.commands import CommandReport, CommandState, CommandStep
 
 T0 = 1_790_000_000.0
 

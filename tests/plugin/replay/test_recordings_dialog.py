@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import pytest
-from fleet_supervisor.robot_bridge.core.messages import LinkReport, Links, PlaybackReport, to_json
+from fleet_supervisor.robot_bridge.core.messages.administration import LinkReport, Links, PlaybackReport
+from fleet_supervisor.robot_bridge.core.messages.json_values import to_json
 from qgis.PyQt.QtCore import Qt
 from qgis.PyQt.QtTest import QTest
 from qgis.PyQt.QtWidgets import QAction, QCheckBox, QComboBox, QDialog, QDoubleSpinBox, QLineEdit, QSlider
@@ -36,15 +37,15 @@ def window(plugin, iface, gateway, wait):
     wait(lambda: gateway.subscriptions, what="the subscription")
     iface.findChild(QAction, "fleet_recordings").trigger()
     dialog = iface.findChild(QDialog, "fleet_recordings_dialog")
-    assert dialog.said.text() == "No link plays a recording at this gateway."
+    assert dialog.status.text() == "No link plays a recording at this gateway."
     assert not dialog.findChild(QSlider).isEnabled()
     gateway.tell("links", to_json(LINKS))
-    wait(lambda: dialog.said.text() == "cars.csv: 30 s of 600 s", what="how it is played")
+    wait(lambda: dialog.status.text() == "cars.csv: 30 s of 600 s", what="how it is played")
     return dialog
 
 
 def changes(gateway):
-    return [asked for asked in gateway.asked("set_playback") if len(asked) > 1]
+    return [asked for asked in gateway.requests_of("set_playback") if len(asked) > 1]
 
 
 def test_it_is_paused_sought_and_sped_up(window, gateway, wait):

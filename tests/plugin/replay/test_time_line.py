@@ -6,7 +6,7 @@ import pytest
 from fleet_supervisor.plugin.replay.history import sort_commands
 from fleet_supervisor.plugin.replay.time_controls import COLOURS, TimeLine
 from fleet_supervisor.plugin.ui.scheduling import run_to_end
-from fleet_supervisor.robot_bridge.core.messages import CommandReport, CommandState, CommandStep
+from fleet_supervisor.robot_bridge.core.messages.commands import CommandReport, CommandState, CommandStep
 
 WIDTH, HEIGHT = 400, 40
 

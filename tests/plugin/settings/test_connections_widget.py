@@ -85,7 +85,7 @@ def test_a_new_connection_is_tested_and_kept(widget, gateway, wait):
     press(dialog, "fleet_connection_test")
     wait(lambda: verdict(dialog).startswith("✔"), 8)
     assert "Yard (EPSG:32633) answers, as Anna Nagy, viewer." in verdict(dialog)
-    assert gateway.asked("hello")[0]["operator"] == "anna"
+    assert gateway.requests_of("hello")[0]["operator"] == "anna"
     assert Connections().names() == []
     ok(dialog)
     assert Connections().get("Yard") == GatewayConnection("Yard", gateway.url, "anna")
@@ -182,8 +182,8 @@ def test_a_connection_is_picked_in_the_panel_and_is_there_next_time(plugin, gate
     marked = [action.text() for action in menu_of(panel).actions() if action.isChecked()]
     assert marked == ["Track"]
     plugin.window.actions.connect.trigger()
-    wait(lambda: gateway.asked("hello"))
-    assert gateway.asked("hello")[0]["operator"] == "bob"
+    wait(lambda: gateway.requests_of("hello"))
+    assert gateway.requests_of("hello")[0]["operator"] == "bob"
     again = ConnectionPanel(Actions(panel).connect)
     assert again.operator() == "bob"
     assert [action.text() for action in menu_of(again).actions() if action.isChecked()] == ["Track"]
@@ -267,7 +267,7 @@ def test_closing_while_a_test_hangs_leaves_no_thread(iface, gateway, wait):
     dialog = ConnectionDialog(GatewayConnection("Yard", gateway.url, "anna"), Connections(), iface)
     dialog.open()
     press(dialog, "fleet_connection_test")
-    wait(lambda: gateway.asked("hello"))
+    wait(lambda: gateway.requests_of("hello"))
     trial = dialog._trial._connection
     dialog.reject()
     assert not trial.is_open and not trial.is_ending

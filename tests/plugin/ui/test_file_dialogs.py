@@ -44,7 +44,7 @@ class Chooser:
             self._pressed = True
             self.was_native = not dialog.testOption(QFileDialog.Option.DontUseNativeDialog)
             QTest.keyClick(dialog.focusWidget(), Qt.Key.Key_F10)
-        self.stops = len(self._gateway.asked("emergency_stop"))
+        self.stops = len(self._gateway.requests_of("emergency_stop"))
         if self.stops or time.monotonic() > self._patience_ends:
             self._timer.stop()
             dialog.reject()

@@ -15,7 +15,7 @@ class Diary:
     """What was called, and a clock that goes on by a millisecond whenever it is looked at."""
 
     def __init__(self):
-        self.told = []
+        self.calls = []
         self.now = 0.0
         self.slices = CooperativeTask(clock=SimpleNamespace(steady=self.tick))
 
@@ -26,9 +26,9 @@ class Diary:
     def begin(self, work):
         return self.slices.begin(
             work,
-            lambda: self.told.append(round(self.slices.share, 2)),
-            lambda result: self.told.append(("done", result)),
-            lambda error: self.told.append(("failed", str(error))),
+            lambda: self.calls.append(round(self.slices.share, 2)),
+            lambda result: self.calls.append(("done", result)),
+            lambda error: self.calls.append(("failed", str(error))),
         )
 
 
@@ -47,13 +47,13 @@ def steps(count, end="result"):
 
 def test_what_the_first_slice_is_enough_for_is_returned_and_nothing_called(diary):
     assert diary.begin(steps(5)) == "result"
-    assert diary.told == []
+    assert diary.calls == []
 
 
 def test_more_goes_on_by_itself_a_slice_at_a_time(diary, wait):
     assert diary.begin(steps(20)) is None
-    wait(lambda: ("done", "result") in diary.told)
-    *shares, last = diary.told
+    wait(lambda: ("done", "result") in diary.calls)
+    *shares, last = diary.calls
     assert shares == sorted(shares) and len(shares) >= 1
     assert last == ("done", "result")
     # Nine looks at a clock of milliseconds are a slice of eight.
@@ -63,15 +63,15 @@ def test_more_goes_on_by_itself_a_slice_at_a_time(diary, wait):
 def test_one_step_is_done_however_late_it_is(diary, wait, monkeypatch):
     monkeypatch.setattr(scheduling, "SLICE_SECONDS", 0.0)
     diary.begin(steps(4))
-    wait(lambda: ("done", "result") in diary.told)
-    assert diary.told == [0.25, 0.5, 0.75, ("done", "result")]
+    wait(lambda: ("done", "result") in diary.calls)
+    assert diary.calls == [0.25, 0.5, 0.75, ("done", "result")]
 
 
 def test_what_the_first_slice_raises_is_raised_and_later_ones_are_told(diary, wait):
     with pytest.raises(FleetError, match="no"):
         diary.begin(steps(2, FleetError("no")))
     diary.begin(steps(20, FleetError("too late")))
-    wait(lambda: ("failed", "too late") in diary.told)
+    wait(lambda: ("failed", "too late") in diary.calls)
 
 
 def test_what_was_given_up_is_never_done(diary, wait):
@@ -86,8 +86,8 @@ def test_what_was_given_up_is_never_done(diary, wait):
     diary.begin(work())
     diary.begin(steps(20, "second"))
     assert closed == [True]
-    wait(lambda: ("done", "second") in diary.told)
-    assert ("done", "first") not in diary.told
+    wait(lambda: ("done", "second") in diary.calls)
+    assert ("done", "first") not in diary.calls
 
 
 def test_work_that_has_itself_stopped_is_not_gone_on_with(diary, wait):
@@ -99,7 +99,7 @@ def test_work_that_has_itself_stopped_is_not_gone_on_with(diary, wait):
 
     assert diary.begin(work()) is None
     diary.begin(steps(20, "next"))
-    wait(lambda: ("done", "next") in diary.told)
+    wait(lambda: ("done", "next") in diary.calls)
 
 
 def test_what_is_begun_soon_waits_for_the_window(diary, wait):
@@ -110,21 +110,21 @@ def test_what_is_begun_soon_waits_for_the_window(diary, wait):
         yield 0.0
         return "result"
 
-    diary.slices.begin_soon(work(), lambda result: diary.told.append(("done", result)))
+    diary.slices.begin_soon(work(), lambda result: diary.calls.append(("done", result)))
     assert begun == [] and diary.slices.is_busy
-    wait(lambda: diary.told == [("done", "result")])
+    wait(lambda: diary.calls == [("done", "result")])
     assert not diary.slices.is_busy
 
 
 def test_what_somebody_needs_now_is_finished_at_once(diary):
-    diary.slices.begin_soon(steps(50), lambda result: diary.told.append(result))
+    diary.slices.begin_soon(steps(50), lambda result: diary.calls.append(result))
     diary.slices.finish()
-    assert diary.told == ["result"] and not diary.slices.is_busy
+    assert diary.calls == ["result"] and not diary.slices.is_busy
     diary.slices.finish()
-    assert diary.told == ["result"]
+    assert diary.calls == ["result"]
     diary.begin(steps(50, FleetError("no")))
     diary.slices.finish()
-    assert diary.told[-1] == ("failed", "no")
+    assert diary.calls[-1] == ("failed", "no")
 
 
 def test_a_fault_that_nobody_expects_is_seen(diary):
@@ -137,14 +137,14 @@ def test_a_fault_that_nobody_expects_is_seen(diary):
 def test_work_that_begins_other_work_in_its_place_is_not_gone_on_with(diary, wait, steps_after):
     def work():
         yield 0.0
-        diary.slices.begin_soon(steps(20, "next"), lambda result: diary.told.append(("done", result)))
+        diary.slices.begin_soon(steps(20, "next"), lambda result: diary.calls.append(("done", result)))
         for _ in range(steps_after):
             yield 0.5
             raise AssertionError("it went on")
 
-    diary.slices.begin_soon(work(), lambda result: diary.told.append("the first one"))
-    wait(lambda: ("done", "next") in diary.told)
-    assert diary.told == [("done", "next")]
+    diary.slices.begin_soon(work(), lambda result: diary.calls.append("the first one"))
+    wait(lambda: ("done", "next") in diary.calls)
+    assert diary.calls == [("done", "next")]
 
 
 def test_slices_of_one_step_each_leave_the_window_its_time_after_every_step(qgis_app, wait):

@@ -11,7 +11,7 @@ from dataclasses import fields
 
 import pytest
 
-from robot_bridge.core.messages import SendPos
+from robot_bridge.core.messages.robots import SendPos
 from robot_bridge.core.sites.settings import TABLES
 from robot_bridge.gateway.storage import revisions
 from robot_bridge.gateway.storage.database import run_once

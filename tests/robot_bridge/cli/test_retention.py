@@ -8,7 +8,7 @@ import pytest
 from sqlalchemy import func, insert, select
 
 from robot_bridge.core.clock import ManualClock
-from robot_bridge.core.messages import SendPos
+from robot_bridge.core.messages.robots import SendPos
 from robot_bridge.core.sites.settings_tables import (
     AuditSettings,
     CommandSettings,

@@ -7,7 +7,7 @@ import json
 import pytest
 
 from robot_bridge.core.errors import UncertainError
-from robot_bridge.core.messages import CloseRoad, GetRoute, OpenRoad, ResolveConflict
+from robot_bridge.core.messages.roads import CloseRoad, GetRoute, OpenRoad, ResolveConflict
 from robot_bridge.core.sites.site import read_site
 from robot_bridge.gateway.api.robot_sql import SqlInterface
 from robot_bridge.gateway.fleet.service import Fleet

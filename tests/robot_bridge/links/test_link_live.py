@@ -10,7 +10,7 @@ import math
 import numpy as np
 import pytest
 
-from robot_bridge.core.messages import SendPos, SetObject, SetPosEnd
+from robot_bridge.core.messages.robots import SendPos, SetObject, SetPosEnd
 from robot_bridge.links.base.linked_robots import frame_of
 from robot_bridge.protocol import jsonrpc
 from tests.support.bridge.adapter_on_the_line import LinkOnTheLine

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import pytest
 
-from robot_bridge.core.messages import SendPos
+from robot_bridge.core.messages.robots import SendPos
 from tests.support.bridge.adapter_on_the_line import LinkOnTheLine
 
 ROBOT = SendPos(60.0, 22.0, 0.0, 0.0)

@@ -8,7 +8,7 @@ from types import SimpleNamespace
 import jsonschema
 import pytest
 
-from robot_bridge.core.messages import GetMap, SendGPS, SendPos, SetObject
+from robot_bridge.core.messages.robots import GetMap, SendGPS, SendPos, SetObject
 from robot_bridge.core.position_frame import split_frame
 from robot_bridge.links.base.errors import CommandRefusedError
 from robot_bridge.protocol.asyncapi import CALLS, ROBOT_CALLS, asyncapi, documents

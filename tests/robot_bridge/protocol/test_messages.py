@@ -9,29 +9,31 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robot_bridge.core.messages import (
-    ANSWERS,
-    DESK_REQUESTS,
-    REQUESTS,
-    Abort,
+from robot_bridge.core.messages.administration import Hello, SiteReport
+from robot_bridge.core.messages.commands import (
     AbortAll,
-    Alive,
     CommandReport,
     CommandState,
     CommandStep,
     GetCommands,
+    Send,
+    SetPositions,
+    TargetPosition,
+)
+from robot_bridge.core.messages.json_values import command_report, robot_report, site_report, to_json
+from robot_bridge.core.messages.operator_requests import DESK_REQUESTS
+from robot_bridge.core.messages.positions import GetPositions, RobotReport, Subscribe
+from robot_bridge.core.messages.robots import (
+    ANSWERS,
+    REQUESTS,
+    Abort,
+    Alive,
     GetMap,
     GetPath,
     GetPosEnd,
     GetPosIni,
-    GetPositions,
-    Hello,
-    MessageError,
     OpAck,
     Ready,
-    RobotReport,
-    RobotState,
-    Send,
     SendGPS,
     SendImage,
     SendPos,
@@ -40,18 +42,11 @@ from robot_bridge.core.messages import (
     SetPath,
     SetPosEnd,
     SetPosIni,
-    SetPositions,
-    SiteReport,
     Start,
     Stopped,
-    Subscribe,
-    TargetPosition,
-    check_robot_name,
-    command_report,
-    robot_report,
-    site_report,
-    to_json,
 )
+from robot_bridge.core.messages.safety import RobotState
+from robot_bridge.core.messages.validation import MessageError, check_robot_name
 from robot_bridge.protocol.codec import (
     UnknownOperationError,
     decode_answer,

@@ -8,12 +8,12 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from robot_bridge.core.messages import (
+from robot_bridge.core.messages.roads import GetSurface, SetSurface
+from robot_bridge.core.messages.robots import (
     Abort,
     Alive,
     GetMap,
     GetPath,
-    GetSurface,
     OpAck,
     Ready,
     SendImage,
@@ -23,7 +23,6 @@ from robot_bridge.core.messages import (
     SetPath,
     SetPosEnd,
     SetPosIni,
-    SetSurface,
     Start,
     Stopped,
 )
@@ -42,18 +41,18 @@ class Robot:
     """An agent and what it said."""
 
     def __init__(self, **settings):
-        self.said = []
+        self.sent = []
         limits = BodyLimits(speed=3.0)
         values = {"magic": 42, "pose": (0.0, 0.0, 0.0), "limits": limits, "rate": 5.0, **settings}
-        self.agent = Agent(AgentSettings(**values), SimpleNamespace(say=self.said.append))
+        self.agent = Agent(AgentSettings(**values), SimpleNamespace(say=self.sent.append))
         self.agent.receive(OpAck(magic=42, robot="r1", database="first"), None)
 
     def live(self, seconds):
         for _ in range(round(seconds / DT)):
             self.agent.step(DT)
 
-    def heard(self, kind):
-        return [message for message in self.said if isinstance(message, kind)]
+    def sent_of(self, kind):
+        return [message for message in self.sent if isinstance(message, kind)]
 
     @property
     def distance(self):
@@ -68,7 +67,7 @@ def robot() -> Robot:
 def test_start_makes_it_say_ready_with_its_magic_number(robot):
     assert robot.agent.receive(Start("first"), 3) == OpAck(id=3)
     assert robot.agent.receive(Start("first"), None) is None
-    assert robot.said == [Ready(42, path_cones=True), Ready(42, path_cones=True)]
+    assert robot.sent == [Ready(42, path_cones=True), Ready(42, path_cones=True)]
 
 
 def test_an_acknowledgement_is_not_acknowledged(robot):
@@ -79,8 +78,8 @@ def test_it_drives_to_a_target_then_says_where_it_is_and_that_it_stopped(robot):
     assert robot.agent.receive(SetPosEnd(3.0, 1.0), 1) == OpAck(id=1)
     robot.live(15)
     assert math.hypot(robot.agent.pose[0] - 3, robot.agent.pose[1] - 1) < 0.06
-    assert len(robot.heard(Stopped)) == 1
-    assert isinstance(robot.said[robot.said.index(Stopped()) - 1], SendPos)
+    assert len(robot.sent_of(Stopped)) == 1
+    assert isinstance(robot.sent[robot.sent.index(Stopped()) - 1], SendPos)
 
 
 def test_a_repeated_message_is_acknowledged_twice_and_done_once(robot):
@@ -99,11 +98,11 @@ def test_a_repeated_message_is_acknowledged_twice_and_done_once(robot):
 def test_after_a_repeated_message_it_says_once_more_where_it_stands_and_that_it_has_nothing_to_do(robot):
     robot.agent.receive(SetPosEnd(3.0, 0.0), 1)
     robot.live(10)
-    robot.said.clear()
+    robot.sent.clear()
     assert robot.agent.receive(SetPosEnd(3.0, 0.0), 1) == OpAck(id=1)
     robot.live(1)
-    assert len(robot.heard(Stopped)) == 1
-    assert isinstance(robot.said[robot.said.index(Stopped()) - 1], SendPos)
+    assert len(robot.sent_of(Stopped)) == 1
+    assert isinstance(robot.sent[robot.sent.index(Stopped()) - 1], SendPos)
 
 
 def test_while_it_drives_a_repeated_message_makes_it_say_nothing_more(robot):
@@ -111,18 +110,18 @@ def test_while_it_drives_a_repeated_message_makes_it_say_nothing_more(robot):
     robot.live(2)
     robot.agent.receive(SetPosEnd(30.0, 0.0), 1)
     robot.live(2)
-    assert robot.heard(Stopped) == []
+    assert robot.sent_of(Stopped) == []
 
 
 def test_abort_stops_it_and_it_stays(robot):
     robot.agent.receive(SetPath([(0.0, 0.0), (50.0, 0.0)]), 1)
     robot.live(3)
-    assert robot.heard(SendPos)[-1].v > 1.0
+    assert robot.sent_of(SendPos)[-1].v > 1.0
     robot.agent.receive(Abort(), 2)
     robot.live(3)
     stood = robot.agent.pose
-    assert robot.heard(SendPos)[-1].v == 0.0
-    assert robot.heard(Stopped)
+    assert robot.sent_of(SendPos)[-1].v == 0.0
+    assert robot.sent_of(Stopped)
     robot.live(3)
     assert robot.agent.pose == stood
 
@@ -130,9 +129,9 @@ def test_abort_stops_it_and_it_stays(robot):
 def test_before_it_acknowledges_an_abort_it_says_where_it_is(robot):
     robot.agent.receive(SetPosEnd(1.0, 0.0), 1)
     robot.live(10)
-    robot.said.clear()
+    robot.sent.clear()
     acknowledged = robot.agent.receive(Abort(), 2)
-    (position,) = robot.said
+    (position,) = robot.sent
     assert (position.x, position.v) == (pytest.approx(1.0, abs=0.1), 0.0)
     assert acknowledged == OpAck(id=2)
 
@@ -162,21 +161,21 @@ def test_it_says_its_position_at_its_rate_with_noise_by_seed():
     first, same, other = Robot(seed=1), Robot(seed=1), Robot(seed=2)
     for robot in (first, same, other):
         robot.live(4)
-    assert 19 <= len(first.heard(SendPos)) <= 21
-    assert first.said == same.said
-    assert first.said != other.said
-    spread = np.std([(p.x, p.y) for p in first.heard(SendPos)])
+    assert 19 <= len(first.sent_of(SendPos)) <= 21
+    assert first.sent == same.sent
+    assert first.sent != other.sent
+    spread = np.std([(p.x, p.y) for p in first.sent_of(SendPos)])
     assert 0.003 < spread < 0.03
     exact = Robot(noise=0.0)
     exact.live(1)
-    assert {(p.x, p.y) for p in exact.heard(SendPos)} == {(0.0, 0.0)}
+    assert {(p.x, p.y) for p in exact.sent_of(SendPos)} == {(0.0, 0.0)}
 
 
 def test_it_says_stopped_when_it_leaves(robot):
     robot.agent.receive(SetPosEnd(3.0, 0.0), 1)
     robot.agent.stop()
     robot.agent.alive()
-    assert robot.said == [Stopped(), Alive()]
+    assert robot.sent == [Stopped(), Alive()]
 
 
 # --- the handshake ----------------------------------------------------------------------------------------
@@ -195,16 +194,16 @@ def test_it_says_nothing_before_its_ready_was_taken():
 
 
 def test_it_says_ready_again_while_another_robot_uses_its_name(robot):
-    robot.said.clear()
+    robot.sent.clear()
     robot.agent.receive(OpAck(id=1, ok=False, magic=42, reason="in use"), None)
     robot.live(2.5)
-    assert robot.said == [Ready(42, path_cones=True)]
+    assert robot.sent == [Ready(42, path_cones=True)]
     robot.agent.receive(OpAck(id=2, ok=False, magic=42, reason="in use"), None)
     robot.live(1.5)
-    assert robot.said == [Ready(42, path_cones=True), Ready(42, path_cones=True)]
+    assert robot.sent == [Ready(42, path_cones=True), Ready(42, path_cones=True)]
     robot.agent.receive(OpAck(id=3, magic=42), None)
     robot.live(1)
-    assert robot.heard(SendPos)
+    assert robot.sent_of(SendPos)
 
 
 def test_what_is_for_another_robot_of_its_account_it_leaves_alone(robot):
@@ -270,7 +269,7 @@ def test_while_it_drives_it_will_not_be_told_where_it_is(robot):
 def test_it_asks_for_a_path_and_drives_what_it_is_answered():
     robot = Robot(asks_path=True)
     robot.agent.receive(SetPosEnd(3.0, 3.0, 0.0), 1)
-    assert robot.heard(GetPath) == [GetPath()]
+    assert robot.sent_of(GetPath) == [GetPath()]
     robot.agent.receive(SetPath([(0.0, 0.0), (3.0, 0.0), (3.0, 3.0)], 0.0), 2)
     passed = []
     for _ in range(400):
@@ -283,7 +282,7 @@ def test_it_asks_for_a_path_and_drives_what_it_is_answered():
 def test_it_declares_in_ready_that_it_asks_for_its_path():
     robot = Robot(asks_path=True)
     robot.agent.greet()
-    assert robot.said[-1] == Ready(42, asks_path=True, path_cones=True)
+    assert robot.sent[-1] == Ready(42, asks_path=True, path_cones=True)
 
 
 def test_it_stands_until_it_is_told_its_path_says_why_not_and_asks_again():
@@ -293,13 +292,13 @@ def test_it_stands_until_it_is_told_its_path_says_why_not_and_asks_again():
     assert robot.agent.pose[:2] == pytest.approx((0.0, 0.0), abs=0.01)
     robot.agent.receive(OpAck(id=9, ok=False, reason="GetPath: no way leads there"), None)
     robot.live(2)
-    assert len(robot.heard(GetPath)) == 2
-    assert robot.heard(SendPos)[-1].status == "stands without a path: GetPath: no way leads there"
-    assert not robot.heard(Stopped)
+    assert len(robot.sent_of(GetPath)) == 2
+    assert robot.sent_of(SendPos)[-1].status == "stands without a path: GetPath: no way leads there"
+    assert not robot.sent_of(Stopped)
     robot.agent.receive(SetPath([(0.0, 0.0), (3.0, 0.0)]), 2)
     robot.live(6)
     assert robot.agent.pose[:2] == pytest.approx((3.0, 0.0), abs=0.06)
-    assert (robot.heard(SendPos)[-1].status, len(robot.heard(GetPath))) == (None, 2)
+    assert (robot.sent_of(SendPos)[-1].status, len(robot.sent_of(GetPath))) == (None, 2)
 
 
 def test_a_robot_that_drives_stops_for_a_target_to_which_it_has_no_path_yet():
@@ -308,27 +307,27 @@ def test_a_robot_that_drives_stops_for_a_target_to_which_it_has_no_path_yet():
     robot.live(3)
     robot.agent.receive(SetPosEnd(0.0, 30.0), 2)
     robot.live(3)
-    assert robot.heard(SendPos)[-1].v == 0.0
+    assert robot.sent_of(SendPos)[-1].v == 0.0
     place = robot.agent.pose
     assert robot.live(1) is None
     assert robot.agent.pose == place
     robot.agent.receive(Abort(), 3)
-    asked = len(robot.heard(GetPath))
+    asked = len(robot.sent_of(GetPath))
     robot.live(4)
-    assert len(robot.heard(GetPath)) == asked > 0
+    assert len(robot.sent_of(GetPath)) == asked > 0
 
 
 def test_it_says_where_it_is_before_it_asks_for_a_path_and_asks_again_after_each_ready():
     robot = Robot(asks_path=True)
     robot.agent.receive(SetPosEnd(30.0, 0.0), 1)
     for _ in range(2):
-        assert [type(message) for message in robot.said] == [SendPos, GetPath]
-        robot.said.clear()
+        assert [type(message) for message in robot.sent] == [SendPos, GetPath]
+        robot.sent.clear()
         robot.agent.receive(OpAck(magic=42, robot="r1", database="first"), None)
     robot.agent.receive(SetPath([(0.0, 0.0), (30.0, 0.0)]), 2)
-    robot.said.clear()
+    robot.sent.clear()
     robot.agent.receive(OpAck(magic=42, robot="r1", database="first"), None)
-    assert robot.said == []
+    assert robot.sent == []
 
 
 def test_it_asks_what_ground_it_is_on_and_is_to_go_to_and_says_so():
@@ -336,20 +335,20 @@ def test_it_asks_what_ground_it_is_on_and_is_to_go_to_and_says_so():
     robot.agent.receive(SetPosEnd(3.0, 3.0), 1)
     robot.agent.receive(SetPath([(0.0, 0.0), (5.0, 0.0)]), 2)
     asked = [GetSurface([(0.0, 0.0), (3.0, 3.0)]), GetSurface([(0.0, 0.0), (5.0, 0.0)])]
-    assert robot.heard(GetSurface) == asked
+    assert robot.sent_of(GetSurface) == asked
     assert robot.agent.receive(SetSurface(["asphalt", None]), 3) == OpAck(id=3)
     robot.live(0.5)
-    assert robot.heard(SendPos)[-1].status == "asphalt to no road"
+    assert robot.sent_of(SendPos)[-1].status == "asphalt to no road"
 
 
 def test_it_tells_of_a_thing_once_when_it_comes_near():
     robot = Robot(things=(ScriptedObject(20.0, 0.0, "cone-7"), ScriptedObject(0.0, 90.0, "far")), image=PNG)
     robot.live(1)
-    assert not robot.heard(SetObject)
+    assert not robot.sent_of(SetObject)
     robot.agent.receive(SetPosEnd(20.0, 0.0), 1)
     robot.live(15)
-    assert robot.heard(SetObject) == [SetObject(20.0, 0.0, "cone-7", source="1")]
-    (image,) = robot.heard(SendImage)
+    assert robot.sent_of(SetObject) == [SetObject(20.0, 0.0, "cone-7", source="1")]
+    (image,) = robot.sent_of(SendImage)
     assert (image.image, image.object, image.source) == (PNG, "cone-7", "2")
     assert 9.0 < image.x < 12.0
 
@@ -373,13 +372,13 @@ def test_it_asks_for_the_next_map_before_it_leaves_one_that_is_a_part(robot):
     robot.agent.receive(map_around(0.0, 0.0, part), 1)
     robot.agent.receive(SetPosEnd(60.0, 0.0), 2)
     robot.live(2)
-    assert not robot.heard(GetMap)
+    assert not robot.sent_of(GetMap)
     robot.live(4)
-    (asked,) = robot.heard(GetMap)
+    (asked,) = robot.sent_of(GetMap)
     assert 10.0 < asked.x < 11.0 and asked.area == 1600.0
     robot.agent.receive(map_around(asked.x + 10, asked.y, part), 3)
     robot.live(2)
-    assert len(robot.heard(GetMap)) == 1
+    assert len(robot.sent_of(GetMap)) == 1
     robot.agent.receive(map_around(15.0, 0.0, {}), 4)
     robot.live(20)
-    assert len(robot.heard(GetMap)) == 1
+    assert len(robot.sent_of(GetMap)) == 1

@@ -9,7 +9,7 @@ import pytest
 from websockets.asyncio.server import serve
 
 from robot_bridge.core.errors import StoreError
-from robot_bridge.core.messages import Abort, OpAck, Ready, SetObject, SetPosEnd
+from robot_bridge.core.messages.robots import Abort, OpAck, Ready, SetObject, SetPosEnd
 from robot_bridge.gateway.storage.database import Database
 from robot_bridge.gateway.storage.repositories import requests
 from robot_bridge.gateway.storage.repositories import requests as answers

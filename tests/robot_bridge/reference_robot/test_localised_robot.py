@@ -11,7 +11,7 @@ import msgspec
 import numpy as np
 import pytest
 
-from robot_bridge.core.messages import (
+from robot_bridge.core.messages.robots import (
     Abort,
     GetMap,
     GetPath,
@@ -55,9 +55,9 @@ class Robot:
 
     def __init__(self, yard, executor=None, pose=(13.0, 3.0, 0.0), robot_map=None, settings=SETTINGS, **more):
         self.body = localised_robot(yard, settings, LIMITS, pose, executor or InlineExecutor(), **more)
-        self.said, self._ids = [], 0
+        self.sent, self._ids = [], 0
         values = AgentSettings(magic=1, pose=pose, limits=LIMITS, body=self.body, map_margin=MAP_MARGIN)
-        self.agent = Agent(replace(values, asks_path=True), SimpleNamespace(say=self.said.append))
+        self.agent = Agent(replace(values, asks_path=True), SimpleNamespace(say=self.sent.append))
         self.agent.receive(OpAck(magic=1, robot="r1"), None)
         self.map_ack = self.tell(SetMap(encode(robot_map or yard)))
 
@@ -76,12 +76,12 @@ class Robot:
             self.agent.step(DT)
         raise AssertionError(f"not within {seconds} s: {self.status}")
 
-    def heard(self, kind):
-        return [message for message in self.said if isinstance(message, kind)]
+    def sent_of(self, kind):
+        return [message for message in self.sent if isinstance(message, kind)]
 
     @property
     def status(self):
-        return self.heard(SendPos)[-1].status
+        return self.sent_of(SendPos)[-1].status
 
     @property
     def error(self):
@@ -96,12 +96,12 @@ def robot(yard):
 def test_it_drives_a_path_by_what_it_believes_and_says_how_sure_it_is(robot):
     robot.live(1)
     robot.tell(SetPath(ROUND))
-    robot.until(lambda: robot.heard(Stopped))
+    robot.until(lambda: robot.sent_of(Stopped))
     assert 14 < robot.body.driven < 18
     # The end by what it believes, and nearly so in truth; by its wheels alone it would not know.
     assert math.dist(robot.body.pose[:2], ROUND[-1]) < 0.08
     assert robot.error < 0.25
-    positions = robot.heard(SendPos)
+    positions = robot.sent_of(SendPos)
     assert all(0.0 < one.accuracy < 0.3 for one in positions[10:])
     assert positions[-1].status is None
     assert robot.body.clearance() > 0
@@ -110,11 +110,11 @@ def test_it_drives_a_path_by_what_it_believes_and_says_how_sure_it_is(robot):
 def test_it_asks_for_the_path_to_a_target_and_drives_that(robot):
     robot.live(1)
     robot.tell(SetPosEnd(16.0, 8.0))
-    assert robot.heard(GetPath)
+    assert robot.sent_of(GetPath)
     robot.live(2)
     assert robot.body.driven == 0.0
     robot.tell(SetPath([(13.0, 3.0), (16.0, 3.0), (16.0, 8.0)]))
-    robot.until(lambda: robot.heard(Stopped))
+    robot.until(lambda: robot.sent_of(Stopped))
     assert math.dist(robot.body.truth[:2], (16.0, 8.0)) < 0.3
 
 
@@ -129,13 +129,13 @@ def test_carried_away_it_stands_says_so_and_goes_on_once_it_is_told_where_it_is(
     stood = robot.body.truth
     robot.live(40)
     assert robot.body.truth == stood
-    assert robot.heard(SendPos)[-1].accuracy >= 2.0
+    assert robot.sent_of(SendPos)[-1].accuracy >= 2.0
     assert robot.tell(SetPosIni(3.0, 3.0, 1.5)).ok
     robot.until(lambda: robot.body.hindrance is None)
     # It is not on its path any more: it asks for another one, from here.
-    robot.until(lambda: robot.heard(GetPath))
+    robot.until(lambda: robot.sent_of(GetPath))
     robot.tell(SetPath([(3.0, 3.0), (3.0, 9.0)]))
-    robot.until(lambda: robot.heard(Stopped))
+    robot.until(lambda: robot.sent_of(Stopped))
     assert math.dist(robot.body.truth[:2], (3.0, 9.0)) < 0.3
 
 
@@ -151,7 +151,7 @@ def test_with_its_laser_covered_for_a_while_it_stands_and_then_goes_on(robot):
     robot.live(3)
     assert robot.body.truth == stood
     robot.body.measured = measured
-    robot.until(lambda: robot.heard(Stopped))
+    robot.until(lambda: robot.sent_of(Stopped))
     assert robot.error < 0.25
 
 
@@ -182,7 +182,7 @@ def test_a_reading_that_cannot_be_right_makes_it_stand_and_say_why(robot, said):
     assert robot.body.v < 1.0
     robot.body.measured = measured
     # Where it expects to be its scans fit: it finds itself, and goes on.
-    robot.until(lambda: robot.heard(Stopped))
+    robot.until(lambda: robot.sent_of(Stopped))
     assert robot.error < 0.25 and robot.body.driven < 18
 
 
@@ -192,7 +192,7 @@ def test_a_map_of_another_site_is_refused_and_the_old_one_kept(robot, yard):
     ack = robot.tell(SetMap(encode(elsewhere)))
     assert not ack.ok and "its crs is EPSG:25831" in ack.reason and "another" in ack.reason
     robot.tell(SetPath(ROUND))
-    robot.until(lambda: robot.heard(Stopped))
+    robot.until(lambda: robot.sent_of(Stopped))
     assert robot.error < 0.25
 
 
@@ -203,12 +203,12 @@ def test_a_map_with_nothing_to_see_or_of_elsewhere_is_refused_and_it_stands_with
     robot.tell(SetPath(ROUND))
     robot.live(3)
     assert robot.body.driven == 0 and "it has no map yet" in robot.status
-    asked = robot.heard(GetMap)[0]
+    asked = robot.sent_of(GetMap)[0]
     assert (asked.x, asked.y) == (13.0, 3.0)
     part = build_map(Outlines.from_rows([]), Window.from_bounds(20, 10, 30, 20), {"id": "yard"})
     assert "is higher" in robot.tell(SetMap(encode(part))).reason
     assert robot.tell(SetMap(encode(yard))).ok
-    robot.until(lambda: robot.heard(Stopped))
+    robot.until(lambda: robot.sent_of(Stopped))
 
 
 def test_where_its_laser_reaches_nothing_of_the_map_it_stands_and_says_so(yard):
@@ -243,20 +243,20 @@ def window(yard, x, side):
 def test_near_the_border_of_its_map_it_asks_for_the_next_and_waits_there_until_it_has_it(yard):
     robot = Robot(yard, pose=(10.0, 17.0, 0.0), robot_map=window(yard, 10.0, 16.0))
     robot.live(1)
-    assert not robot.heard(GetMap)
+    assert not robot.sent_of(GetMap)
     robot.tell(SetPath([(10.0, 17.0), (27.0, 17.0)]))
-    robot.until(lambda: robot.heard(GetMap))
+    robot.until(lambda: robot.sent_of(GetMap))
     assert robot.body.truth[0] < 16.1
     # It is late, and then one of elsewhere comes: no harm is done.
     robot.live(15)
     assert robot.body.v == 0 and robot.body.truth[0] < 17.0
     assert "at the border of its map" in robot.status
     assert not robot.tell(SetMap(encode(window(yard, 25.0, 8.0)))).ok
-    assert len(robot.heard(GetMap)) >= 4
-    asked = robot.heard(GetMap)[-1]
+    assert len(robot.sent_of(GetMap)) >= 4
+    asked = robot.sent_of(GetMap)[-1]
     assert math.dist((asked.x, asked.y), robot.body.truth[:2]) < 0.3
     assert robot.tell(SetMap(encode(window(yard, 20.0, 20.0)))).ok
-    robot.until(lambda: robot.heard(Stopped))
+    robot.until(lambda: robot.sent_of(Stopped))
     assert robot.error < 0.25
 
 
@@ -267,7 +267,7 @@ def test_it_asks_for_the_next_map_20_m_before_the_border_of_its_own(yard):
     robot.live(1)
     robot.tell(SetPath([(10.0, 17.0), (18.0, 17.0)]))
     # Not before it has come 5 m from where it was sent this one.
-    robot.until(lambda: robot.heard(GetMap))
+    robot.until(lambda: robot.sent_of(GetMap))
     assert 14.8 < robot.body.truth[0] < 15.5
 
 
@@ -319,7 +319,7 @@ def test_a_busy_filter_makes_it_stand_and_it_goes_on_when_that_has_come_after(ya
     # What it drove meanwhile is known all the same.
     assert robot.error < 0.2
     executor.release()
-    robot.until(lambda: robot.heard(Stopped))
+    robot.until(lambda: robot.sent_of(Stopped))
     assert robot.error < 0.25
 
 
@@ -358,7 +358,7 @@ def test_it_waits_for_somebody_in_its_way_and_goes_on_when_they_leave(robot):
     assert "something is in its way" in robot.status
     assert robot.body.clearance() > 0.1 and robot.body.v == 0
     visitor.discs = visitor.discs[:0]
-    robot.until(lambda: robot.heard(Stopped), 30)
+    robot.until(lambda: robot.sent_of(Stopped), 30)
 
 
 def test_it_goes_round_what_stays(robot):
@@ -366,7 +366,7 @@ def test_it_goes_round_what_stays(robot):
     visitor, nearest = Visitor(16.0, 5.0), []
     robot.body._world.surroundings.add(visitor, lambda: visitor.discs)
     robot.tell(SetPath(ROUND))
-    robot.until(lambda: nearest.append(robot.body.clearance()) or robot.heard(Stopped))
+    robot.until(lambda: nearest.append(robot.body.clearance()) or robot.sent_of(Stopped))
     assert min(nearest) > 0.0
 
 
@@ -377,7 +377,7 @@ def test_it_asks_for_another_path_when_its_way_stays_blocked(robot):
     for one in crowd:
         robot.body._world.surroundings.add(one, lambda one=one: one.discs)
     robot.tell(SetPath(ROUND))
-    robot.until(lambda: robot.heard(GetPath), 30)
+    robot.until(lambda: robot.sent_of(GetPath), 30)
     assert robot.body.clearance() > 0
 
 

@@ -10,16 +10,8 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from robot_bridge.core.messages import (
-    ObservationReport,
-    ObservationState,
-    OpAck,
-    SendImage,
-    SetMap,
-    SetObject,
-    SetPath,
-    Stopped,
-)
+from robot_bridge.core.messages.records import ObservationReport, ObservationState
+from robot_bridge.core.messages.robots import OpAck, SendImage, SetMap, SetObject, SetPath, Stopped
 from robot_bridge.core.robotmap.binary import encode
 from robot_bridge.core.robotmap.builder import build_map
 from robot_bridge.core.robotmap.model import ShapeType, Window

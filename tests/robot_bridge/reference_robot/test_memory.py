@@ -9,7 +9,16 @@ from types import SimpleNamespace
 import pytest
 
 from robot_bridge.core.errors import BridgeError
-from robot_bridge.core.messages import Abort, GetPath, OpAck, Ready, SendPos, SetPath, SetPosEnd, Stopped
+from robot_bridge.core.messages.robots import (
+    Abort,
+    GetPath,
+    OpAck,
+    Ready,
+    SendPos,
+    SetPath,
+    SetPosEnd,
+    Stopped,
+)
 from robot_bridge.reference_robot.agent import Agent, AgentSettings
 from robot_bridge.reference_robot.body import BodyLimits
 from robot_bridge.reference_robot.memory import RememberedRun, RobotMemory
@@ -27,14 +36,14 @@ class Runs:
 
     def start(self, database="first"):
         self.magic += 1
-        self.said = []
+        self.sent = []
         limits = BodyLimits(speed=3.0)
         settings = AgentSettings(
             self.magic, (0.0, 0.0, 0.0), limits, noise=0.0, asks_path=self.asks_path, memory=self.memory
         )
-        self.agent = Agent(settings, SimpleNamespace(say=self.said.append))
+        self.agent = Agent(settings, SimpleNamespace(say=self.sent.append))
         self.agent.greet()
-        (ready,) = self.said
+        (ready,) = self.sent
         self.agent.receive(OpAck(magic=ready.magic, robot="r1", database=database), None)
         return self
 
@@ -51,14 +60,14 @@ def runs(tmp_path) -> Runs:
 
 def test_without_a_file_each_run_is_another():
     runs = Runs(None)
-    assert [runs.start().said[0] for _ in range(2)] == [
+    assert [runs.start().sent[0] for _ in range(2)] == [
         Ready(41, path_cones=True),
         Ready(42, path_cones=True),
     ]
 
 
 def test_every_run_with_one_file_is_the_same_to_the_gateway(runs):
-    assert [runs.start().said[0] for _ in range(2)] == [Ready(41, path_cones=True)] * 2
+    assert [runs.start().sent[0] for _ in range(2)] == [Ready(41, path_cones=True)] * 2
 
 
 def test_a_target_under_way_is_driven_to_its_end_and_what_was_done_is_not_done_again(runs):
@@ -69,15 +78,15 @@ def test_a_target_under_way_is_driven_to_its_end_and_what_was_done_is_not_done_a
     assert math.dist(runs.agent.pose[:2], before[:2]) < 3.5
     assert runs.agent.receive(SetPosEnd(9.0, 0.0, 1.0), 7) == OpAck(id=7)
     assert runs.live(12) == pytest.approx((9.0, 0.0, 1.0), abs=0.1)
-    assert isinstance(runs.said[-1], SendPos)
-    assert runs.said.count(Stopped()) == 1
+    assert isinstance(runs.sent[-1], SendPos)
+    assert runs.sent.count(Stopped()) == 1
 
 
 def test_one_that_was_not_told_its_path_yet_asks_for_it_and_does_not_drive_straight(runs):
     runs.asks_path = True
     runs.start().agent.receive(SetPosEnd(9.0, 0.0, 1.0), 7)
     runs.start()
-    assert GetPath() in runs.said
+    assert GetPath() in runs.sent
     assert runs.live(3)[:2] == pytest.approx((0.0, 0.0), abs=0.01)
     runs.agent.receive(SetPath([(0.0, 0.0), (0.0, 2.0)], 1.0), 8)
     assert runs.live(8) == pytest.approx((0.0, 2.0, 1.0), abs=0.1)
@@ -88,7 +97,7 @@ def test_one_that_had_come_to_its_end_stays_there_and_says_so(runs):
     place = runs.live(8)
     runs.start()
     assert runs.live(2) == pytest.approx(place, abs=0.05)
-    assert Stopped() in runs.said
+    assert Stopped() in runs.sent
 
 
 def test_of_a_lap_only_what_is_left_is_driven(runs):

@@ -17,7 +17,8 @@ import pytest
 
 from robot_bridge.core.clock import ManualClock
 from robot_bridge.core.errors import OutdatedError, RefusedError, StoreError
-from robot_bridge.core.messages import CommandState, GetQueue, QueueTask, ResumeQueue, Send, SetQueue
+from robot_bridge.core.messages.commands import CommandState, Send
+from robot_bridge.core.messages.queues import GetQueue, QueueTask, ResumeQueue, SetQueue
 from robot_bridge.gateway.api.robot_sql import SqlInterface
 from robot_bridge.gateway.fleet.emergency_persistence import StopJournal
 from robot_bridge.gateway.fleet.service import Fleet

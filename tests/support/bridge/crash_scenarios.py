@@ -6,25 +6,22 @@ drove on meanwhile.
 
 from __future__ import annotations
 
-from robot_bridge.core.messages import (
-    AbortTask,
-    ClearEmergencyStop,
-    CloseRoad,
-    EmergencyStop,
-    GetObservations,
+from robot_bridge.core.messages.commands import AbortTask
+from robot_bridge.core.messages.queues import (
     GetQueue,
     MakeCurrent,
     PauseQueue,
     PauseRobot,
     QueueTask,
-    ResolveConflict,
-    ReviewObservation,
-    SetObject,
     Share,
     SharedTask,
     TakeOver,
     TaskKind,
 )
+from robot_bridge.core.messages.records import GetObservations, ReviewObservation
+from robot_bridge.core.messages.roads import CloseRoad, ResolveConflict
+from robot_bridge.core.messages.robots import SetObject
+from robot_bridge.core.messages.safety import ClearEmergencyStop, EmergencyStop
 from tests.support.bridge.crash_play import START_ANEW
 from tests.support.bridge.living_robots import SqlRobot, WebSocketRobot
 from tests.support.bridge.queue_line import PLACES, task

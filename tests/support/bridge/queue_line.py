@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from robot_bridge.core.messages import GetPlacements, GetQueue, QueueTask, ResumeQueue, SetQueue, TaskKind
+from robot_bridge.core.messages.queues import GetQueue, QueueTask, ResumeQueue, SetQueue, TaskKind
+from robot_bridge.core.messages.records import GetPlacements
 from robot_bridge.gateway.storage.repositories import records
 
 PLACES = {"a": (50.0, 40.0), "b": (60.0, 40.0), "c": (60.0, 50.0), "d": (70.0, 50.0)}

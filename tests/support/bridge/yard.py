@@ -6,14 +6,9 @@ import json
 from contextlib import asynccontextmanager
 
 from robot_bridge.core.clock import ManualClock
-from robot_bridge.core.messages import (
-    GetCommands,
-    OpAck,
-    Ready,
-    Send,
-    SendPos,
-    to_json,
-)
+from robot_bridge.core.messages.commands import GetCommands, Send
+from robot_bridge.core.messages.json_values import to_json
+from robot_bridge.core.messages.robots import OpAck, Ready, SendPos
 from robot_bridge.gateway.api.robot_sql import SqlInterface
 from robot_bridge.gateway.fleet.service import Fleet
 from robot_bridge.gateway.site.site_maps import SiteMaps
@@ -28,7 +23,7 @@ class Yard:
         self.site, self.url, self.clock = site, url, ManualClock(wall=1000.0)
         self.client = DatabaseClient(url)
         self.sql = self.client.sql
-        self.told = []
+        self.reported = []
         self.database = self.fleet = self.link = None
 
     @property
@@ -50,12 +45,12 @@ class Yard:
 
     async def restart(self):
         await self.database.close()
-        self.told.clear()
+        self.reported.clear()
         await self.start()
 
     def notify(self, method, key, params):
         if method == "command":
-            self.told.append((key, params["state"]))
+            self.reported.append((key, params["state"]))
 
     # --- a robot over the WebSocket link, which tells the fleet what it delivered ---------------------------
 

@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 from hypothesis import strategies as st
 
-from robot_bridge.core.messages import REQUESTS
 from robot_bridge.core.messages.links import GetAreas, LinkHello, LinkPositions, LinkStatus
+from robot_bridge.core.messages.robots import REQUESTS
 from robot_bridge.core.position_frame import NUMBERS as POSITION_NUMBERS
 from robot_bridge.core.position_frame import TEXTS as POSITION_TEXTS
 from robot_bridge.core.position_frame import packed_frame

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 from sqlalchemy import Connection, Select, bindparam, delete, insert, select, update
 
 from ....core.json_decoder import decode_json
-from ....core.messages import CommandReport, CommandState, CommandStep
+from ....core.messages.commands import CommandReport, CommandState, CommandStep
 from ...model.command_states import is_open
 from ..rows import beside_the_time, delete_oldest, readable
 from ..schema import command_steps, commands

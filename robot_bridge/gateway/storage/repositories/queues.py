@@ -11,7 +11,8 @@ from sqlalchemy import Connection, Select, bindparam, delete, exists, insert, or
 
 from ....core.errors import RefusedError
 from ....core.json_decoder import decode_json
-from ....core.messages import QueueState, QueueTask, TaskState, to_json
+from ....core.messages.json_values import to_json
+from ....core.messages.queues import QueueState, QueueTask, TaskState
 from ...model.task_queue import ENDS, Queue, QueuedTask, Whereabouts
 from ..rows import beside_the_time, delete_oldest, readable
 from ..schema import plan_stops, plans, queue_tasks, queues
@@ -35,16 +36,16 @@ class QueueHold(NamedTuple):
 
 def load(connection: Connection, robots: Sequence[str] | None = None) -> dict[str, Queue]:
     """Return the queues of some robots, or of all, with their open tasks."""
-    wanted = select(queues)
+    query = select(queues)
     open_tasks = select(queue_tasks).where(queue_tasks.c.state.in_(_OPEN))
     if robots is not None:
-        wanted = wanted.where(queues.c.robot.in_(robots))
+        query = query.where(queues.c.robot.in_(robots))
         open_tasks = open_tasks.where(queue_tasks.c.robot.in_(robots))
     tasks: dict[str, list[QueuedTask]] = {}
     rows = connection.execute(open_tasks.order_by(queue_tasks.c.place)).mappings()
     for robot, task in readable(rows, lambda row: (row["robot"], _task(row)), _name_of_task):
         tasks.setdefault(robot, []).append(task)
-    found = connection.execute(wanted).mappings()
+    found = connection.execute(query).mappings()
     read = readable(found, lambda row: _queue(row, tasks), lambda row: f"the queue of robot {row['robot']}")
     return {queue.robot: queue for queue in read}
 

@@ -10,15 +10,14 @@ from sqlalchemy import ColumnElement, Connection, func, insert, select, update
 
 from ....core.errors import RefusedError, counted
 from ....core.json_decoder import decode_json
-from ....core.messages import (
+from ....core.messages.records import (
     GetObservations,
     GetPlacements,
     ObservationReport,
     ObservationState,
     PlacementReport,
-    SendImage,
-    SetObject,
 )
+from ....core.messages.robots import SendImage, SetObject
 from ..rows import beside_the_time, delete_oldest, readable
 from ..schema import observations as table
 from ..schema import placements
@@ -48,26 +47,26 @@ class NewObservation(NamedTuple):
 
 
 def add_observations(
-    connection: Connection, told: NewObservation, most_pending: int
+    connection: Connection, observed: NewObservation, most_pending: int
 ) -> tuple[ObservationReport, bool]:
     """Store an observation, once; return its report and whether it is new.
 
     :raises RefusedError: when ``most_pending`` of the robot's wait already.
     """
-    known = find_told(connection, told.robot, told.source)
+    known = find_reported(connection, observed.robot, observed.source)
     if known is None:
-        _check_room(connection, told.robot, most_pending)
-        values = {**told._asdict(), "details": json.dumps(told.details), "state": "pending"}
+        _check_room(connection, observed.robot, most_pending)
+        values = {**observed._asdict(), "details": json.dumps(observed.details), "state": "pending"}
         key = connection.execute(insert(table).values(values)).inserted_primary_key
         assert key is not None
         return _one(connection, int(key[0])), True
     return known, False
 
 
-def find_told(connection: Connection, robot: str, source: str) -> ObservationReport | None:
+def find_reported(connection: Connection, robot: str, source: str) -> ObservationReport | None:
     """Return what a robot told under ``source``, None where that is not stored."""
-    told = table.c.robot == robot, table.c.source == source
-    found = connection.execute(select(*_REPORTED).where(*told)).mappings().one_or_none()
+    conditions = table.c.robot == robot, table.c.source == source
+    found = connection.execute(select(*_REPORTED).where(*conditions)).mappings().one_or_none()
     return None if found is None else _observation_report(found)
 
 
@@ -79,18 +78,18 @@ def find(connection: Connection, id: int) -> ObservationReport | None:
 
 def newest_observations(
     connection: Connection,
-    wanted: GetObservations,
+    request: GetObservations,
 ) -> list[ObservationReport]:
     """Return observations, newest first."""
-    query = select(*_REPORTED).order_by(table.c.id.desc()).limit(wanted.limit)
-    if wanted.state is not None:
-        query = query.where(table.c.state == wanted.state.value)
-    if wanted.robot is not None:
-        query = query.where(table.c.robot == wanted.robot)
-    if wanted.object is not None:
-        query = query.where(table.c.object == wanted.object)
-    if wanted.before is not None:
-        query = query.where(table.c.id < wanted.before)
+    query = select(*_REPORTED).order_by(table.c.id.desc()).limit(request.limit)
+    if request.state is not None:
+        query = query.where(table.c.state == request.state.value)
+    if request.robot is not None:
+        query = query.where(table.c.robot == request.robot)
+    if request.object is not None:
+        query = query.where(table.c.object == request.object)
+    if request.before is not None:
+        query = query.where(table.c.id < request.before)
     return _reports(connection.execute(query).mappings())
 
 
@@ -164,7 +163,7 @@ def _reports(rows: Iterable[Mapping[Any, Any]]) -> list[ObservationReport]:
 
 
 def _observation_report(row: Mapping[Any, Any]) -> ObservationReport:
-    told = decode_json(row["details"]) if row["details"] else {}
+    details = decode_json(row["details"]) if row["details"] else {}
     review = decode_json(row["review"]) if row["review"] else {}
     return ObservationReport(
         observation=row["id"],
@@ -176,16 +175,16 @@ def _observation_report(row: Mapping[Any, Any]) -> ObservationReport:
         received_at=row["received_at"],
         state=ObservationState(row["state"]),
         seen_at=row["seen_at"],
-        label=told.get("label"),
-        height=review.get("height", told.get("height")),
-        radius=review.get("radius", told.get("radius")),
+        label=details.get("label"),
+        height=review.get("height", details.get("height")),
+        radius=review.get("radius", details.get("radius")),
         media_type=row["media_type"],
         image_bytes=row["image_bytes"],
         semantics=review.get("semantics"),
         reason=review.get("reason"),
         reviewed_at=row["reviewed_at"],
         reviewed_by=row["reviewed_by"],
-        doubts=told.get("doubts"),
+        doubts=details.get("doubts"),
     )
 
 
@@ -246,10 +245,10 @@ def collect(connection: Connection, collected: CollectedCone) -> PlacementReport
     return _placed_cones_report({**row, **values})
 
 
-def newest_placed_cones(connection: Connection, wanted: GetPlacements) -> list[PlacementReport]:
+def newest_placed_cones(connection: Connection, request: GetPlacements) -> list[PlacementReport]:
     """Return placed cones, newest first."""
-    query = select(placements).where(*_conditions(wanted)).order_by(placements.c.id.desc())
-    return [_placed_cones_report(row) for row in connection.execute(query.limit(wanted.limit)).mappings()]
+    query = select(placements).where(*_conditions(request)).order_by(placements.c.id.desc())
+    return [_placed_cones_report(row) for row in connection.execute(query.limit(request.limit)).mappings()]
 
 
 def has_any(connection: Connection, kind: str, name: str) -> bool:
@@ -285,20 +284,20 @@ def forget(connection: Connection, before: float, limit: int) -> int:
     return len(delete_oldest(connection, placements.c.id, placements.c.collected_at, before, limit))
 
 
-def _conditions(wanted: GetPlacements) -> Iterator[ColumnElement[bool]]:
+def _conditions(request: GetPlacements) -> Iterator[ColumnElement[bool]]:
     c = placements.c
     for name in ("layout", "plan", "cone", "robot"):
-        value = getattr(wanted, name)
+        value = getattr(request, name)
         if value is not None:
             yield c[name] == value
-    if wanted.since is not None:
-        yield c.placed_at >= wanted.since
-    if wanted.until is not None:
-        yield c.placed_at <= wanted.until
-    if wanted.collected is not None:
-        yield c.collected_at.is_not(None) if wanted.collected else c.collected_at.is_(None)
-    if wanted.before is not None:
-        yield c.id < wanted.before
+    if request.since is not None:
+        yield c.placed_at >= request.since
+    if request.until is not None:
+        yield c.placed_at <= request.until
+    if request.collected is not None:
+        yield c.collected_at.is_not(None) if request.collected else c.collected_at.is_(None)
+    if request.before is not None:
+        yield c.id < request.before
 
 
 def _placed_cones_report(row: Any) -> PlacementReport:

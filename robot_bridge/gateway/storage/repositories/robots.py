@@ -10,7 +10,8 @@ import msgspec
 from sqlalchemy import Connection, delete, func, select, update
 
 from ....core.json_decoder import decode_json
-from ....core.messages import Abort, PathDeclaration, SendPos
+from ....core.messages.robots import Abort, SendPos
+from ....core.messages.safety import PathDeclaration
 from ...model.robots import Robot
 from ..rows import Row, put_rows, readable
 from ..schema import robots

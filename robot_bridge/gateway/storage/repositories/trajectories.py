@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 from sqlalchemy import ColumnElement, Connection, and_, delete, or_, select
 
-from ....core.messages import SendPos
+from ....core.messages.robots import SendPos
 from ..rows import add_rows, delete_oldest
 from ..schema import trajectories
 
@@ -87,20 +87,20 @@ def add(connection: Connection, fixes: Sequence[PackedFix]) -> None:
 
 def _row(robot: str, stored: bytes) -> tuple[object, ...]:
     *where, device_time, fix_time = _STORED.unpack(stored)
-    return robot, *where, _told(device_time), _told(fix_time)
+    return robot, *where, _time_value(device_time), _time_value(fix_time)
 
 
-def _told(time: float) -> float | None:
+def _time_value(time: float) -> float | None:
     return None if math.isnan(time) else time
 
 
 def read(
-    connection: Connection, wanted: TrajectoryQuery, limit: int, after: PageMark | None = None
+    connection: Connection, request: TrajectoryQuery, limit: int, after: PageMark | None = None
 ) -> list[StoredPosition]:
     """Return at most ``limit`` positions behind ``after``, oldest first."""
     at, id = trajectories.c.received_at, trajectories.c.id
     names = ("id", "robot", "received_at", "x", "y", "theta", "v", "device_time", "fix_time")
-    query = select(*(trajectories.c[name] for name in names)).where(*_conditions(wanted))
+    query = select(*(trajectories.c[name] for name in names)).where(*_conditions(request))
     if after is not None:
         # The first half alone lets the database begin at the right place of its index.
         query = query.where(
@@ -140,15 +140,15 @@ def forget_within(connection: Connection, robot: str, since: float, until: float
     return len(found)
 
 
-def _conditions(wanted: TrajectoryQuery) -> Iterator[ColumnElement[bool]]:
+def _conditions(request: TrajectoryQuery) -> Iterator[ColumnElement[bool]]:
     columns = trajectories.c
-    if wanted.robots:
-        yield columns.robot.in_(wanted.robots)
-    if wanted.since is not None:
-        yield columns.received_at >= wanted.since
-    if wanted.until is not None:
-        yield columns.received_at <= wanted.until
-    if wanted.bounds is not None:
-        x_min, y_min, x_max, y_max = wanted.bounds
+    if request.robots:
+        yield columns.robot.in_(request.robots)
+    if request.since is not None:
+        yield columns.received_at >= request.since
+    if request.until is not None:
+        yield columns.received_at <= request.until
+    if request.bounds is not None:
+        x_min, y_min, x_max, y_max = request.bounds
         yield columns.x.between(x_min, x_max)
         yield columns.y.between(y_min, y_max)

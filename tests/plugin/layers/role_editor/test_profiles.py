@@ -8,16 +8,19 @@ from collections import Counter
 import numpy as np
 import pytest
 from fleet_supervisor.plugin.layers.layer_expressions import LayerRules, as_metres
-from fleet_supervisor.plugin.layers.layer_source import names_of, obstacle_sources
+from fleet_supervisor.plugin.layers.layer_source import obstacle_sources
 from fleet_supervisor.plugin.layers.obstacle_layers import read_outlines
-from fleet_supervisor.plugin.layers.profiles import (
+from fleet_supervisor.plugin.layers.roles import (
+    LayerExpressions,
+    LayerSetup,
     Profile,
     ProfileRule,
     find_profile,
+    keep_setup,
+    names_of,
     read_profile,
     shipped_profiles,
 )
-from fleet_supervisor.plugin.layers.roles import LayerExpressions, LayerSetup, keep_setup
 from fleet_supervisor.plugin.layers.site_transform import SiteGeoreference
 from fleet_supervisor.plugin.ui.errors import ProfileError
 from fleet_supervisor.robot_bridge.core.robotmap.model import ShapeType

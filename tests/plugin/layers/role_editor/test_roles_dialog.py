@@ -6,7 +6,6 @@ import threading
 import time
 
 import pytest
-from fleet_supervisor.plugin.layers.profiles import PROFILES, find_profile
 from fleet_supervisor.plugin.layers.role_editor.preview import COLOURS, GROUND, PreviewView
 from fleet_supervisor.plugin.layers.role_editor.role_table import (
     BASE,
@@ -23,7 +22,13 @@ from fleet_supervisor.plugin.layers.role_editor.role_table import (
     WIDTH,
 )
 from fleet_supervisor.plugin.layers.role_editor.roles_dialog import WIDEST_NAME, RolesAction, RolesDialog
-from fleet_supervisor.plugin.layers.roles import LayerExpressions, LayerSetup, setup_of
+from fleet_supervisor.plugin.layers.roles import (
+    PROFILES,
+    LayerExpressions,
+    LayerSetup,
+    find_profile,
+    setup_of,
+)
 from qgis.core import QgsApplication, QgsCoordinateReferenceSystem
 from qgis.gui import QgsFieldExpressionWidget, QgsMessageBar
 from qgis.PyQt import sip

@@ -7,14 +7,9 @@ import math
 import numpy as np
 import pytest
 from fleet_supervisor.plugin.ui.glyphs import STATE_COLOURS
-from fleet_supervisor.robot_bridge.core.messages import RobotState
+from fleet_supervisor.robot_bridge.core.messages.safety import RobotState
 
-from tests.plugin.map.on_canvas import (
-    expected,
-    scene_of,
-    show,
-    spots,
-)
+from tests.plugin.map.on_canvas import expected, scene_of, show, spots
 
 
 @pytest.mark.parametrize("rotation", [0.0, 90.0])

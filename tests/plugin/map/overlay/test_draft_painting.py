@@ -19,16 +19,10 @@ from fleet_supervisor.plugin.map.overlay.scene import SceneTransformer
 from fleet_supervisor.plugin.ui.glyphs import CONE as CONE_COLOUR
 from fleet_supervisor.plugin.ui.glyphs import PAPER, REFUSED
 from fleet_supervisor.plugin.ui.glyphs import ROUTE as ROUTE_COLOUR
-from fleet_supervisor.robot_bridge.core.messages import RobotState
+from fleet_supervisor.robot_bridge.core.messages.safety import RobotState
 from qgis.PyQt.QtGui import QColor
 
-from tests.plugin.map.on_canvas import (
-    expected,
-    placement_of,
-    scene_of,
-    show,
-    spots,
-)
+from tests.plugin.map.on_canvas import expected, placement_of, scene_of, show, spots
 
 
 def test_a_draft_is_painted_and_a_refused_one_is_red(canvas, site):

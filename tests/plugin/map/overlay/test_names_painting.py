@@ -6,15 +6,11 @@ import dataclasses
 
 import numpy as np
 from fleet_supervisor.plugin.map.overlay.scene import in_view
-from fleet_supervisor.robot_bridge.core.messages import RobotState
+from fleet_supervisor.robot_bridge.core.messages.safety import RobotState
 from qgis.PyQt.QtCore import QRectF
 from qgis.PyQt.QtGui import QImage, QPainter
 
-from tests.plugin.map.on_canvas import (
-    arrays,
-    scene_of,
-    show,
-)
+from tests.plugin.map.on_canvas import arrays, scene_of, show
 
 
 def test_the_names_of_a_crowd_do_not_cover_each_other_and_the_lost_are_named_first(canvas, site):

@@ -7,18 +7,12 @@ import pytest
 from fleet_supervisor.plugin.map.overlay.scene import SceneTransformer
 from fleet_supervisor.plugin.map.overlay.trails import Trails
 from fleet_supervisor.plugin.ui.glyphs import STATE_COLOURS, TRAIL
-from fleet_supervisor.robot_bridge.core.messages import RobotState
+from fleet_supervisor.robot_bridge.core.messages.safety import RobotState
 from qgis.core import QgsPointXY
 from qgis.PyQt.QtGui import QColor
 from qgis.PyQt.QtWidgets import QApplication
 
-from tests.plugin.map.on_canvas import (
-    expected,
-    placement_of,
-    scene_of,
-    show,
-    spots,
-)
+from tests.plugin.map.on_canvas import expected, placement_of, scene_of, show, spots
 
 BLUE = STATE_COLOURS[RobotState.FRESH]
 

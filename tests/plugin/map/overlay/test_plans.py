@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from fleet_supervisor.plugin.map.overlay.scene import TaskPaths
-from fleet_supervisor.robot_bridge.core.messages import CommandReport, CommandState
+from fleet_supervisor.robot_bridge.core.messages.commands import CommandReport, CommandState
 
 
 def task(op, params, command="c1", robot="r1"):

@@ -7,18 +7,11 @@ import dataclasses
 import numpy as np
 from fleet_supervisor.plugin.map.overlay import robots_painter, task_painter
 from fleet_supervisor.plugin.map.overlay.scene import SceneTransformer
-from fleet_supervisor.robot_bridge.core.messages import RobotState
+from fleet_supervisor.robot_bridge.core.messages.safety import RobotState
 from qgis.core import QgsPointXY
 from qgis.PyQt.QtWidgets import QApplication
 
-from tests.plugin.map.on_canvas import (
-    expected,
-    placement_of,
-    plan,
-    scene_of,
-    show,
-    spots,
-)
+from tests.plugin.map.on_canvas import expected, placement_of, plan, scene_of, show, spots
 
 
 def test_a_cone_target_stands_on_its_spot(canvas, site):

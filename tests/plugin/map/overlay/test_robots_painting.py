@@ -11,18 +11,11 @@ from fleet_supervisor.plugin.gateway_client.robot_table import STATES
 from fleet_supervisor.plugin.map.overlay import robots_painter
 from fleet_supervisor.plugin.map.overlay.scene import SceneTransformer
 from fleet_supervisor.plugin.ui.glyphs import SELECTED, STATE_COLOURS
-from fleet_supervisor.robot_bridge.core.messages import RobotState
+from fleet_supervisor.robot_bridge.core.messages.safety import RobotState
 from qgis.PyQt.QtCore import QSize
 from qgis.PyQt.QtGui import QColor, QImage, QPainter
 
-from tests.plugin.map.on_canvas import (
-    expected,
-    placement_of,
-    scene_of,
-    show,
-    spots,
-    where,
-)
+from tests.plugin.map.on_canvas import expected, placement_of, scene_of, show, spots, where
 
 BLUE = STATE_COLOURS[RobotState.FRESH]
 

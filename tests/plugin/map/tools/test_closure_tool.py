@@ -30,15 +30,15 @@ def closed(iface, gateway, wait):
     dialog = iface.findChild(QDialog, "fleet_closure_dialog")
     QTest.keyClicks(dialog.findChild(QLineEdit, "fleet_closure_reason"), "tree")
     QTest.mouseClick(dialog.findChild(QPushButton, "fleet_closure_confirm"), Qt.MouseButton.LeftButton)
-    wait(lambda: gateway.asked("close_road"), what="the request")
-    (asked,) = gateway.asked("close_road")
+    wait(lambda: gateway.requests_of("close_road"), what="the request")
+    (asked,) = gateway.requests_of("close_road")
     assert asked["reason"] == "tree"
     return asked["x"], asked["y"]
 
 
 def test_a_click_asks_and_closes_there(tool, iface, gateway, wait):
     iface.click(30, 20)
-    assert gateway.asked("close_road") == []
+    assert gateway.requests_of("close_road") == []
     assert closed(iface, gateway, wait) == pytest.approx((30, 20), abs=0.3)
 
 
@@ -64,7 +64,7 @@ def test_esc_puts_the_tool_and_its_cross_away_and_nothing_is_asked(tool, iface, 
     assert iface.canvas.mapTool() is not tool
     assert crosses(iface) == []
     assert iface.findChild(QDialog, "fleet_closure_dialog") is None
-    assert gateway.asked("close_road") == []
+    assert gateway.requests_of("close_road") == []
 
 
 def test_a_right_click_asks_nothing(tool, iface):

@@ -44,13 +44,13 @@ def route(at_desk):
 
 
 def sent(gateway, wait, count=1):
-    wait(lambda: len(gateway.asked("send")) >= count, what="the command")
-    return gateway.asked("send")[-1]
+    wait(lambda: len(gateway.requests_of("send")) >= count, what="the command")
+    return gateway.requests_of("send")[-1]
 
 
 def test_a_click_puts_a_cone_and_enter_sends_it_where_it_was_put(cone, iface, gateway, wait):
     iface.click(70, 55)
-    assert gateway.asked("send") == []
+    assert gateway.requests_of("send") == []
     assert drawn(cone).startswith("Cone for r1 at ")
     key(iface, Qt.Key.Key_Return)
     params = sent(gateway, wait)
@@ -74,7 +74,7 @@ def test_another_click_moves_the_cone_and_only_the_last_is_sent(cone, iface, gat
     key(iface, Qt.Key.Key_Enter)
     assert sent(gateway, wait)["params"]["x"] == pytest.approx(30, abs=0.3)
     QTest.qWait(200)
-    assert len(gateway.asked("send")) == 1
+    assert len(gateway.requests_of("send")) == 1
 
 
 def test_enter_twice_sends_once_and_the_second_says_so(cone, iface, gateway, wait):
@@ -87,7 +87,7 @@ def test_enter_twice_sends_once_and_the_second_says_so(cone, iface, gateway, wai
     QTest.qWait(QApplication.doubleClickInterval() + 50)
     key(iface, Qt.Key.Key_Return)
     wait(lambda: any("nothing to send" in text for text in iface.texts()), what="the answer")
-    assert len(gateway.asked("send")) == 1
+    assert len(gateway.requests_of("send")) == 1
 
 
 @pytest.mark.parametrize("how", ["escape", "cancel"])
@@ -100,7 +100,7 @@ def test_a_draft_is_cancelled_and_nothing_is_sent(cone, iface, gateway, how):
         QTest.mouseClick(button, Qt.MouseButton.LeftButton)
     assert cone.desk.drafts.draft is None
     QTest.qWait(200)
-    assert gateway.asked("send") == []
+    assert gateway.requests_of("send") == []
 
 
 def test_dragging_neither_moves_nor_sends(cone, iface, gateway):
@@ -111,14 +111,14 @@ def test_dragging_neither_moves_nor_sends(cone, iface, gateway):
     move_mouse(view, iface.pixel(75, 60), Qt.MouseButton.LeftButton)
     QTest.mouseRelease(view, Qt.MouseButton.LeftButton, NONE, iface.pixel(90, 70))
     assert cone.desk.drafts.draft == before
-    assert gateway.asked("send") == []
+    assert gateway.requests_of("send") == []
 
 
 def test_leaving_the_tool_keeps_the_draft_and_sends_nothing(cone, iface, gateway):
     iface.click(70, 55)
     iface.actionPan().trigger()
     QTest.qWait(200)
-    assert gateway.asked("send") == []
+    assert gateway.requests_of("send") == []
     assert cone.desk.drafts.draft is not None
     assert not cone.actions.cone.isChecked()
 
@@ -165,7 +165,7 @@ def test_a_target_outside_the_site_is_refused_with_place_and_bounds(cone, iface,
     assert "from (0, 0) to (200, 160) m" in text
     key(iface, Qt.Key.Key_Return)
     QTest.qWait(200)
-    assert gateway.asked("send") == []
+    assert gateway.requests_of("send") == []
     assert cone.desk.drafts.draft is not None
     assert "Not to be sent" in drawn(cone)
 
@@ -189,7 +189,7 @@ def test_a_target_in_a_keepout_is_refused_by_name(cone, iface, gateway):
     assert any("enters the keepout Loading bay" in text for text in iface.texts())
     key(iface, Qt.Key.Key_Return)
     QTest.qWait(200)
-    assert gateway.asked("send") == []
+    assert gateway.requests_of("send") == []
 
 
 @pytest.mark.parametrize(
@@ -288,7 +288,7 @@ def test_a_double_click_adds_one_point_and_sends_nothing(route, iface, gateway):
     QTest.mouseDClick(view, Qt.MouseButton.LeftButton, NONE, at)
     QTest.qWait(200)
     assert len(route.desk.drafts.draft.points) == 2
-    assert gateway.asked("send") == []
+    assert gateway.requests_of("send") == []
 
 
 def test_a_route_of_one_point_is_not_sent_and_says_what_is_missing(route, iface, gateway):
@@ -296,7 +296,7 @@ def test_a_route_of_one_point_is_not_sent_and_says_what_is_missing(route, iface,
     key(iface, Qt.Key.Key_Return)
     assert any("at least two points" in text for text in iface.texts())
     QTest.qWait(200)
-    assert gateway.asked("send") == []
+    assert gateway.requests_of("send") == []
     assert len(route.desk.drafts.draft.points) == 1
 
 
@@ -343,7 +343,7 @@ def test_a_draft_without_a_link_is_not_sent_and_not_lost(cone, iface, gateway, w
     gateway.start()
     wait(lambda: cone.desk.state.link.phase.value == "connected", 8)
     QTest.qWait(300)
-    assert gateway.asked("send") == []
+    assert gateway.requests_of("send") == []
 
 
 def test_a_click_on_a_robot_selects_it_and_beside_it_selects_none(at_desk, iface, wait):

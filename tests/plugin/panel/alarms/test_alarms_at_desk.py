@@ -12,7 +12,8 @@ from fleet_supervisor.plugin.panel.alarms.rules import (
     read_thresholds,
     write_thresholds,
 )
-from fleet_supervisor.robot_bridge.core.messages import CommandState, RobotState
+from fleet_supervisor.robot_bridge.core.messages.commands import CommandState
+from fleet_supervisor.robot_bridge.core.messages.safety import RobotState
 from qgis.core import QgsFeature, QgsGeometry, QgsProject, QgsRectangle, QgsSettings, QgsVectorLayer
 from qgis.PyQt.QtCore import Qt, QTimer
 from qgis.PyQt.QtTest import QTest

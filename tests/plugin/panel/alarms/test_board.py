@@ -15,7 +15,7 @@ from fleet_supervisor.plugin.panel.alarms.rules import (
     AlarmSnapshot,
     Thresholds,
 )
-from fleet_supervisor.robot_bridge.core.messages import RobotState
+from fleet_supervisor.robot_bridge.core.messages.safety import RobotState
 
 BEGAN, ENDED, SEEN = AlarmChange.BEGAN, AlarmChange.ENDED, AlarmChange.ACKNOWLEDGED
 STALE = STATES.index(RobotState.STALE)

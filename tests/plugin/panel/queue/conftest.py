@@ -6,7 +6,9 @@ import time
 
 import pytest
 from fleet_supervisor.robot_bridge.core.errors import RefusedError
-from fleet_supervisor.robot_bridge.core.messages import QueueTask, RobotState, TaskKind, to_json
+from fleet_supervisor.robot_bridge.core.messages.json_values import to_json
+from fleet_supervisor.robot_bridge.core.messages.queues import QueueTask, TaskKind
+from fleet_supervisor.robot_bridge.core.messages.safety import RobotState
 from fleet_supervisor.robot_bridge.gateway.model import task_queue
 from fleet_supervisor.robot_bridge.gateway.model.task_queue import Queue, queue_report
 from fleet_supervisor.robot_bridge.gateway.queues import task_life

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from fleet_supervisor.robot_bridge.core.messages import TaskKind
+from fleet_supervisor.robot_bridge.core.messages.queues import TaskKind
 from qgis.core import QgsFeature, QgsGeometry, QgsProject, QgsVectorLayer
 from qgis.PyQt.QtCore import Qt
 from qgis.PyQt.QtTest import QTest
@@ -33,7 +33,7 @@ def test_a_cone_goes_into_the_queue_of_the_robot_that_it_was_made_for(desk, ifac
     (task,) = tasks(gateway)
     assert (task.kind, task.x, task.y) == (TaskKind.PLACE, *(pytest.approx(v, abs=0.3) for v in (70, 55)))
     assert tasks(gateway, "r2") == []
-    assert gateway.asked("send") == []
+    assert gateway.requests_of("send") == []
     wait(lambda: desk.desk.drafts.draft is None)
 
 
@@ -76,7 +76,7 @@ def test_what_may_not_be_sent_may_not_be_queued(desk, iface, gateway):
     enqueue(desk)
     assert any("was not put into the queue" in text for text in iface.texts())
     QTest.qWait(150)
-    assert gateway.asked("add_tasks") == []
+    assert gateway.requests_of("add_tasks") == []
     assert desk.desk.drafts.draft is not None
 
 
@@ -89,7 +89,7 @@ def test_a_start_position_is_no_task(desk, iface, gateway):
 
 
 def test_a_draft_comes_back_when_the_queue_has_changed_meanwhile(desk, iface, gateway, wait):
-    from fleet_supervisor.robot_bridge.core.messages import QueueTask
+    from fleet_supervisor.robot_bridge.core.messages.queues import QueueTask
 
     gateway.queues.quiet = True
     gateway.queues.give("r1", [QueueTask("task-of-ben", 60.0, 50.0)], by="ben")
@@ -103,7 +103,7 @@ def test_a_draft_comes_back_when_the_queue_has_changed_meanwhile(desk, iface, ga
 
 
 def test_a_target_in_another_robots_queue_is_in_the_way(desk, iface, gateway, wait):
-    from fleet_supervisor.robot_bridge.core.messages import QueueTask
+    from fleet_supervisor.robot_bridge.core.messages.queues import QueueTask
 
     queued = [QueueTask("task-one", 20.0, 20.0), QueueTask("task-two", 70.0, 55.0)]
     gateway.queues.give("r2", queued)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from fleet_supervisor.plugin.map.overlay import task_painter
-from fleet_supervisor.robot_bridge.core.messages import QueueTask
+from fleet_supervisor.robot_bridge.core.messages.queues import QueueTask
 from qgis.core import QgsCoordinateReferenceSystem, QgsCoordinateTransform, QgsPointXY, QgsProject
 from qgis.PyQt.QtCore import QRect
 from qgis.PyQt.QtGui import QColor, QImage

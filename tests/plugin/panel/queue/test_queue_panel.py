@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from fleet_supervisor.robot_bridge.core.messages import QueueState, QueueTask, TaskKind
+from fleet_supervisor.robot_bridge.core.messages.queues import QueueState, QueueTask, TaskKind
 from qgis.PyQt.QtCore import QPoint, QPointF, Qt
 from qgis.PyQt.QtGui import QDragEnterEvent, QDragMoveEvent, QDropEvent
 from qgis.PyQt.QtTest import QTest
@@ -98,7 +98,7 @@ def test_what_the_robot_does_now_is_neither_moved_nor_overtaken(panel, gateway):
     press(panel, Qt.Key.Key_Up, ALT)
     press(panel, Qt.Key.Key_Home, ALT)
     QTest.qWait(150)
-    assert gateway.asked("move_task") == []
+    assert gateway.requests_of("move_task") == []
 
 
 def drag(panel, row: int, to: QPoint) -> None:
@@ -118,7 +118,7 @@ def test_a_task_is_dragged_to_another_place(panel, gateway, wait):
     second = panel.list.visualRect(panel.list.tasks.index(1, 1))
     drag(panel, 3, QPoint(second.center().x(), second.top() + 1))
     wait(lambda: shown(panel) == ["K1", "K4", "K2", "K3"], what="the drop")
-    assert gateway.asked("move_task") == [
+    assert gateway.requests_of("move_task") == [
         {"robot": "r1", "revision": 1, "task": "task-of-K4", "before": "task-of-K2"}
     ]
 
@@ -133,7 +133,7 @@ def test_what_the_robot_does_now_cannot_be_dragged_and_nothing_be_dropped_before
     assert not panel.list.tasks.flags(first) & Qt.ItemFlag.ItemIsDragEnabled
     drag(panel, 1, panel.list.visualRect(first).topLeft() + QPoint(40, 1))
     QTest.qWait(100)
-    assert gateway.asked("move_task") == []
+    assert gateway.requests_of("move_task") == []
 
 
 def test_delete_takes_the_selected_task_out(panel, gateway, wait):
@@ -149,7 +149,7 @@ def test_only_enter_with_ctrl_lets_a_task_be_done_now(panel, gateway, wait):
     choose(panel, 2)
     press(panel, Qt.Key.Key_Return)
     QTest.qWait(100)
-    assert gateway.asked("make_current") == []
+    assert gateway.requests_of("make_current") == []
     press(panel, Qt.Key.Key_Return, CTRL)
     wait(lambda: shown(panel) == ["K3", "K1", "K2", "K4"])
     choose(panel, 3)
@@ -163,7 +163,7 @@ def test_the_queue_is_paused_and_resumed(panel, gateway, wait):
     assert "paused by anna" in text(panel, "fleet_queue_head")
     push(panel, "fleet_queue_hold")
     wait(lambda: "running" in text(panel, "fleet_queue_head"))
-    assert [one["robot"] for one in gateway.asked("resume_queue")] == ["r1"]
+    assert [one["robot"] for one in gateway.requests_of("resume_queue")] == ["r1"]
 
 
 def test_a_change_that_comes_too_late_is_not_done_and_the_newer_queue_is_shown(panel, gateway, wait, iface):
@@ -211,12 +211,12 @@ def test_while_an_answer_is_awaited_nothing_else_is_asked_but_to_pause(panel, ga
     gateway.mute.add("remove_task")
     choose(panel, 1)
     press(panel, Qt.Key.Key_Delete)
-    wait(lambda: len(gateway.asked("remove_task")) == 1)
+    wait(lambda: len(gateway.requests_of("remove_task")) == 1)
     press(panel, Qt.Key.Key_Delete)
     press(panel, Qt.Key.Key_Down, ALT)
     QTest.qWait(150)
-    assert len(gateway.asked("remove_task")) == 1
-    assert gateway.asked("move_task") == []
+    assert len(gateway.requests_of("remove_task")) == 1
+    assert gateway.requests_of("move_task") == []
     push(panel, "fleet_queue_hold")
     wait(lambda: gateway.queues.get("r1").state is QueueState.PAUSED)
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 from fleet_supervisor.plugin.panel.robot_model import TITLES
-from fleet_supervisor.robot_bridge.core.messages import QueueState, QueueTask, TaskKind
+from fleet_supervisor.robot_bridge.core.messages.queues import QueueState, QueueTask, TaskKind
 from fleet_supervisor.robot_bridge.protocol.jsonrpc import FORBIDDEN
 from qgis.PyQt.QtCore import Qt
 from qgis.PyQt.QtTest import QTest
@@ -36,7 +36,7 @@ def test_by_the_menu_every_selected_robot_is_paused_and_goes_on(driving, gateway
     driving.desk.selection.select_all(["r1", "r2"])
     driving.actions.pause.trigger()
     wait(lambda: is_paused(gateway, "r1") and is_paused(gateway, "r2"), what="both pauses")
-    assert [one["robot"] for one in gateway.asked("pause_robot")] == ["r1", "r2"]
+    assert [one["robot"] for one in gateway.requests_of("pause_robot")] == ["r1", "r2"]
     wait(lambda: line(driving) == "Pause of r2: done", what="the line")
     wait(driving.actions.go_on.isEnabled, what="Continue")
     driving.actions.go_on.trigger()
@@ -62,7 +62,7 @@ def test_by_key_too(driving, gateway, iface, wait):
     driving.desk.selection.select("r1")
     QTest.keyClick(iface, Qt.Key.Key_F10, ALT)
     wait(lambda: is_paused(gateway, "r1") and driving.actions.go_on.isEnabled(), what="the pause")
-    assert gateway.asked("emergency_stop") == []
+    assert gateway.requests_of("emergency_stop") == []
     QTest.keyClick(iface, Qt.Key.Key_F10, ALT | SHIFT)
     wait(lambda: not is_paused(gateway, "r1"), what="going on")
     assert not is_paused(gateway, "r2")
@@ -87,13 +87,13 @@ def test_only_where_a_selected_robot_is_paused_there_is_something_to_continue(dr
     assert driving.actions.go_on.isEnabled()
     driving.actions.go_on.trigger()
     wait(lambda: not is_paused(gateway, "r1"), what="going on")
-    assert [one["robot"] for one in gateway.asked("resume_queue")] == ["r1"]
+    assert [one["robot"] for one in gateway.requests_of("resume_queue")] == ["r1"]
 
 
 def test_without_a_robot_it_says_so(at_desk, gateway, iface):
     at_desk.actions.pause.trigger()
     assert any("none was paused" in text for text in iface.texts())
-    assert gateway.asked("pause_robot") == []
+    assert gateway.requests_of("pause_robot") == []
 
 
 def test_who_may_not_is_told_by_the_gateway(driving, gateway, iface, wait):

@@ -13,7 +13,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from robot_bridge.core.messages import ObservationReport, ObservationState
+from robot_bridge.core.messages.records import ObservationReport, ObservationState
 from robot_bridge.core.robotmap.binary import decode
 from robot_bridge.core.robotmap.model import ShapeType
 from robot_bridge.core.robotmap.outlines import OutlineRow, Outlines

@@ -7,22 +7,11 @@ import asyncio
 import pytest
 
 from robot_bridge.core.errors import BusyError, RefusedError
-from robot_bridge.core.messages import (
-    AbortAll,
-    AbortTask,
-    EmergencyStop,
-    GetImage,
-    GetQueue,
-    GetRoute,
-    PauseRobot,
-    ResolveConflict,
-    ResumeQueue,
-    Send,
-    SetPositions,
-    Share,
-    TakeOver,
-    TargetPosition,
-)
+from robot_bridge.core.messages.commands import AbortAll, AbortTask, Send, SetPositions, TargetPosition
+from robot_bridge.core.messages.queues import GetQueue, PauseRobot, ResumeQueue, Share, TakeOver
+from robot_bridge.core.messages.records import GetImage
+from robot_bridge.core.messages.roads import GetRoute, ResolveConflict
+from robot_bridge.core.messages.safety import EmergencyStop
 from robot_bridge.gateway.api import operator_server
 from robot_bridge.gateway.api.operator_server import (
     MOST_ASIDE,

@@ -134,7 +134,7 @@ def link(connection):
     """A link that may speak for all robots, at a gateway in which everything fails."""
     connection.identity = SimpleNamespace(name="agvs")
     fleet = SimpleNamespace(take_poses=fail, links=SimpleNamespace(introduce=fail), repeated=RepeatedLines())
-    gate = SimpleNamespace(spoken_for=lambda _visitor: ("*",), limits=None)
+    gate = SimpleNamespace(robots_of_link=lambda _visitor: ("*",), limits=None)
     return LinkConnection(fleet, connection, gate, RobotSessions(ConnectionClaims()))
 
 

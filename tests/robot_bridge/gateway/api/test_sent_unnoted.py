@@ -8,7 +8,8 @@ import json
 import pytest
 
 from robot_bridge.core.errors import StoreError, UncertainError
-from robot_bridge.core.messages import AbortTask, EmergencyStop
+from robot_bridge.core.messages.commands import AbortTask
+from robot_bridge.core.messages.safety import EmergencyStop
 from robot_bridge.gateway.api import delivery
 from robot_bridge.gateway.api.delivery import Delivery
 from robot_bridge.gateway.api.robot_session import RobotChannel

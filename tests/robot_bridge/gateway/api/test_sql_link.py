@@ -7,7 +7,7 @@ import json
 import pytest
 
 from robot_bridge.core.errors import StoreError
-from robot_bridge.core.messages import Alive, GetMap, OpAck, Ready, SendPos, SetMap, Stopped
+from robot_bridge.core.messages.robots import Alive, GetMap, OpAck, Ready, SendPos, SetMap, Stopped
 from robot_bridge.core.robotmap.binary import decode
 
 

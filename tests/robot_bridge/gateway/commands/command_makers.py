@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import dataclasses
 
-from robot_bridge.core.messages import Abort, CommandState, SendPos, SetPath, SetPosEnd
+from robot_bridge.core.messages.commands import CommandState
+from robot_bridge.core.messages.robots import Abort, SendPos, SetPath, SetPosEnd
 from robot_bridge.gateway.commands.active_command import ActiveCommand, CommandOrder, create_command
 
 TARGET = SetPosEnd(10.0, 5.0)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from robot_bridge.core.errors import RefusedError
-from robot_bridge.core.messages import AbortTask
+from robot_bridge.core.messages.commands import AbortTask
 
 LANE = [(20.0, 40.0), (50.0, 40.0)]
 

@@ -5,7 +5,8 @@ from __future__ import annotations
 import pytest
 
 from robot_bridge.core.errors import DataRefusedError, StoreError, UncertainError
-from robot_bridge.core.messages import AbortTask, EmergencyStop
+from robot_bridge.core.messages.commands import AbortTask
+from robot_bridge.core.messages.safety import EmergencyStop
 from robot_bridge.gateway.commands.persistence import insert_commands
 
 LOST = pytest.mark.parametrize(

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from robot_bridge.core.messages import AbortTask, EmergencyStop
+from robot_bridge.core.messages.commands import AbortTask
+from robot_bridge.core.messages.safety import EmergencyStop
 from tests.support.bridge.queue_line import PLACES, placed, task
 
 CONE = PLACES["a"]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from robot_bridge.core.messages import OpAck
+from robot_bridge.core.messages.robots import OpAck
 from robot_bridge.gateway.commands.active_command import acknowledge_command, restart_commands
 from robot_bridge.gateway.model.arrival import TargetArrival
 from tests.robot_bridge.gateway.commands.command_makers import (

@@ -7,7 +7,7 @@ import math
 
 import pytest
 
-from robot_bridge.core.messages import Abort, SendPos, SetPath, SetPosEnd, SetPosIni
+from robot_bridge.core.messages.robots import Abort, SendPos, SetPath, SetPosEnd, SetPosIni
 from robot_bridge.gateway.model.arrival import (
     HEADING_TOLERANCE,
     STANDING_SPEED,

@@ -6,7 +6,7 @@ import math
 
 import pytest
 
-from robot_bridge.core.messages import SendPos, SetPath, SetPosEnd, SetPosIni
+from robot_bridge.core.messages.robots import SendPos, SetPath, SetPosEnd, SetPosIni
 from robot_bridge.gateway.model.arrival import (
     CORRIDOR,
     HEADING_TOLERANCE,

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from robot_bridge.core.errors import UncertainError
-from robot_bridge.core.messages import SendPos, SetPath
+from robot_bridge.core.messages.robots import SendPos, SetPath
 from robot_bridge.gateway.commands import persistence
 from robot_bridge.gateway.commands.persistence import write_acknowledged
 from robot_bridge.gateway.commands.service import NOWHERE
@@ -163,13 +163,13 @@ async def test_what_came_of_it_is_told_and_nothing_of_what_stayed_as_it_was(two,
     await two.send("a")
     await two.send("b", robot="r2")
     (row,) = await two.deliver()
-    two.told.clear()
+    two.reported.clear()
     lose(two, write_acknowledged, done)
     with pytest.raises(UncertainError):
         await two.ack(row.id, ok=False, reason="no brakes")
-    assert two.told == []
+    assert two.reported == []
     await two.fleet.save()
-    assert two.told == ([("command-a", "failed")] if done else [])
+    assert two.reported == ([("command-a", "failed")] if done else [])
     assert (open_command(two, "a") is None) is done
 
 
@@ -185,9 +185,9 @@ async def test_a_command_that_ended_and_is_asked_for_again_changes_nothing(two):
     await two.at(20.0, 40.0)
     await drive(two, "a")
     await drive(two, "b")
-    before = list(two.told)
+    before = list(two.reported)
     assert (await two.send("a", "SetPath", points=LOOP)).state == "superseded"
-    assert two.told == before and open_command(two, "a") is None
+    assert two.reported == before and open_command(two, "a") is None
 
 
 async def test_a_command_knows_where_its_robot_was_as_it_was_ordered(two):

@@ -8,15 +8,9 @@ import time
 import pytest
 
 from robot_bridge.core.errors import RefusedError, UncertainError
-from robot_bridge.core.messages import (
-    AbortAll,
-    AbortTask,
-    GetCommands,
-    MessageError,
-    Ready,
-    Send,
-    SendPos,
-)
+from robot_bridge.core.messages.commands import AbortAll, AbortTask, GetCommands, Send
+from robot_bridge.core.messages.robots import Ready, SendPos
+from robot_bridge.core.messages.validation import MessageError
 
 LOOP = [(10.0, 10.0), (20.0, 10.0), (20.0, 20.0), (10.0, 20.0), (10.0, 10.0)]
 
@@ -207,7 +201,7 @@ async def test_the_latency_of_a_link_over_sql_is_from_the_writing_of_a_command_t
 
 
 def _opack(id):
-    from robot_bridge.core.messages import OpAck
+    from robot_bridge.core.messages.robots import OpAck
 
     return OpAck(id=id)
 

@@ -5,14 +5,8 @@ from __future__ import annotations
 import pytest
 
 from robot_bridge.core.errors import RefusedError, StoreError
-from robot_bridge.core.messages import (
-    AbortAll,
-    GetCommands,
-    MessageError,
-    Send,
-    SetPositions,
-    TargetPosition,
-)
+from robot_bridge.core.messages.commands import AbortAll, GetCommands, Send, SetPositions, TargetPosition
+from robot_bridge.core.messages.validation import MessageError
 
 FULL_LIFE = ["queued", "delivered", "acknowledged", "reached"]
 
@@ -34,7 +28,7 @@ async def test_a_target_is_queued_delivered_acknowledged_and_reached(ready):
     assert await ready.steps("a") == FULL_LIFE[:3]
     await ready.at(49.95, 40.1)
     assert await ready.steps("a") == FULL_LIFE
-    assert ready.told == [("command-a", state) for state in FULL_LIFE]
+    assert ready.reported == [("command-a", state) for state in FULL_LIFE]
     ((deviation,),) = ready.sql("select deviation from commands")
     assert deviation == pytest.approx(0.1118, abs=1e-4)
     assert ready.waiting() == []
@@ -135,11 +129,11 @@ async def test_an_abort_ends_without_a_deviation(ready):
 async def test_a_repeated_id_changes_nothing(ready):
     await ready.send("a", x=50.0)
     await ready.take()
-    ready.told.clear()
+    ready.reported.clear()
     again = await ready.send("a", x=60.0)
     assert again.state.value == "acknowledged"
     assert again.params["x"] == 50.0
-    assert (ready.told, ready.waiting()) == ([], [])
+    assert (ready.reported, ready.waiting()) == ([], [])
     await ready.send("b")
     assert (await ready.send("a")).state.value == "superseded"
     assert await ready.states() == {"a": "superseded", "b": "queued"}
@@ -297,7 +291,7 @@ async def test_ended_commands_stay_ended_when_the_gateway_starts_anew(ready):
     before = await ready.states()
     await ready.restart()
     assert before == await ready.states() == {"a": "superseded", "b": "aborted", "x": "reached"}
-    assert (ready.told, ready.waiting()) == ([], [])
+    assert (ready.reported, ready.waiting()) == ([], [])
 
 
 async def test_a_robot_is_where_it_was_when_the_gateway_starts_anew(ready):
@@ -344,14 +338,14 @@ async def test_a_transaction_that_fails_leaves_nothing_in_memory(ready):
     await ready.ready("r2")
     await ready.take("r2")
     await ready.send("a")
-    ready.told.clear()
+    ready.reported.clear()
     refuse_commands_of_r2(ready)
     with pytest.raises(StoreError, match=r"database .* refuses a value"):
         await ready.fleet.orders.set_positions(
             SetPositions([TargetPosition("r1", 1.0, 2.0), TargetPosition("r2", 3.0, 4.0)]), "Ada"
         )
     assert await ready.states() == {"a": "queued"}
-    assert ready.told == []
+    assert ready.reported == []
     assert (ready.waiting("r1"), ready.waiting("r2")) == (["SetPosEnd"], [])
     assert {r.robot: r.command for r in ready.fleet.reports()} == {"r1": "command-a", "r2": None}
     await ready.take()
@@ -370,14 +364,14 @@ def refuse_commands_of_r2(yard):
 async def test_a_step_that_cannot_be_stored_is_not_told_and_not_lost(ready):
     await ready.send("a")
     (row,) = await ready.deliver()
-    ready.told.clear()
+    ready.reported.clear()
     ready.client.break_table("command_steps")
     with pytest.raises(StoreError, match="command_steps"):
         await ready.ack(row.id)
-    assert (ready.told, ready.waiting()) == ([], ["SetPosEnd"])
+    assert (ready.reported, ready.waiting()) == ([], ["SetPosEnd"])
     ready.client.mend_table("command_steps")
     await ready.ack(row.id)
-    assert ready.told == [("command-a", "acknowledged")]
+    assert ready.reported == [("command-a", "acknowledged")]
 
 
 # --- what is not sent -------------------------------------------------------------------------------------
@@ -420,4 +414,4 @@ async def test_an_acknowledgement_proves_a_delivery_that_was_not_seen(ready):
     await ready.fleet.mailboxes.delivered([row.id])
     await ready.at(50.0, 40.0)
     assert await ready.steps("a") == FULL_LIFE
-    assert ready.told == [("command-a", state) for state in FULL_LIFE]
+    assert ready.reported == [("command-a", state) for state in FULL_LIFE]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from robot_bridge.core.messages import Abort, SetPosEnd
+from robot_bridge.core.messages.robots import Abort, SetPosEnd
 from robot_bridge.gateway.commands.active_command import CommandOrder, create_command
 
 ISSUED = 1_790_000_000.0

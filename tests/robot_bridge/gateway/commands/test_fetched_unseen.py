@@ -4,14 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from robot_bridge.core.messages import (
-    AbortAll,
-    AbortTask,
-    EmergencyStop,
-    OpAck,
-    Ready,
-    SendPos,
-)
+from robot_bridge.core.messages.commands import AbortAll, AbortTask
+from robot_bridge.core.messages.robots import OpAck, Ready, SendPos
+from robot_bridge.core.messages.safety import EmergencyStop
 from tests.support.bridge.queue_line import PLACES, placed, task
 
 CONE = PLACES["a"]
@@ -59,7 +54,7 @@ async def test_a_target_that_was_fetched_unseen_stays_open_until_the_robot_answe
     await order(yard)
     assert (await yard.states())["target"] == "delivered"
     assert await yard.steps("target") == ["queued", "delivered"]
-    assert ("command-target", "delivered") in yard.told
+    assert ("command-target", "delivered") in yard.reported
 
 
 @pytest.mark.parametrize("order", [abort, abort_all, stop, expire])

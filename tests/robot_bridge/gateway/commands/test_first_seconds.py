@@ -5,7 +5,8 @@ from __future__ import annotations
 import pytest
 
 from robot_bridge.core.errors import RefusedError, StoreError
-from robot_bridge.core.messages import GetPath, ResolveConflict, Stopped
+from robot_bridge.core.messages.roads import ResolveConflict
+from robot_bridge.core.messages.robots import GetPath, Stopped
 from robot_bridge.gateway.commands.persistence import write_again
 from tests.support.bridge.road_places import SOUTH, highest
 

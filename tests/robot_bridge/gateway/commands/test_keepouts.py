@@ -10,17 +10,8 @@ import dataclasses
 import pytest
 
 from robot_bridge.core.errors import OverridableError, RefusedError
-from robot_bridge.core.messages import (
-    AddTasks,
-    Send,
-    SetPositions,
-    SetQueue,
-    Share,
-    SharedTask,
-    TakeOver,
-    TargetPosition,
-    TaskKind,
-)
+from robot_bridge.core.messages.commands import Send, SetPositions, TargetPosition
+from robot_bridge.core.messages.queues import AddTasks, SetQueue, Share, SharedTask, TakeOver, TaskKind
 from robot_bridge.core.sites.settings_tables import ConeSettings
 from robot_bridge.gateway.site.site_maps import SiteMaps
 from tests.support.bridge.queue_line import task

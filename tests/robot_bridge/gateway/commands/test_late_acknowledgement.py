@@ -7,7 +7,7 @@ import asyncio
 import pytest
 
 from robot_bridge.core.errors import StoreError
-from robot_bridge.core.messages import AbortTask
+from robot_bridge.core.messages.commands import AbortTask
 
 READ = "the robot had read it by then, and acknowledged it"
 
@@ -21,7 +21,7 @@ async def overtaken(yard):
     (row,) = await yard.fleet.mailboxes.outbox("r1", 0)
     await yard.fleet.orders.abort(AbortTask("command-x", robot="r1"), "Bob")
     assert await yard.reason("a") == "before the robot acknowledged it"
-    yard.told.clear()
+    yard.reported.clear()
     return row.id
 
 
@@ -29,7 +29,7 @@ async def test_the_log_of_an_aborted_command_says_that_the_robot_had_read_it(yar
     await yard.ack(overtaken)
     assert await yard.steps("a") == ["queued", "aborted", "aborted"]
     assert await yard.reason("a") == READ
-    assert yard.told == [("command-a", "aborted")]
+    assert yard.reported == [("command-a", "aborted")]
     assert yard.waiting() == ["Abort"]
 
 
@@ -79,4 +79,4 @@ async def test_it_says_so_when_the_database_is_back(yard, overtaken):
     await yard.fleet.save()
     assert await yard.steps("a") == ["queued", "aborted", "aborted"]
     await yard.fleet.save()
-    assert yard.told == [("command-a", "aborted")]
+    assert yard.reported == [("command-a", "aborted")]

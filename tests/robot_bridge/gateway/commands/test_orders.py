@@ -8,19 +8,10 @@ import uuid
 import pytest
 
 from robot_bridge.core.errors import RefusedError, StoreError
-from robot_bridge.core.messages import (
-    Abort,
-    AbortAll,
-    AbortTask,
-    EmergencyStop,
-    MessageError,
-    Send,
-    SetPath,
-    SetPosEnd,
-    SetPosIni,
-    SetPositions,
-    TargetPosition,
-)
+from robot_bridge.core.messages.commands import AbortAll, AbortTask, Send, SetPositions, TargetPosition
+from robot_bridge.core.messages.robots import Abort, SetPath, SetPosEnd, SetPosIni
+from robot_bridge.core.messages.safety import EmergencyStop
+from robot_bridge.core.messages.validation import MessageError
 from robot_bridge.gateway.commands import requests as order_module
 from robot_bridge.gateway.commands.active_command import NOTHING, CommandOrder
 

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from robot_bridge.core.messages import CommandState, SetPosIni
+from robot_bridge.core.messages.commands import CommandState
+from robot_bridge.core.messages.robots import SetPosIni
 from robot_bridge.gateway.commands.active_command import ActiveCommands
 from robot_bridge.gateway.commands.validation import CommandReader
 from tests.robot_bridge.gateway.commands.command_makers import (

@@ -6,7 +6,7 @@ import itertools
 
 import pytest
 
-from robot_bridge.core.messages import CommandReport, CommandState, CommandStep
+from robot_bridge.core.messages.commands import CommandReport, CommandState, CommandStep
 from robot_bridge.gateway.model.command_states import CommandLifeError, advance, is_open, may_become, note
 
 ENDS = {"reached", "aborted", "failed", "expired", "superseded"}

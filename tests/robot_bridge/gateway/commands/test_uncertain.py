@@ -5,13 +5,9 @@ from __future__ import annotations
 import pytest
 
 from robot_bridge.core.errors import StoreError, UncertainError
-from robot_bridge.core.messages import (
-    GetObservations,
-    OpenRoad,
-    ResolveConflict,
-    ReviewObservation,
-    SetObject,
-)
+from robot_bridge.core.messages.records import GetObservations, ReviewObservation
+from robot_bridge.core.messages.roads import OpenRoad, ResolveConflict
+from robot_bridge.core.messages.robots import SetObject
 from robot_bridge.core.robotmap.binary import decode
 from robot_bridge.gateway.commands.persistence import insert_commands, write_acknowledged, write_again
 from robot_bridge.gateway.storage.repositories import closures, records

@@ -7,7 +7,7 @@ from dataclasses import replace
 import pytest
 
 from robot_bridge.core.errors import RefusedError
-from robot_bridge.core.messages import Ready, SendGPS, SendPos
+from robot_bridge.core.messages.robots import Ready, SendGPS, SendPos
 
 
 @pytest.fixture

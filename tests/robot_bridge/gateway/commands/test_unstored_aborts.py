@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from robot_bridge.core.messages import Abort, SetPosEnd
+from robot_bridge.core.messages.robots import Abort, SetPosEnd
 from robot_bridge.gateway.commands.active_command import CommandOrder
 from robot_bridge.gateway.commands.persistence import UnstoredAborts
 

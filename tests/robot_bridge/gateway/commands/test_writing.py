@@ -6,7 +6,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from robot_bridge.core.messages import Abort, SetPosEnd, SetPosIni
+from robot_bridge.core.messages.robots import Abort, SetPosEnd, SetPosIni
 from robot_bridge.gateway.commands.active_command import CommandOrder
 from robot_bridge.gateway.commands.persistence import _held
 

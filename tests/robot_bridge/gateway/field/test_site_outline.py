@@ -13,8 +13,8 @@ from robot_bridge.core.sites.frame import SiteFrame
 from robot_bridge.core.sites.settings import SiteBounds
 from robot_bridge.core.sites.site import read_site
 from robot_bridge.core.sites.transforms import lonlat_of
-from robot_bridge.gateway.field import site_outline as module
-from robot_bridge.gateway.field.site_outline import earth_polynomial, site_outline
+from robot_bridge.gateway.field import page as module
+from robot_bridge.gateway.field.page import earth_polynomial, site_outline
 
 
 def evaluate(polynomial, places):

@@ -5,7 +5,9 @@ from __future__ import annotations
 import pytest
 
 from robot_bridge.core.errors import StoreError
-from robot_bridge.core.messages import Abort, AbortTask, Alive, OpAck, Ready, RobotState, SendPos, Stopped
+from robot_bridge.core.messages.commands import AbortTask
+from robot_bridge.core.messages.robots import Abort, Alive, OpAck, Ready, SendPos, Stopped
+from robot_bridge.core.messages.safety import RobotState
 from robot_bridge.gateway.fleet.outbox import finish_requests
 from tests.support.bridge.queue_line import Line, task
 

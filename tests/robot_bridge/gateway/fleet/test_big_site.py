@@ -10,7 +10,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from robot_bridge.core.messages import Ready, SendMap, SetMap
+from robot_bridge.core.messages.commands import SendMap
+from robot_bridge.core.messages.robots import Ready, SetMap
 from robot_bridge.core.robotmap.binary import decode
 from robot_bridge.core.robotmap.model import PART_OF
 from robot_bridge.core.robotmap.outlines import OutlineRow, Outlines
@@ -154,7 +155,7 @@ async def test_the_whole_map_is_stored_for_those_alone_who_read_rows_themselves(
     async with start(maps) as yard:
         await yard.ready()
         await yard.send("a")
-        await yard.fleet.maps.send_asked(SendMap("r1"))
+        await yard.fleet.maps.send_requested(SendMap("r1"))
         await yard.send("b")
         assert yard.sql(sizes, "r1")[-1] == (None,)
         yard.ask("r1", Ready(1))
@@ -163,7 +164,7 @@ async def test_the_whole_map_is_stored_for_those_alone_who_read_rows_themselves(
             pass
         stored = [size for (size,) in yard.sql(sizes, "r1")]
         assert len(stored) > 1 and all(stored)
-        await yard.fleet.maps.send_asked(SendMap("r1"))
+        await yard.fleet.maps.send_requested(SendMap("r1"))
         assert (len(maps.whole_map()),) in yard.sql(sizes, "r1")
 
 
@@ -214,7 +215,7 @@ async def test_a_site_beyond_its_limit_is_never_sent_whole(start):
         await yard.ready()
         await yard.take()
         await yard.at(*FAR)
-        await yard.fleet.maps.send_asked(SendMap("r1"))
+        await yard.fleet.maps.send_requested(SendMap("r1"))
         (part,) = await maps_of(yard, 1)
     assert holds(part, FAR) and part.meta[PART_OF]
 

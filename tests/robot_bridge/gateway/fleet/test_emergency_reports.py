@@ -10,7 +10,7 @@ import threading
 import pytest
 
 from robot_bridge.core.errors import RefusedError
-from robot_bridge.core.messages import ClearEmergencyStop, EmergencyReport, EmergencyStop
+from robot_bridge.core.messages.safety import ClearEmergencyStop, EmergencyReport, EmergencyStop
 from robot_bridge.gateway.fleet import emergency_stop
 from robot_bridge.gateway.fleet.emergency_persistence import StopJournal
 from robot_bridge.gateway.fleet.service import Fleet
@@ -32,11 +32,11 @@ class Listener:
     """An operator who keeps what is told."""
 
     def __init__(self):
-        self.told = []
+        self.reported = []
 
     def notify(self, method, key, params):
         if method == "emergency":
-            self.told.append((key, params))
+            self.reported.append((key, params))
 
 
 @pytest.fixture
@@ -76,21 +76,21 @@ async def test_the_report_tells_all_of_a_stop_and_of_its_clearing(two, emergency
     report = await emergency.clear(ClearEmergencyStop("the smoke is gone"), "Eve")
     cleared = {"cleared_at": 1007.0, "cleared_by": "Eve", "clear_reason": "the smoke is gone"}
     assert report == EmergencyReport(in_force=False, stored=True, **made, **cleared, **WAITED_FOR)
-    assert [key for key, _ in operator.told] == ["emergency"] * 3
-    assert operator.told[-1][1]["clear_reason"] == "the smoke is gone"
+    assert [key for key, _ in operator.reported] == ["emergency"] * 3
+    assert operator.reported[-1][1]["clear_reason"] == "the smoke is gone"
 
 
 async def test_a_robot_that_is_removed_is_waited_for_no_more(emergency, operator):
     await emergency.stop(EmergencyStop("stop-0001"), "Ada")
-    before = len(operator.told)
+    before = len(operator.reported)
     emergency.forget("nobody")
-    assert len(operator.told) == before
+    assert len(operator.reported) == before
     emergency.forget("r2")
-    assert [params["waiting"] for _, params in operator.told[before:]] == [["r1"]]
+    assert [params["waiting"] for _, params in operator.reported[before:]] == [["r1"]]
     await emergency.clear(ClearEmergencyStop("free"), "Eve")
-    before = len(operator.told)
+    before = len(operator.reported)
     emergency.forget("r1")
-    assert len(operator.told) == before
+    assert len(operator.reported) == before
 
 
 async def test_a_disk_that_fails_after_the_stop_was_stored_is_named_and_the_stop_goes_on(
@@ -110,7 +110,7 @@ async def test_a_disk_that_fails_after_the_stop_was_stored_is_named_and_the_stop
     assert "noting that an emergency stop is stored" in [
         text.partition(" failed")[0] for text in logged(caplog)
     ]
-    assert operator.told[-1][1]["stored"]
+    assert operator.reported[-1][1]["stored"]
 
 
 # --- what a clear must not clear ----------------------------------------------------------------------------

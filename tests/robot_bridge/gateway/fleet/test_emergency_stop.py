@@ -10,13 +10,9 @@ import uuid
 import pytest
 
 from robot_bridge.core.errors import RefusedError, StoreError
-from robot_bridge.core.messages import (
-    ClearEmergencyStop,
-    EmergencyStop,
-    GetCommands,
-    MessageError,
-    Send,
-)
+from robot_bridge.core.messages.commands import GetCommands, Send
+from robot_bridge.core.messages.safety import ClearEmergencyStop, EmergencyStop
+from robot_bridge.core.messages.validation import MessageError
 from robot_bridge.gateway.fleet import emergency_stop
 
 
@@ -59,7 +55,7 @@ async def two(yard):
     for robot, link in (("r1", "websocket"), ("r2", "sql")):
         await yard.ready(robot, link=link)
         await yard.take(robot)
-    yard.told.clear()
+    yard.reported.clear()
     return yard
 
 

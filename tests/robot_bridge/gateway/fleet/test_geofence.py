@@ -8,7 +8,9 @@ from dataclasses import replace
 import pytest
 
 from robot_bridge.core.errors import StoreError
-from robot_bridge.core.messages import EmergencyStop, GetObservations, ReviewObservation, SetObject
+from robot_bridge.core.messages.records import GetObservations, ReviewObservation
+from robot_bridge.core.messages.robots import SetObject
+from robot_bridge.core.messages.safety import EmergencyStop
 from robot_bridge.core.sites.fences import Fences
 from robot_bridge.core.sites.settings_tables import GeofenceSettings
 from robot_bridge.gateway.fleet import geofence as watch

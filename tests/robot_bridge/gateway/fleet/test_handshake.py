@@ -6,7 +6,7 @@ import uuid
 
 import pytest
 
-from robot_bridge.core.messages import Ready, Start, Stopped
+from robot_bridge.core.messages.robots import Ready, Start, Stopped
 
 
 class Held:

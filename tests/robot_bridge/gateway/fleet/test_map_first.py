@@ -5,7 +5,8 @@ from __future__ import annotations
 import pytest
 
 from robot_bridge.core.errors import StoreError
-from robot_bridge.core.messages import GetPath, OpAck, Ready, SendMap, SendPos
+from robot_bridge.core.messages.commands import SendMap
+from robot_bridge.core.messages.robots import GetPath, OpAck, Ready, SendPos
 
 
 async def say(yard, *requests, robot="r1"):
@@ -76,7 +77,7 @@ async def test_a_path_that_its_former_run_asked_for_is_gone(working):
 async def test_a_robot_that_did_not_read_its_map_still_gets_it_first(working):
     await say(working, Ready(2))
     await say(working, Ready(2))
-    await working.fleet.maps.send_asked(SendMap("r1"))
+    await working.fleet.maps.send_requested(SendMap("r1"))
     ops = await read_all(working)
     assert ops.index("SetMap") < ops.index("SetPosEnd")
     assert ops.count("SetMap") == 2

@@ -8,7 +8,10 @@ from types import SimpleNamespace
 import pytest
 
 from robot_bridge.core.errors import DataRefusedError, StoreError
-from robot_bridge.core.messages import AbortTask, EmergencyStop, QueueTask, SetObject, SetQueue
+from robot_bridge.core.messages.commands import AbortTask
+from robot_bridge.core.messages.queues import QueueTask, SetQueue
+from robot_bridge.core.messages.robots import SetObject
+from robot_bridge.core.messages.safety import EmergencyStop
 from robot_bridge.gateway.model.events import CommandChanged, Listeners, ObservationChanged
 
 
@@ -201,9 +204,9 @@ async def test_a_part_that_fails_at_an_event_keeps_it_from_no_other_and_stops_fr
     seen = set()
     owner, method = part.split(".")
     monkeypatch.setattr(getattr(two.fleet, owner), method, fail)
-    two.told.clear()
+    two.reported.clear()
     report = await two.fleet.emergency.stop(EmergencyStop("stop-0001"), "Ada")
-    assert report.stored and two.told
+    assert report.stored and two.reported
     assert seen | {part} >= set(HEAR_OF_STEPS)
     await two.fleet.orders.abort(AbortTask("abort-0001", robot="r1"), "Ada")
     assert (two.waiting("r1"), two.waiting("r2")) == (["Abort", "Abort"], ["Abort"])

@@ -9,19 +9,18 @@ import math
 import pytest
 
 from robot_bridge.core.errors import RefusedError, UncertainError
-from robot_bridge.core.messages import (
-    AbortTask,
-    ClearEmergencyStop,
-    EmergencyStop,
-    GetPath,
+from robot_bridge.core.messages.commands import AbortTask
+from robot_bridge.core.messages.queues import (
     GetQueue,
     MakeCurrent,
     PauseQueue,
     PauseRobot,
     QueueTask,
-    ResolveConflict,
     SetQueue,
 )
+from robot_bridge.core.messages.roads import ResolveConflict
+from robot_bridge.core.messages.robots import GetPath
+from robot_bridge.core.messages.safety import ClearEmergencyStop, EmergencyStop
 from robot_bridge.gateway.commands.persistence import insert_commands
 from robot_bridge.gateway.queues.task_life import STOPS_FIRST
 from tests.support.bridge.queue_line import LANE, PLACES, placed, task

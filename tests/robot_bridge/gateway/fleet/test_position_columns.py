@@ -11,14 +11,14 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robot_bridge.core.messages import (
+from robot_bridge.core.messages.positions import (
     POSITION_FLAGS,
     POSITION_NUMBERS,
     POSITION_TEXTS,
     PositionForm,
     RobotReport,
-    SendPos,
 )
+from robot_bridge.core.messages.robots import SendPos
 from robot_bridge.gateway.fleet.operator_updates import table_frame
 from robot_bridge.gateway.model.robots import Robots
 

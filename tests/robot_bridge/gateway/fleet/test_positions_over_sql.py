@@ -9,7 +9,7 @@ import threading
 import pytest
 
 from robot_bridge.core.errors import StoreError
-from robot_bridge.core.messages import Ready, SendPos
+from robot_bridge.core.messages.robots import Ready, SendPos
 
 
 @pytest.fixture

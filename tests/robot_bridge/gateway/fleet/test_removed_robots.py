@@ -7,7 +7,10 @@ import json
 import pytest
 
 from robot_bridge.core.errors import NotReadyError, RefusedError, StoreError, UncertainError
-from robot_bridge.core.messages import EmergencyStop, GetQueue, PositionForm, RemoveRobots
+from robot_bridge.core.messages.administration import RemoveRobots
+from robot_bridge.core.messages.positions import PositionForm
+from robot_bridge.core.messages.queues import GetQueue
+from robot_bridge.core.messages.safety import EmergencyStop
 from robot_bridge.gateway.commands.persistence import write_steps
 from robot_bridge.gateway.fleet.operator_updates import EVERYTHING
 from robot_bridge.gateway.trajectories import recording
@@ -67,7 +70,7 @@ async def test_its_commands_have_failed_and_those_of_others_go_on(stored):
     await yard.fleet.save()
     assert await yard.states() == {"queued": "failed", "other": "queued"}
     assert await yard.reason("queued") == "the robot was removed"
-    assert ("command-queued", "failed") in yard.told
+    assert ("command-queued", "failed") in yard.reported
 
 
 async def test_so_they_have_when_it_was_removed_while_no_gateway_ran(stored):

@@ -9,7 +9,7 @@ import contextlib
 
 import pytest
 
-from robot_bridge.core.messages import OpAck, Ready, SendPos, SetMap
+from robot_bridge.core.messages.robots import OpAck, Ready, SendPos, SetMap
 from robot_bridge.gateway.api.robot_sql import SqlInterface
 from robot_bridge.gateway.fleet.outbox import RequestOutcome, answer_rows
 from robot_bridge.gateway.fleet.service import Fleet

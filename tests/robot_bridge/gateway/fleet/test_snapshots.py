@@ -7,7 +7,8 @@ import json
 import pytest
 
 from robot_bridge.core.clock import ManualClock
-from robot_bridge.core.messages import PositionForm, SendPos
+from robot_bridge.core.messages.positions import PositionForm
+from robot_bridge.core.messages.robots import SendPos
 from robot_bridge.gateway.fleet.operator_updates import EVERYTHING, MOST_RATES, Snapshots, Tick
 from robot_bridge.gateway.model.robots import Robots
 

@@ -11,13 +11,9 @@ from types import SimpleNamespace
 import pytest
 
 from robot_bridge.core.errors import DataRefusedError, StoreError
-from robot_bridge.core.messages import (
-    ClearEmergencyStop,
-    EmergencyStop,
-    GetCommands,
-    OpAck,
-    SendPos,
-)
+from robot_bridge.core.messages.commands import GetCommands
+from robot_bridge.core.messages.robots import OpAck, SendPos
+from robot_bridge.core.messages.safety import ClearEmergencyStop, EmergencyStop
 from robot_bridge.gateway.api import robot_sql
 from robot_bridge.gateway.commands import service as book_module
 from robot_bridge.gateway.commands.persistence import write_late

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from robot_bridge.core.messages import CommandReport, CommandState
+from robot_bridge.core.messages.commands import CommandReport, CommandState
 from robot_bridge.gateway.fleet.emergency_stop import MOST_NAMES, StopAnswers
 
 
@@ -74,8 +74,8 @@ def test_what_becomes_of_anything_else_says_nothing(tally, other):
 
 def test_a_robot_that_starts_while_it_is_in_force_is_waited_for(tally):
     tally.answer("r1", refused=False)
-    tally.told("r1")
-    tally.told("r3")
+    tally.note_sent("r1")
+    tally.note_sent("r3")
     assert counts(tally) == (3, 0, 0, ["r1", "r2", "r3"], [])
 
 

@@ -6,7 +6,7 @@ import json
 
 import pytest
 
-from robot_bridge.core.messages import Alive, GetPath, OpAck, Ready, SendPos, Stopped
+from robot_bridge.core.messages.robots import Alive, GetPath, OpAck, Ready, SendPos, Stopped
 
 A, B = 11, 22
 

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robot_bridge.core.messages import SendGPS, SendPos
+from robot_bridge.core.messages.robots import SendGPS, SendPos
 from robot_bridge.gateway.model.position_checks import GroundTracks
 
 

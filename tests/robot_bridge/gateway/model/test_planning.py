@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from robot_bridge.core.errors import RefusedError
 from robot_bridge.core.geometry import Polyline
-from robot_bridge.core.messages import SetPath, SetPosEnd
+from robot_bridge.core.messages.robots import SetPath, SetPosEnd
 from robot_bridge.gateway.model.arrival import PlannedPath, StraightPlanner, remaining_path
 
 STRAIGHT = StraightPlanner()

@@ -8,7 +8,8 @@ from types import SimpleNamespace
 from typing import ClassVar
 
 from robot_bridge.core.errors import BridgeError
-from robot_bridge.core.messages import RobotState, SendPos
+from robot_bridge.core.messages.robots import SendPos
+from robot_bridge.core.messages.safety import RobotState
 from robot_bridge.core.sites.settings import SiteBounds, SiteSettings
 from robot_bridge.core.sites.settings_tables import LimitSettings
 from robot_bridge.gateway.model.events import EventBus, RobotReturned
@@ -62,9 +63,9 @@ class Side:
 
     def happen(self, odd, name, now):
         if odd == "stopped":
-            self.robots.heard(name, LINK, now, stopped=True)
+            self.robots.note_received(name, LINK, now, stopped=True)
         elif odd == "other link":
-            self.robots.heard(name, "other", now)
+            self.robots.note_received(name, "other", now)
         elif odd == "anew":
             self.robots.ready(name, round(now * 1000), LINK, now)
         elif odd == "silent":

@@ -5,7 +5,8 @@ from __future__ import annotations
 import pytest
 
 from robot_bridge.core.errors import NotReadyError
-from robot_bridge.core.messages import RobotState, SendPos
+from robot_bridge.core.messages.robots import SendPos
+from robot_bridge.core.messages.safety import RobotState
 from robot_bridge.gateway.model.robots import Robot, Robots
 
 
@@ -27,7 +28,7 @@ def only(robots: Robots, now: float):
 
 def test_a_robot_that_never_said_ready_is_not_known(robots):
     with pytest.raises(NotReadyError, match="robot 'r2' has not said Ready"):
-        robots.heard("r2", "sql", 100.0)
+        robots.note_received("r2", "sql", 100.0)
     with pytest.raises(NotReadyError):
         robots.observe("r2", pose(1.0), "sql", 100.0)
     assert robots.names() == ["r1"]
@@ -88,14 +89,14 @@ def test_ageing_touches_a_robot_once_for_each_state(robots):
 
 def test_a_lost_robot_that_speaks_is_fresh_at_once(robots):
     robots.age(200.0)
-    robots.heard("r1", "websocket", 200.5)
+    robots.note_received("r1", "websocket", 200.5)
     assert only(robots, 200.5).state is RobotState.FRESH
 
 
 @pytest.mark.parametrize("end", ["stopped", "closed"])
 def test_a_robot_that_ended_in_order_goes_offline(robots, end):
     if end == "stopped":
-        robots.heard("r1", "websocket", 101.0, stopped=True)
+        robots.note_received("r1", "websocket", 101.0, stopped=True)
     else:
         robots.closed("r1")
     robots.age(150.0)
@@ -103,7 +104,7 @@ def test_a_robot_that_ended_in_order_goes_offline(robots, end):
 
 
 def test_standing_positions_leave_a_stopped_robot_stopped_and_driving_ones_do_not(robots):
-    robots.heard("r1", "websocket", 101.0, stopped=True)
+    robots.note_received("r1", "websocket", 101.0, stopped=True)
     robots.observe("r1", pose(1.0, v=0.01), "websocket", 102.0)
     assert only(robots, 102.0).stopped is True
     robots.observe("r1", pose(1.1, v=0.5), "websocket", 103.0)
@@ -147,6 +148,6 @@ def test_the_latency_is_told_with_the_next_change(robots):
 
 def test_the_three_clocks_of_a_pose_are_told_apart(robots):
     robots.observe("r1", SendPos(1.0, 2.0, 0.0, 0.0, t=7.0, fix_t=6.5), "websocket", 102.0)
-    robots.heard("r1", "websocket", 104.0)
+    robots.note_received("r1", "websocket", 104.0)
     report = only(robots, 105.0)
     assert (report.device_time, report.fix_time, report.pose_age, report.age) == (7.0, 6.5, 3.0, 1.0)

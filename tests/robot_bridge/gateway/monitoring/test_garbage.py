@@ -8,7 +8,7 @@ import weakref
 import pytest
 
 from robot_bridge.core.clock import ManualClock
-from robot_bridge.core.messages import SendPos
+from robot_bridge.core.messages.robots import SendPos
 from robot_bridge.gateway.monitoring.periodic_tasks import (
     MOST_GONE,
     REST,

@@ -7,17 +7,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from robot_bridge.core.errors import RefusedError
-from robot_bridge.core.messages import (
-    CommandReport,
-    CommandState,
-    CommandStep,
-    QueueTask,
-    Share,
-    SharedTask,
-    TakeOver,
-    TaskState,
-)
-from robot_bridge.core.messages.queues import LONGEST_QUEUE
+from robot_bridge.core.messages.commands import CommandReport, CommandState, CommandStep
+from robot_bridge.core.messages.queues import LONGEST_QUEUE, QueueTask, Share, SharedTask, TakeOver, TaskState
 from robot_bridge.gateway.model import task_queue
 from robot_bridge.gateway.model.task_queue import Queue, QueuedTask
 from robot_bridge.gateway.queues import task_life

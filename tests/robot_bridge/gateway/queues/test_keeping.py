@@ -6,7 +6,8 @@ import dataclasses
 
 import pytest
 
-from robot_bridge.core.messages import QueueState, SetPath, SetPosEnd, TaskKind, TaskState
+from robot_bridge.core.messages.queues import QueueState, TaskKind, TaskState
+from robot_bridge.core.messages.robots import SetPath, SetPosEnd
 from robot_bridge.gateway.commands.active_command import CommandOrder, create_command
 from robot_bridge.gateway.model.task_queue import Queue
 from robot_bridge.gateway.queues.task_life import (

@@ -7,15 +7,10 @@ import math
 import pytest
 
 from robot_bridge.core.errors import RefusedError
-from robot_bridge.core.messages import (
-    AbortTask,
-    CollectLayout,
-    MakeCurrent,
-    QueueTask,
-    SendPos,
-    SetPath,
-    TaskKind,
-)
+from robot_bridge.core.messages.commands import AbortTask
+from robot_bridge.core.messages.queues import MakeCurrent, QueueTask, TaskKind
+from robot_bridge.core.messages.records import CollectLayout
+from robot_bridge.core.messages.robots import SendPos, SetPath
 from robot_bridge.gateway.storage.repositories import queues, records
 from tests.support.bridge.queue_line import LANE, PLACES, drive, place, placed, task
 

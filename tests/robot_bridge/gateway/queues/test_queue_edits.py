@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from robot_bridge.core.errors import OutdatedError, RefusedError
-from robot_bridge.core.messages import AddTasks, MakeCurrent, MoveTask, QueueTask, RemoveTask
+from robot_bridge.core.messages.queues import AddTasks, MakeCurrent, MoveTask, QueueTask, RemoveTask
 from robot_bridge.gateway.storage.repositories import queues
 from tests.support.bridge.queue_line import LANE, PLACES, task
 

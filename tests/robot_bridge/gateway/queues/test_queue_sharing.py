@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from robot_bridge.core.errors import RefusedError
-from robot_bridge.core.messages import Share, SharedTask, TakeOver
+from robot_bridge.core.messages.queues import Share, SharedTask, TakeOver
 from tests.support.bridge.queue_line import PLACES, task
 
 

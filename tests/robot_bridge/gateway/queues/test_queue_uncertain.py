@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from robot_bridge.core.errors import UncertainError
-from robot_bridge.core.messages import PauseQueue
+from robot_bridge.core.messages.queues import PauseQueue
 from robot_bridge.gateway.commands.persistence import insert_commands
 from robot_bridge.gateway.queues.runner import write_outcome
 from tests.support.bridge.queue_line import PLACES, placed, task

@@ -6,14 +6,9 @@ import asyncio
 
 import pytest
 
-from robot_bridge.core.messages import (
-    AbortAll,
-    AbortTask,
-    ClearEmergencyStop,
-    EmergencyStop,
-    MakeCurrent,
-    PauseQueue,
-)
+from robot_bridge.core.messages.commands import AbortAll, AbortTask
+from robot_bridge.core.messages.queues import MakeCurrent, PauseQueue
+from robot_bridge.core.messages.safety import ClearEmergencyStop, EmergencyStop
 from tests.support.bridge.queue_line import PLACES, task
 
 

@@ -8,16 +8,16 @@ from dataclasses import replace
 
 import pytest
 
-from robot_bridge.core.messages import (
+from robot_bridge.core.messages.queues import (
     GetQueue,
     PauseQueue,
     QueueState,
     QueueTask,
-    ResolveConflict,
     ResumeQueue,
     SetQueue,
     TaskKind,
 )
+from robot_bridge.core.messages.roads import ResolveConflict
 from tests.support.bridge.road_places import SOUTH, highest
 
 

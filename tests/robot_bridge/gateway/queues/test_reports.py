@@ -4,21 +4,11 @@ import json
 
 import pytest
 
-from robot_bridge.core.messages import (
-    CommandReport,
-    CommandState,
-    CommandStep,
-    PlacementReport,
-    QueueState,
-    QueueTask,
-    RobotState,
-    TaskKind,
-    TaskState,
-    command_report,
-    placement_report,
-    queue_report,
-    to_json,
-)
+from robot_bridge.core.messages.commands import CommandReport, CommandState, CommandStep
+from robot_bridge.core.messages.json_values import command_report, placement_report, queue_report, to_json
+from robot_bridge.core.messages.queues import QueueState, QueueTask, TaskKind, TaskState
+from robot_bridge.core.messages.records import PlacementReport
+from robot_bridge.core.messages.safety import RobotState
 from robot_bridge.gateway.model import task_queue as queues
 
 TASK = QueueTask("task-0001", 3.0, 4.0, 0.5, TaskKind.PLACE, [(0.0, 0.0), (3.0, 4.0)], "c1", "7", "row", "p1")

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from robot_bridge.core.messages import ObservationReport, ObservationState
+from robot_bridge.core.messages.records import ObservationReport, ObservationState
 from robot_bridge.core.robotmap.builder import build_map
 from robot_bridge.core.robotmap.model import ShapeType, Window
 from robot_bridge.core.robotmap.outlines import OutlineRow, Outlines

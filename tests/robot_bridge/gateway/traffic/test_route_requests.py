@@ -7,7 +7,7 @@ from dataclasses import replace
 import pytest
 
 from robot_bridge.core.errors import RefusedError
-from robot_bridge.core.messages import GetRoute
+from robot_bridge.core.messages.roads import GetRoute
 from tests.support.bridge.road_places import highest
 
 

@@ -7,7 +7,7 @@ import math
 import pytest
 
 from robot_bridge.core.errors import RefusedError
-from robot_bridge.core.messages import GetWaysOut, ResolveConflict
+from robot_bridge.core.messages.roads import GetWaysOut, ResolveConflict
 
 
 async def ways_out(yard, robot="r1", other="r2"):

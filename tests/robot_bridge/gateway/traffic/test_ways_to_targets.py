@@ -11,25 +11,11 @@ from dataclasses import replace
 import pytest
 
 from robot_bridge.core.errors import RefusedError
-from robot_bridge.core.messages import (
-    CloseRoad,
-    GetCommands,
-    GetPath,
-    GetPlacements,
-    GetPosEnd,
-    GetQueue,
-    PauseRobot,
-    QueueState,
-    QueueTask,
-    ResolveConflict,
-    Send,
-    SetPath,
-    SetPosEnd,
-    SetPositions,
-    SetQueue,
-    TargetPosition,
-    TaskKind,
-)
+from robot_bridge.core.messages.commands import GetCommands, Send, SetPositions, TargetPosition
+from robot_bridge.core.messages.queues import GetQueue, PauseRobot, QueueState, QueueTask, SetQueue, TaskKind
+from robot_bridge.core.messages.records import GetPlacements
+from robot_bridge.core.messages.roads import CloseRoad, ResolveConflict
+from robot_bridge.core.messages.robots import GetPath, GetPosEnd, SetPath, SetPosEnd
 
 START, GOAL = (60.0, 22.0), (70.26, 42.57)
 CROSSES = (

@@ -8,7 +8,7 @@ import pytest
 from osgeo import ogr
 
 from robot_bridge.cli.options import database_address
-from robot_bridge.core.messages import SendPos
+from robot_bridge.core.messages.robots import SendPos
 from robot_bridge.gateway.model.robots import Robot
 from robot_bridge.gateway.storage.database import Database
 from robot_bridge.gateway.storage.repositories import robots as stored_robots

@@ -8,7 +8,7 @@ import pytest
 
 from robot_bridge.cli.options import database_address
 from robot_bridge.core.errors import StoreError
-from robot_bridge.core.messages import SendPos
+from robot_bridge.core.messages.robots import SendPos
 from robot_bridge.core.sites.settings_tables import TrajectorySettings
 from robot_bridge.gateway.storage.database import Database
 from robot_bridge.gateway.storage.repositories import trajectories

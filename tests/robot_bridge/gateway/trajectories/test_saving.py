@@ -12,7 +12,7 @@ from sqlalchemy import select
 
 from robot_bridge.core.clock import ManualClock
 from robot_bridge.core.errors import DataRefusedError, StoreError
-from robot_bridge.core.messages import SendPos
+from robot_bridge.core.messages.robots import SendPos
 from robot_bridge.core.sites.settings_tables import TrajectorySettings
 from robot_bridge.gateway.model.robots import Robots
 from robot_bridge.gateway.storage.database import Database

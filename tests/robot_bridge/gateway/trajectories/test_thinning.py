@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robot_bridge.core.messages import SendPos
+from robot_bridge.core.messages.robots import SendPos
 from robot_bridge.core.sites.settings_tables import TrajectorySettings
 from robot_bridge.gateway.storage.repositories.trajectories import Fix, pack
 from robot_bridge.gateway.trajectories import recording

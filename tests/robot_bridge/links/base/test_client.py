@@ -9,8 +9,8 @@ from types import SimpleNamespace
 import pytest
 from websockets.asyncio.server import serve
 
-from robot_bridge.core.messages import SetPosEnd
 from robot_bridge.core.messages.links import LINK_PROTOCOL
+from robot_bridge.core.messages.robots import SetPosEnd
 from robot_bridge.links.base.client import LinkClient
 from robot_bridge.links.base.errors import CommandRefusedError
 from robot_bridge.links.base.linked_robots import OVERTAKEN, Commanding

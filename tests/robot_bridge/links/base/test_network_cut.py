@@ -9,7 +9,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from robot_bridge.core.messages import SendPos, SetObject
+from robot_bridge.core.messages.robots import SendPos, SetObject
 from tests.support.bridge.adapter_on_the_line import LinkOnTheLine
 from tests.support.bridge.bridge_programs import wait_until
 from tests.support.bridge.cut_line import CutLine

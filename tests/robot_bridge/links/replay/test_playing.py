@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from robot_bridge.core.messages import SetPosEnd
+from robot_bridge.core.messages.robots import SetPosEnd
 from robot_bridge.links.base.adapter import Command
 from robot_bridge.links.base.errors import CommandRefusedError
 from robot_bridge.links.replay.adapter import PlayClock, Player, ReplayAdapter, ReplayPresence, ReplaySettings

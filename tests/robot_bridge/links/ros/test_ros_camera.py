@@ -7,7 +7,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from robot_bridge.core.messages import SendGPS, SendPos
+from robot_bridge.core.messages.robots import SendGPS, SendPos
 from robot_bridge.links.base.errors import CommandRefusedError
 from robot_bridge.links.ros.messages import COMPRESSED_IMAGE
 from robot_bridge.links.ros.robot import Camera

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from robot_bridge.core.messages import SetPath, SetPosEnd
+from robot_bridge.core.messages.robots import SetPath, SetPosEnd
 from robot_bridge.links.ros.effects import (
     Abilities,
     Answered,

@@ -13,7 +13,6 @@ from robot_bridge.links.ros2.interfaces import (
     topic_to_dds,
     type_from_dds,
     type_to_dds,
-    vendor_of,
 )
 
 
@@ -64,8 +63,3 @@ def test_a_pattern_that_can_be_no_topic_is_refused(pattern):
 def test_a_robot_whose_name_cannot_stand_in_a_topic_is_refused():
     with pytest.raises(RosNameError, match="'/agv-1/odom'"):
         TopicPattern("/{robot}/odom").topic_of("agv-1")
-
-
-def test_the_vendor_is_in_the_id():
-    assert vendor_of(bytes([1, 15]) + bytes(14)) == "Fast DDS"
-    assert vendor_of(bytes([9, 9]) + bytes(14)) == "vendor 9.9"

@@ -7,7 +7,7 @@ import json
 
 import pytest
 
-from robot_bridge.core.messages import SetPosEnd
+from robot_bridge.core.messages.robots import SetPosEnd
 from robot_bridge.links.base.adapter import Command
 from robot_bridge.links.base.errors import CommandRefusedError
 from robot_bridge.links.ros.effects import CancelGoals, RosAction
@@ -18,7 +18,7 @@ from robot_bridge.links.rosbridge.adapter import MOST_ANSWERS, RosbridgeActions,
 from robot_bridge.links.rosbridge.connection import (
     LARGEST_SENT,
     MOST_ANSWERS_WAITING,
-    MOST_ASKED,
+    MOST_CALLS,
     MOST_COMMANDS_UNREAD,
     MOST_FAULTS,
     MOST_UNREAD,
@@ -145,7 +145,7 @@ def test_a_topic_is_read_and_written_though_there_is_no_room(connection):
 
 def test_an_answer_that_never_comes_is_not_waited_for_without_end(connection):
     came = []
-    for _ in range(MOST_ASKED + 1):
+    for _ in range(MOST_CALLS + 1):
         connection.call("/r1/stop", {}, came.append)
     ids = [one["id"] for one in waiting(connection)]
     connection._receive(ServiceResponse(ids[0]))

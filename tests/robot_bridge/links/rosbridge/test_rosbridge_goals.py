@@ -7,7 +7,7 @@ from collections import deque
 
 import pytest
 
-from robot_bridge.core.messages import SetPosEnd
+from robot_bridge.core.messages.robots import SetPosEnd
 from robot_bridge.links.ros.effects import Abilities, Answered, CancelGoals, Idle, RosAction, SendGoal
 from robot_bridge.links.ros.goals import GoalStatus, goal_id
 from robot_bridge.links.ros.tasks import Tasks

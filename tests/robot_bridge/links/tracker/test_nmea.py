@@ -11,7 +11,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robot_bridge.core.messages import SetPosEnd
+from robot_bridge.core.messages.robots import SetPosEnd
 from robot_bridge.links.base.adapter import Command
 from robot_bridge.links.base.errors import CommandRefusedError
 from robot_bridge.links.tracker import nmea

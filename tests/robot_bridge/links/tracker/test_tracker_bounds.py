@@ -10,8 +10,8 @@ import pytest
 
 from robot_bridge.links.tracker import nmea, osmand
 from robot_bridge.links.tracker.adapter import (
+    MOST_REFUSALS_LOGGED,
     MOST_TRACKERS,
-    SAID_OF_ONE,
     TrackerAdapter,
     TrackerSettings,
 )
@@ -42,13 +42,13 @@ def test_devices_without_end_are_not_shown(adapter):
 
 def test_what_devices_do_wrong_is_not_logged_without_end(adapter, caplog):
     with caplog.at_level(logging.WARNING):
-        for _ in range(SAID_OF_ONE + 3):
+        for _ in range(MOST_REFUSALS_LOGGED + 3):
             adapter.refuse("anna", ReportError("lat is x"))
-        assert len(caplog.records) == SAID_OF_ONE
+        assert len(caplog.records) == MOST_REFUSALS_LOGGED
         for number in range(MOST_TRACKERS + 10):
             adapter.refuse(f"device {number}", ReportError("lat is x"))
-    assert len(adapter._said) == MOST_TRACKERS
-    assert len(caplog.records) == SAID_OF_ONE + MOST_TRACKERS - 1
+    assert len(adapter._refusals) == MOST_TRACKERS
+    assert len(caplog.records) == MOST_REFUSALS_LOGGED + MOST_TRACKERS - 1
 
 
 def test_of_receivers_by_datagram_the_newest_are_remembered():

@@ -6,7 +6,7 @@ import itertools
 import json
 from typing import Any
 
-from fleet_supervisor.robot_bridge.core.messages import Request, SetPath, SetPosEnd, SetPosIni
+from fleet_supervisor.robot_bridge.core.messages.robots import Request, SetPath, SetPosEnd, SetPosIni
 from fleet_supervisor.robot_bridge.links.vda5050.ledger import Halted, Keep, Publish, Settled, VehicleReport
 from fleet_supervisor.robot_bridge.links.vda5050.messages import Order, VehicleId, decode_message
 from fleet_supervisor.robot_bridge.links.vda5050.tasks import Remembered
@@ -52,7 +52,7 @@ class Bench:
             CountedNames(),
             self.now,
         )
-        self.said: list[Request] = []
+        self.sent: list[Request] = []
         self.published: list[Any] = []
         self.settled: list[Settled] = []
         self.halts = 0
@@ -134,7 +134,7 @@ class Bench:
         for effect in self.controller.drain():
             self.effects.append(effect)
             if isinstance(effect, VehicleReport):
-                self.said.append(effect.request)
+                self.sent.append(effect.request)
             elif isinstance(effect, Publish):
                 self.published.append(effect.message)
             elif isinstance(effect, Settled):
@@ -145,7 +145,7 @@ class Bench:
                 self.kept = effect.remembered
 
     def clear(self) -> None:
-        for seen in (self.said, self.published, self.settled, self.effects):
+        for seen in (self.sent, self.published, self.settled, self.effects):
             seen.clear()
 
     @property
@@ -163,7 +163,7 @@ class Bench:
         return [action.action_id for action in done if action.action_type == action_type][-1]
 
     def saying(self, kind: type[Request]) -> list[Any]:
-        return [request for request in self.said if isinstance(request, kind)]
+        return [request for request in self.sent if isinstance(request, kind)]
 
 
 def state() -> dict[str, Any]:

@@ -7,7 +7,7 @@ from importlib import resources
 
 import jsonschema
 import pytest
-from fleet_supervisor.robot_bridge.core.messages import SendPos, SetPath, SetPosEnd, SetPosIni
+from fleet_supervisor.robot_bridge.core.messages.robots import SendPos, SetPath, SetPosEnd, SetPosIni
 from fleet_supervisor.robot_bridge.links.vda5050.messages import (
     Connection,
     Factsheet,
@@ -207,7 +207,7 @@ def test_a_place_beyond_all_bounds_ends_nothing():
     assert "its position has no place on the site: x is" in bench.saying(SendPos)[-1].status
     bench.state["agvPosition"]["x"] = 1.0
     bench.show()
-    assert bench.said[-1].x == 101.0
+    assert bench.sent[-1].x == 101.0
 
 
 @pytest.mark.parametrize(

@@ -3,7 +3,14 @@
 from __future__ import annotations
 
 import pytest
-from fleet_supervisor.robot_bridge.core.messages import Alive, SendPos, SetPath, SetPosEnd, SetPosIni, Stopped
+from fleet_supervisor.robot_bridge.core.messages.robots import (
+    Alive,
+    SendPos,
+    SetPath,
+    SetPosEnd,
+    SetPosIni,
+    Stopped,
+)
 from fleet_supervisor.robot_bridge.links.vda5050.ledger import (
     MOST_REMEMBERED,
     Keep,
@@ -49,7 +56,7 @@ def test_a_vehicle_that_is_admitted_says_where_it_is():
     bench.hear("connection", {"connectionState": "ONLINE"}, retained=True)
     assert not bench.controller.is_known and "stateRequest" in str(bench.published)
     bench.show()
-    assert bench.controller.is_known and bench.said == []
+    assert bench.controller.is_known and bench.sent == []
 
     bench.admit()
     pose = bench.saying(SendPos)[-1]
@@ -68,8 +75,8 @@ def test_a_target_is_acknowledged_when_the_vehicle_shows_the_order(bench):
     assert bench.settled == [Settled(7)]
 
     run_to(bench, 1)
-    assert isinstance(bench.said[-1], Stopped) and bench.said[-2].x == 120.0
-    assert bench.said[-2].v == 0.0
+    assert isinstance(bench.sent[-1], Stopped) and bench.sent[-2].x == 120.0
+    assert bench.sent[-2].v == 0.0
 
 
 def test_what_the_vehicle_refuses_fails_with_its_words(bench):
@@ -403,7 +410,7 @@ def test_a_vehicle_with_a_task_that_answers_nothing_is_not_alive(bench):
     assert "stateRequest" in str(bench.published)
     bench.clear()
     bench.wait(4)
-    assert bench.said == []
+    assert bench.sent == []
     bench.tell(LONG, 8)
     bench.wait(9)
     assert bench.settled[-1].reason == "the vehicle has not shown yet that it stopped"
@@ -417,7 +424,7 @@ def test_a_last_will_that_comes_late_of_an_older_connection_ends_with_the_next_s
     bench.hear("connection", {"connectionState": "CONNECTIONBROKEN"})
     bench.clear()
     bench.wait(2)
-    assert bench.said == []
+    assert bench.sent == []
     bench.show()
     bench.wait(1)
     assert bench.saying(SendPos) and bench.saying(Alive)
@@ -425,7 +432,7 @@ def test_a_last_will_that_comes_late_of_an_older_connection_ends_with_the_next_s
 
 def test_a_vehicle_that_leaves_in_order_says_so(bench):
     bench.hear("connection", {"connectionState": "OFFLINE"})
-    assert bench.said == [Stopped()]
+    assert bench.sent == [Stopped()]
 
 
 def test_a_start_position_is_acknowledged_when_the_vehicle_took_it(bench):
@@ -474,7 +481,7 @@ def test_a_retained_state_moves_no_vehicle(bench):
     bench.state["agvPosition"]["x"] = 77.0
     bench.clear()
     bench.hear("state", bench.state, retained=True)
-    assert bench.said == []
+    assert bench.sent == []
 
 
 def test_a_vehicle_that_still_drives_has_not_stopped(bench):

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from sqlalchemy import event
 
-from robot_bridge.core.messages import GetPlacements
+from robot_bridge.core.messages.records import GetPlacements
 from robot_bridge.gateway.storage import revisions
 from robot_bridge.gateway.storage.database import run_once
 from robot_bridge.gateway.storage.repositories import commands, metadata, queues, records, trajectories
@@ -27,7 +27,7 @@ QUESTIONS = {
     "a queue": (queues.load, ["r1"]),
     "a robot's tasks that ended": (queues.newest_ended, "r1", 20),
     "where tasks are": (queues.whereabouts, ["task-0001"]),
-    "what a robot told before": (records.find_told, "r1", "1"),
+    "what a robot told before": (records.find_reported, "r1", "1"),
     "a page of placed cones": (records.newest_placed_cones, GetPlacements(before=9)),
     "when something was stored last": (metadata.newest_time,),
     "commands to be deleted": (commands.forget, 1.0, 100),

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from sqlalchemy import create_engine, event, func, select
 
-from robot_bridge.core.messages import OpAck, SendPos, SetMap
+from robot_bridge.core.messages.robots import OpAck, SendPos, SetMap
 from robot_bridge.gateway.model.robots import Robot
 from robot_bridge.gateway.storage.database import Database
 from robot_bridge.gateway.storage.repositories import requests, robots, trajectories

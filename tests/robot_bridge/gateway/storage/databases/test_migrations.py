@@ -150,7 +150,7 @@ def test_ids_go_on_after_an_upgrade_where_they_were(old_url):
 async def test_a_gateway_goes_on_with_the_commands_of_version_0_1_0(old_url, sample_site):
     import asyncio
 
-    from robot_bridge.core.messages import Ready
+    from robot_bridge.core.messages.robots import Ready
     from robot_bridge.core.sites.site import read_site
     from robot_bridge.gateway.fleet.service import Fleet
     from robot_bridge.gateway.site.site_maps import SiteMaps

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from sqlalchemy import event, insert, select
 
-from robot_bridge.core.messages import Abort, SetMap, SetPosEnd, Start
+from robot_bridge.core.messages.robots import Abort, SetMap, SetPosEnd, Start
 from robot_bridge.gateway.storage.repositories import requests
 from robot_bridge.gateway.storage.repositories.requests import AnswerRow
 from robot_bridge.gateway.storage.schema import sa

@@ -6,7 +6,7 @@ import contextlib
 import os
 import sqlite3
 
-from robot_bridge.core.messages import SetMap
+from robot_bridge.core.messages.robots import SetMap
 from robot_bridge.gateway.storage.database import Database
 from robot_bridge.gateway.storage.repositories import requests
 

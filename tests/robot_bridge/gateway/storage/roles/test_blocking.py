@@ -9,7 +9,7 @@ from concurrent.futures import ThreadPoolExecutor
 
 import pytest
 
-from robot_bridge.core.messages import Abort, OpAck, SetMap
+from robot_bridge.core.messages.robots import Abort, OpAck, SetMap
 from robot_bridge.gateway.fleet import emergency_persistence, outbox
 from robot_bridge.gateway.fleet.outbox import RequestOutcome
 from robot_bridge.gateway.storage.database import Database, run_once

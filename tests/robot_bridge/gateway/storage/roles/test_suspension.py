@@ -32,11 +32,11 @@ class Desks:
     """Notes what desks are told."""
 
     def __init__(self):
-        self.told = []
+        self.reported = []
 
     def announce(self, method, _key, params):
         assert method == "suspensions"
-        self.told.append([(one["robot"], one.get("until") is not None) for one in params["robots"]])
+        self.reported.append([(one["robot"], one.get("until") is not None) for one in params["robots"]])
 
 
 class Commands:
@@ -86,20 +86,20 @@ async def test_who_blocks_three_times_in_a_minute_is_locked_out_and_let_in_again
             await suspensions.update()
         assert can_connect(yard, OTHER) and other.run("select 1")
         if times == 2:
-            assert desks.told == [] and mine.run("select 1")
+            assert desks.reported == [] and mine.run("select 1")
             return
         with pytest.raises(RefusedError):
             mine.run("select 1")
-    assert desks.told == [[(MINE, True)]] and not can_connect(yard)
+    assert desks.reported == [[(MINE, True)]] and not can_connect(yard)
     # The gateway is killed meanwhile, and the next one lets the robot in again.
     after = AccountSuspensions(database, Commands(), desks, clock)
     await after.restore()
     clock.advance(link_supervision.FIRST_S - 1)
     await after.update()
-    assert desks.told[1:] == [[(MINE, True)]] and not can_connect(yard)
+    assert desks.reported[1:] == [[(MINE, True)]] and not can_connect(yard)
     clock.advance(2)
     await after.update()
-    assert desks.told[2:] == [[]] and can_connect(yard)
+    assert desks.reported[2:] == [[]] and can_connect(yard)
     assert await database.read(blocking_sessions.stored_suspensions) == {}
 
 
@@ -141,7 +141,7 @@ async def test_a_gateway_that_dies_before_the_lock_is_set_unlocks_all_the_same(y
     await suspensions.restore()
     clock.advance(61)
     await suspensions.update()
-    assert desks.told == [[(MINE, True)], []] and can_connect(yard)
+    assert desks.reported == [[(MINE, True)], []] and can_connect(yard)
 
 
 async def test_nobody_but_a_robot_of_this_database_is_locked_out(yard, database):
@@ -185,7 +185,7 @@ async def test_an_older_set_up_is_said_and_an_upgrade_mends_it(yard, database, c
     suspensions = AccountSuspensions(database, Commands(), desks, clock)
     database.offences.add_blocking([MINE] * 3)
     await suspensions.update()
-    assert desks.told == [[(MINE, False)]] and can_connect(yard)
+    assert desks.reported == [[(MINE, False)]] and can_connect(yard)
     assert "cannot be locked: have an administrator run: robot-bridge database upgrade" in caplog.text
     await asyncio.to_thread(
         run_once, yard.admin, lambda connection: role_manager_on(connection).renew_rights()
