@@ -1,6 +1,6 @@
 """Real ROS 2 nodes without a ROS installation: rclpy from PyPI in an environment of its own.
 
-Made once in a cache folder, which takes two minutes, and kept. nav2_msgs is on no package index: what is
+Made once in a cache folder, which takes a minute, and kept. nav2_msgs is on no package index: what is
 used of it is built there by ROS's own generators, which PyPI has.
 """
 
@@ -67,6 +67,8 @@ find_package(rosidl_default_generators REQUIRED)
 foreach(part std_msgs geometry_msgs nav_msgs builtin_interfaces action_msgs)
   find_package(${part} REQUIRED)
 endforeach()
+# For languages that nobody here speaks the compiler would work most of the time.
+list(FILTER AMENT_EXTENSIONS_rosidl_generate_idl_interfaces EXCLUDE REGEX "_(LEFT_OUT):")
 rosidl_generate_interfaces(${PROJECT_NAME} INTERFACES
   DEPENDENCIES std_msgs geometry_msgs nav_msgs builtin_interfaces action_msgs)
 ament_package()
@@ -81,6 +83,7 @@ _PACKAGE = """<?xml version="1.0"?>
   <depend>action_msgs</depend><member_of_group>rosidl_interface_packages</member_of_group>
 </package>
 """
+_UNOPTIMISED = ("-DCMAKE_BUILD_TYPE=", "-DCMAKE_C_FLAGS=-O0", "-DCMAKE_CXX_FLAGS=-O0")
 _WHEELS_PYTHON = "/opt/python/cp{0}{1}-cp{0}{1}"
 """Where Python was when the wheels were built: their CMake files still say so."""
 
@@ -93,17 +96,20 @@ def ros_python() -> Path:
     return cached(f"ros-peer-{_digest()}", _make) / "bin" / "python"
 
 
-def build_interfaces(python: Path, package: str, files: Mapping[str, str], prefix: Path) -> None:
+def build_interfaces(
+    python: Path, package: str, files: Mapping[str, str], prefix: Path, *, left_out: str = "cpp"
+) -> None:
     """Build a package of messages, services and actions beside those of ``python``, into ``prefix``.
 
-    ``files`` are texts by their paths in the package.
+    ``files`` are texts by their paths in the package; ``left_out`` are languages, with ``|`` between them.
     """
     source = prefix / package
     for name, text in files.items():
         (source / name).parent.mkdir(parents=True, exist_ok=True)
         (source / name).write_text(text)
     named = " ".join(f'"{name}"' for name in files)
-    (source / "CMakeLists.txt").write_text(_CMAKE.replace("INTERFACES", named).replace(_NAV2, package))
+    text = _CMAKE.replace("INTERFACES", named).replace("LEFT_OUT", left_out).replace(_NAV2, package)
+    (source / "CMakeLists.txt").write_text(text)
     (source / "package.xml").write_text(_PACKAGE.replace(_NAV2, package))
     build, ros = source / "build", python.parents[1]
     # Through Python: the wheels' start-up file sets where their libraries are.
@@ -114,7 +120,7 @@ def build_interfaces(python: Path, package: str, files: Mapping[str, str], prefi
         f"-DCMAKE_INSTALL_PREFIX={prefix}",
         f"-DPython3_EXECUTABLE={python}",
     ]
-    run_peer(*inside, "cmake", "-S", source, "-B", build, "-DCMAKE_BUILD_TYPE=Release", *places)
+    run_peer(*inside, "cmake", "-S", source, "-B", build, *places, *_UNOPTIMISED)
     run_peer(*inside, "cmake", "--build", build, "--target", "install", "-j2")
 
 

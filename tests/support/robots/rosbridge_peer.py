@@ -1,6 +1,6 @@
 """A real rosbridge server without a ROS installation: rosbridge-server-rs from PyPI on rclpy's libraries.
 
-Made once in a cache folder, which takes three minutes, and kept. rosapi_msgs is on no package index: it is
+Made once in a cache folder, which takes a minute, and kept. rosapi_msgs is on no package index: it is
 built there, as rosapi defines it.
 """
 
@@ -102,7 +102,7 @@ def _make(folder: Path, ros: Path) -> None:
     (folder / BINARY).chmod(0o755)
     files = {f"msg/{name}.msg": text for name, text in MESSAGES.items()}
     files |= {f"srv/{name}.srv": text for name, text in SERVICES.items()}
-    build_interfaces(ros, "rosapi_msgs", files, folder)
+    build_interfaces(ros, "rosapi_msgs", files, folder, left_out="cpp|py")
     shutil.rmtree(folder / "rosapi_msgs")
     # rclpy's wheels are linked with Fast DDS's own library, where a ROS installation has one that chooses.
     (folder / "lib" / "librmw_implementation.so").symlink_to(

@@ -30,6 +30,7 @@ image_every_s = 1
 stop = "/{{robot}}/stop"
 place_cone = "/{{robot}}/place_cone"
 map = "/{{robot}}/map"
+get_map = "/{{robot}}/get_map"
 image = "/{{robot}}/camera"
 keepout_mask = "/{{robot}}/keepout_mask"
 keepout_info = "/{{robot}}/keepout_info"
@@ -133,7 +134,7 @@ def test_a_cone_target_is_driven_reached_and_placed(desk, robot, nodes):
     assert desk.robots[name]["x"] == pytest.approx(20.0)
     desk.until(lambda: desk.robots[name].get("battery") == 0.75, 20)
     desk.send(f"go-{name}", name, "SetPosEnd", x=40.0, y=8.0, cone=True)
-    desk.wait_for_step(f"go-{name}", "acknowledged", 5)
+    desk.wait_for_step(f"go-{name}", "acknowledged")
     desk.wait_for_step(f"go-{name}", "reached", 8)
     (cone,) = wait_until(lambda: events(nodes, name, "cone"))
     assert (cone["x"], cone["y"]) == pytest.approx((40.0, 8.0))
@@ -189,8 +190,8 @@ def test_nav2_that_is_started_later_makes_its_robot_able(desk, robot, nodes):
         nodes.end(f"{name}-nav2")
 
 
-def test_the_map_of_the_site_comes_latched_with_masks_for_the_filters_of_nav2(robot, nodes):
-    name = robot()
+def test_the_map_of_the_site_comes_latched_with_masks_for_the_filters_of_nav2(robot, nodes, adapter):
+    name = robot("--asks-map")
     told = wait_until(lambda: events(nodes, name, "map"), 30)
     assert (told[0]["columns"], told[0]["rows"], told[0]["frame"]) == (2000, 1600, "map")
     wait_until(lambda: len(events(nodes, name, "mask")) == 2 and len(events(nodes, name, "filter")) == 2, 40)
@@ -202,25 +203,38 @@ def test_the_map_of_the_site_comes_latched_with_masks_for_the_filters_of_nav2(ro
     speeds, speed = masks["speed"]["cells"], filters[f"/{name}/speed_mask"]
     assert (speed["type"], speeds["excavation"]) == (2, 0)
     assert speeds["road"] * speed["multiplier"] == pytest.approx(1.0)
+    wait_until(lambda: f"robot {name}: a node on Fast DDS asks for the map" in adapter.output())
 
 
 def test_an_abort_cancels_what_nav2_does_and_the_robot_stands(desk, robot, nodes):
     name = robot(*SLOW)
     desk.send(f"go-{name}", name, "SetPosEnd", x=60.0, y=8.0)
-    desk.wait_for_step(f"go-{name}", "acknowledged", 5)
+    desk.wait_for_step(f"go-{name}", "acknowledged")
     desk.send(f"stop-{name}", name, "Abort")
-    desk.wait_for_step(f"stop-{name}", "acknowledged", 5)
+    desk.wait_for_step(f"stop-{name}", "acknowledged")
     desk.wait_for_step(f"go-{name}", "aborted")
     assert events(nodes, name, "cancel asked") and events(nodes, name, "stop")
     assert events(nodes, name, "zero twist")
     assert events(nodes, name, "goal ended")[0]["status"] == 5
 
 
+def test_a_goal_that_is_taken_on_after_its_abort_is_stopped_too(desk, robot, nodes):
+    name = robot(*SLOW, "--odd", "late-goals")
+    desk.send(f"go-{name}", name, "SetPosEnd", x=60.0, y=8.0)
+    wait_until(lambda: events(nodes, name, "goal asked"))
+    desk.send(f"stop-{name}", name, "Abort")
+    desk.wait_for_step(f"stop-{name}", "acknowledged")
+    assert not events(nodes, name, "goal")
+    (ended,) = wait_until(lambda: events(nodes, name, "goal ended"))
+    assert ended["status"] == 5
+
+
 def test_an_emergency_stop_stops_and_is_cleared(desk, robot, nodes):
     name = robot(*SLOW)
     desk.send(f"go-{name}", name, "SetPosEnd", x=60.0, y=8.0)
-    desk.wait_for_step(f"go-{name}", "acknowledged", 5)
+    desk.wait_for_step(f"go-{name}", "acknowledged")
     desk.ask("emergency_stop", {"command": f"emergency-{name}"})
+    desk.ask("emergency_stop", {"command": f"again-{name}"})
     try:
         desk.until(lambda: desk.emergency["in_force"] and name not in desk.emergency["waiting"], 10)
         assert events(nodes, name, "goal ended")[0]["status"] == 5
@@ -233,7 +247,7 @@ def test_an_emergency_stop_stops_and_is_cleared(desk, robot, nodes):
 def test_a_robot_that_will_not_stop_is_told_to_operators(desk, robot):
     name = robot(*SLOW, "--odd", "stubborn")
     desk.send(f"go-{name}", name, "SetPosEnd", x=60.0, y=8.0)
-    desk.wait_for_step(f"go-{name}", "acknowledged", 5)
+    desk.wait_for_step(f"go-{name}", "acknowledged")
     desk.send(f"stop-{name}", name, "Abort")
     desk.wait_for_step(f"stop-{name}", "failed", 4)
     assert "was not confirmed within 5 s" in steps(desk, f"stop-{name}")[-1]["reason"]
@@ -275,14 +289,14 @@ def test_what_is_wrong_with_one_robot_is_named_and_the_others_go_on(desk, robot,
 def test_two_nodes_of_one_name_are_named_and_both_are_stopped(desk, robot, nodes, adapter):
     name = robot(*SLOW)
     desk.send(f"go-{name}", name, "SetPosEnd", x=60.0, y=8.0)
-    desk.wait_for_step(f"go-{name}", "acknowledged", 5)
+    desk.wait_for_step(f"go-{name}", "acknowledged")
     nodes.start(f"{name}-twin", *SLOW, node=name)
     try:
         wait_until(lambda: f"robot {name}: 2 nodes publish /{name}/odom" in adapter.output(), 30)
         wait_until(lambda: f"2 nodes serve /{name}/navigate_to_pose" in adapter.output(), 30)
         desk.send(f"stop-{name}", name, "Abort")
         wait_until(lambda: events(nodes, name, "stop") and events(nodes, f"{name}-twin", "stop"))
-        desk.wait_for_step(f"stop-{name}", "acknowledged", 5)
+        desk.wait_for_step(f"stop-{name}", "acknowledged")
         assert events(nodes, name, "goal ended")[0]["status"] == 5
     finally:
         nodes.end(f"{name}-twin")
@@ -308,7 +322,7 @@ def test_actions_of_another_distribution_are_named_and_the_rest_is_used(bridge, 
 def test_a_node_that_is_killed_and_started_anew_is_sent_again_what_is_open(desk, robot, nodes):
     name = robot(*SLOW)
     desk.send(f"go-{name}", name, "SetPosEnd", x=24.0, y=8.0)
-    desk.wait_for_step(f"go-{name}", "acknowledged", 5)
+    desk.wait_for_step(f"go-{name}", "acknowledged")
     nodes.end(name)
     desk.until(lambda: desk.robots[name]["state"] == "lost", 20)
     nodes.start(name, *FAST)
@@ -319,7 +333,7 @@ def test_a_node_that_is_killed_and_started_anew_is_sent_again_what_is_open(desk,
 def test_an_adapter_that_is_killed_sends_no_goal_twice(desk, robot, adapter, nodes):
     name = robot(*SLOW)
     desk.send(f"go-{name}", name, "SetPosEnd", x=24.0, y=8.0)
-    desk.wait_for_step(f"go-{name}", "acknowledged", 5)
+    desk.wait_for_step(f"go-{name}", "acknowledged")
     adapter.kill()
     desk.until(lambda: desk.robots[name]["state"] == "lost", 20)
     adapter.start()
@@ -330,7 +344,7 @@ def test_an_adapter_that_is_killed_sends_no_goal_twice(desk, robot, adapter, nod
 def test_a_node_that_started_anew_while_the_adapter_was_away_is_sent_again(desk, robot, adapter, nodes):
     name = robot(*SLOW)
     desk.send(f"go-{name}", name, "SetPosEnd", x=24.0, y=8.0)
-    desk.wait_for_step(f"go-{name}", "acknowledged", 5)
+    desk.wait_for_step(f"go-{name}", "acknowledged")
     adapter.kill()
     nodes.end(name)
     nodes.start(name, *FAST)
@@ -342,7 +356,7 @@ def test_a_node_that_started_anew_while_the_adapter_was_away_is_sent_again(desk,
 def test_a_gateway_that_is_killed_loses_no_command_and_repeats_none(bridge, desk, robot, nodes):
     name = robot(*SLOW)
     desk.send(f"go-{name}", name, "SetPosEnd", x=23.0, y=8.0)
-    desk.wait_for_step(f"go-{name}", "acknowledged", 5)
+    desk.wait_for_step(f"go-{name}", "acknowledged")
     bridge.kill_gateway()
     bridge.start_gateway()
     desk = bridge.desk()
@@ -433,6 +447,7 @@ def test_a_hostile_node_is_named_and_the_robots_go_on(desk, robot, adapter, node
         ('topics = { speed_info = "/{robot}/speed_info" }', "name its mask, too, as topics.speed_mask"),
         ("image_every_s = 0.1", "ros2.image_every_s = 0.1: give seconds from 1 to 86400"),
         ("largest_image_bytes = 9", "ros2.largest_image_bytes = 9: give bytes from 1024"),
+        ("largest_image_bytes = 8_000_001", "ros2.largest_image_bytes = 8000001: give bytes from 1024"),
         ('path_actions = ["Teleport"]', "ros2.path_actions[0]: Invalid enum value 'Teleport'"),
         ('robots = ["agv-1"]', "ros2.topics.position: '/agv-1/odom' is no full name of a topic"),
     ],
