@@ -137,6 +137,12 @@ class Dimension:
         """Return the choices, the least one first."""
         return ", ".join(f"{choice:g}" for choice in sorted(self.choices))
 
+    @property
+    def whole_text(self) -> str:
+        """Return what it is, with what each choice means."""
+        meanings = ", ".join(f"{choice:g} {name}" for choice, name in self.choices.items())
+        return f"{self.text}: {meanings}" if meanings else self.text
+
     def fault(self, value: float) -> DimensionFault | None:
         """Return what is wrong with ``value``, None where nothing is."""
         if not math.isfinite(value):

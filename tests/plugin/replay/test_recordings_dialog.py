@@ -63,7 +63,7 @@ def test_it_is_paused_sought_and_sped_up(window, gateway, wait):
     told = [{name: value for name, value in one.items() if name != "link"} for one in changes(gateway)]
     assert told == [{"paused": True}, {"place_s": 40.0}, {"place_s": 120.5}, {"speed": 10.0}]
     assert window.isVisible(), "Enter closes nothing"
-    wait(lambda: window.said.text() == "cars.csv: 120 s of 600 s")
+    wait(lambda: window.status.text() == "cars.csv: 120 s of 600 s")
 
 
 def test_a_refusal_is_told_with_its_reason(window, gateway, wait):
@@ -71,4 +71,4 @@ def test_a_refusal_is_told_with_its_reason(window, gateway, wait):
         "error": {"code": -32000, "message": "link cars does not answer"}
     }
     window.findChild(QCheckBox, "fleet_recordings_loop").click()
-    wait(lambda: window.said.text() == "✘ Recording of cars: link cars does not answer")
+    wait(lambda: window.status.text() == "✘ Recording of cars: link cars does not answer")

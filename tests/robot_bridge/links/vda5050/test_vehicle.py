@@ -11,20 +11,9 @@ from fleet_supervisor.robot_bridge.core.messages.robots import (
     SetPosIni,
     Stopped,
 )
-from fleet_supervisor.robot_bridge.links.vda5050.ledger import (
-    MOST_REMEMBERED,
-    Keep,
-    Ledger,
-    Publish,
-    Settled,
-)
+from fleet_supervisor.robot_bridge.links.vda5050.ledger import MOST_REMEMBERED, Keep, Ledger, Publish, Settled
 from fleet_supervisor.robot_bridge.links.vda5050.presence import MOST_FAULTS, MOST_GREETINGS
-from fleet_supervisor.robot_bridge.links.vda5050.tasks import (
-    Remembered,
-    RouteLimits,
-    VehicleTask,
-    begin_plan,
-)
+from fleet_supervisor.robot_bridge.links.vda5050.tasks import Remembered, RouteLimits, VehicleTask, begin_plan
 from fleet_supervisor.robot_bridge.links.vda5050.vehicle import MOST_RESUMED
 
 from tests.robot_bridge.links.vda5050.bench import Bench, fault
