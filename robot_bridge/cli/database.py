@@ -24,7 +24,7 @@ from ..gateway.storage.roles.choice import has_accounts, map_readers_on, role_ma
 from ..gateway.storage.singleton_lock import no_gateway
 from .accounts import NewPasswordOption, new_password
 from .audit import act_audited, audited
-from .options import DEFAULT, DatabaseOption, PasswordFileOption, database_address
+from .options import DEFAULT, DatabaseOption, PasswordFileOption, database_address, site_copy
 
 # --- ``robot-bridge database backup`` and ``restore`` ---
 
@@ -98,8 +98,11 @@ def account(
 
 def views(
     site: Annotated[
-        Path | None, typer.Option(help="Folder of the published site whose CRS and origin places have.")
-    ] = None,
+        str,
+        typer.Option(
+            help="The published site whose CRS and origin places have: a folder, or its address as of serve."
+        ),
+    ] = "",
     remove: Annotated[bool, typer.Option("--remove", help="Remove the views.")] = False,
     vrt: Annotated[
         Path | None, typer.Option(help="SQLite: write the file by which GDAL and QGIS open the views.")
@@ -112,17 +115,19 @@ def views(
     PostgreSQL needs PostGIS; on SQLite, --vrt writes the file that is opened.
     """
     address = _there(database_address(database, database_password_file))
-    if (site is None) != remove:
+    if remove == bool(site):
         raise StoreError("give --site FOLDER to make the views, or --remove to remove them")
     if vrt is not None and address.drivername != SQLite.name:
         raise StoreError("--vrt is for SQLite; GIS programs open the views of PostgreSQL by themselves")
-    if site is None:
+    if not site:
         act_audited(address, "database views", shown(address), "removed", _without_views)
         print(f"{shown(address)}: the views are removed")
         return
-    frame = read_settings(site / SETTINGS_FILE).frame
+    copy = site_copy(site)
+    folder = Path(site) if copy is None else copy.folder
+    frame = read_settings(folder / SETTINGS_FILE).frame
     names = act_audited(
-        address, "database views", shown(address), str(site), lambda db: map_views_on(db).make(frame)
+        address, "database views", shown(address), str(folder), lambda db: map_views_on(db).make(frame)
     )
     print(f"{shown(address)}: made {', '.join(names)}")
     if vrt is not None:
