@@ -23,7 +23,7 @@ TRACKER ?=
 MINUTES ?=
 export PYTHON DESTDIR PREFIX PROGRAM ARGS JOBS REPOSITORY TRACKER MINUTES
 
-.PHONY: help setup demo test test-core test-newer lint desktop screenshots install install-service uninstall-service serve-maps translations package clean bench mutants
+.PHONY: help setup demo test test-core test-newer lint desktop screenshots install install-service uninstall-service serve-maps translations package docs check-plugin clean bench mutants
 
 help: ## list the targets
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-18s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -82,8 +82,15 @@ serve-maps: $(READY) ## serve a project and the fleet as WMS, WMTS, WFS (ARGS="-
 translations: $(READY) ## bring resources/translations up to date with the source
 	@$(RUN) -m tools.translations
 
-package: $(READY) ## build the zip for plugins.qgis.org
+package: $(READY) ## build the plugin's zip for plugins.qgis.org, and the gateway's wheel and sdist
 	@$(RUN) -m tools.package
+	@$(RUN) -m tools.gateway_package
+
+docs: $(READY) ## build these guides as a site, build/site
+	@$(RUN) -m tools.documentation
+
+check-plugin: $(READY) ## run on the plugin's zip what plugins.qgis.org runs on it; takes two minutes
+	@$(RUN) -m tools.plugin_checks
 
 bench: $(READY) ## measure on the real data beside the project (PARTS=maps ..., MINUTES=5, TRIAL=1); see docs/benchmarks.md
 	@$(RUN) -m benchmarks $(PARTS)

@@ -26,6 +26,7 @@ COMMANDS = {
     "sessions": "Connections of operators to the desk.",
     "tls": "Certificates for wss://.",
     "serve": "Serve one site to robots (/robot, and tables rr and sa) and to operators (/desk).",
+    "doctor": "Check what a gateway needs on this computer, and say what to do.",
     "audit": "Print who did what, oldest first: when, who, role, from where, what, to what, done or refused.",
     "schemas": "Write the JSON Schema of every message, and the AsyncAPI document of all endpoints.",
     "link": "Run an adapter: robots and trackers of another kind, over one connection.",

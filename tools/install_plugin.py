@@ -90,7 +90,7 @@ def main() -> int:
     if is_new:
         print(f"The profile is new; start QGIS with: qgis --profile {arguments.profile}")
     if arguments.link:
-        print("A linked plugin carries no websockets: QGIS's Python must have it (pip install websockets).")
+        print("A linked plugin has no packages: QGIS's Python must have them (pip install websockets segno).")
     print("In QGIS: Plugins > Manage and Install Plugins > Installed > tick Fleet Supervisor.")
     return 0
 

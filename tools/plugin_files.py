@@ -11,7 +11,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
 PACKAGE = "fleet_supervisor"
-FILES = ("__init__.py", "metadata.txt", "LICENSE", "CHANGELOG.md")
+FILES = ("__init__.py", "metadata.txt", "LICENSE", "CHANGELOG.md", ".bandit")
 PARTS = (*FILES, "plugin", "robot_bridge", "resources", "docs")
 VENDORED = ("segno", "websockets")
 """Pure Python, so that a stock QGIS needs nothing more."""
@@ -56,12 +56,13 @@ def _own_files(root: Path) -> Iterator[Path]:
         if path.is_file():
             yield path
         elif path.is_dir():
-            yield from (file for file in path.rglob("*") if file.is_file() and _belongs(file, root))
+            yield from (file for file in path.rglob("*") if file.is_file() and belongs(file, root))
         else:
             raise PackageError(f"{path} is missing and belongs to the plugin; restore it from git")
 
 
-def _belongs(file: Path, root: Path) -> bool:
+def belongs(file: Path, root: Path) -> bool:
+    """Whether ``file``, in a folder of :data:`KINDS` below ``root``, is part of it and not just there."""
     path = file.relative_to(root)
     hidden = any(part.startswith(".") for part in path.parts)
     return not hidden and not LEFT_OUT_FOLDERS & set(path.parts) and path.suffix in KINDS[path.parts[0]]

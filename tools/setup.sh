@@ -140,7 +140,7 @@ make_venv() {
         ln -sfn /usr/share/proj $VENV/share/proj
     fi
     say "installing the Python packages of pyproject.toml into $VENV"
-    $VENV/bin/python -m pip install -q --disable-pip-version-check -e '.[test,lint]' || stop \
+    $VENV/bin/python -m pip install -q --disable-pip-version-check -e '.[test,lint,docs]' || stop \
         "pip could not install the Python packages: see the lines above." \
         "Is the package index reachable from here? Then run: make setup"
 }

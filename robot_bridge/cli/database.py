@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 from collections.abc import Callable
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Annotated, TypeVar
 
 import typer
@@ -13,7 +14,9 @@ from sqlalchemy import URL, Connection
 from ..core.errors import StoreError
 from ..core.files import replacement
 from ..core.messages import check_robot_name
+from ..core.sites.frame import SiteFrame
 from ..core.sites.settings import SETTINGS_FILE, read_settings
+from ..core.sites.site_database import is_database_address, read_site_address
 from ..gateway.storage import revisions
 from ..gateway.storage.backup import back_up, revision_in
 from ..gateway.storage.backup import restore as put_back
@@ -123,11 +126,10 @@ def views(
         act_audited(address, "database views", shown(address), "removed", _without_views)
         print(f"{shown(address)}: the views are removed")
         return
-    copy = site_copy(site)
-    folder = Path(site) if copy is None else copy.folder
-    frame = read_settings(folder / SETTINGS_FILE).frame
+    frame = _frame_of(site)
+    named = read_site_address(site).shown if is_database_address(site) else site
     names = act_audited(
-        address, "database views", shown(address), str(folder), lambda db: map_views_on(db).make(frame)
+        address, "database views", shown(address), named, lambda db: map_views_on(db).make(frame)
     )
     print(f"{shown(address)}: made {', '.join(names)}")
     if vrt is not None:
@@ -140,6 +142,13 @@ def views(
                 f"{vrt} cannot be written: {error.strerror or error}; check its folder"
             ) from error
         print(f"{vrt}: open it in QGIS, or with ogrinfo")
+
+
+def _frame_of(site: str) -> SiteFrame:
+    """Return the frame of a site in a folder, or in a database, from where it is fetched for the moment."""
+    with TemporaryDirectory(prefix="robot-bridge-") as state:
+        copy = site_copy(site, Path(state))
+        return read_settings((Path(site) if copy is None else copy.folder) / SETTINGS_FILE).frame
 
 
 def reader(

@@ -47,7 +47,7 @@ def database_address(database: str, password_file: Path | None) -> URL:
 # --- A site that is published in a database instead of a folder ---
 
 
-def site_copy(site: str, state: Path | None = None) -> SiteCopy | None:
+def site_copy(site: str, state: Path | None) -> SiteCopy | None:
     """Return the copy of a site that is in a database, as new as it can be; None for one in a folder.
 
     :raises BridgeError: where it cannot be fetched and no copy is here. :raises SiteError: for its address.

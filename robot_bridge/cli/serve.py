@@ -10,6 +10,7 @@ import signal
 import sys
 import threading
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal
 
@@ -33,15 +34,18 @@ LAST_MOMENT = 4.7
 Loop = Literal["auto", "uvloop", "asyncio"]
 
 
+SiteOption = Annotated[
+    str,
+    typer.Option(
+        help="Folder of a published site: site.toml and site.gpkg; or where it is published in PostGIS: "
+        "postgresql://ACCOUNT@HOST/NAME#SITE.",
+        envvar="ROBOT_BRIDGE_SITE",
+    ),
+]
+
+
 def serve(
-    site: Annotated[
-        str,
-        typer.Option(
-            help="Folder of a published site: site.toml and site.gpkg; or where it is published in PostGIS: "
-            "postgresql://ACCOUNT@HOST/NAME#SITE.",
-            envvar="ROBOT_BRIDGE_SITE",
-        ),
-    ],
+    site: SiteOption,
     database: DatabaseOption = "",
     database_password_file: PasswordFileOption = None,
     host: Annotated[
@@ -80,32 +84,51 @@ def serve(
     What is not given is taken from table gateway of site.toml. SIGHUP reads the site anew.
     """
     gc.disable()
-    from ..core.sites.settings import SETTINGS_FILE, read_settings
-    from ..core.sites.settings_tables import GatewayOptions
-    from ..gateway.app import GatewaySettings
-    from ..gateway.auth.tls import server_files
+    from ..gateway import app  # noqa: F401
 
     # All of that stays. To look again and again for what does not took a seventh of the start.
     gc.freeze()
     gc.enable()
     set_up_log(log_format, log_level)
+    settings = gateway_settings(site, state, database, database_password_file, host, port, certificate, key)
+    settings = replace(settings, site_as_given=site_as_given)
+    with asyncio.Runner(loop_factory=_loop_factory(loop)) as runner:
+        runner.run(_serve(settings))
+
+
+def gateway_settings(
+    site: str,
+    state: Path | None,
+    database: str,
+    password_file: Path | None,
+    host: str,
+    port: int | None,
+    certificate: Path | None,
+    key: Path | None,
+) -> GatewaySettings:
+    """Return what a gateway is started with; what is not given is taken from the site's settings.
+
+    :raises BridgeError: for settings, an address or files that cannot be.
+    """
+    from ..core.sites.settings import SETTINGS_FILE, read_settings
+    from ..core.sites.settings_tables import GatewayOptions
+    from ..gateway.app import GatewaySettings
+    from ..gateway.auth.tls import server_files
+
     copy = site_copy(site, state)
     folder = Path(site) if copy is None else copy.folder
     # A folder that is not there is named by whoever reads the whole site.
     given = read_settings(folder / SETTINGS_FILE).gateway if folder.is_dir() else GatewayOptions()
     files = (certificate or _beside(folder, given.certificate), key or _beside(folder, given.key))
-    settings = GatewaySettings(
+    return GatewaySettings(
         site=folder,
-        database=database_address(database or given.database or DEFAULT, database_password_file),
+        database=database_address(database or given.database or DEFAULT, password_file),
         host=host or given.host or HOST,
         port=next(number for number in (port, given.port, PORT) if number is not None),
         tls=server_files(*files),
         state=state,
-        site_as_given=site_as_given,
         site_copy=copy,
     )
-    with asyncio.Runner(loop_factory=_loop_factory(loop)) as runner:
-        runner.run(_serve(settings))
 
 
 async def _serve(settings: GatewaySettings) -> None:

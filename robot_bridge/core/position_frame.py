@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -16,12 +16,8 @@ from .messages.robots import is_status
 # --- The binary frame of positions: a JSON head, and behind it a table of 64-bit floats ---
 # Everything is little-endian: the length of the head as an unsigned 32-bit integer; the head, a JSON-RPC
 # notification ``positions``, filled up with spaces so that what follows begins at a multiple of 8 bytes;
-# then
-# each of its ``columns``, one float for each of its ``robots``.
-
-if TYPE_CHECKING:
-    import numpy as np
-    import numpy.typing as npt
+# then each
+# of its ``columns``, one float for each of its ``robots``.
 
 METHOD = "positions"
 POSITION_HEAD = 4

@@ -446,7 +446,7 @@ def _name_in(path: str, kind: TokenKind) -> str | None:
 def _for_links(address: str) -> str:
     """Return where links on this computer find the gateway, of its address ``ws://host:port``."""
     parts = urlsplit(address)
-    host = {"0.0.0.0": "127.0.0.1", "::": "::1"}.get(parts.hostname or "", parts.hostname or "")
+    host = {"0.0.0.0": "127.0.0.1", "::": "::1"}.get(parts.hostname or "", parts.hostname or "")  # nosec B104
     return f"{parts.scheme}://{f'[{host}]' if ':' in host else host}:{parts.port}{PATHS[TokenKind.LINK]}"
 
 

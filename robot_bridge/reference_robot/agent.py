@@ -122,7 +122,7 @@ class Agent:
     def __init__(self, settings: AgentSettings, sink: RequestSink) -> None:
         self._settings = settings
         self._sink = sink
-        self._random = random.Random(settings.seed)
+        self._random = random.Random(settings.seed)  # nosec B311 # simulates noise
         self._body: SimulatedVehicle = settings.body or Body(settings.pose, settings.limits)
         self._driver: Driver | None = None
         self._sightings = ScriptedObjects(settings.things, settings.image)

@@ -86,7 +86,7 @@ class RobotWebSocketLink:
             except (OSError, InvalidHandshake) as error:
                 reason = _reason(error)
             log.warning("%s: %s; trying again in %.1f s", self._url, reason, wait)
-            await asyncio.sleep(wait * random.uniform(0.8, 1.2))
+            await asyncio.sleep(wait * random.uniform(0.8, 1.2))  # nosec B311 # no secret
             wait = min(wait * 2, LONGEST_WAIT)
 
     async def _carry(self, connection: ClientConnection, agent: Agent) -> None:

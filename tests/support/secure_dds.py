@@ -28,6 +28,17 @@ DEBIAN = (
     "libiceoryx-hoofs2",
     "libiceoryx-platform2",
 )
+FAST_DEBIAN = (
+    "libfastrtps-dev",
+    "libfastrtps2.9",
+    "libfastcdr-dev",
+    "libfastcdr1",
+    "libfoonathan-memory-dev",
+    "libfoonathan-memory0.7.2",
+    "libtinyxml2-9",
+)
+"""Fast DDS with security, which rclpy's wheels have without."""
+FAST_ROBOT = Path(__file__).with_name("fast_robot.cpp")
 PACKAGES = "STAGE_PACKAGES"
 """names folders of packages that come after cyclonedds's own."""
 _START = (
@@ -98,16 +109,47 @@ def secure_dds() -> SecureDds:
     return SecureDds(cached(f"secure-dds-{hashlib.sha256(what.encode()).hexdigest()[:12]}", _make))
 
 
-def _make(folder: Path) -> None:
-    for program in ("apt-get", "dpkg-deb", "cc"):
+def fast_robot() -> list[str | Path]:
+    """Return the command of a robot on Fast DDS, which takes a name, a domain and an enclave's folder.
+
+    Built when it is not there; an empty enclave is none.
+
+    :raises StageError: when it cannot be made: no Debian 12, no network, no compiler.
+    """
+    what = repr((FAST_DEBIAN, FAST_ROBOT.read_text(encoding="utf-8")))
+    folder = cached(f"fast-dds-{hashlib.sha256(what.encode()).hexdigest()[:12]}", _make_fast)
+    return ["env", f"LD_LIBRARY_PATH={_libraries(folder)}", folder / "robot"]
+
+
+def _make_fast(folder: Path) -> None:
+    folder.mkdir()
+    unpacked = folder / "debian"
+    _unpack(unpacked, FAST_DEBIAN, "c++")
+    includes, libraries = unpacked / "usr" / "include", _libraries(folder)
+    given = ["-std=c++14", f"-I{includes}", f"-I{includes / libraries.name}", f"-L{libraries}"]
+    linked = ["-lfastrtps", "-lfastcdr", f"-Wl,-rpath-link,{libraries}"]
+    run_peer("c++", *given, FAST_ROBOT, "-o", folder / "robot", *linked)
+
+
+def _libraries(folder: Path) -> Path:
+    return folder / "debian" / "usr" / "lib" / str(sysconfig.get_config_var("MULTIARCH"))
+
+
+def _unpack(folder: Path, packages: tuple[str, ...], compiler: str) -> None:
+    """Unpack packages of Debian into ``folder``; raises StageError where a program for that is missing."""
+    for program in ("apt-get", "dpkg-deb", compiler):
         if shutil.which(program) is None:
             raise StageError(f"DDS Security for tests needs {program}: it is taken from Debian 12")
+    folder.mkdir()
+    run_peer("sh", "-c", 'cd "$0" && apt-get download -q "$@"', folder, *packages)
+    for package in sorted(folder.glob("*.deb")):
+        run_peer("dpkg-deb", "-x", package, folder)
+
+
+def _make(folder: Path) -> None:
     run_peer(sys.executable, "-m", "venv", folder)
     unpacked, home = folder / "debian", folder / "cyclone"
-    unpacked.mkdir()
-    run_peer("sh", "-c", 'cd "$0" && apt-get download -q "$@"', unpacked, *DEBIAN)
-    for package in sorted(unpacked.glob("*.deb")):
-        run_peer("dpkg-deb", "-x", package, unpacked)
+    _unpack(unpacked, DEBIAN, "cc")
     triplet = sysconfig.get_config_var("MULTIARCH")
     shutil.copytree(unpacked / "usr" / "lib" / triplet, home / "lib", symlinks=True)
     shutil.copytree(unpacked / "usr" / "bin", home / "bin")

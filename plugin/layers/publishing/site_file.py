@@ -335,7 +335,7 @@ def _insert(database: sqlite3.Connection, spec: LayerSpec, rows: Iterator[SiteRo
     places = ", ".join("?" * (len(spec.fields) + 1))
     database.execute("BEGIN")
     database.executemany(
-        f'INSERT INTO "{spec.name}" ({columns}) VALUES ({places})',
+        f'INSERT INTO "{spec.name}" ({columns}) VALUES ({places})',  # nosec B608 # names
         ((_blob(row, srs, box), *row.values) for row in rows),
     )
     if box[0] <= box[2]:

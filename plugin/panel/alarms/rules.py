@@ -26,7 +26,7 @@ class AlarmKind(str, Enum):
     NEAR_ROBOT = "near a robot"
     COMES_NEAR = "will come near a robot"
     TOO_CLOSE = "too close"
-    WILL_PASS = "will pass too near"
+    WILL_PASS = "will pass too near"  # nosec B105 # no password
     OUTSIDE_SITE = "outside the site"
     OFF_ROAD = "off the road"
     STOPPED = "stopped unasked"

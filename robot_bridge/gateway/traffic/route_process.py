@@ -268,7 +268,7 @@ class _Child:
         with contextlib.closing(theirs):
             try:
                 _limit_waits(self._connection.fileno())
-                self.process = subprocess.Popen(
+                self.process = subprocess.Popen(  # nosec B603 # our own words, no shell
                     [sys.executable, "-c", _program(theirs.fileno())],
                     stdin=subprocess.DEVNULL,
                     stdout=subprocess.DEVNULL,

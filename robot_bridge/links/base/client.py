@@ -239,7 +239,7 @@ class LinkClient:
             wait = FIRST_WAIT if self._is_welcome else wait
             self._lose()
             log.warning("%s: %s; trying again in %.1f s", url, reason, wait)
-            await asyncio.sleep(wait * random.uniform(0.8, 1.2))
+            await asyncio.sleep(wait * random.uniform(0.8, 1.2))  # nosec B311 # no secret
             wait = min(wait * 2, LONGEST_WAIT)
 
     async def _carry(self, connection: ClientConnection) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
@@ -134,6 +135,8 @@ DETAILS_WITHIN = 2.0
 """seconds for the result of a goal that has failed, which says why."""
 CONE_WITHIN = 60.0
 """seconds for a cone to be placed or picked up."""
+MOST_GIVEN_UP = 100
+"""goals whose servers may take them on after they were given up."""
 
 _NO_PATHS = (
     "nobody on the robot's side follows paths: no server of FollowPath, NavigateThroughPoses or "
@@ -196,6 +199,13 @@ class Tasks:
         self._wait_until = 0.0
         self._stop: Stop | None = None
         self._goals: dict[RosAction, dict[bytes, GoalStatus]] = {}
+        self._given_up: dict[bytes, bool] = {}
+        """Goals that were sent and are not to be driven any more, and whether a stop is what ended them: a
+        server may have the cancel before the goal."""
+        self._cancel_late_at = 0.0
+        self._unanswered: Counter[RosAction] = Counter()
+        """Demands to cancel all goals: one that is answered late would cancel the next goal."""
+        self._settled_at = 0.0
 
     @property
     def is_busy(self) -> bool:
@@ -245,14 +255,16 @@ class Tasks:
         if known is not None:
             # Ids begin anew with another database: this goal was for another message.
             task = replace(task, goal=goal_id(message, 1 + int(now * 1000) % (2**32 - 1)))
+        self._given_up.pop(task.goal, None)
         self._waiting, self._wait_until = task, now + ENDED_WITHIN
-        return [*effects, *self._leave(task), *self.step(abilities, now)]
+        return [*effects, *self._leave(task, now), *self.step(abilities, now)]
 
     def abort(self, abilities: Abilities, now: float) -> list[Effect]:
         """Stop the robot, whatever it does and whoever asked for that."""
         effects = self._end_held("it was aborted before it was begun")
         if self._waiting is not None:
             effects.append(_refused(self._waiting, "it was aborted before it was begun"))
+        self._give_up(self._task, now, stopped=True)
         self._task = self._waiting = None
         if self._stop is None:
             self._stop = Stop(now)
@@ -320,6 +332,7 @@ class Tasks:
 
     def cancel_answered(self, action: RosAction, code: int) -> None:
         """Take in what an action server said to canceling all its goals."""
+        self._unanswered[action] = max(0, self._unanswered[action] - 1)
         if self._stop is not None:
             self._stop.cancel_answered(action, code, self._goals.get(action, {}))
 
@@ -340,6 +353,8 @@ class Tasks:
         """
         self._task = self._waiting = None
         self._goals.clear()
+        self._given_up.clear()
+        self._unanswered.clear()
 
     def server_left(self, action: RosAction) -> None:
         """Forget the goals of an action server that is gone."""
@@ -355,8 +370,10 @@ class Tasks:
                 return self.order(held.message, held.order, abilities, now, again=held.again)
             if now >= held.until:
                 return self._end_held(f"{refusal} It was held for {self._hold_s:g} s")
+        late = self._cancel_late(now) if self._stop is None else []
         if self._stop is not None:
-            effects = self._stop.step(abilities, self._goals, now)
+            effects = [*late, *self._stop.step(abilities, self._goals, now)]
+            self._note_cancels(effects, now)
             if self._stop.is_over:
                 self._stop = None
             elif self._stop.is_refused and self._waiting is not None:
@@ -365,9 +382,37 @@ class Tasks:
                     _refused(waiting, "the stop before it was not confirmed; stop the robot on site")
                 )
             return effects
-        if self._waiting is not None:
-            return self._send(abilities, now)
-        return self._overdue(now)
+        return [*late, *(self._send(abilities, now) if self._waiting is not None else self._overdue(now))]
+
+    def _give_up(self, task: RosTask | None, now: float, *, stopped: bool = False) -> None:
+        """Note that the goal of a task, if it was sent, is not to be driven whenever it is taken on."""
+        if task is None or task.action is None or task.sent_at is None:
+            return
+        self._given_up.pop(task.goal, None)
+        self._given_up[task.goal] = stopped
+        self._cancel_late_at = now + ASK_AGAIN
+        while len(self._given_up) > MOST_GIVEN_UP:
+            self._given_up.pop(next(iter(self._given_up)))
+
+    def _cancel_late(self, now: float) -> list[Effect]:
+        """Cancel goals that were taken on after they were given up; behind a stop all is stopped again."""
+        late = [one for one in self._active() if one.goal_id in self._given_up]
+        if not late:
+            return []
+        is_idle = self._task is None and self._waiting is None
+        if is_idle and any(self._given_up[one.goal_id] for one in late if one.goal_id is not None):
+            self._stop = Stop(now)
+            return [Remark("its server has taken on a goal that was aborted before; it is stopped again")]
+        if now < self._cancel_late_at:
+            return []
+        self._cancel_late_at = now + ASK_AGAIN
+        return [*late]
+
+    def _note_cancels(self, effects: Sequence[Effect], now: float) -> None:
+        everything = [one.action for one in effects if isinstance(one, CancelGoals) and one.goal_id is None]
+        if everything:
+            self._unanswered.update(everything)
+            self._settled_at = now + ENDED_WITHIN
 
     def _end_held(self, reason: str) -> list[Effect]:
         """Refuse what is held, if anything is."""
@@ -388,12 +433,13 @@ class Tasks:
         heard = abilities.path_topic if isinstance(order, SetPath) else abilities.goal_topic
         return None if heard else (_NO_PATHS if isinstance(order, SetPath) else _NO_TARGETS)
 
-    def _leave(self, following: RosTask) -> list[Effect]:
+    def _leave(self, following: RosTask, now: float) -> list[Effect]:
         """Return what ends the task before, where the action server does not see to that by itself."""
         task, self._task = self._task, None
         if task is None or task.action is None or task.action == following.action:
             self._wait_until = 0.0
             return []
+        self._give_up(task, now)
         return [CancelGoals(task.action, task.goal)]
 
     def _send(self, abilities: Abilities, now: float) -> list[Effect]:
@@ -401,6 +447,8 @@ class Tasks:
         if task is None or task.order is None:
             return []
         if now < self._wait_until and self._active():
+            return []
+        if now < self._settled_at and any(self._unanswered.values()):
             return []
         self._waiting = None
         if task.action is None:
@@ -431,7 +479,7 @@ class Tasks:
         """Take up a goal of ours that this program sent before it was started anew."""
         for goal, status in statuses.items():
             message = message_of(goal)
-            if message is not None and status in ACTIVE:
+            if message is not None and status in ACTIVE and goal not in self._given_up:
                 self._task = RosTask(message, None, goal, action, sent_at=now, taken=True)
 
     def _succeed(self, now: float) -> list[Effect]:
@@ -469,6 +517,7 @@ class Tasks:
         rejected = task.rejected_at is not None and now - task.rejected_at >= REJECTED_FOR
         if not rejected and now - task.sent_at < ACCEPTED_WITHIN:
             return []
+        self._give_up(task, now)
         self._task = None
         how = "rejected the goal" if rejected else f"did not answer within {ACCEPTED_WITHIN:g} s"
         reason = f"the robot's server of {task.action.value} {how}"

@@ -178,7 +178,8 @@ log = logging.getLogger(__name__)
 
 NOT_SERVED = (
     "a node on Fast DDS asks for the map by the service get_map, which can be answered to nodes on Cyclone "
-    "DDS alone; have it listen to the topic map"
+    "DDS alone; have it listen to the topic map, or run the node for that of docs/links-ros2.md (GetMap on "
+    "Fast DDS)"
 )
 
 

@@ -282,7 +282,7 @@ class RosbridgeConnection:
                 wait = FIRST_WAIT
             self.away = f"rosbridge at {self._server.url}: {reason}"
             log.warning("%s; trying again in %.1f s", self.away, wait)
-            await asyncio.sleep(wait * random.uniform(0.8, 1.2))
+            await asyncio.sleep(wait * random.uniform(0.8, 1.2))  # nosec B311 # no secret
             wait = min(wait * 2, LONGEST_WAIT)
 
     async def _carry(self, connection: ClientConnection) -> None:

@@ -98,7 +98,7 @@ class Broker:
                 wait = FIRST_WAIT
             self._listener.broker_changed(f"broker {self._address}: {reason}")
             log.warning("broker %s: %s; trying again in %.1f s", self._address, reason, wait)
-            await asyncio.sleep(wait * random.uniform(0.8, 1.2))
+            await asyncio.sleep(wait * random.uniform(0.8, 1.2))  # nosec B311 # no secret
             wait = min(wait * 2, LONGEST_WAIT)
 
     def _client(self) -> aiomqtt.Client:

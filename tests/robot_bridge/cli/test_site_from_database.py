@@ -200,12 +200,15 @@ def test_a_server_that_says_nothing_holds_up_no_stop(tmp_path):
             assert process.wait(START) == -signal.SIGTERM
 
 
-def test_views_of_the_fleet_take_their_frame_from_it(address, new_database, tmp_path, monkeypatch):
-    monkeypatch.setenv("XDG_STATE_HOME", str(tmp_path))
+def test_views_of_the_fleet_take_their_frame_from_it(address, new_database):
     done = run_command("database", "views", "--site", address, "--database", new_database("sqlite"))
     assert done.returncode == 0, done.stderr
     assert "made map_robots" in done.stdout
-    assert len(list(tmp_path.glob("robot-bridge/sites/*/sample/site.toml"))) == 1
+
+
+def test_the_doctor_checks_it(address, new_database):
+    done = run_command("doctor", "--site", address, "--database", new_database("sqlite"), "--port", 1)
+    assert "version 1, 47 obstacles" in done.stdout, done
 
 
 async def test_a_server_that_is_frozen_holds_up_no_stop(address, tmp_path, postgresql_server):

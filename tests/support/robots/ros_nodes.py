@@ -83,6 +83,12 @@ class Nodes:
         self._processes.start(log, [*through, self._python, ROBOT, node or name, *options], env=environment)
         self._processes.wait_for_line(log, '"up"', START)
 
+    def start_script(self, name: str, script: Path, *arguments: str) -> None:
+        """Start a program that uses rclpy, in the domain of this module."""
+        self._started[name] = self._started.get(name, 0) + 1
+        command = [self._python, script, *arguments]
+        self._processes.start(f"{name}-{self._started[name]}", command, env=self.environment())
+
     def environment(self, domain: int | None = None) -> dict[str, str]:
         """Return what tells a ROS program to be in the domain, and on this computer only."""
         here = str(self.domain if domain is None else domain)

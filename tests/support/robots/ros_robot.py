@@ -20,7 +20,9 @@ from geometry_msgs.msg import PoseStamped, Twist
 from nav2_msgs.action import FollowPath, FollowWaypoints, NavigateThroughPoses, NavigateToPose
 from nav2_msgs.msg import CostmapFilterInfo, WaypointStatus
 from nav_msgs.msg import OccupancyGrid, Odometry
+from nav_msgs.srv import GetMap
 from rclpy.action import ActionServer, CancelResponse, GoalResponse
+from rclpy.callback_groups import ReentrantCallbackGroup
 from rclpy.executors import MultiThreadedExecutor
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
@@ -38,6 +40,7 @@ ODD = (
     "deaf-stop",
     "silent",
     "misses",
+    "late-goals",
 )
 ACTIONS: dict[str, tuple[Any, Any]] = {
     "navigate_to_pose": (NavigateToPose, lambda goal: [goal.pose]),
@@ -46,6 +49,8 @@ ACTIONS: dict[str, tuple[Any, Any]] = {
     "follow_waypoints": (FollowWaypoints, lambda goal: goal.poses),
 }
 TICK = 0.05
+LATE = 1.5
+"""seconds in which a robot thinks about a goal, and a cancel that comes meanwhile finds none."""
 MASK_PLACES = {"road": (20.0, 8.0), "excavation": (95.0, 151.0)}
 """Metres in the map frame, whose grid begins at 0, 0."""
 
@@ -91,6 +96,9 @@ class Robot(Node):
             self.create_subscription(Twist, "cmd_vel", self.twist_came, 10)
             self.create_service(Trigger, "stop", self.stop_called)
         self.create_service(Trigger, "place_cone", self.cone_called)
+        if options.asks_map:
+            self.map_client = self.create_client(GetMap, "get_map")
+            self.create_timer(0.5, self.ask_map)
 
     def serve(self, kind: Any, name: str, points_of: Any):
         """Offer an action whose goals are driven."""
@@ -101,12 +109,15 @@ class Robot(Node):
             lambda goal: self.execute(kind, goal, points_of(goal.request)),
             goal_callback=self.goal_asked,
             cancel_callback=self.cancel_asked,
+            callback_group=ReentrantCallbackGroup() if "late-goals" in self.options.odd else None,
         )
 
     def goal_asked(self, goal: Any):
         """Take a goal on, or not."""
         refuses = "rejects" in self.options.odd
         say("goal asked", refuses=refuses)
+        if "late-goals" in self.options.odd:
+            time.sleep(LATE)
         return GoalResponse.REJECT if refuses else GoalResponse.ACCEPT
 
     def cancel_asked(self, goal: Any):
@@ -210,6 +221,16 @@ class Robot(Node):
         """Note a map."""
         say("map", columns=grid.info.width, rows=grid.info.height, frame=grid.header.frame_id)
 
+    def ask_map(self):
+        """Ask for the map by its service, again and again."""
+        if self.map_client.service_is_ready():
+            self.map_client.call_async(GetMap.Request()).add_done_callback(self.map_answered)
+
+    def map_answered(self, asked: Any):
+        """Note a map that was asked for."""
+        grid = asked.result().map
+        say("map answered", columns=grid.info.width, cells=list(grid.data))
+
     def mask_came(self, name: str, grid: Any):
         """Note a mask of a costmap filter, and what is at some places."""
         info = grid.info
@@ -257,6 +278,7 @@ def main() -> None:
     parser.add_argument("--speed", type=float, default=2.0)
     parser.add_argument("--rate", type=float, default=10.0)
     parser.add_argument("--odd", action="append", default=[], choices=ODD)
+    parser.add_argument("--asks-map", action="store_true")
     parser.add_argument("--image", choices=["raw", "jpeg", "depth"])
     parser.add_argument("--actions", action="append", choices=list(ACTIONS))
     options = parser.parse_args()

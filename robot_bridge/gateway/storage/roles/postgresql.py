@@ -216,7 +216,7 @@ class PostgreSqlRoles(RoleManager):
     def _functions(self, pattern: str) -> list[str]:
         return self._names(
             "select oid::regprocedure::text from pg_proc where pronamespace = 'pg_catalog'::regnamespace "
-            f"and proname ~ '^{pattern}'"
+            f"and proname ~ '^{pattern}'"  # nosec B608 # a name of ours
         )
 
     def _is_superuser(self) -> bool:

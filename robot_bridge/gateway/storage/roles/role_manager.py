@@ -123,9 +123,8 @@ class RoleManager(abc.ABC):
     def _delete_messages(self, robot: str, schema: str) -> None:
         """Delete what waits in RR and SA, which are in ``schema`` (quoted)."""
         for table in ("rr", "sa"):
-            self._connection.execute(
-                text(f"delete from {schema}.{table} where robot = :robot"), {"robot": robot}
-            )
+            delete = text(f"delete from {schema}.{table} where robot = :robot")  # nosec B608 # quoted
+            self._connection.execute(delete, {"robot": robot})
 
     def _refuse_taken(self, name: str) -> None:
         if name in self.robots():

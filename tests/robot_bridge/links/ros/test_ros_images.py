@@ -79,3 +79,9 @@ def test_compressed_images_pass_as_they_are(kind):
 def test_what_is_no_image_is_named(kind, message, words):
     with pytest.raises(FaultError, match=words):
         image_of(kind, message, 1000)
+
+
+def test_an_image_that_compresses_well_is_made_smaller_all_the_same():
+    image = image_of(IMAGE, raw("mono8", np.zeros((1500, 2000, 1))), 1_000_000)
+    columns, rows = opened(image).size
+    assert columns * rows <= MOST_PIXELS

@@ -11,7 +11,8 @@ pytest.importorskip("rosbags", reason="rosbags is not installed; run make setup"
 
 from robot_bridge.links.ros import sensing
 from robot_bridge.links.ros.errors import FaultError
-from robot_bridge.links.ros.sensing import Transforms
+from robot_bridge.links.ros.goals import MOST_GOALS, GoalStatus, missed_text, statuses_of
+from robot_bridge.links.ros.sensing import DEEPEST, MOST_FRAMES, FramePose, Transforms
 from robot_bridge.links.ros2.interfaces import Interfaces
 
 TYPES = Interfaces("jazzy")
@@ -150,3 +151,52 @@ def test_a_transform_that_is_no_place_changes_nothing():
     with pytest.raises(FaultError, match="is no place"):
         tree.update(transform("map", "odom", np.nan), "/tf")
     assert tree.pose_of("odom", "map") is None
+
+
+def chain(length):
+    """A message in which each frame is 1 m before the one that it is in: f0 is in map."""
+    told = TYPES.make("tf2_msgs/msg/TFMessage")
+    for number in range(length):
+        one = TYPES.make("geometry_msgs/msg/TransformStamped")
+        one.header.frame_id = f"f{number - 1}" if number else "map"
+        one.child_frame_id = f"f{number}"
+        one.transform.translation.x, one.transform.rotation = 1.0, turned(0.0)
+        told.transforms.append(one)
+    return told
+
+
+def test_frames_without_end_are_not_remembered():
+    transforms = Transforms()
+    with pytest.raises(FaultError, match=f"more than {MOST_FRAMES} frames"):
+        transforms.update(chain(MOST_FRAMES + 1), "/r1/tf")
+    assert len(transforms._of) == MOST_FRAMES
+    # Those that are known go on.
+    assert transforms.update(chain(1), "/r1/tf")
+
+
+def test_a_chain_of_frames_is_followed_so_far_and_no_further():
+    transforms = Transforms()
+    transforms.update(chain(DEEPEST), "/r1/tf")
+    assert transforms.pose_in("map", FramePose(f"f{DEEPEST - 2}", 0.0, 0.0, 0.0, None)).x == DEEPEST - 1
+    with pytest.raises(FaultError, match="is not connected with 'map'"):
+        transforms.pose_in("map", FramePose(f"f{DEEPEST - 1}", 0.0, 0.0, 0.0, None))
+
+
+def test_of_many_goals_the_newest_are_looked_at():
+    one = TYPES.make("action_msgs/msg/GoalStatus", status=2)
+    told = TYPES.make("action_msgs/msg/GoalStatusArray", status_list=[])
+    for number in range(MOST_GOALS + 1):
+        uuid = np.frombuffer(number.to_bytes(16, "big"), dtype=np.uint8)
+        id = TYPES.make("unique_identifier_msgs/msg/UUID", uuid=uuid)
+        info = TYPES.make("action_msgs/msg/GoalInfo", goal_id=id)
+        told.status_list.append(TYPES.make("action_msgs/msg/GoalStatus", goal_info=info, status=one.status))
+    read = statuses_of(told)
+    assert len(read) == MOST_GOALS and bytes(16) not in read
+    assert read[MOST_GOALS.to_bytes(16, "big")] is GoalStatus.EXECUTING
+
+
+def test_of_many_missed_points_the_first_are_named():
+    assert (
+        missed_text(range(12))
+        == "the robot left out points of the path: 1, 2, 3, 4, 5, 6, 7, 8, 9, 10 and 2 more"
+    )

@@ -20,7 +20,7 @@ from robot_bridge.links.ros.effects import (
     ZeroTwist,
 )
 from robot_bridge.links.ros.goals import GoalStatus, goal_id, message_of
-from robot_bridge.links.ros.tasks import Tasks
+from robot_bridge.links.ros.tasks import MOST_GIVEN_UP, Tasks
 
 NAV2 = Abilities(actions=frozenset({RosAction.TO_POSE, RosAction.FOLLOW_PATH}), velocity=True)
 TOPICS = Abilities(goal_topic=True, path_topic=True, velocity=True)
@@ -318,6 +318,81 @@ def test_a_stop_finds_what_was_waiting(tasks):
     statuses(tasks, GoalStatus.EXECUTING)
     tasks.order(8, PATH, NAV2, 1.0)
     assert Answered(8, "it was aborted before it was begun") in tasks.abort(NAV2, 1.1)
+
+
+def test_a_goal_that_is_taken_on_behind_the_stop_that_ended_it_is_stopped_too(tasks):
+    tasks.order(7, TARGET, NAV2, 0.0)
+    tasks.abort(NAV2, 0.01)
+    for action in NAV2.actions:
+        tasks.cancel_answered(action, CANCELED)
+    assert tasks.step(NAV2, 0.1) == [StopEnded()]
+    # The server has dealt with the cancel first, and with the goal now.
+    statuses(tasks, GoalStatus.EXECUTING, now=0.2)
+    assert CancelGoals(RosAction.TO_POSE) in tasks.step(NAV2, 0.3)
+    (said,) = [one for one in tasks.step(NAV2, 5.4) if isinstance(one, StopEnded)]
+    assert "Stop it on site" in said.refusal
+
+
+def test_a_goal_that_is_taken_on_late_does_not_stop_what_the_robot_has_been_sent_to_since(tasks):
+    tasks.order(7, PATH, NAV2, 0.0)
+    tasks.abort(NAV2, 0.01)
+    for action in NAV2.actions:
+        tasks.cancel_answered(action, CANCELED)
+    tasks.step(NAV2, 0.1)
+    tasks.order(8, TARGET, NAV2, 0.2)
+    statuses(tasks, GoalStatus.EXECUTING, message=8)
+    statuses(tasks, GoalStatus.EXECUTING, action=RosAction.FOLLOW_PATH)
+    cancel = [CancelGoals(RosAction.FOLLOW_PATH, goal_id(7))]
+    assert tasks.step(NAV2, 0.6) == cancel
+    assert tasks.step(NAV2, 0.7) == []
+    assert tasks.step(NAV2, 1.2) == cancel
+    assert tasks.goal == goal_id(8)
+
+
+def test_a_goal_that_nobody_answered_in_time_is_canceled_when_it_is_taken_on(tasks):
+    tasks.order(7, TARGET, NAV2, 0.0)
+    assert CancelGoals(RosAction.TO_POSE, goal_id(7)) in tasks.step(NAV2, 5.0)
+    statuses(tasks, GoalStatus.EXECUTING, now=6.0)
+    assert tasks.step(NAV2, 6.1) == [CancelGoals(RosAction.TO_POSE, goal_id(7))]
+    assert tasks.goal is None
+
+
+def test_a_target_waits_for_a_doubled_cancel_that_would_hit_it(tasks):
+    tasks.abort(NAV2, 0.0)
+    tasks.step(NAV2, 0.6)
+    tasks.order(8, TARGET, NAV2, 0.7)
+    for action in NAV2.actions:
+        tasks.cancel_answered(action, CANCELED)
+    assert tasks.step(NAV2, 0.8) == [StopEnded()]
+    assert tasks.step(NAV2, 0.9) == []
+    for action in NAV2.actions:
+        tasks.cancel_answered(action, CANCELED)
+    assert tasks.step(NAV2, 1.0) == [SendGoal(RosAction.TO_POSE, goal_id(8), TARGET, 8)]
+
+
+def test_a_target_does_not_wait_for_an_answer_that_was_lost(tasks):
+    tasks.abort(NAV2, 0.0)
+    tasks.step(NAV2, 0.6)
+    for action in NAV2.actions:
+        tasks.cancel_answered(action, CANCELED)
+    tasks.step(NAV2, 0.8)
+    assert tasks.order(8, TARGET, NAV2, 0.9) == []
+    assert tasks.step(NAV2, 2.7) == [SendGoal(RosAction.TO_POSE, goal_id(8), TARGET, 8)]
+
+
+def test_a_stop_that_comes_twice_at_once_asks_once(tasks):
+    first = tasks.abort(NAV2, 0.0)
+    assert CancelGoals(RosAction.TO_POSE) in first and tasks.abort(NAV2, 0.03) == []
+
+
+def test_only_the_newest_goals_that_were_given_up_are_remembered(tasks):
+    for message in range(MOST_GIVEN_UP + 1):
+        tasks.order(message, TARGET, NAV2, 0.0)
+        tasks.abort(NAV2, 0.0)
+        for action in NAV2.actions:
+            tasks.cancel_answered(action, CANCELED)
+        tasks.step(NAV2, 0.0)
+    assert len(tasks._given_up) == MOST_GIVEN_UP and goal_id(0) not in tasks._given_up
 
 
 @pytest.fixture

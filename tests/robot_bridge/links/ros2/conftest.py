@@ -17,9 +17,9 @@ DOCS = Path(__file__).resolve().parents[4] / "docs"
 
 @pytest.fixture(scope="session")
 def guide():
-    """Blocks of settings of the guide: ``guide(name)``."""
+    """Blocks of the guide by name: settings, or a program where ``language`` says so."""
     text = (DOCS / "links-ros2.md").read_text(encoding="utf-8")
-    return lambda name: re.search(rf"```toml {name}\n(.*?)```", text, re.DOTALL)[1]
+    return lambda name, language="toml": re.search(rf"```{language} {name}\n(.*?)```", text, re.DOTALL)[1]
 
 
 @pytest.fixture(scope="module")

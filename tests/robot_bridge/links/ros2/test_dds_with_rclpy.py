@@ -156,22 +156,49 @@ def test_a_result_of_another_distribution_is_named(types):
         Interfaces("humble").decode(f"{NAVIGATE}_GetResult_Response", newer)
 
 
-@pytest.mark.parametrize("framed", [True, False])
-def test_a_map_is_served_to_nodes_on_cyclone_dds(here, types, framed):
+@pytest.fixture
+def grid(types):
+    """A map of 3 × 2 cells."""
     grid = types.make("nav_msgs/msg/OccupancyGrid", data=np.arange(6, dtype=np.int8))
     grid.info.width, grid.info.height = 3, 2
-    names = service_names(f"/cyclone_{framed}/get_map".lower(), GET_MAP)
+    return types.encode("nav_msgs/msg/OccupancyGrid", grid)
+
+
+def test_a_map_is_served_to_nodes_on_cyclone_dds(here, types, grid):
+    names = service_names("/cyclone/get_map", GET_MAP)
     server = ServiceServer(here, names)
-    server.set_reply(types.encode("nav_msgs/msg/OccupancyGrid", grid))
-    client = ServiceClient(here, types, names, GET_MAP, framed=framed)
+    server.set_reply(grid)
+    client = ServiceClient(here, types, names, GET_MAP, framed=True)
     until(here, lambda: client.is_matched)
     client.call(types.make(f"{GET_MAP}_Request"))
-    if not framed:
-        # A call without the header is one from Fast DDS.
-        assert until(here, server.answer)
-        return
     (reply,) = until(here, lambda: server.answer() or client.replies(never))
     assert (reply.map.info.width, list(reply.map.data)) == (3, [0, 1, 2, 3, 4, 5])
+
+
+def test_a_node_on_fast_dds_is_not_answered_and_gets_its_map_from_the_guides_node(
+    here, grid, nodes, guide, tmp_path
+):
+    server = ServiceServer(here, service_names("/r4/get_map", GET_MAP))
+    server.set_reply(grid)
+    nodes.start("r4", "--asks-map")
+    # It can be seen that there is nobody to answer.
+    until(here, server.answer)
+
+    def answered():
+        return [one for one in nodes.events("r4") if one["event"] == "map answered"]
+
+    assert answered() == []
+    script = tmp_path / "serve_map.py"
+    script.write_text(guide("serve_map", "python"), encoding="utf-8")
+    nodes.start_script("maps", script, "r3", "r4")
+    writer = here.writer(
+        "rt/r4/map", type_to_dds("nav_msgs/msg/OccupancyGrid"), Quality(latched=True, depth=1)
+    )
+    assert writer.write(grid)
+    told = until(here, answered)
+    assert (told[0]["columns"], told[0]["cells"]) == (3, [0, 1, 2, 3, 4, 5])
+    nodes.end("maps")
+    nodes.end("r4")
 
 
 def test_speed_0_is_heard(here, types, nodes):

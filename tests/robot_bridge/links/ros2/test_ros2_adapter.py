@@ -3,10 +3,15 @@
 from __future__ import annotations
 
 import logging
+from types import SimpleNamespace
 
 import pytest
 
 from robot_bridge.links.base.errors import LinkError
+from robot_bridge.links.ros.adapter import MOST_ROBOTS
+from robot_bridge.links.ros.settings import LONGEST_NAME
+from robot_bridge.links.ros.site_maps import MOST_GRIDS_KEPT, Grids
+from robot_bridge.links.ros2 import dds
 from robot_bridge.links.ros2.adapter import Ros2Adapter, Ros2Settings
 
 
@@ -93,3 +98,41 @@ def test_a_name_that_no_robot_can_have_is_refused_once(adapter, caplog):
     adapter._meet("_hidden", Robot)
     assert "robot name '_hidden' cannot be used" in caplog.text
     assert adapter._robots == {}
+
+
+def test_robots_without_end_are_not_led(adapter, caplog):
+    for number in range(MOST_ROBOTS + 2):
+        adapter._meet(f"r{number}", Robot)
+    assert len(adapter._robots) == MOST_ROBOTS
+    assert caplog.text.count(f"more than {MOST_ROBOTS} robots were found; name yours in robots") == 2
+
+
+def test_topics_without_end_are_not_remembered(monkeypatch, caplog):
+    core = pytest.importorskip("cyclonedds.core", reason="cyclonedds is not installed; run make setup")
+    monkeypatch.setattr(dds, "MOST_ENDPOINTS", 2)
+    here = object.__new__(dds.Participant)
+    here._endpoints, here._own, here._full = {}, b"own", False
+
+    def offered(number, topic="rt/r1/odom"):
+        return SimpleNamespace(
+            key=SimpleNamespace(bytes=bytes([number])),
+            participant_key=SimpleNamespace(bytes=bytes(16)),
+            topic_name=topic,
+            type_name="nav_msgs::msg::dds_::Odometry_",
+            qos=core.Qos(),
+            sample_info=SimpleNamespace(valid_data=True, instance_state=core.InstanceState.Alive),
+        )
+
+    assert not here._note(offered(9, "r" * (LONGEST_NAME + 1)), False)
+    assert [here._note(offered(number), False) for number in range(4)] == [True, True, False, False]
+    assert caplog.text.count("more than 2 topics are offered and wanted") == 1
+
+
+async def test_of_the_maps_of_many_robots_the_newest_are_kept():
+    made = []
+    outgoing = SimpleNamespace(grid=lambda robot_map, resolution: robot_map)
+    grids = Grids(lambda kind, grid: made.append(grid) or grid, outgoing, 0.1)
+    for number in range(MOST_GRIDS_KEPT + 1):
+        await grids.of(bytes([number]))
+    assert await grids.of(bytes([MOST_GRIDS_KEPT])) == bytes([MOST_GRIDS_KEPT])
+    assert len(made) == MOST_GRIDS_KEPT + 1 == len(grids._kept) + 1

@@ -30,6 +30,7 @@ image_every_s = 1
 stop = "/{{robot}}/stop"
 place_cone = "/{{robot}}/place_cone"
 map = "/{{robot}}/map"
+get_map = "/{{robot}}/get_map"
 image = "/{{robot}}/camera"
 keepout_mask = "/{{robot}}/keepout_mask"
 keepout_info = "/{{robot}}/keepout_info"
@@ -189,8 +190,8 @@ def test_nav2_that_is_started_later_makes_its_robot_able(desk, robot, nodes):
         nodes.end(f"{name}-nav2")
 
 
-def test_the_map_of_the_site_comes_latched_with_masks_for_the_filters_of_nav2(robot, nodes):
-    name = robot()
+def test_the_map_of_the_site_comes_latched_with_masks_for_the_filters_of_nav2(robot, nodes, adapter):
+    name = robot("--asks-map")
     told = wait_until(lambda: events(nodes, name, "map"), 30)
     assert (told[0]["columns"], told[0]["rows"], told[0]["frame"]) == (2000, 1600, "map")
     wait_until(lambda: len(events(nodes, name, "mask")) == 2 and len(events(nodes, name, "filter")) == 2, 40)
@@ -202,6 +203,7 @@ def test_the_map_of_the_site_comes_latched_with_masks_for_the_filters_of_nav2(ro
     speeds, speed = masks["speed"]["cells"], filters[f"/{name}/speed_mask"]
     assert (speed["type"], speeds["excavation"]) == (2, 0)
     assert speeds["road"] * speed["multiplier"] == pytest.approx(1.0)
+    wait_until(lambda: f"robot {name}: a node on Fast DDS asks for the map" in adapter.output())
 
 
 def test_an_abort_cancels_what_nav2_does_and_the_robot_stands(desk, robot, nodes):
@@ -216,11 +218,23 @@ def test_an_abort_cancels_what_nav2_does_and_the_robot_stands(desk, robot, nodes
     assert events(nodes, name, "goal ended")[0]["status"] == 5
 
 
+def test_a_goal_that_is_taken_on_after_its_abort_is_stopped_too(desk, robot, nodes):
+    name = robot(*SLOW, "--odd", "late-goals")
+    desk.send(f"go-{name}", name, "SetPosEnd", x=60.0, y=8.0)
+    wait_until(lambda: events(nodes, name, "goal asked"))
+    desk.send(f"stop-{name}", name, "Abort")
+    desk.wait_for_step(f"stop-{name}", "acknowledged")
+    assert not events(nodes, name, "goal")
+    (ended,) = wait_until(lambda: events(nodes, name, "goal ended"))
+    assert ended["status"] == 5
+
+
 def test_an_emergency_stop_stops_and_is_cleared(desk, robot, nodes):
     name = robot(*SLOW)
     desk.send(f"go-{name}", name, "SetPosEnd", x=60.0, y=8.0)
     desk.wait_for_step(f"go-{name}", "acknowledged")
     desk.ask("emergency_stop", {"command": f"emergency-{name}"})
+    desk.ask("emergency_stop", {"command": f"again-{name}"})
     try:
         desk.until(lambda: desk.emergency["in_force"] and name not in desk.emergency["waiting"], 10)
         assert events(nodes, name, "goal ended")[0]["status"] == 5
@@ -433,6 +447,7 @@ def test_a_hostile_node_is_named_and_the_robots_go_on(desk, robot, adapter, node
         ('topics = { speed_info = "/{robot}/speed_info" }', "name its mask, too, as topics.speed_mask"),
         ("image_every_s = 0.1", "ros2.image_every_s = 0.1: give seconds from 1 to 86400"),
         ("largest_image_bytes = 9", "ros2.largest_image_bytes = 9: give bytes from 1024"),
+        ("largest_image_bytes = 8_000_001", "ros2.largest_image_bytes = 8000001: give bytes from 1024"),
         ('path_actions = ["Teleport"]', "ros2.path_actions[0]: Invalid enum value 'Teleport'"),
         ('robots = ["agv-1"]', "ros2.topics.position: '/agv-1/odom' is no full name of a topic"),
     ],

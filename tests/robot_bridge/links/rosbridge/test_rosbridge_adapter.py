@@ -14,10 +14,22 @@ from robot_bridge.links.ros.effects import CancelGoals, RosAction
 from robot_bridge.links.ros.goals import goal_id
 from robot_bridge.links.ros.messages import TWIST
 from robot_bridge.links.ros.settings import TopicSettings
-from robot_bridge.links.rosbridge.adapter import RosbridgeActions, RosbridgeAdapter
-from robot_bridge.links.rosbridge.connection import MOST_ANSWERS_WAITING, MOST_WAITING, RosbridgeConnection
-from robot_bridge.links.rosbridge.decoding import ServiceCall
-from robot_bridge.links.rosbridge.goals import ActionGoals, GoalBook
+from robot_bridge.links.rosbridge.adapter import MOST_ANSWERS, RosbridgeActions, RosbridgeAdapter
+from robot_bridge.links.rosbridge.connection import (
+    LARGEST_SENT,
+    MOST_ANSWERS_WAITING,
+    MOST_ASKED,
+    MOST_COMMANDS_UNREAD,
+    MOST_FAULTS,
+    MOST_UNREAD,
+    MOST_WAITING,
+    TOGETHER,
+    RosbridgeConnection,
+    Subscription,
+    encode,
+)
+from robot_bridge.links.rosbridge.decoding import ServiceCall, ServiceResponse
+from robot_bridge.links.rosbridge.goals import MOST_BEFORE, MOST_ENTRIES, ActionGoals, GoalBook
 from robot_bridge.links.rosbridge.graph import Graph
 from robot_bridge.links.rosbridge.settings import RosbridgeSettings, Server
 from robot_bridge.protocol.credentials import ClientCredentials
@@ -121,6 +133,115 @@ def test_who_asks_for_the_map_without_end_is_not_answered_without_end(connection
     answers = [one for one in waiting(connection) if one["op"] == "service_response"]
     assert len(answers) == MOST_ANSWERS_WAITING - 1
     assert {one["service"] for one in answers} == {"/r1/get_map"}
+
+
+def test_a_topic_is_read_and_written_though_there_is_no_room(connection):
+    for number in range(MOST_WAITING):
+        connection.publish("/r1/map", {"n": number})
+    connection.subscribe("/r1/odom", Subscription("nav_msgs/msg/Odometry"))
+    connection.advertise("/r1/cmd_vel", TWIST)
+    assert [one["op"] for one in waiting(connection)[-2:]] == ["subscribe", "advertise"]
+
+
+def test_an_answer_that_never_comes_is_not_waited_for_without_end(connection):
+    came = []
+    for _ in range(MOST_ASKED + 1):
+        connection.call("/r1/stop", {}, came.append)
+    ids = [one["id"] for one in waiting(connection)]
+    connection._receive(ServiceResponse(ids[0]))
+    assert came == []
+    connection._receive(ServiceResponse(ids[1]))
+    assert len(came) == 1
+
+
+def test_of_what_is_wrong_with_frames_the_newest_is_told(connection):
+    for number in range(MOST_FAULTS + 1):
+        connection._note(f"/r{number}/odom: nonsense")
+    assert len(connection.faults) == MOST_FAULTS and "/r0/odom: nonsense" not in connection.faults
+    connection._faults["old"] = (-1000.0, "of long ago")
+    assert "of long ago" not in connection.faults
+
+
+def test_a_server_that_has_dealt_with_nothing_is_sent_no_more_and_stops_a_little_longer(connection):
+    for number in range(MOST_UNREAD + 10):
+        connection.publish("/r1/map", {"n": number})
+
+    def sent():
+        count = 0
+        while connection._next() is not None:
+            connection._sent, count = connection._sent + 1, count + 1
+        return count
+
+    assert sent() == MOST_UNREAD
+    for _ in range(MOST_COMMANDS_UNREAD):
+        connection.call("/r1/stop", {}, print, urgent=True)
+    assert sent() == MOST_COMMANDS_UNREAD - MOST_UNREAD
+    # Who does not say how far it is is sent what stops robots all the same.
+    connection._is_answering = False
+    assert sent() == MOST_UNREAD + 10
+
+
+def test_a_message_that_no_server_takes_is_refused():
+    with pytest.raises(ValueError, match="10000000 are the most"):
+        encode("std_msgs/msg/String", {"data": "x" * LARGEST_SENT})
+
+
+def test_of_goals_the_newest_are_remembered():
+    book = GoalBook()
+    before = frozenset(n.to_bytes(16, "big") for n in range(MOST_BEFORE + 1))
+    for message in range(MOST_ENTRIES + 1):
+        entry = book.add(RosAction.TO_POSE, goal_id(message), before)
+    assert len(entry.before) == MOST_BEFORE
+    assert [one.goal for one in book.entries] == [goal_id(n) for n in range(1, MOST_ENTRIES + 1)]
+    assert len(GoalBook.from_json(book.to_json() * (MOST_ENTRIES + 1)).entries) == MOST_ENTRIES
+
+
+def test_of_answers_that_nobody_has_read_the_newest_are_kept(adapter, connection):
+    goals = ActionGoals("r1", connection, GoalBook(), adapter)
+    acting = RosbridgeActions("r1", RosbridgeSettings(), connection, None, goals)
+    for number in range(MOST_ANSWERS + 1):
+        acting._keep("stop", None, ServiceResponse(str(number)))
+        goals._keep(None, ServiceResponse(str(number)))
+    assert len(acting._answers) == len(goals._answers) == MOST_ANSWERS
+    assert acting._answers[0][2].id == goals._answers[0][1].id == "1"
+
+
+class Frames:
+    """A connection over which frames have come, and that has ended behind them."""
+
+    def __init__(self, *frames):
+        self._frames = frames
+
+    async def __aiter__(self):
+        for frame in self._frames:
+            yield frame
+
+    async def send(self, frame, text):
+        """Nobody is there."""
+
+
+async def test_what_was_asked_and_came_over_one_connection_counts_nothing_over_the_next(connection):
+    inbox = connection.subscribe("/r1/odom", Subscription("nav_msgs/msg/Odometry"))
+    inbox.waiting.append({"old": 1})
+    came = []
+    connection.call("/r1/stop", {}, came.append)
+    (asked,) = [one["id"] for one in waiting(connection) if one["op"] == "call_service"]
+    await connection._carry(Frames(json.dumps({"op": "service_response", "id": asked})))
+    assert came == [] and inbox.drain() == []
+
+
+async def test_a_flood_of_frames_lets_others_have_their_turn(connection):
+    turns = []
+
+    async def other():
+        while True:
+            turns.append(1)
+            await asyncio.sleep(0)
+
+    running = asyncio.create_task(other())
+    await connection._read(Frames(*["{}"] * (TOGETHER * 3)))
+    running.cancel()
+    assert len(turns) >= 3
 
 
 async def test_what_is_said_without_a_connection_is_not_said_later():

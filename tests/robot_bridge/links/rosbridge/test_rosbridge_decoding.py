@@ -14,9 +14,13 @@ from robot_bridge.links.rosbridge.messages import (
     BatteryState,
     DiagnosticArray,
     GoalId,
+    GoalStatusArray,
     NavigationFeedback,
+    NavigationResult,
     NavSatFix,
     Odometry,
+    TFMessage,
+    TopicsReply,
 )
 
 POSE = {"position": {"x": 1.5, "y": 2, "z": 0.0}, "orientation": {"x": 0.0, "y": 0.0, "z": 0.0, "w": 1.0}}
@@ -27,6 +31,12 @@ ODOMETRY = {
     "pose": {"pose": POSE, "covariance": [0.25] * 36},
     "twist": {"twist": SPEED, "covariance": [0.0] * 36},
 }
+TRANSFORM = {
+    "header": {"stamp": {"sec": 1, "nanosec": 2}, "frame_id": "map"},
+    "child_frame_id": "base_link",
+    "transform": {"translation": POSE["position"], "rotation": POSE["orientation"]},
+}
+STATUS = {"goal_info": {"goal_id": {"uuid": "AAECAwQFBgcICQoLDA0ODw=="}}, "status": 2}
 
 
 def published(message, topic="/r1/odom"):
@@ -99,6 +109,8 @@ def test_a_service_that_failed_says_a_text():
         (b"\x81" * 40 + b"\0", "nesting depth (32)"),
         (b"\x9b\xff\xff\xff\xff\xff\xff\xff\xff", "premature end"),
         (b"\x9f\x00\xff", "indefinite"),
+        (b"\xa2\x61a\x00\x61a\x01", "uplicate"),
+        (b"\xa1\x80\x00", "no CBOR"),
         (cbor2.dumps(published({"x": cbor2.CBORTag(35, "(a+)+$")})), "tag that is no array of numbers"),
         (cbor2.dumps(published({"x": 2**70})), "tag that is no array of numbers"),
         (b"\xd8\x1c\x81\xd8\x1d\x00", "tag that is no array of numbers"),
@@ -125,6 +137,11 @@ def test_what_cannot_be_used_is_named(frame, words):
         ({"uuid": [300] * 16}, GoalId, "range(0, 256)"),
         ({"uuid": {}}, GoalId, "are no bytes"),
         ({"status": [{"level": "", "name": "x"}] * 10_001}, DiagnosticArray, "length <= 10000"),
+        ({"transforms": [TRANSFORM] * 10_001}, TFMessage, "length <= 10000"),
+        ({"status_list": [STATUS] * 10_001}, GoalStatusArray, "length <= 10000"),
+        ({"missed_waypoints": [0] * 10_001}, NavigationResult, "length <= 10000"),
+        ({"topics": ["/a"] * 200_001, "types": []}, TopicsReply, "length <= 200000"),
+        ({"topics": ["/" + "a" * 1000], "types": []}, TopicsReply, "length <= 1000"),
         ({"percentage": "full"}, BatteryState, "got `str`"),
     ],
 )

@@ -176,7 +176,7 @@ def test_an_abort_cancels_what_nav2_does(desk, robot, nodes):
     desk.send(f"go-{name}", name, "SetPosEnd", x=60.0, y=8.0)
     desk.wait_for_step(f"go-{name}", "acknowledged", 5)
     desk.send(f"stop-{name}", name, "Abort")
-    desk.wait_for_step(f"stop-{name}", "acknowledged", 5)
+    desk.wait_for_step(f"stop-{name}", "acknowledged")
     desk.wait_for_step(f"go-{name}", "aborted")
     assert events(nodes, name, "cancel asked") and events(nodes, name, "goal ended")[0]["status"] == 5
 
@@ -186,10 +186,21 @@ def test_an_abort_calls_the_stop_service_and_says_speed_0(desk, robot, nodes):
     desk.send(f"go-{name}", name, "SetPosEnd", x=60.0, y=8.0)
     desk.wait_for_step(f"go-{name}", "acknowledged", 5)
     desk.send(f"stop-{name}", name, "Abort")
-    desk.wait_for_step(f"stop-{name}", "acknowledged", 5)
+    desk.wait_for_step(f"stop-{name}", "acknowledged")
     desk.wait_for_step(f"go-{name}", "aborted")
     assert events(nodes, name, "goal ended") and events(nodes, name, "stop")
     assert wait_until(lambda: events(nodes, name, "zero twist"))
+
+
+def test_a_goal_that_is_taken_on_after_its_abort_is_stopped_too(desk, robot, nodes):
+    name = robot(*SLOW, "--odd", "late-goals")
+    desk.send(f"go-{name}", name, "SetPosEnd", x=60.0, y=8.0)
+    wait_until(lambda: events(nodes, name, "goal asked"))
+    desk.send(f"stop-{name}", name, "Abort")
+    desk.wait_for_step(f"stop-{name}", "acknowledged")
+    assert not events(nodes, name, "goal")
+    (ended,) = wait_until(lambda: events(nodes, name, "goal ended"))
+    assert ended["status"] == 5
 
 
 def test_an_emergency_stop_stops_and_is_cleared(desk, robot, nodes):
@@ -197,6 +208,7 @@ def test_an_emergency_stop_stops_and_is_cleared(desk, robot, nodes):
     desk.send(f"go-{name}", name, "SetPosEnd", x=60.0, y=8.0)
     desk.wait_for_step(f"go-{name}", "acknowledged", 5)
     desk.ask("emergency_stop", {"command": f"emergency-{name}"})
+    desk.ask("emergency_stop", {"command": f"again-{name}"})
     try:
         desk.until(lambda: desk.emergency["in_force"] and name not in desk.emergency["waiting"], 10)
         assert events(nodes, name, "goal ended")[0]["status"] == 5
@@ -263,7 +275,7 @@ def test_a_server_that_is_killed_and_started_again_restores_every_topic(desk, ro
     desk.send(f"on-{name}", name, "SetPosEnd", x=26.0, y=8.0)
     desk.wait_for_step(f"on-{name}", "reached", 8)
     desk.send(f"stop-{name}", name, "Abort")
-    desk.wait_for_step(f"stop-{name}", "acknowledged", 5)
+    desk.wait_for_step(f"stop-{name}", "acknowledged")
 
 
 def test_an_abort_without_the_server_is_told_and_comes_with_it(desk, robot, server, nodes):

@@ -20,6 +20,7 @@ from tests.support.processes import Processes, free_port
 
 VEHICLE = Path(__file__).with_name("virtual_vehicle.js")
 SDK_VEHICLE = Path(__file__).with_name("sdk_vehicle.py")
+VEHICLE_3_0 = Path(__file__).with_name("vehicle_3_0.py")
 RUNS = itertools.count(1)
 
 
@@ -71,9 +72,11 @@ class Yard:
 
     def start_sdk_vehicle(self, serial: str, x: float, y: float, **options: Any) -> None:
         """Start a vehicle of version 2.1 at (x, y) of its map."""
-        given = {"port": self.port, "serial": serial, "x": x, "y": y, **options}
-        self._start(serial, [sys.executable, SDK_VEHICLE, json.dumps(given)])
-        self._processes.wait_for_line(self.names[serial], "vehicle is there", START)
+        self._start_python(SDK_VEHICLE, serial, x, y, options)
+
+    def start_vehicle_3_0(self, serial: str, x: float, y: float, **options: Any) -> None:
+        """Start a vehicle of version 3.0 at (x, y) of its map."""
+        self._start_python(VEHICLE_3_0, serial, x, y, options)
 
     def publish(self, topic: str, payload: str) -> None:
         """Publish what anybody at the broker can."""
@@ -101,18 +104,28 @@ class Yard:
         for name in reversed(self.names.values()):
             self._processes.end(name)
 
+    def _start_python(self, program: Path, serial: str, x: float, y: float, options: dict[str, Any]) -> None:
+        given = {"port": self.port, "serial": serial, "x": x, "y": y, **options}
+        self._start(serial, [sys.executable, program, json.dumps(given)])
+        self._processes.wait_for_line(self.names[serial], "vehicle is there", START)
+
     def _start(self, name: str, command: list[Any], **environment: str) -> None:
         unique = f"{name}-{next(RUNS)}"
         self.running[name] = self._processes.start(unique, command, env=environment)
         self.names[name] = unique
 
 
-def require_peers(root: Path) -> str:
-    """Return where the modules of the vehicles are; skip where broker or vehicles cannot be had."""
+def require_broker() -> None:
+    """Skip where there is no broker."""
     try:
         find_program("mosquitto", "/usr/sbin")
     except StageError as error:
         pytest.skip(str(error))
+
+
+def require_peers(root: Path) -> str:
+    """Return where the modules of the vehicles are; skip where broker or vehicles cannot be had."""
+    require_broker()
     done = subprocess.run(
         [root / "tools" / "vda5050_vehicles.sh"], capture_output=True, text=True, check=False
     )

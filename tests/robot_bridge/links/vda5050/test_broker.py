@@ -13,7 +13,7 @@ import pytest
 from robot_bridge.gateway.auth import certificates
 from robot_bridge.links.base.errors import LinkError
 from robot_bridge.links.base.settings import read_settings
-from robot_bridge.links.vda5050.broker import Broker, check_granted
+from robot_bridge.links.vda5050.broker import LARGEST, Broker, check_granted
 from robot_bridge.links.vda5050.messages import Topics
 from robot_bridge.links.vda5050.settings import Vda5050Settings, broker_address, check
 from tests.robot_bridge.links.vda5050.peers import Yard
@@ -89,6 +89,16 @@ def guard(yard):
     yard.broker_options = ["allow_anonymous false", f"password_file {passwords}"]
     (yard.folder / "password").write_text(f"{PASSWORD}\n", encoding="utf-8")
     return [f'broker = "mqtt://127.0.0.1:{yard.port}"', 'user = "fleet"', 'password_file = "password"']
+
+
+async def test_of_a_message_beyond_all_bounds_the_beginning_is_handed_on(yard):
+    yard.start_broker()
+    async with connecting(*settings_of(yard.folder, f'broker = "mqtt://127.0.0.1:{yard.port}"')) as heard:
+        await heard.until(lambda: heard.changes == [None])
+        heard.broker.publish("uagv/v2/Acme/1/state", bytes(LARGEST + 1000), urgent=True)
+        await heard.until(lambda: heard.messages)
+        # One byte more than is decoded: it is refused for that.
+        assert len(heard.messages[0][1]) == LARGEST + 1
 
 
 async def test_a_password_opens_it_and_a_wrong_one_is_named(yard):

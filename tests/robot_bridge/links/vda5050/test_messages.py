@@ -169,6 +169,7 @@ def nested(depth):
     return "[" * depth + "]" * depth
 
 
+NODE = {"nodeId": "n", "sequenceId": 2, "released": True}
 HOSTILE = [
     (b"", "state"),
     (b"\xff\xfe", "UTF-8"),
@@ -180,6 +181,8 @@ HOSTILE = [
     (json.dumps({**HEAD, **state(), "version": "3.0.0"}).encode(), "version '3.0.0' is not spoken"),
     (json.dumps({**HEAD, **state(), "orderId": "x" * 600}).encode(), "orderId"),
     (json.dumps({**HEAD, **state(), "errors": [fault("x")] * 1001}).encode(), "errors"),
+    (json.dumps({**HEAD, **state(), "errors": [fault("x" * 5000)]}).encode(), "errorDescription"),
+    (json.dumps({**HEAD, **state(), "nodeStates": [NODE] * 10_001}).encode(), "nodeStates"),
     (json.dumps({**HEAD, **state()}).replace('"x": 0.0', '"x": NaN').encode(), "state"),
     (json.dumps({**HEAD, **state()}).replace('"x": 0.0', '"x": 1e999').encode(), "state"),
     (json.dumps({**HEAD, **state()}).replace('"x": 0.0', '"x": 1e12').encode(), "agvPosition.x"),

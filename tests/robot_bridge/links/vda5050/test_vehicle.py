@@ -4,7 +4,21 @@ from __future__ import annotations
 
 import pytest
 from fleet_supervisor.robot_bridge.core.messages import Alive, SendPos, SetPath, SetPosEnd, SetPosIni, Stopped
-from fleet_supervisor.robot_bridge.links.vda5050.ledger import Keep, Publish, Settled
+from fleet_supervisor.robot_bridge.links.vda5050.ledger import (
+    MOST_REMEMBERED,
+    Keep,
+    Ledger,
+    Publish,
+    Settled,
+)
+from fleet_supervisor.robot_bridge.links.vda5050.presence import MOST_FAULTS, MOST_GREETINGS
+from fleet_supervisor.robot_bridge.links.vda5050.tasks import (
+    Remembered,
+    RouteLimits,
+    VehicleTask,
+    begin_plan,
+)
+from fleet_supervisor.robot_bridge.links.vda5050.vehicle import MOST_RESUMED
 
 from tests.robot_bridge.links.vda5050.bench import Bench, fault
 
@@ -264,6 +278,17 @@ def test_a_vehicle_that_forgot_its_order_is_given_what_is_left(bench):
     assert again.nodes[0].node_position.x == 25.0 and again.nodes[1].node_position.x > 25.0
     bench.accept(again)
     assert bench.settled == []
+
+
+def test_a_vehicle_that_forgets_its_order_again_and_again_is_given_it_no_more(bench):
+    bench.tell(LONG, 7)
+    for _ in range(MOST_RESUMED + 1):
+        bench.accept(bench.orders[-1])
+        bench.show(orderId="", orderUpdateId=0, nodeStates=[], edgeStates=[], lastNodeSequenceId=0)
+        bench.show(driving=False)
+        bench.wait(0.25)
+    assert len({order.order_id for order in bench.orders}) == MOST_RESUMED + 1
+    assert bench.settled[-1].reason == "the vehicle lost its order again and again"
 
 
 def test_an_adapter_that_is_started_anew_goes_on(bench):
@@ -580,3 +605,36 @@ def test_instant_actions_that_have_ended_are_cleared_unless_one_is_waited_for():
     bench.show(actionStates=[*ended, init])
     bench.show()
     assert bench.actions.count("clearInstantActions") == 1
+
+
+def test_of_many_errors_the_worst_are_told():
+    bench = Bench()
+    bench.connect()
+    worse = [fault(f"broken {n}", "FATAL") for n in range(MOST_FAULTS + 1)]
+    bench.show(errors=[fault("a scratch"), *worse])
+    status = bench.saying(SendPos)[-1].status
+    assert status.count("FATAL") == MOST_FAULTS and "scratch" not in status
+    assert bench.controller.alarm(bench.now).count("FATAL") == MOST_FAULTS
+
+
+def test_a_vehicle_that_says_online_again_and_again_is_two():
+    bench = Bench()
+    bench.connect()
+    for _ in range(MOST_GREETINGS):
+        bench.hear("connection", {"connectionState": "ONLINE"})
+    assert "two vehicles speak" in bench.controller.alarm(bench.now)
+
+
+def test_only_the_newest_tasks_are_remembered_as_done_or_given_up():
+    ledger = Ledger(Remembered(), 0.0)
+    for number in range(MOST_REMEMBERED + 1):
+        ledger.begin(VehicleTask(number, TARGET, 0.0))
+        ledger.end_task()
+        given_up = VehicleTask(1000 + number, TARGET, 0.0)
+        given_up.begin(begin_plan(f"order-{number}", "hall", (0, 0), [(1, 1)], None, RouteLimits()))
+        ledger.begin(given_up)
+        ledger.refuse_task("a test asked for it")
+    kept = [one.remembered for one in ledger.drain() if isinstance(one, Keep)][-1]
+    assert len(kept.ended) == len(kept.revoked) == MOST_REMEMBERED
+    assert ledger.has_ended(MOST_REMEMBERED) and not ledger.has_ended(0)
+    assert ledger.is_revoked("order-1") and not ledger.is_revoked("order-0")

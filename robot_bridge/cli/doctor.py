@@ -1,0 +1,262 @@
+"""``robot-bridge doctor``: everything that a gateway needs on this computer, checked, with what to do."""
+
+from __future__ import annotations
+
+import datetime
+import http.client
+import importlib.util
+import json
+import resource
+import shutil
+import ssl
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Iterator
+from enum import StrEnum
+from functools import partial
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import TYPE_CHECKING, Annotated, NamedTuple
+
+import typer
+
+from ..core.errors import BridgeError, SiteError, counted
+from ..core.logs import set_up_log
+from ..core.sites.site_database import is_database_address
+from .options import DatabaseOption, PasswordFileOption
+from .serve import SiteOption, gateway_settings
+
+if TYPE_CHECKING:
+    from ..core.sites.site import Site
+    from ..gateway.app import GatewaySettings
+
+LEAST_FREE, FEW_FREE = 100e6, 1e9
+"""Bytes free on the disk below which nothing is sure to be stored, and below which somebody has to act."""
+WARN_DAYS = 30
+ANSWER_WITHIN = 5.0
+"""Seconds for a gateway that runs, and for a program of the system, to answer."""
+
+
+class Level(StrEnum):
+    """How a check ended; with a fault the gateway does not start, or does not do its work."""
+
+    OK = "ok"
+    WARNING = "warning"
+    FAULT = "FAULT"
+
+
+class Finding(NamedTuple):
+    """What a check found, one line; where it is not well, it says what to do."""
+
+    level: Level
+    subject: str
+    text: str
+
+
+def doctor(
+    site: SiteOption,
+    database: DatabaseOption = "",
+    database_password_file: PasswordFileOption = None,
+    host: Annotated[str, typer.Option(help="Address that the gateway listens on.")] = "",
+    port: Annotated[int | None, typer.Option(help="Port that it listens on.", min=1, max=65535)] = None,
+    certificate: Annotated[Path | None, typer.Option(help="The gateway's certificate (PEM).")] = None,
+    key: Annotated[Path | None, typer.Option(help="Its key (PEM).")] = None,
+) -> None:
+    """Check what a gateway needs on this computer, and say what to do.
+
+    Give it the options of serve. It changes nothing; status 1 says that the gateway cannot do its work.
+    """
+    # What is found is said once.
+    set_up_log("text", "error")
+    worst = Level.OK
+    # A site in a database is fetched, and not to where a gateway keeps its copy.
+    with TemporaryDirectory(prefix="robot-bridge-") as folder:
+        state = Path(folder) if is_database_address(site) else None
+        given = (database, database_password_file, host, port, certificate, key)
+        for finding in findings(gateway_settings(site, state, *given)):
+            typer.echo(f"{finding.level:<8} {finding.subject:<12} {finding.text}")
+            worst = finding.level if finding.level is Level.FAULT else worst
+    if worst is Level.FAULT:
+        raise typer.Exit(1)
+
+
+def findings(settings: GatewaySettings) -> Iterator[Finding]:
+    """Yield what each check finds; none keeps another from its turn."""
+    checks: dict[str, Callable[[GatewaySettings], Iterator[Finding]]] = {
+        "site": _check_site,
+        "database": _check_database,
+        "certificate": _check_certificate,
+        "reach": _check_reach,
+        "disk": _check_disk,
+        "clock": _check_clock,
+        "packages": _check_packages,
+        "gateway": _check_gateway,
+    }
+    for subject, check in checks.items():
+        try:
+            yield from check(settings)
+        except (BridgeError, SiteError, OSError) as error:
+            yield Finding(Level.FAULT, subject, str(error))
+
+
+def _check_site(settings: GatewaySettings) -> Iterator[Finding]:
+    from ..core.sites.site import read_site
+    from ..links.kinds import load
+
+    site = read_site(settings.site)
+    version = f"{site.name}, version {site.version}, {counted(len(site.outlines), 'obstacle')}"
+    yield Finding(Level.OK, "site", f"{settings.site}: {version}")
+    yield _open_files(site)
+    for kind, name in site.settings.links.files():
+        try:
+            load(kind, settings.site / name)
+        except (BridgeError, SiteError, OSError) as error:
+            yield Finding(Level.FAULT, "link", str(error))
+        else:
+            yield Finding(Level.OK, "link", f"{name}: {kind}")
+
+
+def _open_files(site: Site) -> Finding:
+    from ..gateway.auth.port import files_needed
+
+    needed, most = files_needed(site.settings.limits), resource.getrlimit(resource.RLIMIT_NOFILE)[1]
+    if most != resource.RLIM_INFINITY and most < needed:
+        text = f"{most} may be open, and the site's limits take {needed}: raise LimitNOFILE of the service"
+        return Finding(Level.WARNING, "open files", text)
+    return Finding(Level.OK, "open files", f"{needed} may be needed, and be opened")
+
+
+def _check_database(settings: GatewaySettings) -> Iterator[Finding]:
+    from ..gateway.storage import revisions
+    from ..gateway.storage.database import run_once, shown
+
+    place, file = shown(settings.database), _database_file(settings)
+    if file is not None and not file.is_file():
+        yield Finding(Level.WARNING, "database", f"{place} is not there: the gateway makes it when it starts")
+        return
+    report = run_once(settings.database, revisions.report)
+    if report.good:
+        yield Finding(Level.OK, "database", f"{place}: revision {report.found}")
+        return
+    yield Finding(Level.FAULT, "database", f"{place}: {'; '.join((*report.differences, report.advice))}")
+
+
+def _check_certificate(settings: GatewaySettings) -> Iterator[Finding]:
+    from ..gateway.auth.certificates import valid_until
+    from ..gateway.auth.tls import ServerTls
+
+    if settings.tls is None:
+        yield Finding(Level.OK, "certificate", "none: ws://, for this computer only")
+        return
+    file, names = settings.tls.certificate, ServerTls(settings.tls).names
+    until = valid_until(file)
+    left = (until - datetime.datetime.now(datetime.timezone.utc)).days
+    text = f"{file}: for {', '.join(names)}, until {until:%Y-%m-%d}"
+    if left >= WARN_DAYS:
+        yield Finding(Level.OK, "certificate", text)
+        return
+    level = Level.WARNING if left >= 0 else Level.FAULT
+    yield Finding(level, "certificate", f"{text}: make a new one with 'robot-bridge tls renew {file.parent}'")
+
+
+def _check_reach(settings: GatewaySettings) -> Iterator[Finding]:
+    from ..gateway.auth.accounts import grants
+    from ..gateway.auth.port import check_reach, is_loopback
+    from ..gateway.storage.database import run_once
+
+    if is_loopback(settings.host):
+        yield Finding(Level.OK, "reach", f"{settings.host}: nobody beyond this computer")
+        return
+    check_reach(settings.host, tls=settings.tls is not None, accounts=True)
+    file, now = _database_file(settings), time.time()
+    is_new = file is not None and not file.is_file()
+    known = [] if is_new else run_once(settings.database, grants)
+    has_operator = any(one.role is not None and one.fault(now) is None for one in known)
+    check_reach(settings.host, tls=True, accounts=has_operator)
+    yield Finding(Level.OK, "reach", f"{settings.host}: other computers, with TLS and accounts")
+
+
+def _check_disk(settings: GatewaySettings) -> Iterator[Finding]:
+    folders = {settings.state or settings.site.absolute().parent}
+    if (file := _database_file(settings)) is not None:
+        folders.add(file.absolute().parent)
+    for folder in sorted(folders):
+        free = shutil.disk_usage(folder).free
+        level = Level.FAULT if free < LEAST_FREE else Level.WARNING if free < FEW_FREE else Level.OK
+        advice = "" if level is Level.OK else ": free some, or keep trajectories for fewer days (site.toml)"
+        yield Finding(level, "disk", f"{folder}: {free / 1e9:.1f} GB free{advice}")
+
+
+def _check_clock(settings: GatewaySettings) -> Iterator[Finding]:
+    program = shutil.which("timedatectl")
+    words = [program or "", "show", "--property=NTPSynchronized", "--value"]
+    try:
+        # Where no systemd runs it fails, and nobody knows.
+        asked = subprocess.run(  # nosec B603 # our own words, no shell
+            words, capture_output=True, text=True, check=False, timeout=ANSWER_WITHIN
+        )
+        said = asked.stdout.strip()
+    except (OSError, subprocess.TimeoutExpired):
+        said = ""
+    if said == "yes":
+        yield Finding(Level.OK, "clock", "set by a time server")
+    elif said == "no":
+        text = "not set by a time server: install chrony, or times in reports and of robots will differ"
+        yield Finding(Level.WARNING, "clock", text)
+    else:
+        yield Finding(Level.WARNING, "clock", "whether a time server sets it is not known here: no systemd")
+
+
+def _check_packages(settings: GatewaySettings) -> Iterator[Finding]:
+    missing = {
+        "uvloop": ("speed", "the gateway takes twice the processor time"),
+        "routingkit_cch": ("routes", "routes on large road networks take longer"),
+    }
+    for package, (extra, else_) in missing.items():
+        if importlib.util.find_spec(package) is None:
+            advice = f"pip install 'fleet-supervisor-robot-bridge[{extra}]'"
+            yield Finding(Level.WARNING, "packages", f"without {package} {else_}: {advice}")
+            return
+    yield Finding(Level.OK, "packages", f"Python {sys.version.split()[0]}, with all that makes it quick")
+
+
+def _check_gateway(settings: GatewaySettings) -> Iterator[Finding]:
+    from ..gateway.api.status_pages import HEALTH
+
+    host = {"0.0.0.0": "127.0.0.1", "::": "::1"}.get(settings.host, settings.host)  # nosec B104 # read
+    where = f"{host}:{settings.port}"
+    connect: Callable[..., http.client.HTTPConnection] = http.client.HTTPConnection
+    if settings.tls is not None:
+        # It is this computer that is asked; whether others can trust the certificate is checked above.
+        connect = partial(http.client.HTTPSConnection, context=ssl._create_unverified_context())  # nosec B323
+    asked = connect(host, settings.port, timeout=ANSWER_WITHIN)
+    try:
+        asked.request("GET", HEALTH)
+        health = json.loads(asked.getresponse().read(1 << 20))
+        failing = [name for name, one in health.items() if isinstance(one, dict) and one.get("ok") is False]
+        said = f"version {health['version']}, site {health['site']['id']}"
+    except ConnectionRefusedError:
+        yield Finding(Level.WARNING, "gateway", f"none runs at {where}: start it with 'robot-bridge serve'")
+        return
+    except (OSError, http.client.HTTPException, ValueError, KeyError, TypeError, AttributeError) as error:
+        text = f"what listens at {where} does not answer as a gateway ({error!r}): end it, or take --port"
+        yield Finding(Level.FAULT, "gateway", text)
+        return
+    finally:
+        asked.close()
+    down = [name for name, link in health.get("links", {}).items() if not link["ok"]]
+    if down:
+        yield Finding(Level.WARNING, "gateway", f"{where}: links that are down: {', '.join(down)}")
+    if failing:
+        text = f"{where}: {', '.join(failing)} failing: journalctl -u robot-bridge says why"
+        yield Finding(Level.FAULT, "gateway", text)
+    else:
+        yield Finding(Level.OK, "gateway", f"{where}: {said}")
+
+
+def _database_file(settings: GatewaySettings) -> Path | None:
+    """Return the file of a database that is one."""
+    address = settings.database
+    is_file = address.drivername.startswith("sqlite") and address.database
+    return Path(str(address.database)) if is_file else None
