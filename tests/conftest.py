@@ -245,3 +245,38 @@ def data() -> Path:
     if not DATA.is_dir():
         pytest.skip(f"the real data is not on this machine: {DATA} does not exist")
     return DATA
+
+
+@pytest.fixture(scope="session")
+def postgresql_server():
+    """A real PostgreSQL of these tests' own, which can make databases, be killed and come back."""
+    from tests.support.databases.postgresql import PostgreSql
+
+    yield from _serving(PostgreSql())
+
+
+@pytest.fixture(scope="session")
+def mariadb_server():
+    """A real MariaDB of these tests' own; as ``postgresql_server``."""
+    from tests.support.databases.mariadb import MariaDb
+
+    yield from _serving(MariaDb())
+
+
+def _serving(server):
+    from tests.support.errors import StageError
+
+    try:
+        server.require_programs()
+    except StageError as error:
+        pytest.skip(str(error))
+    with server:
+        yield server
+
+
+@pytest.fixture(scope="session")
+def postgis_server(postgresql_server):
+    """The same, where PostGIS is installed."""
+    if "postgis" not in postgresql_server.sql("select name from pg_available_extensions"):
+        pytest.skip("PostGIS is not installed; run: make setup")
+    return postgresql_server

@@ -93,7 +93,8 @@ def _check(layer: QgsVectorLayer, role: str) -> None:
             tr(
                 "The layer {name} cannot be opened ({source}): repair its data source or leave it out.",
                 name=name,
-                source=layer.source(),
+                # Without the password of a database.
+                source=layer.publicSource(),
             )
         )
     points = QgsWkbTypes.GeometryType.PointGeometry

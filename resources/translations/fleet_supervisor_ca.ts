@@ -2546,6 +2546,81 @@
             <translation>{error}; es fa servir la seva amplada</translation>
         </message>
         <message>
+            <location filename="../../plugin/layers/publishing/postgis.py" />
+            <source>Another publication of {site} into database {database} has ended meanwhile: publish again.</source>
+            <translation>Mentrestant ha acabat una altra publicació de {site} a la base de dades {database}: torneu a publicar.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/publishing/postgis.py" />
+            <source>QGIS has no PostgreSQL connection {name}; it has: {known}. Make it in the browser panel, PostgreSQL &gt; New Connection, or write the address of the database, such as postgresql://account@host/database.</source>
+            <translation>El QGIS no té cap connexió PostgreSQL {name}; té: {known}. Creeu-la al tauler del navegador, PostgreSQL &gt; Connexió nova, o escriviu l'adreça de la base de dades, com ara postgresql://account@host/database.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/publishing/postgis.py" />
+            <source>SITE_ID {site} is too long for a database: give one of at most {most} letters.</source>
+            <translation>SITE_ID {site} és massa llarg per a una base de dades: doneu-ne un de {most} lletres com a màxim.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/publishing/postgis.py" />
+            <source>Somebody has read or written {site} in database {database} for more than {seconds} s: wait until another publication has ended, close what shows its layers, and publish again.</source>
+            <translation>Algú fa més de {seconds} s que llegeix o escriu {site} a la base de dades {database}: espereu que acabi una altra publicació, tanqueu el que en mostra les capes i torneu a publicar.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/publishing/postgis.py" />
+            <source>Something of yours is made of the views of {site} in database {database}, which stand for one version: {error}. Remove it, publish, and make it again.</source>
+            <translation>Alguna cosa vostra es basa en les vistes de {site} a la base de dades {database}, que ara seran unes altres: {error}. Traieu-la, publiqueu i torneu-la a crear.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/publishing/postgis.py" />
+            <source>The PostGIS of database {database} does not know {crs}: choose a SITE_CRS that its table spatial_ref_sys has, or have an administrator add this one there.</source>
+            <translation>El PostGIS de la base de dades {database} no coneix {crs}: trieu un SITE_CRS que sigui a la seva taula spatial_ref_sys, o feu que un administrador l'hi afegeixi.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/publishing/postgis.py" />
+            <source>The Python package psycopg2 is missing in this QGIS, which writes to PostgreSQL: {install}</source>
+            <translation>En aquest QGIS falta el paquet de Python psycopg2, que escriu a PostgreSQL: {install}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/publishing/postgis.py" />
+            <source>The account {account} may make no schemas in database {database}, and a site is published in some. Its owner runs: {command}</source>
+            <translation>El compte {account} no pot crear esquemes a la base de dades {database}, i un recinte s'hi publica. El propietari executa: {command}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/publishing/postgis.py" />
+            <source>The connection to database {database} was lost at the last moment: {site} is published there, or is as it was. Publish again.</source>
+            <translation>La connexió amb la base de dades {database} s'ha perdut en l'últim moment: {site} hi és publicat, o és com era. Torneu a publicar.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/publishing/postgis.py" />
+            <source>The database cannot be reached: {error}. Check that it runs, and the host, database, account and password of the connection.</source>
+            <translation>No es pot arribar a la base de dades: {error}. Comproveu que funciona, i el servidor, la base de dades, el compte i la contrasenya de la connexió.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/publishing/postgis.py" />
+            <source>The database {database} has no PostGIS. Install the package postgresql-15-postgis-3 (of your version) on the server, and as its administrator run in this database: create extension postgis</source>
+            <translation>La base de dades {database} no té PostGIS. Instal·leu al servidor el paquet postgresql-15-postgis-3 (de la vostra versió) i, com a administrador, executeu en aquesta base de dades: create extension postgis</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/publishing/postgis.py" />
+            <source>The schema {schema} of database {database} is of another program, or of another version of this one (it says “{found}”): publish with that, or into another database.</source>
+            <translation>L'esquema {schema} de la base de dades {database} és d'un altre programa, o d'una altra versió d'aquest (diu «{found}»): publiqueu amb aquella, o en una altra base de dades.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/publishing/postgis.py" />
+            <source>The site cannot be published in database {database}: {error}. What was published there before is as it was.</source>
+            <translation>El recinte no es pot publicar a la base de dades {database}: {error}. El que hi havia publicat és com era.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/publishing/postgis.py" />
+            <source>The sites in database {database} belong to the account {owner}, and not to {account}: publish as {owner}, or have an administrator run: {command}</source>
+            <translation>Els recintes de la base de dades {database} són del compte {owner}, i no de {account}: publiqueu com a {owner}, o feu que un administrador executi: {command}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/publishing/postgis.py" />
+            <source>install the distribution's package, such as python3-psycopg2.</source>
+            <translation>instal·leu el paquet de la distribució, com ara python3-psycopg2.</translation>
+        </message>
+        <message>
             <location filename="../../plugin/layers/publishing/publication.py" />
             <source>Another publication into {folder} is under way, by {who}: wait until it has ended, or choose another folder. If it ended on another computer without a word, remove {file}.</source>
             <translation>Una altra publicació a {folder} és en curs, de {who}: espereu que acabi, o trieu una altra carpeta. Si va acabar en un altre ordinador sense dir res, esborreu {file}.</translation>
@@ -7649,8 +7724,8 @@
         </message>
         <message>
             <location filename="../../plugin/processing/algorithms/publish_site.py" />
-            <source>&lt;p&gt;Writes the layers of a site into a folder with &lt;i&gt;site.toml&lt;/i&gt; and &lt;i&gt;site.gpkg&lt;/i&gt;, which &lt;i&gt;robot-bridge serve --site FOLDER&lt;/i&gt; serves.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Layers&lt;/b&gt;: those of the project by their roles (menu Fleet Supervisor, Layer roles), or by a &lt;b&gt;map profile&lt;/b&gt;, or the layers given here. Which features count, heights, where things begin above the ground, labels, road widths and shapes of furniture come from the expressions kept with the roles; heights, labels and widths else from the fields &lt;i&gt;height&lt;/i&gt; or &lt;i&gt;height_m&lt;/i&gt;, &lt;i&gt;surface&lt;/i&gt;, &lt;i&gt;name&lt;/i&gt;, &lt;i&gt;width_m&lt;/i&gt; or &lt;i&gt;width&lt;/i&gt;.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Version&lt;/b&gt;: 1 for a new folder, else one more than the version there. A folder that holds another site is refused unless &lt;b&gt;Replace&lt;/b&gt; is ticked.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Bounds&lt;/b&gt;: the rectangle, along the axes of the site frame, that robots may be sent into. Obstacles are published up to 100 m beyond it, so that a robot at its edge is told what stands there.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Site CRS, origin, rotation&lt;/b&gt;: where the robots' (0, 0) is and how their x axis lies. Default: as the project has it.&lt;/p&gt; &lt;p&gt;An earlier publication is replaced only after the new one is complete; a cancel leaves it as it was. Broken geometry is repaired where that is safe and left out where it is not, each time with a warning that names the layer and the feature. One publication into a folder runs at a time.&lt;/p&gt;</source>
-            <translation>&lt;p&gt;Escriu les capes d'un recinte en una carpeta amb &lt;i&gt;site.toml&lt;/i&gt; i &lt;i&gt;site.gpkg&lt;/i&gt;, que serveix &lt;i&gt;robot-bridge serve --site FOLDER&lt;/i&gt;.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Capes&lt;/b&gt;: les del projecte segons els seus papers (menú Fleet Supervisor, Papers de les capes), o segons un &lt;b&gt;perfil de mapa&lt;/b&gt;, o les capes que es donen aquí. Quines entitats compten, les alçades, on comencen les coses sobre el terra, les etiquetes, les amplades de les vies i les formes del mobiliari venen de les expressions que es guarden amb els papers; les alçades, etiquetes i amplades si no dels camps &lt;i&gt;height&lt;/i&gt; o &lt;i&gt;height_m&lt;/i&gt;, &lt;i&gt;surface&lt;/i&gt;, &lt;i&gt;name&lt;/i&gt;, &lt;i&gt;width_m&lt;/i&gt; o &lt;i&gt;width&lt;/i&gt;.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Versió&lt;/b&gt;: 1 per a una carpeta nova, si no una més que la que hi ha. Una carpeta amb un altre recinte es refusa si no es marca &lt;b&gt;Substitueix&lt;/b&gt;.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Límits&lt;/b&gt;: el rectangle, al llarg dels eixos del marc del recinte, on es poden enviar robots. Els obstacles es publiquen fins a 100 m més enllà, perquè un robot a la vora sàpiga què hi ha.&lt;/p&gt; &lt;p&gt;&lt;b&gt;SRC, origen i rotació del recinte&lt;/b&gt;: on és el (0, 0) dels robots i com està el seu eix x. Per defecte: com ho té el projecte.&lt;/p&gt; &lt;p&gt;Una publicació anterior només se substitueix quan la nova és completa; una cancel·lació la deixa com era. La geometria trencada es repara on és segur i queda fora on no ho és, cada vegada amb un avís que anomena la capa i l'entitat. Només es fa una publicació alhora en una carpeta.&lt;/p&gt;</translation>
+            <source>&lt;p&gt;Writes the layers of a site into a folder with &lt;i&gt;site.toml&lt;/i&gt; and &lt;i&gt;site.gpkg&lt;/i&gt;, which &lt;i&gt;robot-bridge serve --site FOLDER&lt;/i&gt; serves.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Layers&lt;/b&gt;: those of the project by their roles (menu Fleet Supervisor, Layer roles), or by a &lt;b&gt;map profile&lt;/b&gt;, or the layers given here. Which features count, heights, where things begin above the ground, labels, road widths and shapes of furniture come from the expressions kept with the roles; heights, labels and widths else from the fields &lt;i&gt;height&lt;/i&gt; or &lt;i&gt;height_m&lt;/i&gt;, &lt;i&gt;surface&lt;/i&gt;, &lt;i&gt;name&lt;/i&gt;, &lt;i&gt;width_m&lt;/i&gt; or &lt;i&gt;width&lt;/i&gt;.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Version&lt;/b&gt;: 1 for a new folder, else one more than the version there. A folder that holds another site is refused unless &lt;b&gt;Replace&lt;/b&gt; is ticked.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Database&lt;/b&gt;: the site goes into PostgreSQL with PostGIS, too, or only there where no folder is given: the layers as tables, with views of the newest version in the schema &lt;i&gt;site_ID&lt;/i&gt;, and all that &lt;i&gt;robot-bridge serve --site postgresql://account@host/database#ID&lt;/i&gt; serves. It is a connection of QGIS's or such an address.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Bounds&lt;/b&gt;: the rectangle, along the axes of the site frame, that robots may be sent into. Obstacles are published up to 100 m beyond it, so that a robot at its edge is told what stands there.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Site CRS, origin, rotation&lt;/b&gt;: where the robots' (0, 0) is and how their x axis lies. Default: as the project has it.&lt;/p&gt; &lt;p&gt;An earlier publication is replaced only after the new one is complete; a cancel leaves it as it was. Broken geometry is repaired where that is safe and left out where it is not, each time with a warning that names the layer and the feature. One publication into a folder runs at a time.&lt;/p&gt;</source>
+            <translation>&lt;p&gt;Escriu les capes d'un recinte en una carpeta amb &lt;i&gt;site.toml&lt;/i&gt; i &lt;i&gt;site.gpkg&lt;/i&gt;, que serveix &lt;i&gt;robot-bridge serve --site FOLDER&lt;/i&gt;.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Capes&lt;/b&gt;: les del projecte segons els seus papers (menú Fleet Supervisor, Papers de les capes), o segons un &lt;b&gt;perfil de mapa&lt;/b&gt;, o les capes que es donen aquí. Quines entitats compten, les alçades, on comencen les coses sobre el terra, les etiquetes, les amplades de les vies i les formes del mobiliari venen de les expressions que es guarden amb els papers; les alçades, etiquetes i amplades si no dels camps &lt;i&gt;height&lt;/i&gt; o &lt;i&gt;height_m&lt;/i&gt;, &lt;i&gt;surface&lt;/i&gt;, &lt;i&gt;name&lt;/i&gt;, &lt;i&gt;width_m&lt;/i&gt; o &lt;i&gt;width&lt;/i&gt;.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Versió&lt;/b&gt;: 1 per a una carpeta nova, si no una més que la que hi ha. Una carpeta amb un altre recinte es refusa si no es marca &lt;b&gt;Substitueix&lt;/b&gt;.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Base de dades&lt;/b&gt;: el recinte va també a PostgreSQL amb PostGIS, o només allà si no es dona cap carpeta: les capes com a taules, amb vistes de la versió més nova a l'esquema &lt;i&gt;site_ID&lt;/i&gt;, i tot el que serveix &lt;i&gt;robot-bridge serve --site postgresql://account@host/database#ID&lt;/i&gt;. És una connexió del QGIS o una adreça com aquesta.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Límits&lt;/b&gt;: el rectangle, al llarg dels eixos del marc del recinte, on es poden enviar robots. Els obstacles es publiquen fins a 100 m més enllà, perquè un robot a la vora sàpiga què hi ha.&lt;/p&gt; &lt;p&gt;&lt;b&gt;SRC, origen i rotació del recinte&lt;/b&gt;: on és el (0, 0) dels robots i com està el seu eix x. Per defecte: com ho té el projecte.&lt;/p&gt; &lt;p&gt;Una publicació anterior només se substitueix quan la nova és completa; una cancel·lació la deixa com era. La geometria trencada es repara on és segur i queda fora on no ho és, cada vegada amb un avís que anomena la capa i l'entitat. Només es fa una publicació alhora en una carpeta.&lt;/p&gt;</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/algorithms/publish_site.py" />
@@ -7669,6 +7744,11 @@
         </message>
         <message>
             <location filename="../../plugin/processing/algorithms/publish_site.py" />
+            <source>Database of the published site (PostGIS)</source>
+            <translation>Base de dades del recinte publicat (PostGIS)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/publish_site.py" />
             <source>Folder of the published site</source>
             <translation>Carpeta del recinte publicat</translation>
         </message>
@@ -7681,6 +7761,11 @@
             <location filename="../../plugin/processing/algorithms/publish_site.py" />
             <source>Id of the site</source>
             <translation>Id del recinte</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/publish_site.py" />
+            <source>It is not said where to publish: give FOLDER, a folder, or DATABASE, a PostgreSQL connection of QGIS's.</source>
+            <translation>No s'ha dit on publicar: doneu FOLDER, una carpeta, o DATABASE, una connexió PostgreSQL del QGIS.</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/algorithms/publish_site.py" />
@@ -7724,6 +7809,11 @@
         </message>
         <message>
             <location filename="../../plugin/processing/algorithms/publish_site.py" />
+            <source>Schema of the site's views in the database</source>
+            <translation>Esquema de les vistes del recinte a la base de dades</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/publish_site.py" />
             <source>Site id (default: the project's)</source>
             <translation>Id del recinte (per defecte: el del projecte)</translation>
         </message>
@@ -7754,6 +7844,11 @@
         </message>
         <message>
             <location filename="../../plugin/processing/algorithms/publish_site.py" />
+            <source>The tables in the schema {schema} of an earlier version are in use: they stay until the next publication.</source>
+            <translation>Les taules d'una versió anterior a l'esquema {schema} són en ús: s'hi queden fins a la publicació següent.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/publish_site.py" />
             <source>There is nothing to publish: no layer is given and no layer of the project has a role. Give roles (Fleet Supervisor &gt; Layer roles), a PROFILE, or layers.</source>
             <translation>No hi ha res a publicar: no s'ha donat cap capa i cap capa del projecte té un paper. Doneu papers (Fleet Supervisor &gt; Papers de les capes), un PROFILE, o capes.</translation>
         </message>
@@ -7781,6 +7876,11 @@
             <location filename="../../plugin/processing/algorithms/publish_site.py" />
             <source>Writes the layers of a site, by their roles, into the folder that a gateway serves.</source>
             <translation>Escriu les capes d'un recinte, segons els seus papers, a la carpeta que serveix una passarel·la.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/publish_site.py" />
+            <source>the database, schema {schema}</source>
+            <translation>la base de dades, esquema {schema}</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/algorithms/publish_site.py" />

@@ -2546,6 +2546,81 @@
             <translation>{error}; se usa su anchura</translation>
         </message>
         <message>
+            <location filename="../../plugin/layers/publishing/postgis.py" />
+            <source>Another publication of {site} into database {database} has ended meanwhile: publish again.</source>
+            <translation>Entretanto ha terminado otra publicación de {site} en la base de datos {database}: publique de nuevo.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/publishing/postgis.py" />
+            <source>QGIS has no PostgreSQL connection {name}; it has: {known}. Make it in the browser panel, PostgreSQL &gt; New Connection, or write the address of the database, such as postgresql://account@host/database.</source>
+            <translation>QGIS no tiene ninguna conexión PostgreSQL {name}; tiene: {known}. Créela en el panel del navegador, PostgreSQL &gt; Nueva conexión, o escriba la dirección de la base de datos, como postgresql://account@host/database.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/publishing/postgis.py" />
+            <source>SITE_ID {site} is too long for a database: give one of at most {most} letters.</source>
+            <translation>SITE_ID {site} es demasiado largo para una base de datos: dé uno de {most} letras como máximo.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/publishing/postgis.py" />
+            <source>Somebody has read or written {site} in database {database} for more than {seconds} s: wait until another publication has ended, close what shows its layers, and publish again.</source>
+            <translation>Alguien lleva más de {seconds} s leyendo o escribiendo {site} en la base de datos {database}: espere a que termine otra publicación, cierre lo que muestra sus capas y publique de nuevo.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/publishing/postgis.py" />
+            <source>Something of yours is made of the views of {site} in database {database}, which stand for one version: {error}. Remove it, publish, and make it again.</source>
+            <translation>Algo suyo se basa en las vistas de {site} en la base de datos {database}, que ahora serán otras: {error}. Quítelo, publique y créelo de nuevo.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/publishing/postgis.py" />
+            <source>The PostGIS of database {database} does not know {crs}: choose a SITE_CRS that its table spatial_ref_sys has, or have an administrator add this one there.</source>
+            <translation>El PostGIS de la base de datos {database} no conoce {crs}: elija un SITE_CRS que esté en su tabla spatial_ref_sys, o haga que un administrador lo añada allí.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/publishing/postgis.py" />
+            <source>The Python package psycopg2 is missing in this QGIS, which writes to PostgreSQL: {install}</source>
+            <translation>En este QGIS falta el paquete de Python psycopg2, que escribe en PostgreSQL: {install}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/publishing/postgis.py" />
+            <source>The account {account} may make no schemas in database {database}, and a site is published in some. Its owner runs: {command}</source>
+            <translation>La cuenta {account} no puede crear esquemas en la base de datos {database}, y un recinto se publica en ellos. Su propietario ejecuta: {command}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/publishing/postgis.py" />
+            <source>The connection to database {database} was lost at the last moment: {site} is published there, or is as it was. Publish again.</source>
+            <translation>La conexión con la base de datos {database} se perdió en el último momento: {site} está publicado allí, o está como estaba. Publique de nuevo.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/publishing/postgis.py" />
+            <source>The database cannot be reached: {error}. Check that it runs, and the host, database, account and password of the connection.</source>
+            <translation>No se puede acceder a la base de datos: {error}. Compruebe que funciona, y el servidor, la base de datos, la cuenta y la contraseña de la conexión.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/publishing/postgis.py" />
+            <source>The database {database} has no PostGIS. Install the package postgresql-15-postgis-3 (of your version) on the server, and as its administrator run in this database: create extension postgis</source>
+            <translation>La base de datos {database} no tiene PostGIS. Instale en el servidor el paquete postgresql-15-postgis-3 (de su versión) y, como administrador, ejecute en esta base de datos: create extension postgis</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/publishing/postgis.py" />
+            <source>The schema {schema} of database {database} is of another program, or of another version of this one (it says “{found}”): publish with that, or into another database.</source>
+            <translation>El esquema {schema} de la base de datos {database} es de otro programa, o de otra versión de este (dice «{found}»): publique con esa, o en otra base de datos.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/publishing/postgis.py" />
+            <source>The site cannot be published in database {database}: {error}. What was published there before is as it was.</source>
+            <translation>El recinto no se puede publicar en la base de datos {database}: {error}. Lo que había publicado allí está como estaba.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/publishing/postgis.py" />
+            <source>The sites in database {database} belong to the account {owner}, and not to {account}: publish as {owner}, or have an administrator run: {command}</source>
+            <translation>Los recintos de la base de datos {database} son de la cuenta {owner}, y no de {account}: publique como {owner}, o haga que un administrador ejecute: {command}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/publishing/postgis.py" />
+            <source>install the distribution's package, such as python3-psycopg2.</source>
+            <translation>instale el paquete de la distribución, como python3-psycopg2.</translation>
+        </message>
+        <message>
             <location filename="../../plugin/layers/publishing/publication.py" />
             <source>Another publication into {folder} is under way, by {who}: wait until it has ended, or choose another folder. If it ended on another computer without a word, remove {file}.</source>
             <translation>Otra publicación en {folder} está en curso, de {who}: espere a que acabe, o elija otra carpeta. Si acabó en otro ordenador sin decir nada, borre {file}.</translation>
@@ -7649,8 +7724,8 @@
         </message>
         <message>
             <location filename="../../plugin/processing/algorithms/publish_site.py" />
-            <source>&lt;p&gt;Writes the layers of a site into a folder with &lt;i&gt;site.toml&lt;/i&gt; and &lt;i&gt;site.gpkg&lt;/i&gt;, which &lt;i&gt;robot-bridge serve --site FOLDER&lt;/i&gt; serves.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Layers&lt;/b&gt;: those of the project by their roles (menu Fleet Supervisor, Layer roles), or by a &lt;b&gt;map profile&lt;/b&gt;, or the layers given here. Which features count, heights, where things begin above the ground, labels, road widths and shapes of furniture come from the expressions kept with the roles; heights, labels and widths else from the fields &lt;i&gt;height&lt;/i&gt; or &lt;i&gt;height_m&lt;/i&gt;, &lt;i&gt;surface&lt;/i&gt;, &lt;i&gt;name&lt;/i&gt;, &lt;i&gt;width_m&lt;/i&gt; or &lt;i&gt;width&lt;/i&gt;.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Version&lt;/b&gt;: 1 for a new folder, else one more than the version there. A folder that holds another site is refused unless &lt;b&gt;Replace&lt;/b&gt; is ticked.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Bounds&lt;/b&gt;: the rectangle, along the axes of the site frame, that robots may be sent into. Obstacles are published up to 100 m beyond it, so that a robot at its edge is told what stands there.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Site CRS, origin, rotation&lt;/b&gt;: where the robots' (0, 0) is and how their x axis lies. Default: as the project has it.&lt;/p&gt; &lt;p&gt;An earlier publication is replaced only after the new one is complete; a cancel leaves it as it was. Broken geometry is repaired where that is safe and left out where it is not, each time with a warning that names the layer and the feature. One publication into a folder runs at a time.&lt;/p&gt;</source>
-            <translation>&lt;p&gt;Escribe las capas de un recinto en una carpeta con &lt;i&gt;site.toml&lt;/i&gt; y &lt;i&gt;site.gpkg&lt;/i&gt;, que sirve &lt;i&gt;robot-bridge serve --site FOLDER&lt;/i&gt;.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Capas&lt;/b&gt;: las del proyecto según sus papeles (menú Fleet Supervisor, Papeles de las capas), o según un &lt;b&gt;perfil de mapa&lt;/b&gt;, o las capas que se dan aquí. Qué objetos espaciales cuentan, las alturas, dónde empiezan las cosas sobre el suelo, las etiquetas, las anchuras de las vías y las formas del mobiliario vienen de las expresiones que se guardan con los papeles; las alturas, etiquetas y anchuras si no de los campos &lt;i&gt;height&lt;/i&gt; o &lt;i&gt;height_m&lt;/i&gt;, &lt;i&gt;surface&lt;/i&gt;, &lt;i&gt;name&lt;/i&gt;, &lt;i&gt;width_m&lt;/i&gt; o &lt;i&gt;width&lt;/i&gt;.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Versión&lt;/b&gt;: 1 para una carpeta nueva, si no una más que la que hay. Una carpeta con otro recinto se rechaza si no se marca &lt;b&gt;Sustituir&lt;/b&gt;.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Límites&lt;/b&gt;: el rectángulo, a lo largo de los ejes del marco del recinto, al que se pueden enviar robots. Los obstáculos se publican hasta 100 m más allá, para que un robot en el borde sepa qué hay.&lt;/p&gt; &lt;p&gt;&lt;b&gt;SRC, origen y rotación del recinto&lt;/b&gt;: dónde está el (0, 0) de los robots y cómo está su eje x. Por defecto: como lo tiene el proyecto.&lt;/p&gt; &lt;p&gt;Una publicación anterior solo se sustituye cuando la nueva está completa; una cancelación la deja como estaba. La geometría rota se repara donde es seguro y queda fuera donde no lo es, cada vez con un aviso que nombra la capa y el objeto espacial. Solo se hace una publicación a la vez en una carpeta.&lt;/p&gt;</translation>
+            <source>&lt;p&gt;Writes the layers of a site into a folder with &lt;i&gt;site.toml&lt;/i&gt; and &lt;i&gt;site.gpkg&lt;/i&gt;, which &lt;i&gt;robot-bridge serve --site FOLDER&lt;/i&gt; serves.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Layers&lt;/b&gt;: those of the project by their roles (menu Fleet Supervisor, Layer roles), or by a &lt;b&gt;map profile&lt;/b&gt;, or the layers given here. Which features count, heights, where things begin above the ground, labels, road widths and shapes of furniture come from the expressions kept with the roles; heights, labels and widths else from the fields &lt;i&gt;height&lt;/i&gt; or &lt;i&gt;height_m&lt;/i&gt;, &lt;i&gt;surface&lt;/i&gt;, &lt;i&gt;name&lt;/i&gt;, &lt;i&gt;width_m&lt;/i&gt; or &lt;i&gt;width&lt;/i&gt;.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Version&lt;/b&gt;: 1 for a new folder, else one more than the version there. A folder that holds another site is refused unless &lt;b&gt;Replace&lt;/b&gt; is ticked.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Database&lt;/b&gt;: the site goes into PostgreSQL with PostGIS, too, or only there where no folder is given: the layers as tables, with views of the newest version in the schema &lt;i&gt;site_ID&lt;/i&gt;, and all that &lt;i&gt;robot-bridge serve --site postgresql://account@host/database#ID&lt;/i&gt; serves. It is a connection of QGIS's or such an address.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Bounds&lt;/b&gt;: the rectangle, along the axes of the site frame, that robots may be sent into. Obstacles are published up to 100 m beyond it, so that a robot at its edge is told what stands there.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Site CRS, origin, rotation&lt;/b&gt;: where the robots' (0, 0) is and how their x axis lies. Default: as the project has it.&lt;/p&gt; &lt;p&gt;An earlier publication is replaced only after the new one is complete; a cancel leaves it as it was. Broken geometry is repaired where that is safe and left out where it is not, each time with a warning that names the layer and the feature. One publication into a folder runs at a time.&lt;/p&gt;</source>
+            <translation>&lt;p&gt;Escribe las capas de un recinto en una carpeta con &lt;i&gt;site.toml&lt;/i&gt; y &lt;i&gt;site.gpkg&lt;/i&gt;, que sirve &lt;i&gt;robot-bridge serve --site FOLDER&lt;/i&gt;.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Capas&lt;/b&gt;: las del proyecto según sus papeles (menú Fleet Supervisor, Papeles de las capas), o según un &lt;b&gt;perfil de mapa&lt;/b&gt;, o las capas que se dan aquí. Qué objetos espaciales cuentan, las alturas, dónde empiezan las cosas sobre el suelo, las etiquetas, las anchuras de las vías y las formas del mobiliario vienen de las expresiones que se guardan con los papeles; las alturas, etiquetas y anchuras si no de los campos &lt;i&gt;height&lt;/i&gt; o &lt;i&gt;height_m&lt;/i&gt;, &lt;i&gt;surface&lt;/i&gt;, &lt;i&gt;name&lt;/i&gt;, &lt;i&gt;width_m&lt;/i&gt; o &lt;i&gt;width&lt;/i&gt;.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Versión&lt;/b&gt;: 1 para una carpeta nueva, si no una más que la que hay. Una carpeta con otro recinto se rechaza si no se marca &lt;b&gt;Sustituir&lt;/b&gt;.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Base de datos&lt;/b&gt;: el recinto va también a PostgreSQL con PostGIS, o solo allí si no se da ninguna carpeta: las capas como tablas, con vistas de la versión más nueva en el esquema &lt;i&gt;site_ID&lt;/i&gt;, y todo lo que sirve &lt;i&gt;robot-bridge serve --site postgresql://account@host/database#ID&lt;/i&gt;. Es una conexión de QGIS o una dirección como esa.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Límites&lt;/b&gt;: el rectángulo, a lo largo de los ejes del marco del recinto, al que se pueden enviar robots. Los obstáculos se publican hasta 100 m más allá, para que un robot en el borde sepa qué hay.&lt;/p&gt; &lt;p&gt;&lt;b&gt;SRC, origen y rotación del recinto&lt;/b&gt;: dónde está el (0, 0) de los robots y cómo está su eje x. Por defecto: como lo tiene el proyecto.&lt;/p&gt; &lt;p&gt;Una publicación anterior solo se sustituye cuando la nueva está completa; una cancelación la deja como estaba. La geometría rota se repara donde es seguro y queda fuera donde no lo es, cada vez con un aviso que nombra la capa y el objeto espacial. Solo se hace una publicación a la vez en una carpeta.&lt;/p&gt;</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/algorithms/publish_site.py" />
@@ -7669,6 +7744,11 @@
         </message>
         <message>
             <location filename="../../plugin/processing/algorithms/publish_site.py" />
+            <source>Database of the published site (PostGIS)</source>
+            <translation>Base de datos del recinto publicado (PostGIS)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/publish_site.py" />
             <source>Folder of the published site</source>
             <translation>Carpeta del recinto publicado</translation>
         </message>
@@ -7681,6 +7761,11 @@
             <location filename="../../plugin/processing/algorithms/publish_site.py" />
             <source>Id of the site</source>
             <translation>Id del recinto</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/publish_site.py" />
+            <source>It is not said where to publish: give FOLDER, a folder, or DATABASE, a PostgreSQL connection of QGIS's.</source>
+            <translation>No se ha dicho dónde publicar: dé FOLDER, una carpeta, o DATABASE, una conexión PostgreSQL de QGIS.</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/algorithms/publish_site.py" />
@@ -7724,6 +7809,11 @@
         </message>
         <message>
             <location filename="../../plugin/processing/algorithms/publish_site.py" />
+            <source>Schema of the site's views in the database</source>
+            <translation>Esquema de las vistas del recinto en la base de datos</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/publish_site.py" />
             <source>Site id (default: the project's)</source>
             <translation>Id del recinto (por defecto: el del proyecto)</translation>
         </message>
@@ -7754,6 +7844,11 @@
         </message>
         <message>
             <location filename="../../plugin/processing/algorithms/publish_site.py" />
+            <source>The tables in the schema {schema} of an earlier version are in use: they stay until the next publication.</source>
+            <translation>Las tablas de una versión anterior en el esquema {schema} están en uso: se quedan hasta la publicación siguiente.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/publish_site.py" />
             <source>There is nothing to publish: no layer is given and no layer of the project has a role. Give roles (Fleet Supervisor &gt; Layer roles), a PROFILE, or layers.</source>
             <translation>No hay nada que publicar: no se da ninguna capa y ninguna capa del proyecto tiene papel. Dé papeles (Fleet Supervisor &gt; Papeles de las capas), un PROFILE, o capas.</translation>
         </message>
@@ -7781,6 +7876,11 @@
             <location filename="../../plugin/processing/algorithms/publish_site.py" />
             <source>Writes the layers of a site, by their roles, into the folder that a gateway serves.</source>
             <translation>Escribe las capas de un recinto, según sus papeles, en la carpeta que sirve una pasarela.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/publish_site.py" />
+            <source>the database, schema {schema}</source>
+            <translation>la base de datos, esquema {schema}</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/algorithms/publish_site.py" />

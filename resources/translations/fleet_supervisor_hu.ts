@@ -2535,6 +2535,81 @@
             <translation>{error}; a szélessége érvényes</translation>
         </message>
         <message>
+            <location filename="../../plugin/layers/publishing/postgis.py" />
+            <source>Another publication of {site} into database {database} has ended meanwhile: publish again.</source>
+            <translation>Közben véget ért {site} egy másik közzététele ebbe az adatbázisba: {database}. Tegye közzé újra.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/publishing/postgis.py" />
+            <source>QGIS has no PostgreSQL connection {name}; it has: {known}. Make it in the browser panel, PostgreSQL &gt; New Connection, or write the address of the database, such as postgresql://account@host/database.</source>
+            <translation>A QGIS-ben nincs {name} nevű PostgreSQL-kapcsolat; ezek vannak: {known}. Hozza létre a böngésző panelen (PostgreSQL &gt; Új kapcsolat), vagy írja be az adatbázis címét, például postgresql://account@host/database.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/publishing/postgis.py" />
+            <source>SITE_ID {site} is too long for a database: give one of at most {most} letters.</source>
+            <translation>A SITE_ID ({site}) túl hosszú egy adatbázishoz: adjon meg legfeljebb {most} betűset.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/publishing/postgis.py" />
+            <source>Somebody has read or written {site} in database {database} for more than {seconds} s: wait until another publication has ended, close what shows its layers, and publish again.</source>
+            <translation>Valaki {seconds} s-nál hosszabb ideje olvassa vagy írja ezt: {site} ({database} adatbázis). Várja meg, amíg egy másik közzététel véget ér, zárja be, ami a rétegeit mutatja, és tegye közzé újra.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/publishing/postgis.py" />
+            <source>Something of yours is made of the views of {site} in database {database}, which stand for one version: {error}. Remove it, publish, and make it again.</source>
+            <translation>Valami sajátja a(z) {site} telephely nézeteire épül a(z) {database} adatbázisban, amelyek most mások lesznek: {error}. Távolítsa el, tegye közzé a telephelyet, és hozza létre újra.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/publishing/postgis.py" />
+            <source>The PostGIS of database {database} does not know {crs}: choose a SITE_CRS that its table spatial_ref_sys has, or have an administrator add this one there.</source>
+            <translation>A(z) {database} adatbázis PostGIS-e nem ismeri ezt: {crs}. Válasszon olyan SITE_CRS-t, amely megvan a spatial_ref_sys táblájában, vagy vetesse fel oda egy rendszergazdával.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/publishing/postgis.py" />
+            <source>The Python package psycopg2 is missing in this QGIS, which writes to PostgreSQL: {install}</source>
+            <translation>Ebből a QGIS-ből hiányzik a psycopg2 Python-csomag, amely PostgreSQL-be ír: {install}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/publishing/postgis.py" />
+            <source>The account {account} may make no schemas in database {database}, and a site is published in some. Its owner runs: {command}</source>
+            <translation>A(z) {account} fiók nem hozhat létre sémát a(z) {database} adatbázisban, márpedig a telephely sémákba kerül. A tulajdonosa ezt futtassa: {command}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/publishing/postgis.py" />
+            <source>The connection to database {database} was lost at the last moment: {site} is published there, or is as it was. Publish again.</source>
+            <translation>A kapcsolat az adatbázissal ({database}) az utolsó pillanatban megszakadt: {site} vagy megjelent ott, vagy olyan, amilyen volt. Tegye közzé újra.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/publishing/postgis.py" />
+            <source>The database cannot be reached: {error}. Check that it runs, and the host, database, account and password of the connection.</source>
+            <translation>Az adatbázis nem érhető el: {error}. Ellenőrizze, hogy fut-e, és a kapcsolat gépét, adatbázisát, fiókját és jelszavát.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/publishing/postgis.py" />
+            <source>The database {database} has no PostGIS. Install the package postgresql-15-postgis-3 (of your version) on the server, and as its administrator run in this database: create extension postgis</source>
+            <translation>A(z) {database} adatbázisban nincs PostGIS. Telepítse a kiszolgálóra a postgresql-15-postgis-3 csomagot (a saját verziójához valót), és rendszergazdaként futtassa ebben az adatbázisban: create extension postgis</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/publishing/postgis.py" />
+            <source>The schema {schema} of database {database} is of another program, or of another version of this one (it says “{found}”): publish with that, or into another database.</source>
+            <translation>A(z) {database} adatbázis {schema} sémája más programé, vagy e program más verziójáé (ez áll benne: „{found}”): azzal tegye közzé, vagy más adatbázisba.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/publishing/postgis.py" />
+            <source>The site cannot be published in database {database}: {error}. What was published there before is as it was.</source>
+            <translation>A telephely nem tehető közzé ebben az adatbázisban: {database}: {error}. Ami korábban megjelent ott, olyan, amilyen volt.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/publishing/postgis.py" />
+            <source>The sites in database {database} belong to the account {owner}, and not to {account}: publish as {owner}, or have an administrator run: {command}</source>
+            <translation>A(z) {database} adatbázis telephelyei a(z) {owner} fiókéi, nem ezé: {account}. Tegye közzé mint {owner}, vagy futtassa egy rendszergazda: {command}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/publishing/postgis.py" />
+            <source>install the distribution's package, such as python3-psycopg2.</source>
+            <translation>telepítse a disztribúció csomagját, például ezt: python3-psycopg2.</translation>
+        </message>
+        <message>
             <location filename="../../plugin/layers/publishing/publication.py" />
             <source>Another publication into {folder} is under way, by {who}: wait until it has ended, or choose another folder. If it ended on another computer without a word, remove {file}.</source>
             <translation>Másik közzététel folyik ide: {folder} ({who}): várjon, amíg véget ér, vagy válasszon másik mappát. Ha másik számítógépen szó nélkül ért véget, törölje ezt: {file}.</translation>
@@ -7596,8 +7671,8 @@
         </message>
         <message>
             <location filename="../../plugin/processing/algorithms/publish_site.py" />
-            <source>&lt;p&gt;Writes the layers of a site into a folder with &lt;i&gt;site.toml&lt;/i&gt; and &lt;i&gt;site.gpkg&lt;/i&gt;, which &lt;i&gt;robot-bridge serve --site FOLDER&lt;/i&gt; serves.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Layers&lt;/b&gt;: those of the project by their roles (menu Fleet Supervisor, Layer roles), or by a &lt;b&gt;map profile&lt;/b&gt;, or the layers given here. Which features count, heights, where things begin above the ground, labels, road widths and shapes of furniture come from the expressions kept with the roles; heights, labels and widths else from the fields &lt;i&gt;height&lt;/i&gt; or &lt;i&gt;height_m&lt;/i&gt;, &lt;i&gt;surface&lt;/i&gt;, &lt;i&gt;name&lt;/i&gt;, &lt;i&gt;width_m&lt;/i&gt; or &lt;i&gt;width&lt;/i&gt;.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Version&lt;/b&gt;: 1 for a new folder, else one more than the version there. A folder that holds another site is refused unless &lt;b&gt;Replace&lt;/b&gt; is ticked.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Bounds&lt;/b&gt;: the rectangle, along the axes of the site frame, that robots may be sent into. Obstacles are published up to 100 m beyond it, so that a robot at its edge is told what stands there.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Site CRS, origin, rotation&lt;/b&gt;: where the robots' (0, 0) is and how their x axis lies. Default: as the project has it.&lt;/p&gt; &lt;p&gt;An earlier publication is replaced only after the new one is complete; a cancel leaves it as it was. Broken geometry is repaired where that is safe and left out where it is not, each time with a warning that names the layer and the feature. One publication into a folder runs at a time.&lt;/p&gt;</source>
-            <translation>&lt;p&gt;Egy telephely rétegeit írja ki egy mappába &lt;i&gt;site.toml&lt;/i&gt; és &lt;i&gt;site.gpkg&lt;/i&gt; fájllal, amelyet a &lt;i&gt;robot-bridge serve --site FOLDER&lt;/i&gt; szolgál ki.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Rétegek&lt;/b&gt;: a projektéi szerepük szerint (Fleet Supervisor menü, Rétegszerepek), vagy egy &lt;b&gt;térképprofil&lt;/b&gt; szerint, vagy az itt megadott rétegek. Hogy mely elemek számítanak, a magasságok, hogy mi hol kezdődik a talaj felett, a címkék, az utak szélessége és a berendezések alakja a szerepekkel őrzött kifejezésekből jön; a magasság, a címke és a szélesség különben a &lt;i&gt;height&lt;/i&gt; vagy &lt;i&gt;height_m&lt;/i&gt;, &lt;i&gt;surface&lt;/i&gt;, &lt;i&gt;name&lt;/i&gt;, &lt;i&gt;width_m&lt;/i&gt; vagy &lt;i&gt;width&lt;/i&gt; mezőből.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Verzió&lt;/b&gt;: új mappánál 1, különben eggyel több, mint ami ott van. Más telephelyet tartalmazó mappát visszautasít, hacsak a &lt;b&gt;Másik telephely közzétételének felülírása&lt;/b&gt; nincs bejelölve.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Határok&lt;/b&gt;: az a téglalap a telephelyi keret tengelyei mentén, ahová robotok küldhetők. Akadályok 100 m-rel azon túl is közzé vannak téve, hogy a szélén lévő robot tudja, mi áll ott.&lt;/p&gt; &lt;p&gt;&lt;b&gt;A telephely vetülete, kezdőpontja, elforgatása&lt;/b&gt;: hol van a robotok (0, 0) pontja, és merre fekszik az x tengelyük. Alapértelmezés: ahogy a projektben van.&lt;/p&gt; &lt;p&gt;Egy korábbi közzététel csak akkor cserélődik le, ha az új teljes; megszakításkor marad, ahogy volt. A hibás geometria ki lesz javítva, ahol ez biztonságos, és kimarad, ahol nem az, mindig figyelmeztetéssel, amely megnevezi a réteget és az elemet. Egy mappába egyszerre egy közzététel fut.&lt;/p&gt;</translation>
+            <source>&lt;p&gt;Writes the layers of a site into a folder with &lt;i&gt;site.toml&lt;/i&gt; and &lt;i&gt;site.gpkg&lt;/i&gt;, which &lt;i&gt;robot-bridge serve --site FOLDER&lt;/i&gt; serves.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Layers&lt;/b&gt;: those of the project by their roles (menu Fleet Supervisor, Layer roles), or by a &lt;b&gt;map profile&lt;/b&gt;, or the layers given here. Which features count, heights, where things begin above the ground, labels, road widths and shapes of furniture come from the expressions kept with the roles; heights, labels and widths else from the fields &lt;i&gt;height&lt;/i&gt; or &lt;i&gt;height_m&lt;/i&gt;, &lt;i&gt;surface&lt;/i&gt;, &lt;i&gt;name&lt;/i&gt;, &lt;i&gt;width_m&lt;/i&gt; or &lt;i&gt;width&lt;/i&gt;.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Version&lt;/b&gt;: 1 for a new folder, else one more than the version there. A folder that holds another site is refused unless &lt;b&gt;Replace&lt;/b&gt; is ticked.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Database&lt;/b&gt;: the site goes into PostgreSQL with PostGIS, too, or only there where no folder is given: the layers as tables, with views of the newest version in the schema &lt;i&gt;site_ID&lt;/i&gt;, and all that &lt;i&gt;robot-bridge serve --site postgresql://account@host/database#ID&lt;/i&gt; serves. It is a connection of QGIS's or such an address.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Bounds&lt;/b&gt;: the rectangle, along the axes of the site frame, that robots may be sent into. Obstacles are published up to 100 m beyond it, so that a robot at its edge is told what stands there.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Site CRS, origin, rotation&lt;/b&gt;: where the robots' (0, 0) is and how their x axis lies. Default: as the project has it.&lt;/p&gt; &lt;p&gt;An earlier publication is replaced only after the new one is complete; a cancel leaves it as it was. Broken geometry is repaired where that is safe and left out where it is not, each time with a warning that names the layer and the feature. One publication into a folder runs at a time.&lt;/p&gt;</source>
+            <translation>&lt;p&gt;Egy telephely rétegeit írja ki egy mappába &lt;i&gt;site.toml&lt;/i&gt; és &lt;i&gt;site.gpkg&lt;/i&gt; fájllal, amelyet a &lt;i&gt;robot-bridge serve --site FOLDER&lt;/i&gt; szolgál ki.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Rétegek&lt;/b&gt;: a projektéi szerepük szerint (Fleet Supervisor menü, Rétegszerepek), vagy egy &lt;b&gt;térképprofil&lt;/b&gt; szerint, vagy az itt megadott rétegek. Hogy mely elemek számítanak, a magasságok, hogy mi hol kezdődik a talaj felett, a címkék, az utak szélessége és a berendezések alakja a szerepekkel őrzött kifejezésekből jön; a magasság, a címke és a szélesség különben a &lt;i&gt;height&lt;/i&gt; vagy &lt;i&gt;height_m&lt;/i&gt;, &lt;i&gt;surface&lt;/i&gt;, &lt;i&gt;name&lt;/i&gt;, &lt;i&gt;width_m&lt;/i&gt; vagy &lt;i&gt;width&lt;/i&gt; mezőből.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Verzió&lt;/b&gt;: új mappánál 1, különben eggyel több, mint ami ott van. Más telephelyet tartalmazó mappát visszautasít, hacsak a &lt;b&gt;Másik telephely közzétételének felülírása&lt;/b&gt; nincs bejelölve.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Adatbázis&lt;/b&gt;: a telephely PostgreSQL-be is kerül PostGIS-szel, vagy csak oda, ha nincs mappa megadva: a rétegek táblákként, a legújabb verzió nézeteivel a &lt;i&gt;site_ID&lt;/i&gt; sémában, és minden, amit a &lt;i&gt;robot-bridge serve --site postgresql://account@host/database#ID&lt;/i&gt; szolgál ki. A QGIS egy kapcsolata vagy egy ilyen cím.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Határok&lt;/b&gt;: az a téglalap a telephelyi keret tengelyei mentén, ahová robotok küldhetők. Akadályok 100 m-rel azon túl is közzé vannak téve, hogy a szélén lévő robot tudja, mi áll ott.&lt;/p&gt; &lt;p&gt;&lt;b&gt;A telephely vetülete, kezdőpontja, elforgatása&lt;/b&gt;: hol van a robotok (0, 0) pontja, és merre fekszik az x tengelyük. Alapértelmezés: ahogy a projektben van.&lt;/p&gt; &lt;p&gt;Egy korábbi közzététel csak akkor cserélődik le, ha az új teljes; megszakításkor marad, ahogy volt. A hibás geometria ki lesz javítva, ahol ez biztonságos, és kimarad, ahol nem az, mindig figyelmeztetéssel, amely megnevezi a réteget és az elemet. Egy mappába egyszerre egy közzététel fut.&lt;/p&gt;</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/algorithms/publish_site.py" />
@@ -7616,6 +7691,11 @@
         </message>
         <message>
             <location filename="../../plugin/processing/algorithms/publish_site.py" />
+            <source>Database of the published site (PostGIS)</source>
+            <translation>A telephely adatbázisa (PostGIS)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/publish_site.py" />
             <source>Folder of the published site</source>
             <translation>A közzétett telephely mappája</translation>
         </message>
@@ -7628,6 +7708,11 @@
             <location filename="../../plugin/processing/algorithms/publish_site.py" />
             <source>Id of the site</source>
             <translation>A telephely azonosítója</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/publish_site.py" />
+            <source>It is not said where to publish: give FOLDER, a folder, or DATABASE, a PostgreSQL connection of QGIS's.</source>
+            <translation>Nincs megmondva, hová tegyük közzé: adja meg a FOLDER mappát, vagy a DATABASE-t, a QGIS egy PostgreSQL-kapcsolatát.</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/algorithms/publish_site.py" />
@@ -7671,6 +7756,11 @@
         </message>
         <message>
             <location filename="../../plugin/processing/algorithms/publish_site.py" />
+            <source>Schema of the site's views in the database</source>
+            <translation>A telephely nézeteinek sémája az adatbázisban</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/publish_site.py" />
             <source>Site id (default: the project's)</source>
             <translation>A telephely azonosítója (alapértelmezés: a projekté)</translation>
         </message>
@@ -7701,6 +7791,11 @@
         </message>
         <message>
             <location filename="../../plugin/processing/algorithms/publish_site.py" />
+            <source>The tables in the schema {schema} of an earlier version are in use: they stay until the next publication.</source>
+            <translation>Egy korábbi verzió táblái a(z) {schema} sémában használatban vannak: a következő közzétételig maradnak.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/publish_site.py" />
             <source>There is nothing to publish: no layer is given and no layer of the project has a role. Give roles (Fleet Supervisor &gt; Layer roles), a PROFILE, or layers.</source>
             <translation>Nincs mit közzétenni: nincs megadva réteg, és a projekt egyik rétegének sincs szerepe. Adjon szerepeket (Fleet Supervisor &gt; Rétegszerepek), egy PROFILE-t, vagy rétegeket.</translation>
         </message>
@@ -7728,6 +7823,11 @@
             <location filename="../../plugin/processing/algorithms/publish_site.py" />
             <source>Writes the layers of a site, by their roles, into the folder that a gateway serves.</source>
             <translation>A telephely rétegeit szerepeik szerint abba a mappába írja, amelyet egy átjáró szolgáltat.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/publish_site.py" />
+            <source>the database, schema {schema}</source>
+            <translation>adatbázis, {schema} séma</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/algorithms/publish_site.py" />

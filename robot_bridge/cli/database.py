@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 from collections.abc import Callable
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Annotated, TypeVar
 
 import typer
@@ -13,7 +14,9 @@ from sqlalchemy import URL, Connection
 from ..core.errors import StoreError
 from ..core.files import replacement
 from ..core.messages.validation import check_robot_name
+from ..core.sites.frame import SiteFrame
 from ..core.sites.settings import SETTINGS_FILE, read_settings
+from ..core.sites.site_database import is_database_address, read_site_address
 from ..gateway.storage import revisions
 from ..gateway.storage.backup import back_up, revision_in
 from ..gateway.storage.backup import restore as put_back
@@ -24,7 +27,7 @@ from ..gateway.storage.roles.choice import has_accounts, map_readers_on, role_ma
 from ..gateway.storage.singleton_lock import no_gateway
 from .accounts import NewPasswordOption, new_password
 from .audit import act_audited, audited
-from .options import DEFAULT, DatabaseOption, PasswordFileOption, database_address
+from .options import DEFAULT, DatabaseOption, PasswordFileOption, database_address, site_copy
 
 # --- ``robot-bridge database backup`` and ``restore`` ---
 
@@ -98,8 +101,11 @@ def account(
 
 def views(
     site: Annotated[
-        Path | None, typer.Option(help="Folder of the published site whose CRS and origin places have.")
-    ] = None,
+        str,
+        typer.Option(
+            help="The published site whose CRS and origin places have: a folder, or its address as of serve."
+        ),
+    ] = "",
     remove: Annotated[bool, typer.Option("--remove", help="Remove the views.")] = False,
     vrt: Annotated[
         Path | None, typer.Option(help="SQLite: write the file by which GDAL and QGIS open the views.")
@@ -112,17 +118,18 @@ def views(
     PostgreSQL needs PostGIS; on SQLite, --vrt writes the file that is opened.
     """
     address = _there(database_address(database, database_password_file))
-    if (site is None) != remove:
+    if remove == bool(site):
         raise StoreError("give --site FOLDER to make the views, or --remove to remove them")
     if vrt is not None and address.drivername != SQLite.name:
         raise StoreError("--vrt is for SQLite; GIS programs open the views of PostgreSQL by themselves")
-    if site is None:
+    if not site:
         act_audited(address, "database views", shown(address), "removed", _without_views)
         print(f"{shown(address)}: the views are removed")
         return
-    frame = read_settings(site / SETTINGS_FILE).frame
+    frame = _frame_of(site)
+    named = read_site_address(site).shown if is_database_address(site) else site
     names = act_audited(
-        address, "database views", shown(address), str(site), lambda db: map_views_on(db).make(frame)
+        address, "database views", shown(address), named, lambda db: map_views_on(db).make(frame)
     )
     print(f"{shown(address)}: made {', '.join(names)}")
     if vrt is not None:
@@ -135,6 +142,13 @@ def views(
                 f"{vrt} cannot be written: {error.strerror or error}; check its folder"
             ) from error
         print(f"{vrt}: open it in QGIS, or with ogrinfo")
+
+
+def _frame_of(site: str) -> SiteFrame:
+    """Return the frame of a site in a folder, or in a database, from where it is fetched for the moment."""
+    with TemporaryDirectory(prefix="robot-bridge-") as state:
+        copy = site_copy(site, Path(state))
+        return read_settings((Path(site) if copy is None else copy.folder) / SETTINGS_FILE).frame
 
 
 def reader(

@@ -16,12 +16,14 @@ from collections.abc import Callable, Iterator
 from enum import StrEnum
 from functools import partial
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Annotated, NamedTuple
 
 import typer
 
 from ..core.errors import BridgeError, SiteError, counted
 from ..core.logs import set_up_log
+from ..core.sites.site_database import is_database_address
 from .options import DatabaseOption, PasswordFileOption
 from .serve import SiteOption, gateway_settings
 
@@ -67,11 +69,14 @@ def doctor(
     """
     # What is found is said once.
     set_up_log("text", "error")
-    settings = gateway_settings(site, database, database_password_file, host, port, certificate, key)
     worst = Level.OK
-    for finding in findings(settings):
-        typer.echo(f"{finding.level:<8} {finding.subject:<12} {finding.text}")
-        worst = finding.level if finding.level is Level.FAULT else worst
+    # A site in a database is fetched, and not to where a gateway keeps its copy.
+    with TemporaryDirectory(prefix="robot-bridge-") as folder:
+        state = Path(folder) if is_database_address(site) else None
+        given = (database, database_password_file, host, port, certificate, key)
+        for finding in findings(gateway_settings(site, state, *given)):
+            typer.echo(f"{finding.level:<8} {finding.subject:<12} {finding.text}")
+            worst = finding.level if finding.level is Level.FAULT else worst
     if worst is Level.FAULT:
         raise typer.Exit(1)
 

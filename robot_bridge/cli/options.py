@@ -15,6 +15,8 @@ from ..core.errors import BridgeError
 if TYPE_CHECKING:
     from sqlalchemy import URL
 
+    from ..gateway.site_copy import SiteCopy
+
 DEFAULT = "sqlite:///robot-bridge.db"
 
 DatabaseOption = Annotated[
@@ -40,6 +42,25 @@ def database_address(database: str, password_file: Path | None) -> URL:
     from ..gateway.storage.database import read_address
 
     return read_address(database, password_file)
+
+
+# --- A site that is published in a database instead of a folder ---
+
+
+def site_copy(site: str, state: Path | None) -> SiteCopy | None:
+    """Return the copy of a site that is in a database, as new as it can be; None for one in a folder.
+
+    :raises BridgeError: where it cannot be fetched and no copy is here. :raises SiteError: for its address.
+    """
+    from ..core.sites.site_database import is_database_address, read_site_address
+
+    if not is_database_address(site):
+        return None
+    from ..gateway.site_copy import SiteCopy
+
+    copy = SiteCopy(read_site_address(site), state)
+    copy.fetch_first()
+    return copy
 
 
 # --- Times on the command line ---

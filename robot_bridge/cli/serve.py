@@ -20,7 +20,7 @@ from ..core.errors import BridgeError
 from ..core.logs import LogFormat, LogLevel, set_up_log
 from ..core.systemd import notify, watchdog_interval
 from ..gateway.monitoring.periodic_tasks import freeze_permanent_objects
-from .options import DEFAULT, DatabaseOption, PasswordFileOption, database_address
+from .options import DEFAULT, DatabaseOption, PasswordFileOption, database_address, site_copy
 
 if TYPE_CHECKING:
     from ..gateway.app import GatewaySettings, Signals
@@ -35,8 +35,12 @@ Loop = Literal["auto", "uvloop", "asyncio"]
 
 
 SiteOption = Annotated[
-    Path,
-    typer.Option(help="Folder of a published site: site.toml and site.gpkg.", envvar="ROBOT_BRIDGE_SITE"),
+    str,
+    typer.Option(
+        help="Folder of a published site: site.toml and site.gpkg; or where it is published in PostGIS: "
+        "postgresql://ACCOUNT@HOST/NAME#SITE.",
+        envvar="ROBOT_BRIDGE_SITE",
+    ),
 ]
 
 
@@ -62,7 +66,8 @@ def serve(
         Path | None,
         typer.Option(
             help="Folder in which emergency stops are noted that are not in the database yet; unless given, "
-            "the one that the site's folder lies in. With SQLite they are beside the database.",
+            "the one that the site's folder lies in. With SQLite they are beside the database. The copy of a "
+            "site in PostGIS is kept there, too.",
             envvar=["ROBOT_BRIDGE_STATE", "STATE_DIRECTORY"],
         ),
     ] = None,
@@ -85,14 +90,15 @@ def serve(
     gc.freeze()
     gc.enable()
     set_up_log(log_format, log_level)
-    settings = gateway_settings(site, database, database_password_file, host, port, certificate, key)
-    settings = replace(settings, state=state, site_as_given=site_as_given)
+    settings = gateway_settings(site, state, database, database_password_file, host, port, certificate, key)
+    settings = replace(settings, site_as_given=site_as_given)
     with asyncio.Runner(loop_factory=_loop_factory(loop)) as runner:
         runner.run(_serve(settings))
 
 
 def gateway_settings(
-    site: Path,
+    site: str,
+    state: Path | None,
     database: str,
     password_file: Path | None,
     host: str,
@@ -109,15 +115,19 @@ def gateway_settings(
     from ..gateway.app import GatewaySettings
     from ..gateway.auth.tls import server_files
 
+    copy = site_copy(site, state)
+    folder = Path(site) if copy is None else copy.folder
     # A folder that is not there is named by whoever reads the whole site.
-    given = read_settings(site / SETTINGS_FILE).gateway if site.is_dir() else GatewayOptions()
-    files = (certificate or _beside(site, given.certificate), key or _beside(site, given.key))
+    given = read_settings(folder / SETTINGS_FILE).gateway if folder.is_dir() else GatewayOptions()
+    files = (certificate or _beside(folder, given.certificate), key or _beside(folder, given.key))
     return GatewaySettings(
-        site=site,
+        site=folder,
         database=database_address(database or given.database or DEFAULT, password_file),
         host=host or given.host or HOST,
         port=next(number for number in (port, given.port, PORT) if number is not None),
         tls=server_files(*files),
+        state=state,
+        site_copy=copy,
     )
 
 

@@ -47,6 +47,7 @@ from .monitoring.periodic_tasks import GarbageCollection, Work, every, keep_all_
 from .plans.service import PlanService
 from .retention import Retention
 from .site.site_maps import SiteMaps
+from .site_copy import LOOK_INTERVAL, SiteCopy
 from .site_watch import SiteWatch, stamp_of
 from .storage.database import Database
 from .storage.repositories import metadata
@@ -115,7 +116,8 @@ class GatewaySettings:
     """What a gateway is started with; port 0 takes any free one.
 
     ``state`` is the folder for what it notes on this computer, None for the one that the site's lies in.
-    A site that a supervisor chose goes before ``site``, unless it has to be served ``site_as_given``.
+    A site that a supervisor chose goes before ``site``, unless it has to be served ``site_as_given``. Where
+    ``site`` is the folder of a ``site_copy``, that is kept as new as its database.
     """
 
     site: Path
@@ -125,6 +127,7 @@ class GatewaySettings:
     tls: ServerFiles | None = None
     state: Path | None = None
     site_as_given: bool = False
+    site_copy: SiteCopy | None = None
 
 
 @dataclass
@@ -367,6 +370,9 @@ async def run(settings: GatewaySettings, signals: Signals, started: Callable[[st
             "site": watch.run,
             "sole gateway": sole.hold,
         }
+        if (copy := settings.site_copy) is not None:
+            stack.push_async_callback(copy.close)
+            works["site copy"] = lambda: every(LOOK_INTERVAL, copy.refresh, "site copy", fleet.tally)
         await _until_stopped(keep_all_going(works, fleet.tally), signals.stop)
 
 

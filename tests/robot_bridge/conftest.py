@@ -10,8 +10,6 @@ from pathlib import Path
 import pytest
 from sqlalchemy import Connection, Engine, event
 
-from tests.support.errors import StageError
-
 
 class SharedStatements(dict):
     """What SQLAlchemy compiled, for all engines on databases of one kind and version.
@@ -104,31 +102,6 @@ def start_bridge(tmp_path_factory, new_database):
         for bridge in bridges:
             bridge.hang_up()
             assert "Traceback" not in bridge.output(), bridge.output()
-
-
-@pytest.fixture(scope="session")
-def postgresql_server():
-    """A real PostgreSQL of these tests' own, which can make databases, be killed and come back."""
-    from tests.support.databases.postgresql import PostgreSql
-
-    yield from _serving(PostgreSql())
-
-
-@pytest.fixture(scope="session")
-def mariadb_server():
-    """A real MariaDB of these tests' own; as ``postgresql_server``."""
-    from tests.support.databases.mariadb import MariaDb
-
-    yield from _serving(MariaDb())
-
-
-def _serving(server):
-    try:
-        server.require_programs()
-    except StageError as error:
-        pytest.skip(str(error))
-    with server:
-        yield server
 
 
 @pytest.fixture

@@ -159,8 +159,12 @@ def earlier_publication(folder: Path) -> EarlierPublication | None:
     return max(found, key=lambda earlier: earlier.version, default=None)
 
 
-def next_version(settings: SiteSettings, folder: Path, *, replace_other: bool = False) -> SiteSettings:
+def next_version(
+    settings: SiteSettings, folder: Path, *, replace_other: bool = False, elsewhere: int = 0
+) -> SiteSettings:
     """Return ``settings`` with the version after the one published in ``folder``, 1 for a first one.
+
+    ``elsewhere`` is the version that is published in another place, which is followed, too.
 
     :raises PublicationError: when the folder holds another site and ``replace_other`` is not said.
     """
@@ -171,7 +175,7 @@ def next_version(settings: SiteSettings, folder: Path, *, replace_other: bool = 
             raise
         earlier = None
     if earlier is not None and earlier.id == settings.id:
-        return replace(settings, version=earlier.version + 1)
+        return replace(settings, version=max(earlier.version, elsewhere) + 1)
     if earlier is not None and not replace_other:
         raise PublicationError(
             tr(
@@ -183,14 +187,15 @@ def next_version(settings: SiteSettings, folder: Path, *, replace_other: bool = 
                 site=settings.id,
             )
         )
-    return replace(settings, version=1)
+    return replace(settings, version=elsewhere + 1)
 
 
 class NewPublication:
-    """A publication that is being made in ``staged``."""
+    """A publication that is being made in ``staged``; ``earlier`` is the ``site.toml`` that it follows."""
 
-    def __init__(self, staged: StagedFiles) -> None:
+    def __init__(self, staged: StagedFiles, earlier: str) -> None:
         self._staged = staged
+        self._earlier = earlier
         self._cache: CacheWriter | None = None
 
     def write_layers(self, content: SiteContent, settings: SiteSettings, feedback: QgsFeedback) -> bool:
@@ -201,26 +206,28 @@ class NewPublication:
         self._cache = cache = self._staged.enter(cache_writer(self._staged.folder, settings.frame))
         return write_site_file(self._staged.folder / GEOPACKAGE_FILE, content, settings, cache, feedback)
 
-    def replace_earlier(self, settings: SiteSettings, feedback: QgsFeedback) -> bool:
-        """Put the layers that were written, and ``settings``, in the place of what is published.
+    def write_settings(self, settings: SiteSettings) -> Path:
+        """Write ``settings``, behind :meth:`write_layers`; return the folder in which all is complete now.
 
-        To be called behind :meth:`write_layers`. Return false after a cancel. Other files in the folder stay,
-        and in ``site.toml`` the tables that the operator set.
+        The tables that the operator set in ``site.toml`` stay.
 
         :raises PublicationError: when a setting is wrong.
         """
         assert self._cache is not None
         check_publication_values(settings, self._staged.target)
-        write_settings_and_cache(self._staged, settings, self._cache)
-        if feedback.isCanceled():
-            return False
+        write_settings_and_cache(self._staged, settings, self._cache, self._earlier)
+        return self._staged.folder
+
+    def replace_earlier(self) -> None:
+        """Put what was written in the place of what is published; other files in the folder stay."""
         publish_staged(self._staged)
-        return True
 
 
 @contextmanager
-def new_publication(folder: Path) -> Iterator[NewPublication]:
+def new_publication(folder: Path, earlier: str) -> Iterator[NewPublication]:
     """Give a publication to be made in ``folder``; what is not complete at the end leaves nothing there.
+
+    ``earlier`` is the text of the ``site.toml`` that it follows, empty for none.
 
     To be called where no other publication is under way, see ``publication_lock``.
 
@@ -230,7 +237,7 @@ def new_publication(folder: Path) -> Iterator[NewPublication]:
         for left_by_a_crash in folder.glob(f"{_PARTIAL}*"):
             shutil.rmtree(left_by_a_crash, ignore_errors=True)
         with StagedFiles(folder, _PARTIAL) as staged:
-            yield NewPublication(staged)
+            yield NewPublication(staged, earlier)
     except OSError as error:
         raise unwritable(folder, error.strerror or str(error)) from error
 

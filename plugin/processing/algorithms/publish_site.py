@@ -1,11 +1,14 @@
-"""``fleet:publishsite``: layers by their roles in, the folder that a gateway serves out."""
+"""``fleet:publishsite``: layers by their roles in, the folder or the database that a gateway serves out."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
+from contextlib import ExitStack, nullcontext
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
+from tempfile import TemporaryDirectory
+from typing import Any, NamedTuple
 
 from qgis.core import (
     QgsCoordinateReferenceSystem,
@@ -22,14 +25,17 @@ from qgis.core import (
     QgsProcessingParameterFolderDestination,
     QgsProcessingParameterMultipleLayers,
     QgsProcessingParameterNumber,
+    QgsProcessingParameterProviderConnection,
     QgsProcessingParameterString,
     QgsVectorLayer,
 )
 
 from ....robot_bridge.core.sites.settings import SETTINGS_FILE, SiteBounds, SiteSettings, earlier_settings
 from ....robot_bridge.core.sites.settings_tables import LivenessLimits, value_text
+from ....robot_bridge.core.sites.site_database import view_schema
 from ...layers.crs import crs_name, is_engineering
 from ...layers.layer_source import Setups, obstacle_sources
+from ...layers.publishing.postgis import SiteDatabase, check_site_id, database_address, site_database
 from ...layers.publishing.publication import (
     check_publication_values,
     exclusive_publication,
@@ -60,7 +66,7 @@ from ..common.parameters import (
 
 # --- What a publication will hold, settled and checked before it starts ---
 
-FOLDER, REPLACE = "FOLDER", "REPLACE"
+FOLDER, REPLACE, DATABASE = "FOLDER", "REPLACE", "DATABASE"
 SITE_ID, SITE_NAME, BOUNDS = "SITE_ID", "SITE_NAME", "BOUNDS"
 DEFAULT_WIDTH = "DEFAULT_WIDTH"
 TOLERANCE, STALE_AFTER, LOST_AFTER = "REACHED_TOLERANCE", "STALE_AFTER", "LOST_AFTER"
@@ -92,11 +98,15 @@ class PublishParameters:
     """Everything that is needed of the parameters and layers; usable from any thread.
 
     The bounds of ``settings`` stand in where ``bounds_given`` is false, until the layers are read. Their
-    version is as the folder was when the plan was made; ``replace_other`` lets another site be replaced.
+    version is as the folder was when the plan was made, and so are its limits but for those ``given``;
+    ``replace_other`` lets another site be replaced. At least one of ``folder`` and ``database``, an address,
+    is there.
     """
 
-    folder: Path
+    folder: Path | None
+    database: str
     settings: SiteSettings
+    given: Mapping[str, float]
     bounds_given: bool
     replace_other: bool
     sources: SiteSources
@@ -127,14 +137,23 @@ def read_publish_parameters(
     local = algorithm.parameterAsBool(parameters, LOCAL, context)
     site = SiteGeoreference(crs, frame, context.transformContext(), local)
     check_content_sources(sources, site)
-    folder = Path(algorithm.parameterAsFileOutput(parameters, FOLDER, context))
-    settings, given = _settings(algorithm, parameters, context, site)
-    check_publication_values(settings, folder)
+    folder, database = _targets(algorithm, parameters, context)
+    given = _given_limits(algorithm, parameters, context)
+    settings, bounds_given = _settings(algorithm, parameters, context, site)
+    if folder is not None:
+        settings = with_limits(settings, given, earlier_settings(folder, settings.id), folder / SETTINGS_FILE)
     replace_other = algorithm.parameterAsBool(parameters, REPLACE, context)
+    if folder is not None:
+        check_publication_values(settings, folder)
+        settings = next_version(settings, folder, replace_other=replace_other)
+    if database:
+        check_site_id(settings.id)
     return PublishParameters(
         folder=folder,
-        settings=next_version(settings, folder, replace_other=replace_other),
-        bounds_given=given,
+        database=database,
+        settings=settings,
+        given=given,
+        bounds_given=bounds_given,
         replace_other=replace_other,
         sources=sources,
         site=site,
@@ -153,6 +172,22 @@ def layers_to_publish(
     if len(given) < len(LAYERS) and project is not None:
         layers += project.mapLayers().values()
     return layers
+
+
+def _targets(
+    algorithm: QgsProcessingAlgorithm, parameters: Parameters, context: QgsProcessingContext
+) -> tuple[Path | None, str]:
+    """Return the folder and the address of the database to publish in, at least one of them."""
+    folder = algorithm.parameterAsFileOutput(parameters, FOLDER, context)
+    database = algorithm.parameterAsConnectionName(parameters, DATABASE, context)
+    if not folder and not database:
+        raise ParameterError(
+            tr(
+                "It is not said where to publish: give FOLDER, a folder, or DATABASE, a PostgreSQL "
+                "connection of QGIS's."
+            )
+        )
+    return Path(folder) if folder else None, database_address(database) if database else ""
 
 
 def _sources(
@@ -206,7 +241,6 @@ def _settings(
 ) -> tuple[SiteSettings, bool]:
     name, title = _names(algorithm, parameters, context)
     bounds = _bounds(algorithm, parameters, context, site)
-    limits = _limits(algorithm, parameters, context, name)
     settings = SiteSettings(
         id=name,
         name=title,
@@ -215,26 +249,37 @@ def _settings(
         origin=site.frame.origin,
         bounds=bounds or WHERE_NOT_KNOWN,
         rotation_deg=round(math.degrees(site.frame.rotation), 9),
-        reached_tolerance_m=limits[TOLERANCE],
-        liveness=LivenessLimits(limits[STALE_AFTER], limits[LOST_AFTER]),
     )
     return settings, bounds is not None
 
 
-def _limits(
-    algorithm: QgsProcessingAlgorithm, parameters: Parameters, context: QgsProcessingContext, site: str
+def _given_limits(
+    algorithm: QgsProcessingAlgorithm, parameters: Parameters, context: QgsProcessingContext
 ) -> dict[str, float]:
-    """Return the limits that are given; of the others what the site is published with, else the default."""
-    folder = Path(algorithm.parameterAsFileOutput(parameters, FOLDER, context))
-    earlier = earlier_settings(folder, site)
-    limits = {}
+    return {
+        name: algorithm.parameterAsDouble(parameters, name, context)
+        for name in LIMITS
+        if parameters.get(name) is not None
+    }
+
+
+def with_limits(
+    settings: SiteSettings, given: Mapping[str, float], earlier: str, place: Path
+) -> SiteSettings:
+    """Return ``settings`` with the limits ``given``; the others are those of the ``earlier`` site.toml.
+
+    What is not there either has its default; ``place`` names the site.toml in messages.
+    """
+    limits = dict(given)
     for name, (table, key, default) in LIMITS.items():
         found = value_text(earlier, table, key)
-        if parameters.get(name) is not None:
-            limits[name] = algorithm.parameterAsDouble(parameters, name, context)
-        else:
-            limits[name] = _number(found, f"{folder / SETTINGS_FILE}: {table}.{key}") if found else default
-    return limits
+        if name not in given:
+            limits[name] = _number(found, f"{place}: {table}.{key}") if found else default
+    return replace(
+        settings,
+        reached_tolerance_m=limits[TOLERANCE],
+        liveness=LivenessLimits(limits[STALE_AFTER], limits[LOST_AFTER]),
+    )
 
 
 def _number(text: str, place: str) -> float:
@@ -302,6 +347,10 @@ widths else from the fields <i>height</i> or <i>height_m</i>, <i>surface</i>, <i
 <i>width</i>.</p>
 <p><b>Version</b>: 1 for a new folder, else one more than the version there. A folder that holds another site
 is refused unless <b>Replace</b> is ticked.</p>
+<p><b>Database</b>: the site goes into PostgreSQL with PostGIS, too, or only there where no folder is given:
+the layers as tables, with views of the newest version in the schema <i>site_ID</i>, and all that
+<i>robot-bridge serve --site postgresql://account@host/database#ID</i> serves. It is a connection of QGIS's or
+such an address.</p>
 <p><b>Bounds</b>: the rectangle, along the axes of the site frame, that robots may be sent into. Obstacles are
 published up to 100 m beyond it, so that a robot at its edge is told what stands there.</p>
 <p><b>Site CRS, origin, rotation</b>: where the robots' (0, 0) is and how their x axis lies. Default: as the
@@ -331,7 +380,7 @@ NUMBERS = {
     "KEEPOUT_COUNT": tr("Keepouts"),
     "WARNING_COUNT": tr("Warnings"),
 }
-ID = "ID"
+ID, VIEWS = "ID", "SCHEMA"
 
 _REAL = QgsProcessingParameterNumber.Type.Double
 _LIMITS = LivenessLimits()
@@ -364,10 +413,17 @@ class PublishSite(FleetAlgorithm):
             *site,
             *_value_parameters(),
             *frame_parameters(),
-            QgsProcessingParameterFolderDestination(FOLDER, tr("Folder of the published site")),
+            QgsProcessingParameterProviderConnection(
+                DATABASE, tr("Database of the published site (PostGIS)"), "postgres", optional=True
+            ),
+            # Optional for scripts that publish into a database only; a dialog proposes one as before.
+            QgsProcessingParameterFolderDestination(
+                FOLDER, tr("Folder of the published site"), optional=True, createByDefault=True
+            ),
         ):
             self.addParameter(parameter)
         self.addOutput(QgsProcessingOutputString(ID, tr("Id of the site")))
+        self.addOutput(QgsProcessingOutputString(VIEWS, tr("Schema of the site's views in the database")))
         for name, description in NUMBERS.items():
             self.addOutput(QgsProcessingOutputNumber(name, description))
 
@@ -392,37 +448,108 @@ class PublishSite(FleetAlgorithm):
         self, parameters: Parameters, context: QgsProcessingContext, feedback: QgsProcessingFeedback
     ):
         plan = self._plan
-        with shown_by_processing(feedback), exclusive_publication(plan.folder):
-            # Again: another publication may have ended since the plan was made.
-            settings = next_version(plan.settings, plan.folder, replace_other=plan.replace_other)
-            content = _content(plan)
-            with new_publication(plan.folder) as publication:
-                if not publication.write_layers(content, settings, feedback):
-                    return {}
-                if not plan.bounds_given:
-                    settings = replace(settings, bounds=_all_of(content))
-                warnings = [*content.warnings(), *_origin_warnings(plan.site, settings.bounds)]
-                for warning in warnings:
-                    feedback.pushWarning(warning)
-                if not publication.replace_earlier(settings, feedback):
-                    return {}
+        with shown_by_processing(feedback), ExitStack() as places:
+            folder = plan.folder or Path(places.enter_context(TemporaryDirectory(prefix="fleet-site-")))
+            places.enter_context(exclusive_publication(folder))
+            database = None
+            if plan.database:
+                database = places.enter_context(site_database(plan.database, plan.settings.id))
+            done = _publish(plan, folder, database, feedback)
+            if done is None:
+                return {}
+            if database is not None:
+                for schema in database.remove_earlier(done.settings):
+                    feedback.pushInfo(
+                        tr(
+                            "The tables in the schema {schema} of an earlier version are in use: they stay "
+                            "until the next publication.",
+                            schema=schema,
+                        )
+                    )
         feedback.setProgress(100)
-        figures = (settings.version, *content.counts.values(), len(warnings))
-        feedback.pushInfo(
-            tr(
-                "Site {id} version {version} is published in {folder}: {outlines}, "
-                "{centrelines}, {surfaces}, {keepouts}; bounds {bounds} m",
-                id=settings.id,
-                version=settings.version,
-                folder=plan.folder,
-                outlines=tr_count(figures[1], "1 obstacle outline", "%n obstacle outlines"),
-                centrelines=tr_count(figures[2], "1 centreline", "%n centrelines"),
-                surfaces=tr_count(figures[3], "1 road surface", "%n road surfaces"),
-                keepouts=tr_count(figures[4], "1 keepout", "%n keepouts"),
-                bounds=", ".join(f"{edge:.10g}" for edge in settings.bounds),
-            )
-        )
-        return {FOLDER: str(plan.folder), ID: settings.id, **dict(zip(NUMBERS, figures, strict=True))}
+        settings, counts = done.settings, done.counts
+        for place in filter(None, (plan.folder, _views_of(plan))):
+            feedback.pushInfo(_report(settings, counts, place))
+        results = {
+            ID: settings.id,
+            **dict(zip(NUMBERS, (settings.version, *counts, done.warnings), strict=True)),
+        }
+        if plan.folder is not None:
+            results[FOLDER] = str(plan.folder)
+        if plan.database:
+            results[VIEWS] = view_schema(settings.id)
+        return results
+
+
+class _Published(NamedTuple):
+    """A publication that is in force: its settings, how much of each layer it holds, and its warnings."""
+
+    settings: SiteSettings
+    counts: tuple[int, ...]
+    warnings: int
+
+
+def _publish(
+    plan: PublishParameters, folder: Path, database: SiteDatabase | None, feedback: QgsProcessingFeedback
+) -> _Published | None:
+    """Publish in ``folder`` and ``database``, in both or in none; return None after a cancel."""
+    settings, earlier = _following(plan, folder, database)
+    content = _content(plan)
+    with new_publication(folder, earlier) as publication:
+        if not publication.write_layers(content, settings, feedback):
+            return None
+        if not plan.bounds_given:
+            settings = replace(settings, bounds=_all_of(content))
+        warnings = [*content.warnings(), *_origin_warnings(plan.site, settings.bounds)]
+        for warning in warnings:
+            feedback.pushWarning(warning)
+        complete = publication.write_settings(settings)
+        if feedback.isCanceled():
+            return None
+        switched = database.new_version(settings, complete, feedback) if database else nullcontext(True)
+        with switched as is_whole:
+            if not is_whole:
+                return None
+            publication.replace_earlier()
+    return _Published(settings, tuple(content.counts.values()), len(warnings))
+
+
+def _following(
+    plan: PublishParameters, folder: Path, database: SiteDatabase | None
+) -> tuple[SiteSettings, str]:
+    """Return the settings of the next version, and the text of the site.toml that it follows.
+
+    Again: another publication may have ended since the plan was made. What the operator set in the folder
+    goes before what is in the database.
+    """
+    elsewhere = 0 if database is None else database.version
+    settings = next_version(plan.settings, folder, replace_other=plan.replace_other, elsewhere=elsewhere)
+    earlier = earlier_settings(folder, settings.id)
+    if not earlier and database is not None:
+        earlier = database.settings_text
+        settings = with_limits(settings, plan.given, earlier, Path(SETTINGS_FILE))
+    return settings, earlier
+
+
+def _views_of(plan: PublishParameters) -> str:
+    if not plan.database:
+        return ""
+    return tr("the database, schema {schema}", schema=view_schema(plan.settings.id))
+
+
+def _report(settings: SiteSettings, counts: tuple[int, ...], place: Path | str) -> str:
+    return tr(
+        "Site {id} version {version} is published in {folder}: {outlines}, "
+        "{centrelines}, {surfaces}, {keepouts}; bounds {bounds} m",
+        id=settings.id,
+        version=settings.version,
+        folder=place,
+        outlines=tr_count(counts[0], "1 obstacle outline", "%n obstacle outlines"),
+        centrelines=tr_count(counts[1], "1 centreline", "%n centrelines"),
+        surfaces=tr_count(counts[2], "1 road surface", "%n road surfaces"),
+        keepouts=tr_count(counts[3], "1 keepout", "%n keepouts"),
+        bounds=", ".join(f"{edge:.10g}" for edge in settings.bounds),
+    )
 
 
 def _origin_warnings(site: SiteGeoreference, bounds: SiteBounds) -> list[str]:

@@ -384,16 +384,18 @@ def _write(folder: Path, settings: SiteSettings, layers: Sequence[Layer], obstac
         write_layers(staged.folder / GEOPACKAGE_FILE, layers, settings.crs, settings.stamp)
         cache = staged.enter(cache_writer(staged.folder, settings.frame))
         cache.add(obstacles)
-        write_settings_and_cache(staged, settings, cache)
+        write_settings_and_cache(staged, settings, cache, earlier_settings(folder, settings.id))
         publish_staged(staged)
 
 
-def write_settings_and_cache(staged: StagedFiles, settings: SiteSettings, cache: CacheWriter) -> None:
+def write_settings_and_cache(
+    staged: StagedFiles, settings: SiteSettings, cache: CacheWriter, earlier: str
+) -> None:
     """Write ``site.toml`` and ``site.cache`` beside the layers in ``staged``, which ``cache`` was given.
 
-    In ``site.toml`` the tables stay that the operator set in the one there. Raises OSError.
+    In ``site.toml`` the tables stay that the operator set in the ``earlier`` one, its text. Raises OSError.
     """
-    text = settings_text(settings, earlier_settings(staged.target, settings.id))
+    text = settings_text(settings, earlier)
     (staged.folder / SETTINGS_FILE).write_text(text, encoding="utf-8")
     write_site_cache(staged.folder, settings, text, cache)
 

@@ -1,0 +1,270 @@
+"""A site that is published in a database: a gateway fetches its newest version into a folder and serves that.
+
+The folder is as a publication makes it, and a new version takes the place of the earlier one in it as a
+publication does, so that :class:`.site_watch.SiteWatch` sees no difference.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import hashlib
+import json
+import logging
+import os
+import shutil
+from collections.abc import AsyncIterator
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from ..core.errors import SiteError, StoreError
+from ..core.files import StagedFiles, write_state
+from ..core.json_decoder import SHORT, DecodingError, decode_json
+from ..core.sites.geopackage import GEOPACKAGE_FILE
+from ..core.sites.settings import SETTINGS_FILE, read_settings
+from ..core.sites.site import publish_staged
+from ..core.sites.site_database import FORMAT, SCHEMA, SITE_FILES, SiteAddress, digest_text
+from .storage.dialects import CONNECT_ARGUMENTS, PostgreSQL
+
+if TYPE_CHECKING:
+    from psycopg import AsyncConnection, AsyncCursor
+
+log = logging.getLogger(__name__)
+
+LOOK_INTERVAL = 2.0
+PATIENCE = 20.0
+"""seconds for one answer of the database, of at most some megabytes."""
+_NOTE = "fetched.json"
+_STAGE = ".fetching-"
+
+
+class SiteCopyError(StoreError):
+    """A site that cannot be fetched from its database; what is served stays as it is."""
+
+
+class _Version(NamedTuple):
+    number: int
+    digest: str
+
+
+class SiteCopy:
+    """The copy of the site at ``address`` on this computer, in :attr:`folder`, which lies in ``state``.
+
+    Nothing in here waits for one answer of the database longer than PATIENCE, and a cancel ends it at once.
+    """
+
+    def __init__(self, address: SiteAddress, state: Path | None) -> None:
+        # One folder for each database: sites that lie side by side are offered to operators.
+        place = hashlib.sha256(address.shown.encode()).hexdigest()[:16]
+        self.folder = (state or _state_folder()) / "sites" / place / address.site
+        self._address = address
+        self._refused: _Version | None = None
+        self._connection: AsyncConnection[Any] | None = None
+
+    def fetch_first(self) -> None:
+        """Fetch what is newer, before a gateway runs; a copy that is there serves where that fails.
+
+        :raises SiteCopyError: when it fails and there is no copy.
+        """
+        for left_by_a_crash in self.folder.glob(f"{_STAGE}*"):
+            shutil.rmtree(left_by_a_crash, ignore_errors=True)
+        try:
+            asyncio.run(self._fetch_once())
+        except SiteCopyError as error:
+            kept = self._kept()
+            if kept is None:
+                raise
+            log.warning("%s; its version %d, which was fetched before, is served", error, kept.number)
+
+    async def _fetch_once(self) -> None:
+        try:
+            await self.refresh()
+        finally:
+            await self.close()
+
+    async def refresh(self) -> None:
+        """Fetch the newest version unless it is there; raises SiteCopyError saying why it cannot."""
+        psycopg = _psycopg()
+        try:
+            await self._refresh()
+        except SiteCopyError:
+            await self.close()
+            raise
+        except (psycopg.Error, OSError) as error:
+            await self.close()
+            raise self._failed(error) from error
+
+    async def close(self) -> None:
+        """Give up the connection."""
+        connection, self._connection = self._connection, None
+        if connection is not None:
+            await connection.close()
+
+    async def _refresh(self) -> None:
+        connection = self._connection = self._connection or await self._connect()
+        async with _snapshot(connection):
+            newest = await self._newest(connection)
+            if newest in (self._kept(), self._refused):
+                return
+            try:
+                await self._fetch(connection, newest)
+            except SiteError as error:
+                # Once: what is wrong there is wrong until it is published again.
+                self._refused = newest
+                raise SiteCopyError(
+                    f"{error}. What was fetched before stays; publish the site again"
+                ) from error
+        log.info("%s: version %d is fetched", self._address.shown, newest.number)
+
+    async def _connect(self) -> AsyncConnection[Any]:
+        kind: type[AsyncConnection[Any]] = _psycopg().AsyncConnection
+        async with asyncio.timeout(PATIENCE):
+            return await kind.connect(self._address.conninfo, autocommit=True, **CONNECT_ARGUMENTS)
+
+    async def _newest(self, connection: AsyncConnection[Any]) -> _Version:
+        psycopg, site = _psycopg(), self._address.site
+        try:
+            found = await _rows(
+                connection, f"select version, digest from {SCHEMA}.sites where site = %s", site
+            )
+        except psycopg.errors.UndefinedTable as error:
+            raise SiteCopyError(
+                f"{self._address.shown}: no site is published in this database; publish it there with QGIS "
+                "(Publish site, DATABASE), or correct the address"
+            ) from error
+        if not found:
+            names = [
+                name for (name,) in await _rows(connection, f"select site from {SCHEMA}.sites order by 1")
+            ]
+            raise SiteCopyError(
+                f"{self._address.shown}: there is no site {site!r} in this database; it has: "
+                f"{', '.join(names) or 'none'}"
+            )
+        await self._check_format(connection)
+        return _Version(*found[0])
+
+    async def _check_format(self, connection: AsyncConnection[Any]) -> None:
+        query = "select obj_description(oid, 'pg_namespace') from pg_namespace where nspname = %s"
+        ((said,),) = await _rows(connection, query, SCHEMA)
+        if said != FORMAT:
+            raise SiteCopyError(
+                f"{self._address.shown}: its schema {SCHEMA} is of another version of this program (it says "
+                f"{said!r}); use the gateway of that version, or publish the site into another database"
+            )
+
+    async def _fetch(self, connection: AsyncConnection[Any], newest: _Version) -> None:
+        """Fetch ``newest`` whole and put it into the folder; raises SiteError for what is damaged."""
+        query = f"select name, digest from {SCHEMA}.files where site = %s and version = %s"
+        digests = dict(await _rows(connection, query, self._address.site, newest.number))
+        if hashlib.sha256(digest_text(digests)).hexdigest() != newest.digest or not digests.keys() <= {
+            *SITE_FILES
+        }:
+            raise SiteError(
+                f"{self._address.shown}: the files of version {newest.number} are not those published"
+            )
+        with contextlib.ExitStack() as stages:
+            staged = await asyncio.to_thread(stages.enter_context, StagedFiles(self.folder, _STAGE))
+            for name, digest in digests.items():
+                if await self._fetch_file(connection, newest, staged.folder / name) != digest:
+                    raise SiteError(f"{self._address.shown}: {name} of version {newest.number} is damaged")
+            await asyncio.to_thread(self._put_in_place, staged, newest)
+
+    async def _fetch_file(self, connection: AsyncConnection[Any], newest: _Version, file: Path) -> str:
+        """Write one file, a part at a time; return its digest."""
+        digest, number = hashlib.sha256(), 0
+        query = (
+            f"select content from {SCHEMA}.parts "
+            "where site = %s and version = %s and name = %s and number = %s"
+        )
+        place = (self._address.site, newest.number, file.name)
+        with file.open("wb") as stream:
+            while found := await _rows(connection, query, *place, number):
+                part = found[0][0]
+                await asyncio.to_thread(stream.write, part)
+                digest.update(part)
+                number += 1
+        return digest.hexdigest()
+
+    def _put_in_place(self, staged: StagedFiles, newest: _Version) -> None:
+        settings = read_settings(staged.folder / SETTINGS_FILE)
+        if (settings.id, settings.version) != (self._address.site, newest.number):
+            raise SiteError(f"{self._address.shown}: version {newest.number} holds that of {settings.stamp}")
+        publish_staged(staged)
+        write_state(self._note, json.dumps(newest._asdict()).encode())
+
+    @property
+    def _note(self) -> Path:
+        return self.folder.parent / _NOTE
+
+    def _kept(self) -> _Version | None:
+        """Return the version that was fetched last, None where it is not there."""
+        if not all((self.folder / name).is_file() for name in (SETTINGS_FILE, GEOPACKAGE_FILE)):
+            return None
+        try:
+            found = decode_json(self._note.read_bytes(), SHORT)
+            return _Version(int(found["number"]), str(found["digest"]))
+        except (OSError, DecodingError, KeyError, TypeError, ValueError):
+            return None
+
+    def _failed(self, error: Exception) -> SiteCopyError:
+        reason = " ".join(str(error).split()) or f"no answer within {PATIENCE:g} s"
+        if getattr(error, "sqlstate", None) == "42501":
+            return SiteCopyError(
+                f"{self._address.shown}: this account may not read the sites ({reason}); whoever publishes "
+                f"them runs: grant usage on schema {SCHEMA} to ACCOUNT; grant select on all tables in schema "
+                f"{SCHEMA} to ACCOUNT"
+            )
+        if isinstance(error, OSError) and error.filename is not None:
+            return SiteCopyError(f"{error.filename}: {error.strerror}; the site is fetched into that folder")
+        return SiteCopyError(
+            f"{self._address.shown} cannot be read: {reason}; check that the server runs, and the account, "
+            "whose password is in PGPASSWORD or ~/.pgpass"
+        )
+
+
+def _psycopg() -> Any:
+    """Return the driver; it is imported where it is used, for it may be missing."""
+    try:
+        import psycopg
+    except ImportError as error:
+        raise SiteCopyError(
+            f"the site is in PostgreSQL, whose driver is missing ({error}); install it with: "
+            "pip install 'fleet-supervisor-robot-bridge[postgresql]'"
+        ) from error
+    return psycopg
+
+
+def _state_folder() -> Path:
+    """Return where programs of this account keep what they need again."""
+    given = os.environ.get("XDG_STATE_HOME")
+    return (Path(given) if given else Path.home() / ".local" / "state") / "robot-bridge"
+
+
+@contextlib.asynccontextmanager
+async def _snapshot(connection: AsyncConnection[Any]) -> AsyncIterator[None]:
+    """Have all that is read in the block be of one moment, whatever is published meanwhile."""
+    await _answered(connection, "begin isolation level repeatable read read only")
+    yield
+    await _answered(connection, "rollback")
+
+
+async def _rows(connection: AsyncConnection[Any], query: str, *values: object) -> list[tuple[Any, ...]]:
+    return await (await _answered(connection, query, *values)).fetchall()
+
+
+async def _answered(connection: AsyncConnection[Any], query: str, *values: object) -> AsyncCursor[Any]:
+    """Return what the database answers; raises TimeoutError where that takes longer than PATIENCE.
+
+    The driver, when it is cancelled, asks the server to end the query and waits for that, 10 s where it is
+    frozen: a stop of the gateway would have to wait, too. So its connection is cut instead.
+    """
+    asking = asyncio.ensure_future(connection.execute(query.encode(), values or None, binary=True))
+    asking.add_done_callback(lambda done: done.cancelled() or done.exception())
+    try:
+        await asyncio.wait({asking}, timeout=PATIENCE)
+    finally:
+        if not asking.done():
+            PostgreSQL().interrupt(connection)
+    if not asking.done():
+        raise TimeoutError(f"no answer within {PATIENCE:g} s")
+    return asking.result()
