@@ -23,7 +23,7 @@ from ..core.json_decoder import SHORT, DecodingError, decode_json
 from ..core.sites.geopackage import GEOPACKAGE_FILE
 from ..core.sites.settings import SETTINGS_FILE, read_settings
 from ..core.sites.site import publish_staged
-from ..core.sites.site_database import FORMAT, SCHEMA, SITE_FILES, SiteAddress, digest_text
+from ..core.sites.site_database import FORMAT, PART_BYTES, SCHEMA, SITE_FILES, SiteAddress, digest_text
 from .storage.dialects import CONNECT_ARGUMENTS, PostgreSQL
 
 if TYPE_CHECKING:
@@ -154,8 +154,9 @@ class SiteCopy:
 
     async def _fetch(self, connection: AsyncConnection[Any], newest: _Version) -> None:
         """Fetch ``newest`` whole and put it into the folder; raises SiteError for what is damaged."""
-        query = f"select name, digest from {SCHEMA}.files where site = %s and version = %s"
-        digests = dict(await _rows(connection, query, self._address.site, newest.number))
+        query = f"select name, digest, size from {SCHEMA}.files where site = %s and version = %s"
+        files = await _rows(connection, query, self._address.site, newest.number)
+        digests = {name: digest for name, digest, _ in files}
         if hashlib.sha256(digest_text(digests)).hexdigest() != newest.digest or not digests.keys() <= {
             *SITE_FILES
         }:
@@ -164,13 +165,15 @@ class SiteCopy:
             )
         with contextlib.ExitStack() as stages:
             staged = await asyncio.to_thread(stages.enter_context, StagedFiles(self.folder, _STAGE))
-            for name, digest in digests.items():
-                if await self._fetch_file(connection, newest, staged.folder / name) != digest:
+            for name, digest, size in files:
+                if await self._fetch_file(connection, newest, staged.folder / name, size) != digest:
                     raise SiteError(f"{self._address.shown}: {name} of version {newest.number} is damaged")
             await asyncio.to_thread(self._put_in_place, staged, newest)
 
-    async def _fetch_file(self, connection: AsyncConnection[Any], newest: _Version, file: Path) -> str:
-        """Write one file, a part at a time; return its digest."""
+    async def _fetch_file(
+        self, connection: AsyncConnection[Any], newest: _Version, file: Path, size: int
+    ) -> str:
+        """Write one file, a part at a time, and not much beyond its ``size``; return its digest."""
         digest, number = hashlib.sha256(), 0
         query = (
             f"select content from {SCHEMA}.parts "
@@ -178,7 +181,7 @@ class SiteCopy:
         )
         place = (self._address.site, newest.number, file.name)
         with file.open("wb") as stream:
-            while found := await _rows(connection, query, *place, number):
+            while number * PART_BYTES <= size and (found := await _rows(connection, query, *place, number)):
                 part = found[0][0]
                 await asyncio.to_thread(stream.write, part)
                 digest.update(part)
