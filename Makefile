@@ -48,8 +48,8 @@ test-core: $(READY) ## run within a minute what needs neither QGIS nor database 
 test-newer: ## run every test on the newer QGIS of Debian forky, in a root folder of its own (as root)
 	@tools/newer.sh
 
-lint: $(READY) ## check style, types and import rules only
-	@$(RUN) -m pytest -q tests/packaging/test_style.py
+lint: $(READY) build/run ## check style, types and import rules only
+	@$(HEADLESS) $(RUN) -m pytest -q tests/packaging/test_style.py
 
 desktop: $(READY) ## open QGIS Desktop with the plugin, the sample site and three driving robots
 	@$(RUN) -m tools.desktop

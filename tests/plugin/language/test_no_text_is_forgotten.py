@@ -231,7 +231,7 @@ def test_every_text_that_people_read_is_translated():
         for line, text in forgotten(path.read_text(encoding="utf-8")):
             if name != SQL_FILE or not SQL.search(text):
                 left[f"{name}:{line}"] = text
-    assert not left, "wrap them in tr(...) of plugin/ui/language.py, or say above why nobody reads them"
+    assert not left, "wrap them in tr(...) of plugin/ui/language.py, or say in TEXTS why nobody reads them"
 
 
 def test_no_exception_is_for_what_is_gone():
