@@ -5,7 +5,6 @@ from __future__ import annotations
 import datetime
 import http.client
 import importlib.util
-import json
 import resource
 import shutil
 import ssl
@@ -22,6 +21,7 @@ from typing import TYPE_CHECKING, Annotated, NamedTuple
 import typer
 
 from ..core.errors import BridgeError, SiteError, counted
+from ..core.json_decoder import JsonBounds, decode_json
 from ..core.logs import set_up_log
 from ..core.sites.site_database import is_database_address
 from .options import DatabaseOption, PasswordFileOption
@@ -36,6 +36,9 @@ LEAST_FREE, FEW_FREE = 100e6, 1e9
 WARN_DAYS = 30
 ANSWER_WITHIN = 5.0
 """Seconds for a gateway that runs, and for a program of the system, to answer."""
+
+
+HEALTH_PAGE = JsonBounds(depth=8, length=1 << 20, values=10_000)
 
 
 class Level(StrEnum):
@@ -233,7 +236,7 @@ def _check_gateway(settings: GatewaySettings) -> Iterator[Finding]:
     asked = connect(host, settings.port, timeout=ANSWER_WITHIN)
     try:
         asked.request("GET", HEALTH)
-        health = json.loads(asked.getresponse().read(1 << 20))
+        health = decode_json(asked.getresponse().read(HEALTH_PAGE.length), HEALTH_PAGE)
         failing = [name for name, one in health.items() if isinstance(one, dict) and one.get("ok") is False]
         said = f"version {health['version']}, site {health['site']['id']}"
     except ConnectionRefusedError:

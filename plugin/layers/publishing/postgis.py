@@ -254,13 +254,13 @@ class SiteDatabase:
     def _version(self) -> int:
         if not self._has_tables:
             return 0
-        return int(self._one(f"select version from {SCHEMA}.sites where site = %s", self._site) or 0)
+        return int(self._one(f"select version from {SCHEMA}.sites where site = %s", self._site) or 0)  # nosec B608 # names of ours
 
     def _settings_text(self) -> str:
         if not self.version:
             return ""
         content = self._one(
-            f"select string_agg(content, null::bytea order by number) from {SCHEMA}.parts "
+            f"select string_agg(content, null::bytea order by number) from {SCHEMA}.parts "  # nosec B608 # names of ours
             "where site = %s and version = %s and name = %s",
             self._site,
             self.version,
@@ -295,7 +295,7 @@ class SiteDatabase:
                 if feedback.isCanceled():
                     return False
                 self._cursor.execute(
-                    f"insert into {SCHEMA}.parts values (%s, %s, %s, %s, %s)",
+                    f"insert into {SCHEMA}.parts values (%s, %s, %s, %s, %s)",  # nosec B608 # names of ours
                     [self._site, settings.version, name, number, part],
                 )
         # Last: from here on nobody may read the views until the commit.
@@ -308,10 +308,10 @@ class SiteDatabase:
         digest = hashlib.sha256(digest_text(digests)).hexdigest()
         row = (settings.version, digest, self._site)
         self._cursor.execute(
-            f"update {SCHEMA}.sites set version = %s, digest = %s, published_at = now(), "
+            f"update {SCHEMA}.sites set version = %s, digest = %s, published_at = now(), "  # nosec B608 # names of ours
             "published_by = current_user where site = %s and version = %s"
             if self.version
-            else f"insert into {SCHEMA}.sites (version, digest, site) values (%s, %s, %s) "
+            else f"insert into {SCHEMA}.sites (version, digest, site) values (%s, %s, %s) "  # nosec B608 # names of ours
             "on conflict do nothing",
             (*row, self.version) if self.version else row,
         )
@@ -325,17 +325,17 @@ class SiteDatabase:
                 )
             )
         for table in ("parts", "files"):
-            self._cursor.execute(f"delete from {SCHEMA}.{table} where site = %s", [self._site])
+            self._cursor.execute(f"delete from {SCHEMA}.{table} where site = %s", [self._site])  # nosec B608 # names of ours
         for name, of_file in digests.items():
             size = (folder / name).stat().st_size
             self._cursor.execute(
-                f"insert into {SCHEMA}.files values (%s, %s, %s, %s, %s)",
+                f"insert into {SCHEMA}.files values (%s, %s, %s, %s, %s)",  # nosec B608 # names of ours
                 [self._site, settings.version, name, size, of_file],
             )
 
     def _srid(self, crs: str) -> int:
         authority, _, code = crs.partition(":")
-        query = f"select srid from {self._gis}.spatial_ref_sys where auth_name = %s and auth_srid = %s"
+        query = f"select srid from {self._gis}.spatial_ref_sys where auth_name = %s and auth_srid = %s"  # nosec B608 # names of ours
         found = self._one(query, authority, int(code)) if code.isdecimal() else None
         if found is None:
             raise PublicationError(
@@ -356,7 +356,7 @@ class SiteDatabase:
         fields = "".join(f", {_quoted(name)} {_TYPES[type_]}" for name, type_ in spec.fields.items())
         self._cursor.execute(f"create table {table} (id bigint primary key, geom {kind}{fields})")
         names = ", ".join(_quoted(name) for name in spec.fields)
-        rows = source.execute(f"select fid, geom, {names} from {_quoted(spec.name)}")
+        rows = source.execute(f"select fid, geom, {names} from {_quoted(spec.name)}")  # nosec B608 # names of ours
         stream = _CopyStream(rows, srid, feedback)
         self._cursor.copy_expert(f"copy {table} (id, geom, {names}) from stdin", stream)
         self._cursor.execute(f"create index on {table} using gist (geom)")
@@ -369,7 +369,7 @@ class SiteDatabase:
         self._cursor.execute(f"create schema if not exists {views}")
         for spec in LAYERS:
             view = f"{views}.{_quoted(spec.name)}"
-            made = f"view {view} as select * from {_quoted(schema)}.{_quoted(spec.name)}"
+            made = f"view {view} as select * from {_quoted(schema)}.{_quoted(spec.name)}"  # nosec B608 # names of ours
             self._cursor.execute("savepoint before_view")
             try:
                 self._cursor.execute(f"create or replace {made}")

@@ -295,6 +295,16 @@ def current_stops(progress: PlanProgress) -> dict[str, SentStop]:
     return {robot: progress.stops[task] for robot, task in current_tasks(progress).items()}
 
 
+def standing_cones(progress: PlanProgress) -> list[tuple[float, float]]:
+    """Return where cones of the plan stand, metres in the site frame; also those that robots are placing.
+
+    A cone that a robot is at is neither a target of what is left nor written down as placed.
+    """
+    placed = [(one.x, one.y) for one in progress.placed.values() if one.collected_at is None]
+    coming = [one for one in committed_stops(progress) if one.kind == PLACE and one.id not in progress.placed]
+    return placed + [(one.x, one.y) for one in coming]
+
+
 def current_cones(progress: PlanProgress) -> set[str]:
     """Return the cones that robots are at."""
     return {one.stop.id for one in current_stops(progress).values()}

@@ -21,6 +21,7 @@ from ...core.assignment.progress import (
     current_stops,
     problem_of,
     situation_of,
+    standing_cones,
     tasks_of,
 )
 from ...core.errors import AssignmentError, OutdatedError, PlanFileError, RefusedError, RoadsError, StoreError
@@ -390,13 +391,10 @@ class PlanService:
             if (pose := robots.get(name).pose) is not None
         }
         drive = set(plan.staying) - set(one.problem.away)
-        placed = [
-            (report.x, report.y) for report in one.progress.placed.values() if report.collected_at is None
-        ]
         standing = {name: place for name, place in places.items() if name not in drive}
         now = self._context.clock.time()
         situation = situation_of(plan.document, one.progress, places, one.problem, now, try_again=try_again)
-        ground = ReplanGround(plan.terms, placed, standing, self._planner)
+        ground = ReplanGround(plan.terms, standing_cones(one.progress), standing, self._planner)
         one.making = making = Replanning(plan.document, ground, situation)
         task = asyncio.create_task(self._make(one, making, ground))
         self._tasks.add(task)

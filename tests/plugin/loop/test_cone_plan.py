@@ -100,8 +100,8 @@ class Planner:
     def solve(self, seconds):
         self.dock.form.seconds.setValue(seconds)
         self.press("fleet_plan_solve")
-        self.operator.wait("the plan", lambda: not self.dock.drafts.busy, seconds + 20)
-        assert self.dock.drafts.draft is not None
+        drafts = self.dock.drafts
+        self.operator.wait("the plan", lambda: not drafts.busy and drafts.draft is not None, seconds + 20)
         return self.dock.drafts.draft.plan
 
     def send(self):

@@ -25,6 +25,7 @@ from fleet_supervisor.robot_bridge.core.assignment.progress import (
     problem_of,
     sent_stops,
     situation_of,
+    standing_cones,
     tasks_of,
 )
 from fleet_supervisor.robot_bridge.core.assignment.solver import Objective, assign
@@ -169,6 +170,15 @@ def test_what_a_lost_robot_was_doing_and_what_waited_is_shared_out_and_the_rest_
     new = replan(with_store.plan, StraightTravel, now, Objective("distance", "preview"))
     cones = {one.robot.id: [s.id for s in one.stops if s.is_target] for one in new.robots}
     assert cones["r1"] == [] and sorted(cones["r2"]) == ["c2", "c3", "d3"] and new.robot("r1").lost
+
+
+def test_a_cone_that_is_being_placed_is_in_the_way_of_what_is_left(driven):
+    driven.tell("r1", [DONE, CURRENT])
+    driven.tell("r2", [CURRENT])
+    driven.placed("r1", 1, "c1")
+    assert sorted(standing_cones(driven.progress)) == [(1.1, 0.0), (20.0, 0.0), (110.0, 50.0)]
+    driven.progress.placed["c1"] = replace(driven.progress.placed["c1"], collected_at=BEGAN + 9)
+    assert sorted(standing_cones(driven.progress)) == [(20.0, 0.0), (110.0, 50.0)]
 
 
 def test_a_failed_cone_is_given_up_or_tried_again_as_the_operator_wants(driven):

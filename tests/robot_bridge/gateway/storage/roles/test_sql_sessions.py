@@ -124,7 +124,7 @@ def drop(kind, server):
 @pytest.fixture
 def gateway(place, sample_site, tmp_path):
     """A gateway that runs as the operation page says, and an operator at its desk."""
-    (line,) = re.findall(r"^    (robot-bridge serve .*postgresql.*)$", OPERATION, re.MULTILINE)
+    (line,) = re.findall(r"^    (robot-bridge serve .*--database postgresql.*)$", OPERATION, re.MULTILINE)
     line = line.replace("/srv/fleet/site", str(sample_site)).replace("postgresql:", f"{place.kind}:")
     line = line.replace("127.0.0.1/", f"127.0.0.1:{place.server.port}/")
     words = shlex.split(line)[1:]
