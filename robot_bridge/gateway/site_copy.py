@@ -23,7 +23,7 @@ from ..core.json_decoder import SHORT, DecodingError, decode_json
 from ..core.sites.geopackage import GEOPACKAGE_FILE
 from ..core.sites.settings import SETTINGS_FILE, read_settings
 from ..core.sites.site import publish_staged
-from ..core.sites.site_database import FORMAT, PART_BYTES, SCHEMA, SITE_FILES, SiteAddress, digest_text
+from ..core.sites.site_database import FORMAT, SCHEMA, SITE_FILES, SiteAddress, digest_text
 from .storage.dialects import CONNECT_ARGUMENTS, PostgreSQL
 
 if TYPE_CHECKING:
@@ -172,18 +172,18 @@ class SiteCopy:
         self, connection: AsyncConnection[Any], newest: _Version, file: Path, size: int
     ) -> str:
         """Write one file, a part at a time, and not much beyond its ``size``; return its digest."""
-        digest, number = hashlib.sha256(), 0
+        digest, number, written = hashlib.sha256(), 0, 0
         query = (
-            f"select content from {SCHEMA}.parts "  # nosec B608 # names of ours
+            f"select content from {SCHEMA}.parts "  # nosec B608 # our names
             "where site = %s and version = %s and name = %s and number = %s"
         )
         place = (self._address.site, newest.number, file.name)
         with file.open("wb") as stream:
-            while number * PART_BYTES <= size and (found := await _rows(connection, query, *place, number)):
+            while written < size and (found := await _rows(connection, query, *place, number)):
                 part = found[0][0]
                 await asyncio.to_thread(stream.write, part)
                 digest.update(part)
-                number += 1
+                number, written = number + 1, written + max(len(part), 1)
         return digest.hexdigest()
 
     def _put_in_place(self, staged: StagedFiles, newest: _Version) -> None:
