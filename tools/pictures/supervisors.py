@@ -22,6 +22,7 @@ from tools.pictures.stage import SITE, drawing, part
 PATIENCE_S = 60.0
 REVOKED, NEW = "Cleo", "Dana"
 OPERATORS = {"Ada": "supervisor", "Ben": "operator", REVOKED: "viewer"}
+GATEWAY = "wss://gateway.example.org:8765/desk"
 WEEK_S = 7 * 86_400.0
 SERVED = "proving_ground"
 SITES = {
@@ -102,8 +103,11 @@ def draw_sites(desk: Any, window: Any, picture: Path) -> None:
 
 
 def draw_accounts(desk: Any, window: Any, folder: Path) -> None:
-    """Open the accounts and take their picture; make one more, and take the picture of its token."""
-    from qgis.PyQt.QtWidgets import QDialog, QPushButton
+    """Open the accounts and take their picture; make one more, and take the picture of its token.
+
+    The token's picture is of a desk that is connected by an address that phones reach.
+    """
+    from qgis.PyQt.QtWidgets import QDialog, QLineEdit, QPushButton
 
     messages = part("robot_bridge.core.messages")
     dialog = part("plugin.admin.accounts_dialog").AccountsDialog(desk, window)
@@ -112,15 +116,19 @@ def draw_accounts(desk: Any, window: Any, folder: Path) -> None:
     dialog.view.selectRow(1)
     wait(lambda: dialog.selected() is not None, "the selection")
     save(dialog, folder / "accounts.png")
-    question = part("plugin.admin.accounts_dialog").NewAccount
+    question = part("plugin.admin.accounts_dialog").NewAccountDialog
     dialog._add()
     asks = dialog.findChild(question)
     asks.confirmed.emit(NEW, messages.Role.OPERATOR, WEEK_S)
     asks.close()
     wait(lambda: window.findChild(QDialog, "fleet_token_dialog") is not None, "the token")
-    token = window.findChild(QDialog, "fleet_token_dialog")
+    secret = window.findChild(QLineEdit, "fleet_new_token").text()
+    made = messages.NewToken(NEW, messages.Role.OPERATOR, secret, time.time() + WEEK_S)
+    token = part("plugin.admin.token_dialog").TokenDialog(made, GATEWAY, ends_link=False, parent=window)
+    token.show()
     token.findChild(QPushButton, "fleet_token_copy").click()
     save(token, folder / "token.png")
+    token.close()
     dialog.close_tokens()
     dialog.close()
 
