@@ -33,12 +33,10 @@ if TYPE_CHECKING:
 
 LEAST_FREE, FEW_FREE = 100e6, 1e9
 """Bytes free on the disk below which nothing is sure to be stored, and below which somebody has to act."""
-WARN_DAYS = 30
 ANSWER_WITHIN = 5.0
 """Seconds for a gateway that runs, and for a program of the system, to answer."""
-
-
 HEALTH_PAGE = JsonBounds(depth=8, length=1 << 20, values=10_000)
+"""What the page of a gateway may hold that is asked how it is."""
 
 
 class Level(StrEnum):
@@ -133,8 +131,9 @@ def _open_files(site: Site) -> Finding:
 def _check_database(settings: GatewaySettings) -> Iterator[Finding]:
     from ..gateway.storage import revisions
     from ..gateway.storage.database import run_once, shown
+    from ..gateway.storage.dialects import sqlite_path_in
 
-    place, file = shown(settings.database), _database_file(settings)
+    place, file = shown(settings.database), sqlite_path_in(settings.database)
     if file is not None and not file.is_file():
         yield Finding(Level.WARNING, "database", f"{place} is not there: the gateway makes it when it starts")
         return
@@ -146,16 +145,14 @@ def _check_database(settings: GatewaySettings) -> Iterator[Finding]:
 
 
 def _check_certificate(settings: GatewaySettings) -> Iterator[Finding]:
-    from ..gateway.auth.certificates import valid_until
-    from ..gateway.auth.tls import ServerTls
+    from ..gateway.auth.tls import WARN_DAYS, ServerTls
 
     if settings.tls is None:
         yield Finding(Level.OK, "certificate", "none: ws://, for this computer only")
         return
-    file, names = settings.tls.certificate, ServerTls(settings.tls).names
-    until = valid_until(file)
-    left = (until - datetime.datetime.now(datetime.timezone.utc)).days
-    text = f"{file}: for {', '.join(names)}, until {until:%Y-%m-%d}"
+    file, tls = settings.tls.certificate, ServerTls(settings.tls)
+    left = (tls.until - datetime.datetime.now(datetime.timezone.utc)).days
+    text = f"{file}: for {', '.join(tls.names)}, until {tls.until:%Y-%m-%d}"
     if left >= WARN_DAYS:
         yield Finding(Level.OK, "certificate", text)
         return
@@ -164,25 +161,28 @@ def _check_certificate(settings: GatewaySettings) -> Iterator[Finding]:
 
 
 def _check_reach(settings: GatewaySettings) -> Iterator[Finding]:
-    from ..gateway.auth.accounts import grants
+    from ..gateway.auth.accounts import grants, has_operator
     from ..gateway.auth.port import check_reach, is_loopback
     from ..gateway.storage.database import run_once
+    from ..gateway.storage.dialects import sqlite_path_in
 
     if is_loopback(settings.host):
         yield Finding(Level.OK, "reach", f"{settings.host}: nobody beyond this computer")
         return
+    # Without TLS no database has to be asked who has an account.
     check_reach(settings.host, tls=settings.tls is not None, accounts=True)
-    file, now = _database_file(settings), time.time()
+    file = sqlite_path_in(settings.database)
     is_new = file is not None and not file.is_file()
     known = [] if is_new else run_once(settings.database, grants)
-    has_operator = any(one.role is not None and one.fault(now) is None for one in known)
-    check_reach(settings.host, tls=True, accounts=has_operator)
+    check_reach(settings.host, tls=True, accounts=has_operator(known, time.time()))
     yield Finding(Level.OK, "reach", f"{settings.host}: other computers, with TLS and accounts")
 
 
 def _check_disk(settings: GatewaySettings) -> Iterator[Finding]:
+    from ..gateway.storage.dialects import sqlite_path_in
+
     folders = {settings.state or settings.site.absolute().parent}
-    if (file := _database_file(settings)) is not None:
+    if (file := sqlite_path_in(settings.database)) is not None:
         folders.add(file.absolute().parent)
     for folder in sorted(folders):
         free = shutil.disk_usage(folder).free
@@ -193,18 +193,18 @@ def _check_disk(settings: GatewaySettings) -> Iterator[Finding]:
 
 def _check_clock(settings: GatewaySettings) -> Iterator[Finding]:
     program = shutil.which("timedatectl")
-    words = [program or "", "show", "--property=NTPSynchronized", "--value"]
+    command = [program or "", "show", "--property=NTPSynchronized", "--value"]
     try:
         # Where no systemd runs it fails, and nobody knows.
-        asked = subprocess.run(  # nosec B603 # our own words, no shell
-            words, capture_output=True, text=True, check=False, timeout=ANSWER_WITHIN
+        done = subprocess.run(  # nosec B603 # our own words, no shell
+            command, capture_output=True, text=True, check=False, timeout=ANSWER_WITHIN
         )
-        said = asked.stdout.strip()
+        synchronised = done.stdout.strip()
     except (OSError, subprocess.TimeoutExpired):
-        said = ""
-    if said == "yes":
+        synchronised = ""
+    if synchronised == "yes":
         yield Finding(Level.OK, "clock", "set by a time server")
-    elif said == "no":
+    elif synchronised == "no":
         text = "not set by a time server: install chrony, or times in reports and of robots will differ"
         yield Finding(Level.WARNING, "clock", text)
     else:
@@ -216,29 +216,30 @@ def _check_packages(settings: GatewaySettings) -> Iterator[Finding]:
         "uvloop": ("speed", "the gateway takes twice the processor time"),
         "routingkit_cch": ("routes", "routes on large road networks take longer"),
     }
-    for package, (extra, else_) in missing.items():
+    for package, (extra, consequence) in missing.items():
         if importlib.util.find_spec(package) is None:
             advice = f"pip install 'fleet-supervisor-robot-bridge[{extra}]'"
-            yield Finding(Level.WARNING, "packages", f"without {package} {else_}: {advice}")
+            yield Finding(Level.WARNING, "packages", f"without {package} {consequence}: {advice}")
             return
     yield Finding(Level.OK, "packages", f"Python {sys.version.split()[0]}, with all that makes it quick")
 
 
 def _check_gateway(settings: GatewaySettings) -> Iterator[Finding]:
     from ..gateway.api.status_pages import HEALTH
+    from ..gateway.auth.port import address_here
 
-    host = {"0.0.0.0": "127.0.0.1", "::": "::1"}.get(settings.host, settings.host)  # nosec B104 # read
+    host = address_here(settings.host)
     where = f"{host}:{settings.port}"
     connect: Callable[..., http.client.HTTPConnection] = http.client.HTTPConnection
     if settings.tls is not None:
-        # It is this computer that is asked; whether others can trust the certificate is checked above.
+        # It is this computer that is connection; whether others can trust the certificate is checked above.
         connect = partial(http.client.HTTPSConnection, context=ssl._create_unverified_context())  # nosec B323
-    asked = connect(host, settings.port, timeout=ANSWER_WITHIN)
+    connection = connect(host, settings.port, timeout=ANSWER_WITHIN)
     try:
-        asked.request("GET", HEALTH)
-        health = decode_json(asked.getresponse().read(HEALTH_PAGE.length), HEALTH_PAGE)
+        connection.request("GET", HEALTH)
+        health = decode_json(connection.getresponse().read(HEALTH_PAGE.length), HEALTH_PAGE)
         failing = [name for name, one in health.items() if isinstance(one, dict) and one.get("ok") is False]
-        said = f"version {health['version']}, site {health['site']['id']}"
+        summary = f"version {health['version']}, site {health['site']['id']}"
     except ConnectionRefusedError:
         yield Finding(Level.WARNING, "gateway", f"none runs at {where}: start it with 'robot-bridge serve'")
         return
@@ -247,7 +248,7 @@ def _check_gateway(settings: GatewaySettings) -> Iterator[Finding]:
         yield Finding(Level.FAULT, "gateway", text)
         return
     finally:
-        asked.close()
+        connection.close()
     down = [name for name, link in health.get("links", {}).items() if not link["ok"]]
     if down:
         yield Finding(Level.WARNING, "gateway", f"{where}: links that are down: {', '.join(down)}")
@@ -255,11 +256,4 @@ def _check_gateway(settings: GatewaySettings) -> Iterator[Finding]:
         text = f"{where}: {', '.join(failing)} failing: journalctl -u robot-bridge says why"
         yield Finding(Level.FAULT, "gateway", text)
     else:
-        yield Finding(Level.OK, "gateway", f"{where}: {said}")
-
-
-def _database_file(settings: GatewaySettings) -> Path | None:
-    """Return the file of a database that is one."""
-    address = settings.database
-    is_file = address.drivername.startswith("sqlite") and address.database
-    return Path(str(address.database)) if is_file else None
+        yield Finding(Level.OK, "gateway", f"{where}: {summary}")

@@ -84,7 +84,7 @@ def serve(
     What is not given is taken from table gateway of site.toml. SIGHUP reads the site anew.
     """
     gc.disable()
-    from ..gateway import app  # noqa: F401
+    from ..gateway import app  # noqa: F401 # loaded here, before what is loaded is frozen
 
     # All of that stays. To look again and again for what does not took a seventh of the start.
     gc.freeze()

@@ -34,7 +34,7 @@ from .auth.accounts import TokenKind, check_link_name
 from .auth.administration import AccountAdministration
 from .auth.client_connection import ClientConnection
 from .auth.gate import PATHS, AuthGate
-from .auth.port import check_reach, host_fault, is_loopback, listen
+from .auth.port import address_here, check_reach, host_fault, is_loopback, listen
 from .auth.tls import ServerFiles, ServerTls
 from .field.page import SITE, FieldPage
 from .fleet.emergency_persistence import StopJournal, journal_file
@@ -448,7 +448,7 @@ def _name_in(path: str, kind: TokenKind) -> str | None:
 def _for_links(address: str) -> str:
     """Return where links on this computer find the gateway, of its address ``ws://host:port``."""
     parts = urlsplit(address)
-    host = {"0.0.0.0": "127.0.0.1", "::": "::1"}.get(parts.hostname or "", parts.hostname or "")  # nosec B104
+    host = address_here(parts.hostname or "")
     return f"{parts.scheme}://{f'[{host}]' if ':' in host else host}:{parts.port}{PATHS[TokenKind.LINK]}"
 
 

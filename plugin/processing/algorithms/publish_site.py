@@ -140,10 +140,11 @@ def read_publish_parameters(
     folder, database = _targets(algorithm, parameters, context)
     given = _given_limits(algorithm, parameters, context)
     settings, bounds_given = _settings(algorithm, parameters, context, site)
-    if folder is not None:
-        settings = with_limits(settings, given, earlier_settings(folder, settings.id), folder / SETTINGS_FILE)
     replace_other = algorithm.parameterAsBool(parameters, REPLACE, context)
     if folder is not None:
+        settings = _with_limits(
+            settings, given, earlier_settings(folder, settings.id), folder / SETTINGS_FILE
+        )
         check_publication_values(settings, folder)
         settings = next_version(settings, folder, replace_other=replace_other)
     if database:
@@ -263,7 +264,7 @@ def _given_limits(
     }
 
 
-def with_limits(
+def _with_limits(
     settings: SiteSettings, given: Mapping[str, float], earlier: str, place: Path
 ) -> SiteSettings:
     """Return ``settings`` with the limits ``given``; the others are those of the ``earlier`` site.toml.
@@ -527,7 +528,7 @@ def _following(
     earlier = earlier_settings(folder, settings.id)
     if not earlier and database is not None:
         earlier = database.settings_text
-        settings = with_limits(settings, plan.given, earlier, Path(SETTINGS_FILE))
+        settings = _with_limits(settings, plan.given, earlier, Path(SETTINGS_FILE))
     return settings, earlier
 
 

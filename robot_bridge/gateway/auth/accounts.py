@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import re
 import secrets
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from enum import Enum
 from fnmatch import fnmatchcase
@@ -353,10 +353,14 @@ class AccountCache:
 
     def has_operator(self, now: float, role: Role = Role.VIEWER) -> bool:
         """Tell whether somebody with at least ``role`` has a token that holds at ``now``."""
-        return any(
-            grant.role is not None and grant.role.includes(role) and grant.fault(now) is None
-            for grant in self._by_hash.values()
-        )
+        return has_operator(self._by_hash.values(), now, role)
+
+
+def has_operator(known: Iterable[Grant], now: float, role: Role = Role.VIEWER) -> bool:
+    """Tell whether one of the tokens is of somebody with at least ``role`` and holds at ``now``."""
+    return any(
+        grant.role is not None and grant.role.includes(role) and grant.fault(now) is None for grant in known
+    )
 
 
 def _read(

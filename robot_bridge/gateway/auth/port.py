@@ -38,6 +38,11 @@ def is_loopback(host: str) -> bool:
         ) from None
 
 
+def address_here(host: str) -> str:
+    """Return the address by which this computer reaches what listens on ``host``."""
+    return {"0.0.0.0": "127.0.0.1", "::": "::1"}.get(host, host)  # nosec B104 # read, not listened on
+
+
 def check_reach(host: str, *, tls: bool, accounts: bool) -> None:
     """Refuse to listen beyond this computer without TLS and an operator's account; raises AccessError."""
     if is_loopback(host):

@@ -50,8 +50,8 @@ class ServerTls:
         self._files = files
         self._seen = _stamps(files)
         self.context = _server_context(files)
-        self._until, self.names = _validity(files.certificate)
-        """The names of this computer that the certificate holds for."""
+        self.until, self.names = _validity(files.certificate)
+        """Until when the certificate holds, and the names of this computer that it holds for."""
         self._warn_of_expiry()
 
     def reload(self) -> bool:
@@ -62,7 +62,7 @@ class ServerTls:
         try:
             _server_context(self._files)
             self.context.load_cert_chain(self._files.certificate, self._files.key)
-            self._until, self.names = _validity(self._files.certificate)
+            self.until, self.names = _validity(self._files.certificate)
         except (AccessError, OSError) as error:
             log.error("%s; the certificate in use stays", error)
             return False
@@ -87,7 +87,7 @@ class ServerTls:
                     self.reload()
 
     def _warn_of_expiry(self) -> None:
-        left = self._until - datetime.datetime.now(datetime.timezone.utc)
+        left = self.until - datetime.datetime.now(datetime.timezone.utc)
         if left < datetime.timedelta(days=WARN_DAYS):
             log.warning(
                 "certificate %s %s; 'robot-bridge tls renew' makes a new one",

@@ -25,7 +25,7 @@ from ...core.files import replacement
 from ...core.json_decoder import SHORT, decode_json
 from . import revisions
 from .database import run_once, shown
-from .dialects import make_sqlite_file
+from .dialects import make_sqlite_file, sqlite_path_in
 from .repositories import metadata as sqlite_file_metadata
 from .repositories.metadata import ID
 from .schema import bridge, metadata, rr
@@ -350,12 +350,12 @@ class SqliteBackups:
                 target.execute("PRAGMA journal_mode = WAL")
 
     def _file(self) -> Path:
-        database = self._url.database
-        if not database or database == ":memory:" or database.startswith("file:"):
+        path = sqlite_path_in(self._url)
+        if path is None:
             raise StoreError(
                 f"database {self._url}: only a file named by its path can be backed up or restored"
             )
-        return Path(database)
+        return path
 
 
 def _renew(connection: Connection) -> None:

@@ -423,6 +423,17 @@ def _decode_leniently(text: bytes) -> str:
     return text.decode(errors="replace")
 
 
+def sqlite_path_in(url: URL) -> Path | None:
+    """Return the path that the address of a SQLite database has; None in memory, and for other databases.
+
+    Nothing is opened, where :func:`sqlite_file_of` would make the file.
+    """
+    database = url.database if url.get_backend_name() == SQLite.name else None
+    if not database or database == ":memory:" or database.startswith("file:"):
+        return None
+    return Path(database)
+
+
 def sqlite_file_of(url: URL) -> Path | None:
     """Return the file of a SQLite database, None for one in memory; raises SQLAlchemyError."""
     engine = SQLite().engine(url, None)

@@ -215,13 +215,17 @@ class State(VdaHeader, frozen=True, rename="camel", kw_only=True):
 
         A pause sent twice may wait, paused itself, for the end of the first, and then pause the vehicle anew.
         """
-        listed = (*self.action_states, *self.instant_action_states)
-        return self.paused or any(one.action_type == "startPause" and not one.has_ended for one in listed)
+        return self.paused or any(
+            one.action_type == "startPause" and not one.has_ended for one in self._actions
+        )
 
     def action(self, action_id: str) -> ActionState | None:
         """Return how an action stands, None where the state does not name it."""
-        listed = (*self.action_states, *self.instant_action_states)
-        return next((one for one in listed if one.action_id == action_id), None)
+        return next((one for one in self._actions if one.action_id == action_id), None)
+
+    @property
+    def _actions(self) -> tuple[ActionState, ...]:
+        return (*self.action_states, *self.instant_action_states)
 
 
 class Visualization(Struct, frozen=True, rename="camel", kw_only=True):

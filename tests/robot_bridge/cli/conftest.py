@@ -1,5 +1,7 @@
 """Databases of all three kinds with the bridge's tables in them."""
 
+import shutil
+
 import pytest
 
 from robot_bridge.gateway.storage import revisions
@@ -23,3 +25,13 @@ def url(request, kind, tmp_path) -> str:
     found = empty_url(request, kind, tmp_path)
     run_once(read_address(found), revisions.create)
     return found
+
+
+@pytest.fixture
+def site(sample_site, tmp_path):
+    """A copy of the sample site that the test may change."""
+    folder = tmp_path / "site"
+    folder.mkdir()
+    for name in ("site.toml", "site.gpkg"):
+        shutil.copy(sample_site / name, folder)
+    return folder

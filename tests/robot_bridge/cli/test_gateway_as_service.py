@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import os
-import shutil
 import signal
 import socket
 import subprocess
@@ -21,16 +20,6 @@ from prometheus_client.parser import text_string_to_metric_families
 from robot_bridge.core.robotmap.binary import decode
 from robot_bridge.core.sites.site import read_site, write_site
 from tests.support.bridge.bridge_programs import wait_until
-
-
-@pytest.fixture
-def site(sample_site, tmp_path):
-    """A copy of the sample site that the test may change."""
-    folder = tmp_path / "site"
-    folder.mkdir()
-    for name in ("site.toml", "site.gpkg"):
-        shutil.copy(sample_site / name, folder)
-    return folder
 
 
 @pytest.fixture

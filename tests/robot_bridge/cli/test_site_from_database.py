@@ -6,7 +6,6 @@ import asyncio
 import hashlib
 import json
 import os
-import shutil
 import signal
 import socket
 import time
@@ -28,16 +27,6 @@ from tests.support.bridge.bridge_programs import wait_until
 from tests.support.bridge.command_line import run_command
 from tests.support.patience import BUSY, START
 from tests.support.processes import Processes
-
-
-@pytest.fixture
-def site(sample_site, tmp_path):
-    """A copy of the sample site that the test may change."""
-    folder = tmp_path / "published"
-    folder.mkdir()
-    for name in ("site.toml", "site.gpkg"):
-        shutil.copy(sample_site / name, folder)
-    return folder
 
 
 @pytest.fixture(scope="module")

@@ -9,7 +9,9 @@ from collections.abc import Sequence
 from functools import cached_property
 from pathlib import Path
 
+from tests.support.bridge.bridge_programs import wait_until
 from tests.support.errors import StageError
+from tests.support.operators import Desk
 from tests.support.patience import START
 from tests.support.processes import Processes
 from tests.support.robots.ros_peer import DISTRIBUTION
@@ -103,3 +105,24 @@ class Nodes:
         text = self._processes.log(f"{name}-{self._started[name]}").read_text(encoding="utf-8")
         lines = [line for line in text.splitlines() if line.startswith("{") and line.endswith("}")]
         return [json.loads(line) for line in lines]
+
+
+def events(nodes: Nodes, name: str, kind: str) -> list[dict]:
+    """Return the events of one kind that a robot has told."""
+    return [event for event in nodes.events(name) if event["event"] == kind]
+
+
+def abort_before_the_goal(desk: Desk, nodes: Nodes, name: str) -> None:
+    """Abort a target while the robot thinks about its goal; assert that it stands all the same.
+
+    The robot is SLOW and has late goals: by itself it would drive for 80 s.
+    """
+    desk.send(f"go-{name}", name, "SetPosEnd", x=60.0, y=8.0)
+    wait_until(lambda: events(nodes, name, "goal asked"))
+    desk.send(f"stop-{name}", name, "Abort")
+    desk.wait_for_step(f"stop-{name}", "acknowledged")
+    assert not events(nodes, name, "goal")
+    # Its stop service may reach it before the cancel does.
+    wait_until(lambda: events(nodes, name, "goal ended"))
+    desk.until(lambda: desk.robots[name]["v"] == 0.0)
+    assert desk.robots[name]["x"] < 45.0

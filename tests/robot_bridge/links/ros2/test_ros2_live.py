@@ -14,6 +14,7 @@ from tests.support.bridge.bridge_programs import wait_until
 from tests.support.bridge.cut_line import CutNetwork, outlast_a_cut
 from tests.support.patience import BUSY
 from tests.support.processes import Processes
+from tests.support.robots.ros_nodes import abort_before_the_goal, events
 
 SETTINGS = """
 [gateway]
@@ -119,10 +120,6 @@ def robot(adapter, nodes, desk):
         nodes.end(name)
 
 
-def events(nodes, name, kind):
-    return [event for event in nodes.events(name) if event["event"] == kind]
-
-
 def steps(desk, command):
     reports = desk.ask("get_commands", {})["commands"]
     (report,) = [one for one in reports if one["command"] == command]
@@ -220,15 +217,7 @@ def test_an_abort_cancels_what_nav2_does_and_the_robot_stands(desk, robot, nodes
 
 def test_a_goal_that_is_taken_on_after_its_abort_is_stopped_too(desk, robot, nodes):
     name = robot(*SLOW, "--odd", "late-goals")
-    desk.send(f"go-{name}", name, "SetPosEnd", x=60.0, y=8.0)
-    wait_until(lambda: events(nodes, name, "goal asked"))
-    desk.send(f"stop-{name}", name, "Abort")
-    desk.wait_for_step(f"stop-{name}", "acknowledged")
-    assert not events(nodes, name, "goal")
-    # By itself it would drive for 80 s. Its stop service may reach it before the cancel does.
-    wait_until(lambda: events(nodes, name, "goal ended"))
-    desk.until(lambda: desk.robots[name]["v"] == 0.0)
-    assert desk.robots[name]["x"] < 45.0
+    abort_before_the_goal(desk, nodes, name)
 
 
 def test_an_emergency_stop_stops_and_is_cleared(desk, robot, nodes):

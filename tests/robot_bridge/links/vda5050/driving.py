@@ -45,6 +45,24 @@ def send(desk, name, op="SetPosEnd", **params):
     return command
 
 
+def replace_on_the_way(desk, vehicle):
+    """Give a SLOW vehicle that is under way another target; assert that it drives there instead."""
+    first = send(desk, vehicle, x=90.0, y=8.0)
+    wait_under_way(desk, vehicle)
+    second = send(desk, vehicle, x=20.0, y=10.0)
+    desk.wait_for_step(second, "reached")
+    assert desk.commands[first]["state"] == "superseded"
+
+
+def abort_on_the_way(desk, vehicle, drive, x=20.0):
+    """Abort ``drive`` once the vehicle is beyond ``x``; assert that it stands before x = 79."""
+    wait_under_way(desk, vehicle, x)
+    abort = send(desk, vehicle, "Abort")
+    desk.wait_for_step(abort, "acknowledged")
+    desk.wait_for_step(drive, "aborted")
+    assert wait_for_standing(desk, vehicle) < 79.0
+
+
 def steps(desk, command):
     return [step["state"] for step in desk.commands[command]["steps"]]
 

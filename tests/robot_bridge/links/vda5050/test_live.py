@@ -6,9 +6,11 @@ import signal
 
 from tests.robot_bridge.links.vda5050.driving import (
     SLOW,
+    abort_on_the_way,
     begin,
     begin_sdk,
     reason,
+    replace_on_the_way,
     send,
     steps,
     wait_at,
@@ -40,11 +42,7 @@ def test_a_vehicle_of_another_make_follows_a_route_and_stops(desk, yard):
     desk.wait_for_step(command, "reached", 60)
 
     drive = send(desk, vehicle, "SetPath", points=[[40.0, 14.0], [80.0, 14.0], [80.0, 12.0]])
-    wait_under_way(desk, vehicle, 42.0)
-    abort = send(desk, vehicle, "Abort")
-    desk.wait_for_step(abort, "acknowledged")
-    desk.wait_for_step(drive, "aborted")
-    assert wait_for_standing(desk, vehicle) < 79.0
+    abort_on_the_way(desk, vehicle, drive, 42.0)
 
 
 def test_what_the_vehicle_refuses_fails_with_its_words(desk, yard):
@@ -56,21 +54,13 @@ def test_what_the_vehicle_refuses_fails_with_its_words(desk, yard):
 
 def test_another_target_on_the_way_takes_the_place_of_the_first(desk, yard):
     vehicle = begin(yard, desk, speed=SLOW)
-    first = send(desk, vehicle, x=90.0, y=8.0)
-    wait_under_way(desk, vehicle)
-    second = send(desk, vehicle, x=20.0, y=10.0)
-    desk.wait_for_step(second, "reached")
-    assert desk.commands[first]["state"] == "superseded"
+    replace_on_the_way(desk, vehicle)
 
 
 def test_an_abort_stops_it(desk, yard):
     vehicle = begin(yard, desk, speed=SLOW)
     drive = send(desk, vehicle, x=90.0, y=8.0)
-    wait_under_way(desk, vehicle)
-    abort = send(desk, vehicle, "Abort")
-    desk.wait_for_step(abort, "acknowledged")
-    desk.wait_for_step(drive, "aborted")
-    assert wait_for_standing(desk, vehicle) < 80.0
+    abort_on_the_way(desk, vehicle, drive)
 
 
 def test_an_emergency_stop_stops_it_until_it_is_cleared_and_sent_again(desk, yard):

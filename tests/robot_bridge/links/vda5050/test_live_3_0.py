@@ -9,7 +9,9 @@ import pytest
 
 from tests.robot_bridge.links.vda5050.driving import (
     SLOW,
+    abort_on_the_way,
     reason,
+    replace_on_the_way,
     send,
     steps,
     wait_at,
@@ -75,20 +77,12 @@ def test_a_route_is_followed_base_by_base_and_an_abort_stops_it(desk, yard):
     assert "update accepted" in yard.output(vehicle)
 
     drive = send(desk, vehicle, "SetPath", points=[[40.0, 14.0], [80.0, 14.0], [80.0, 12.0]])
-    wait_under_way(desk, vehicle, 42.0)
-    abort = send(desk, vehicle, "Abort")
-    desk.wait_for_step(abort, "acknowledged")
-    desk.wait_for_step(drive, "aborted")
-    assert wait_for_standing(desk, vehicle) < 80.0
+    abort_on_the_way(desk, vehicle, drive, 42.0)
 
 
 def test_another_target_on_the_way_takes_the_place_of_the_first(desk, yard):
     vehicle = begin(yard, desk, speed=SLOW)
-    first = send(desk, vehicle, x=90.0, y=8.0)
-    wait_under_way(desk, vehicle)
-    second = send(desk, vehicle, x=20.0, y=10.0)
-    desk.wait_for_step(second, "reached")
-    assert desk.commands[first]["state"] == "superseded"
+    replace_on_the_way(desk, vehicle)
 
 
 def test_an_emergency_stop_that_is_given_twice_stops_it_until_the_next_task(desk, yard):

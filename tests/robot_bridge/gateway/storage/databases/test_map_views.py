@@ -110,15 +110,13 @@ def site(tmp_path_factory) -> Path:
 
 
 @pytest.fixture
-def postgis(new_database, postgresql_server):
+def postgis(new_database, postgis_server):
     """A PostgreSQL with PostGIS, rows and views, and the URL of its administrator."""
     url = new_database("postgresql")
-    if "postgis" not in postgresql_server.sql("select name from pg_available_extensions"):
-        pytest.skip("PostGIS is not installed; run: make setup")
-    postgresql_server.sql("create extension postgis", make_url(url).database)
+    postgis_server.sql("create extension postgis", make_url(url).database)
     run_once(url, fill)
     run_once(url, lambda connection: map_views_on(connection).make(FRAME))
-    return url, postgresql_server.admin_url(url)
+    return url, postgis_server.admin_url(url)
 
 
 @pytest.fixture
