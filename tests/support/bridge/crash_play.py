@@ -52,6 +52,13 @@ class Cut(NamedTuple):
     seconds: float
 
 
+class Moment(NamedTuple):
+    """When something happens in a play: after how many transactions and turns."""
+
+    transactions: int = 0
+    turns: int = 0
+
+
 class Play:
     """One run of a scenario. ``death`` says when the gateway dies, ``cut`` when robots are out of reach, and
     ``how`` what they do meanwhile.
@@ -63,8 +70,10 @@ class Play:
         self.clock = ManualClock(wall=1000.0)
         self.robots = {}
         self.turns = 0
-        self.resumed = 0, 0
-        """transactions and turns until a queue was last told to go on."""
+        self.stopped = Moment()
+        """when operators were about to stop robots."""
+        self.resumed = Moment()
+        """when a queue was last told to go on."""
         self._journal = journal
         self._client = DatabaseClient(url)
         self.sql = self._client.sql
@@ -244,7 +253,7 @@ class Play:
             return await fleet.queues.resume(ResumeQueue(robot, seen.revision), "Ada")
 
         await self.ask_once(resume)
-        self.resumed = self.death.count, self.turns
+        self.resumed = self._moment()
 
     async def resume_all(self):
         """Let all queues go on; each was paused, unless nothing was left in it by then."""
@@ -260,6 +269,13 @@ class Play:
         """Let all queues go on until everything is done, also those whose robots have not stopped yet."""
         await self.resume_all()
         await self.until_done()
+
+    def about_to_stop(self):
+        """Note that operators are now going to stop robots."""
+        self.stopped = self._moment()
+
+    def _moment(self):
+        return Moment(self.death.count, self.turns)
 
     async def order(self, id, op, robot="r1", **params):
         """Order a robot to do something beside its queue."""

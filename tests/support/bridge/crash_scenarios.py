@@ -32,6 +32,7 @@ AHEAD = 0.4
 """metres ahead of a robot that a cone stands, where it does not stand beneath it."""
 COURSE = ["task-000a", "task-000b", "task-000c", "task-000d"]
 COURSE_CONES = [PLACES["b"], PLACES["c"]]
+SHORT_COURSE = COURSE[:2]
 OTHER = QueueTask("task-0002", 41.0, 70.0, kind=TaskKind.PLACE, cone="X")
 BEFORE_OTHER = (41.0, 60.0)
 DRAWN = [BEGIN, PLACES["a"], PLACES["b"], PLACES["c"]]
@@ -51,6 +52,11 @@ def course(**more):
         task("c", "place", cone="C", **more),
         task("d", path=[PLACES["c"], PLACES["d"]]),
     ]
+
+
+def short_course():
+    """A drive and a cone, for those who are stopped on the drive and go on."""
+    return [task("a"), task("b", "place", cone="B")]
 
 
 async def cones(play, robot=WebSocketRobot):
@@ -89,23 +95,25 @@ async def one_after_another(play):
 
 async def paused(play):
     await play.begin(WebSocketRobot(play, "r1", BEGIN))
-    await play.give(*course())
+    await play.give(*short_course())
     await play.wait(3)
+    play.about_to_stop()
     await play.ask(lambda fleet: fleet.queues.pause(PauseQueue("r1"), "Ada"))
     await play.wait(8)
     await play.until(lambda: play.open_commands() == [])
     assert (await play.queue()).state.value == "paused"
     await play.resume()
     await play.until_done()
-    play.check({"r1": COURSE})
-    play.check_cones(COURSE_CONES)
+    play.check({"r1": SHORT_COURSE})
+    play.check_cones([PLACES["b"]])
 
 
 async def aborted(play):
     await play.begin(WebSocketRobot(play, "r1", BEGIN), SqlRobot(play, "r2", BEFORE_OTHER))
-    await play.give(*course())
+    await play.give(*short_course())
     await play.give(OTHER, robot="r2")
     await play.wait(2)
+    play.about_to_stop()
     for name in play.robots:
         await play.ask(
             lambda fleet, name=name: fleet.orders.abort(AbortTask(f"abort-of-{name}", name), "Ada")
@@ -113,8 +121,8 @@ async def aborted(play):
     await play.until(lambda: all(robot.record.stops for robot in play.robots.values()))
     await play.stand_for(6)
     await play.resume_until_done()
-    play.check({"r1": COURSE, "r2": [OTHER.task]})
-    play.check_cones([OTHER, *COURSE_CONES], interrupted=True)
+    play.check({"r1": SHORT_COURSE, "r2": [OTHER.task]})
+    play.check_cones([OTHER, PLACES["b"]], interrupted=True)
 
 
 async def aborted_too_late(play):
@@ -124,6 +132,7 @@ async def aborted_too_late(play):
     await play.until(lambda: all(robot.record.began for robot in play.robots.values()))
     for robot in play.robots.values():
         robot.says_late, robot.away_until = True, play.now + OUT_OF_REACH
+    play.about_to_stop()
     for name in play.robots:
         await play.ask(
             lambda fleet, name=name: fleet.orders.abort(AbortTask(f"abort-of-{name}", name), "Ada")
@@ -143,6 +152,7 @@ async def halted(play):
     await play.order("one", "SetPosEnd", x=x, y=y, cone=True)
     await play.order("two", "SetPath", robot="r2", points=way)
     await play.wait(2)
+    play.about_to_stop()
     for name in play.robots:
         await play.ask(lambda fleet, name=name: fleet.pauses.pause(PauseRobot(name), "Ada"))
     await play.until(lambda: play.open_commands() == [])
@@ -166,14 +176,15 @@ async def halted(play):
 async def continued_at_once(play):
     """Robots are paused, and told to go on before they can have stopped: each cone is put down once."""
     await play.begin(WebSocketRobot(play, "r1", BEGIN), SqlRobot(play, "r2", BEFORE_OTHER))
-    await play.give(*course())
+    await play.give(*short_course())
     await play.give(OTHER, robot="r2")
     await play.wait(2)
+    play.about_to_stop()
     for name in play.robots:
         await play.ask(lambda fleet, name=name: fleet.pauses.pause(PauseRobot(name), "Ada"))
     await play.resume_until_done()
-    play.check({"r1": COURSE, "r2": [OTHER.task]})
-    play.check_cones([OTHER, *COURSE_CONES], interrupted=True)
+    play.check({"r1": SHORT_COURSE, "r2": [OTHER.task]})
+    play.check_cones([OTHER, PLACES["b"]], interrupted=True)
 
 
 async def made_current(play):
@@ -213,9 +224,10 @@ async def taken_over(play):
 
 async def stopped(play):
     await play.begin(WebSocketRobot(play, "r1", BEGIN), SqlRobot(play, "r2", BEFORE_OTHER))
-    await play.give(*course())
+    await play.give(*short_course())
     await play.give(OTHER, robot="r2")
     await play.wait(2)
+    play.about_to_stop()
     await play.ask(lambda fleet: fleet.emergency.stop(EmergencyStop("stop-0001"), "Ada"))
     await play.until(lambda: all(robot.record.stops for robot in play.robots.values()))
     await play.stand_for(6)
@@ -231,8 +243,8 @@ async def stopped(play):
     assert not play.fleet.emergency.in_force
     ((id, _, by, _, _, cleared_by, _),) = play.sql("select * from emergency_stops")
     assert (id, by, cleared_by) == ("stop-0001", "Ada", "Eve")
-    play.check({"r1": COURSE, "r2": [OTHER.task]})
-    play.check_cones([OTHER, *COURSE_CONES], interrupted=True)
+    play.check({"r1": SHORT_COURSE, "r2": [OTHER.task]})
+    play.check_cones([OTHER, PLACES["b"]], interrupted=True)
 
 
 async def ordered_beside_its_queue(play):

@@ -1,8 +1,8 @@
 """Plays in which the gateway dies, a transaction fails, or links are cut: at each moment in turn.
 
 Moments are the transactions that a scenario takes, or its seconds. One that stops robots is played once for
-each of them until all go on again, and a while longer; what is driven then, and every other scenario, for
-every third, beginning with the next one from scenario to scenario. With
+each of them from the order until all go on again, and a while longer; what is driven before and then, and
+every other scenario, for every fourth, beginning with the next one from scenario to scenario. With
 EVERY_CRASH=1 in the environment all are played at each, before and after the commit, with all that robots may
 do meanwhile.
 """
@@ -23,9 +23,9 @@ from tests.support.bridge.mortal_database import Death
 
 STOPS = {"paused", "aborted", "aborted_too_late", "halted", "continued_at_once", "stopped"}
 """Scenarios in which operators stop robots."""
-EVERY = 3
+EVERY = 4
 """Of how many moments one is played, where no robot is stopped."""
-STILL_ALL = 20
+STILL_ALL = 10
 """For how many transactions each is played after robots were told to go on."""
 
 
@@ -80,14 +80,15 @@ def play(crash, sqlite_url, quick_folder):
 
 @pytest.fixture
 def moments():
-    """Pair moments with what happens then: ``moments(scenario, all_moments, ways, stopped_until)``."""
+    """Pair moments with what happens then: ``moments(scenario, all_moments, ways, while_stopped)``."""
 
-    def moments(scenario, times, ways, until):
+    def moments(scenario, times, ways, while_stopped):
         if os.environ.get("EVERY_CRASH"):
             return list(itertools.product(times, ways))
         first = list(SCENARIOS).index(scenario)
-        stopped = [at for at in times if scenario in STOPS and at <= until]
-        some = stopped + times[len(stopped) :][first % EVERY :: EVERY]
+        stopped = [at for at in times if scenario in STOPS and at in while_stopped]
+        driven = [at for at in times if at not in stopped]
+        some = sorted(stopped + driven[first % EVERY :: EVERY])
         return [(at, ways[number % len(ways)]) for number, at in enumerate(some, first)]
 
     return moments
@@ -97,14 +98,15 @@ def moments():
 def writing(play):
     """Return the numbers of the transactions that a scenario takes when nothing happens.
 
-    Behind them the number of the last one at which each is worth a play: robots are stopped until then.
+    Behind them the range of those at which each is worth a play: robots are stopped then.
     """
 
     async def writing(scenario):
         undisturbed = Death()
         played = await play(scenario, undisturbed, DRIVE_ON)
         assert len(undisturbed.writing) > 10
-        assert played.resumed[0] or scenario not in STOPS
-        return sorted(undisturbed.writing), played.resumed[0] + STILL_ALL
+        assert 0 < played.stopped.transactions < played.resumed.transactions or scenario not in STOPS
+        until = played.resumed.transactions + STILL_ALL
+        return sorted(undisturbed.writing), range(played.stopped.transactions + 1, until + 1)
 
     return writing

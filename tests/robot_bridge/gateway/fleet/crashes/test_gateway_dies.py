@@ -21,8 +21,8 @@ EVERY_SO_MANY = 17
 
 @pytest.mark.parametrize("scenario", SCENARIOS)
 async def test_everything_comes_to_its_end_wherever_the_gateway_dies(scenario, play, writing, moments):
-    times, stopped_until = await writing(scenario)
-    for at, (done, how) in moments(scenario, times, WAYS_TO_DIE, stopped_until):
+    times, while_stopped = await writing(scenario)
+    for at, (done, how) in moments(scenario, times, WAYS_TO_DIE, while_stopped):
         death = Death(at, done)
         await play(scenario, death, how)
         assert death.has_come

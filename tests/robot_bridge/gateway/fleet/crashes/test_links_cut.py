@@ -18,6 +18,7 @@ WAYS_TO_BE_CUT = [(seconds, how) for how in (DRIVE_ON, START_ANEW) for seconds i
 @pytest.mark.parametrize("scenario", SCENARIOS)
 async def test_everything_comes_to_its_end_whenever_links_are_cut(scenario, play, moments):
     undisturbed = await play(scenario, Death(), DRIVE_ON)
-    turns, stopped_until = list(range(1, undisturbed.turns + 1)), undisturbed.resumed[1] + STILL_ALL
-    for turn, (seconds, how) in moments(scenario, turns, WAYS_TO_BE_CUT, stopped_until):
+    turns = list(range(1, undisturbed.turns + 1))
+    while_stopped = range(undisturbed.stopped.turns, undisturbed.resumed.turns + STILL_ALL + 1)
+    for turn, (seconds, how) in moments(scenario, turns, WAYS_TO_BE_CUT, while_stopped):
         await play(scenario, Death(), how, Cut(turn, seconds))

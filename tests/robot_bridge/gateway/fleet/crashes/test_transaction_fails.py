@@ -11,8 +11,8 @@ from tests.support.bridge.mortal_database import FAILURES, Death
 
 @pytest.mark.parametrize("scenario", SCENARIOS)
 async def test_everything_comes_to_its_end_whichever_transaction_fails(scenario, play, writing, moments):
-    times, stopped_until = await writing(scenario)
-    for at, (done, error) in moments(scenario, times, FAILURES, stopped_until):
+    times, while_stopped = await writing(scenario)
+    for at, (done, error) in moments(scenario, times, FAILURES, while_stopped):
         failure = Death(at, done, error)
         await play(scenario, failure, DRIVE_ON)
         assert failure.has_come
