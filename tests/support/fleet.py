@@ -57,17 +57,22 @@ def serve(
     name: str = "gateway",
     env: Mapping[str, str] | None = None,
     through: Sequence[str] = (),
+    forked: bool = False,
     seconds: float = START,
 ) -> Served:
     """Start a gateway on the database at a URL, on any free port where none is given; wait until it listens.
 
     ``options`` are more of its command line, ``name`` is that of its process, ``through`` begins its command.
+    One that is ``forked`` loads no modules; nothing can be before its command then.
 
     :raises StageError: when it does not come up.
     """
     words = ["serve", "--site", site, "--port", str(port), "--database", database, *options]
-    command = [*through, sys.executable, "-m", "robot_bridge", *map(str, words)]
-    process = processes.start(name, command, env=env)
+    if forked:
+        process = processes.start_bridge(name, words, env=env)
+    else:
+        command = [*through, sys.executable, "-m", "robot_bridge", *map(str, words)]
+        process = processes.start(name, command, env=env)
     return Served(process, processes.wait_for_line(name, r"listening on (wss?://\S+:\d+)", seconds).group(1))
 
 

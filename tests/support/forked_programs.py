@@ -32,7 +32,24 @@ MODULES = (
     "robot_bridge.cli.robot",
     "robot_bridge.cli.serve",
     "robot_bridge.gateway.app",
+    "robot_bridge.reference_robot.runner",
+    "robot_bridge.reference_robot.sql_link",
     "sqlalchemy.dialects.sqlite",
+    # What is imported only where it is needed, by nearly each of them.
+    "alembic.context",
+    "encodings.idna",
+    "psycopg",
+    "pydantic",
+    "pymysql",
+    "pyogrio",
+    "pyproj",
+    "scipy.sparse.csgraph",
+    "shapely",
+    "sqlalchemy.dialects.mysql.pymysql",
+    "sqlalchemy.dialects.postgresql.psycopg",
+    "typer._adapters",
+    "uvloop",
+    "websockets.asyncio.client",
 )
 LARGEST_ORDER = 1 << 20
 _libc = ctypes.CDLL(None, use_errno=True)

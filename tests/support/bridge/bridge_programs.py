@@ -50,7 +50,8 @@ class Bridge:
     def start_gateway(self) -> None:
         """Start the gateway, on the port it had if it ran before; return once it listens."""
         name = self._unique("gateway")
-        served = serve(self._processes, self.site, self.database, *self.options, port=self.port, name=name)
+        where = self._processes, self.site, self.database
+        served = serve(*where, *self.options, port=self.port, name=name, forked=True)
         self.gateway = self.process = served.process
         self.address, self.port = served.address, served.port
 
