@@ -34,34 +34,45 @@ def pause_on_the_way(desk, robot):
     desk.queues.setdefault(robot, report)
     desk.until(lambda: [one["state"] for one in desk.queues[robot]["tasks"]] == ["waiting"], 15)
     desk.until(lambda: desk.robots[robot]["v"] == 0.0, 15)
+    return where(desk, robot)
+
+
+def where(desk, robot):
     return desk.robots[robot]["x"], desk.robots[robot]["y"]
 
 
-def go_on(desk, robot):
-    desk.ask("resume_queue", {"robot": robot, "revision": desk.queues[robot]["revision"]})
-    desk.until(lambda: desk.queues[robot]["tasks"] == [], 60)
+def go_on(desk, *robots):
+    for robot in robots:
+        desk.ask("resume_queue", {"robot": robot, "revision": desk.queues[robot]["revision"]})
+    desk.until(lambda: all(desk.queues[robot]["tasks"] == [] for robot in robots), 60)
 
 
-@pytest.mark.parametrize("sql", [False, True], ids=["websocket", "sql"])
-def test_a_route_that_was_sent_directly_is_driven_to_its_end_once_also_if_the_gateway_is_killed(bridge, sql):
-    bridge.start_robot("r1", (20.0, 20.0, 0.0), sql=sql, options=UNHURRIED)
+def test_a_route_that_was_sent_directly_is_driven_to_its_end_once_also_if_the_gateway_is_killed(bridge):
+    # One on each wire, 20 m from the other.
+    ways = {"ws": 20.0, "sql": 40.0}
+    ends = {robot: (END[0], END[1] + y - 20.0) for robot, y in ways.items()}
+    for robot, y in ways.items():
+        bridge.start_robot(robot, (20.0, y, 0.0), sql=robot == "sql", options=UNHURRIED)
     desk = watch(bridge)
-    desk.wait_for_robots("r1")
-    desk.send("command-route", "r1", "SetPath", points=[[20.0, 20.0], [60.0, 20.0], END])
-    x, y = pause_on_the_way(desk, "r1")
-    assert 20.0 < x < 59.0
+    desk.wait_for_robots(*ways)
+    for robot, y in ways.items():
+        desk.send(f"command-{robot}", robot, "SetPath", points=[[20.0, y], [60.0, y], ends[robot]])
+    stand = {robot: pause_on_the_way(desk, robot) for robot in ways}
+    assert all(20.0 < x < 59.0 for x, _ in stand.values())
     bridge.kill_gateway()
     bridge.start_gateway()
     desk = watch(bridge)
-    desk.wait_for_robots("r1")
-    assert desk.queues["r1"]["state"] == "paused"
-    # Until it is back it is shown where the gateway stored it last, which may be metres behind.
-    desk.until(lambda: math.dist((x, y), (desk.robots["r1"]["x"], desk.robots["r1"]["y"])) < 0.5)
-    go_on(desk, "r1")
-    assert math.dist(END, (desk.robots["r1"]["x"], desk.robots["r1"]["y"])) < 0.3
-    ends = bridge.sql("select op, state from commands order by sa_id")
-    assert ends == [("SetPath", "aborted"), ("Abort", "reached"), ("SetPath", "reached")]
-    assert bridge.sql("select state, attempts from queue_tasks") == [("done", 2)]
+    desk.wait_for_robots(*ways)
+    for robot, place in stand.items():
+        assert desk.queues[robot]["state"] == "paused"
+        # Until it is back it is shown where the gateway stored it last, which may be metres behind.
+        desk.until(lambda robot=robot, place=place: math.dist(place, where(desk, robot)) < 0.5)
+    go_on(desk, *ways)
+    for robot, end in ends.items():
+        assert math.dist(end, where(desk, robot)) < 0.3
+        steps = bridge.sql("select op, state from commands where robot = ? order by sa_id", robot)
+        assert steps == [("SetPath", "aborted"), ("Abort", "reached"), ("SetPath", "reached")]
+    assert bridge.sql("select state, attempts from queue_tasks") == [("done", 2)] * 2
 
 
 def test_a_cone_that_was_sent_directly_is_put_down_once(bridge):

@@ -9,7 +9,7 @@ import pytest
 from tests.support.bridge.bridge_programs import wait_until
 from tests.support.wire import RefusedError
 
-CONES = [(26.0 + 4 * n, 20.0 + (n % 2)) for n in range(6)]
+CONES = [(26.0 + 4 * n, 20.0 + (n % 2)) for n in range(4)]
 
 
 @pytest.fixture
@@ -49,9 +49,11 @@ class Operator:
         return [task["task"] for task in self.queues[robot]["tasks"]]
 
 
-def cone(n, start=None):
-    x, y = CONES[n]
-    task = {"task": f"cone-task-{n}", "kind": "place", "x": x, "y": y, "cone": f"c{n}", "layout": "row"}
+def cone(n, start=None, whose="cone", beside=0.0):
+    """A task for the cone number ``n`` of a row, which lies so many metres ``beside`` the first."""
+    x, y = CONES[n][0], CONES[n][1] + beside
+    task = {"task": f"{whose}-task-{n}", "kind": "place", "x": x, "y": y, "cone": f"{whose}{n}"}
+    task["layout"] = "row"
     return task if start is None else {**task, "path": [start, (x, y)]}
 
 
@@ -65,13 +67,14 @@ def driven_once(bridge, count):
     assert worst <= 0.20
 
 
-@pytest.mark.parametrize("sql", [False, True], ids=["websocket", "sql"])
-def test_a_gateway_killed_at_any_moment_loses_no_task_and_has_none_driven_twice(bridge, sql):
-    bridge.start_robot("r1", (20.0, 20.0, 0.0), sql=sql)
+def test_a_gateway_killed_at_any_moment_loses_no_task_and_has_none_driven_twice(bridge):
     operator = Operator(bridge)
-    operator.desk.wait_for_robots("r1")
-    begins = [(20.0, 20.0), *CONES]
-    operator.set("r1", [cone(n, begins[n] if n % 2 else None) for n in range(4)])
+    # One on each wire, 20 m from the other.
+    for robot, beside in (("ws", 0.0), ("sql", 20.0)):
+        begins = [(20.0, 20.0 + beside), *((x, y + beside) for x, y in CONES)]
+        bridge.start_robot(robot, (*begins[0], 0.0), sql=robot == "sql")
+        operator.desk.wait_for_robots(robot)
+        operator.set(robot, [cone(n, begins[n] if n % 2 else None, robot, beside) for n in range(4)])
     dice = random.Random(5)
     # At each transaction in turn it dies in the crash plays, without processes of its own.
     for _ in range(3):
@@ -79,9 +82,10 @@ def test_a_gateway_killed_at_any_moment_loses_no_task_and_has_none_driven_twice(
         bridge.kill_gateway()
         bridge.start_gateway()
         operator = Operator(bridge)
-    operator.until(lambda: operator.left("r1") == [])
-    assert operator.queues["r1"]["state"] == "running"
-    driven_once(bridge, 4)
+    for robot in ("ws", "sql"):
+        operator.until(lambda robot=robot: operator.left(robot) == [])
+        assert operator.queues[robot]["state"] == "running"
+    driven_once(bridge, 8)
 
 
 def test_a_gateway_killed_between_two_tasks_sends_the_next_when_it_is_back(bridge):
@@ -116,13 +120,13 @@ def test_others_take_over_what_a_killed_robot_has_left(bridge):
     bridge.start_robot("r3", (20.0, 40.0, 0.0), sql=True)
     operator = Operator(bridge)
     operator.desk.wait_for_robots("r1", "r2", "r3")
-    operator.set("r1", [cone(n) for n in range(6)])
-    operator.until(lambda: len(operator.left("r1")) <= 4)
+    operator.set("r1", [cone(n) for n in range(4)])
+    operator.until(lambda: len(operator.left("r1")) <= 3)
     killed.kill()
     killed.wait(5)
     operator.until(lambda: operator.queues["r1"]["robot_state"] in ("lost", "offline"))
     left = operator.left("r1")
-    assert left[-1] == "cone-task-5"
+    assert left[-1] == "cone-task-3"
     revision = operator.queues["r1"]["revision"]
     shares = [
         {"robot": robot, "revision": 0, "tasks": [{"task": task} for task in left[n::2]]}
@@ -133,15 +137,15 @@ def test_others_take_over_what_a_killed_robot_has_left(bridge):
     operator.ask("take_over", robot="r1", revision=revision, shares=shares)
     operator.until(lambda: all(operator.queues.get(r, {}).get("tasks") == [] for r in ("r1", "r2", "r3")))
     assert {task for (task,) in bridge.sql("select task from placements")} == {
-        f"cone-task-{n}" for n in range(6)
+        f"cone-task-{n}" for n in range(4)
     }
-    assert bridge.sql("select count(*) from queue_tasks where state = 'done'") == [(6,)]
+    assert bridge.sql("select count(*) from queue_tasks where state = 'done'") == [(4,)]
     # Back again, it is told to stop, and drives to none of them.
     bridge.start_robot("r1", (22.0, 22.0, 0.0))
     operator.until(lambda: operator.queues["r1"]["robot_state"] == "fresh" or _stands(operator, "r1"))
     operator.desk.listen(1.0)
     assert abs(operator.desk.robots["r1"]["x"] - 22.0) < 0.2
-    assert bridge.sql("select count(*) from placements") == [(6,)]
+    assert bridge.sql("select count(*) from placements") == [(4,)]
 
 
 def _stands(operator, robot):

@@ -79,44 +79,59 @@ def test_a_robot_that_is_killed_and_started_again_is_sent_its_task_again(bridge)
     assert math.hypot(desk.robots["r1"]["x"] - 30.0, desk.robots["r1"]["y"] - 20.0) <= 0.2
 
 
-@pytest.mark.parametrize("sql", [False, True], ids=["websocket", "sql"])
-def test_a_robot_that_remembers_is_killed_and_goes_on_with_its_task_by_itself(bridge, tmp_path, sql):
-    more = {"sql": sql, "options": ["--memory", tmp_path / "r1.json"]}
-    robot = bridge.start_robot("r1", (20.0, 20.0, 0.0), **more)
-    desk = watch(bridge)
-    desk.wait_for_robots("r1")
-    desk.send("target-1", "r1", "SetPosEnd", x=45.0, y=20.0)
-    desk.wait_for_step("target-1", "acknowledged")
-    desk.until(lambda: desk.robots["r1"]["x"] > 24)
-    robot.kill()
-    robot.wait(5)
-    bridge.start_robot("r1", (0.0, 0.0, 0.0), **more)
-    command = desk.wait_for_step("target-1", "reached")
-    assert steps(command) == ["queued", "delivered", "acknowledged", "reached"]
+def start_on_each_wire(bridge, folder):
+    """Start a robot on each wire that remembers in ``folder``; return the processes by name."""
+    return {
+        name: bridge.start_robot(
+            name, (20.0, y, 0.0), sql=name == "sql", options=["--memory", folder / f"{name}.json"]
+        )
+        for name, y in (("ws", 20.0), ("sql", 40.0))
+    }
 
 
-@pytest.mark.parametrize("sql", [False, True], ids=["websocket", "sql"])
-def test_a_cone_that_was_put_down_before_its_robot_was_killed_is_not_put_down_again(bridge, tmp_path, sql):
-    file = tmp_path / "r1.json"
-    more = {"sql": sql, "options": ["--memory", file]}
-    robot = bridge.start_robot("r1", (20.0, 20.0, 0.0), **more)
+def test_robots_that_remember_are_killed_and_go_on_with_their_tasks_by_themselves(bridge, tmp_path):
+    robots = start_on_each_wire(bridge, tmp_path)
     desk = watch(bridge)
-    desk.wait_for_robots("r1")
-    desk.send("target-1", "r1", "SetPosEnd", x=40.0, y=20.0, cone=True)
-    desk.wait_for_step("target-1", "acknowledged")
-    # It has asked for its path, and stands until it is known.
-    wait_until(lambda: not json.loads(file.read_text())["awaits_path"], 30)
-    # It comes to its end, and nobody hears of it.
+    desk.wait_for_robots(*robots)
+    for name in robots:
+        desk.send(f"target-{name}", name, "SetPosEnd", x=45.0, y=desk.robots[name]["y"])
+    for name, robot in robots.items():
+        desk.wait_for_step(f"target-{name}", "acknowledged")
+        desk.until(lambda name=name: desk.robots[name]["x"] > 24)
+        robot.kill()
+        robot.wait(5)
+    start_on_each_wire(bridge, tmp_path)
+    for name in robots:
+        command = desk.wait_for_step(f"target-{name}", "reached")
+        assert steps(command) == ["queued", "delivered", "acknowledged", "reached"]
+
+
+def test_cones_that_were_put_down_before_their_robots_were_killed_are_not_put_down_again(bridge, tmp_path):
+    def remembered(name):
+        return json.loads((tmp_path / f"{name}.json").read_text())
+
+    robots = start_on_each_wire(bridge, tmp_path)
+    desk = watch(bridge)
+    desk.wait_for_robots(*robots)
+    for name in robots:
+        desk.send(f"target-{name}", name, "SetPosEnd", x=40.0, y=desk.robots[name]["y"], cone=True)
+    for name in robots:
+        desk.wait_for_step(f"target-{name}", "acknowledged")
+        # It has asked for its path, and stands until it is known.
+        wait_until(lambda name=name: not remembered(name)["awaits_path"], 30)
+    # They come to their end, and nobody hears of it.
     bridge.kill_gateway()
-    wait_until(lambda: json.loads(file.read_text())["way"] == [], 30)
-    robot.kill()
-    robot.wait(5)
+    wait_until(lambda: all(remembered(name)["way"] == [] for name in robots), 30)
+    for robot in robots.values():
+        robot.kill()
+        robot.wait(5)
     bridge.sql("delete from rr")
     bridge.start_gateway()
     desk = watch(bridge)
-    bridge.start_robot("r1", (0.0, 0.0, 0.0), **more)
-    command = desk.wait_for_step("target-1", "reached")
-    assert steps(command) == ["queued", "delivered", "acknowledged", "reached"]
+    start_on_each_wire(bridge, tmp_path)
+    for name in robots:
+        command = desk.wait_for_step(f"target-{name}", "reached")
+        assert steps(command) == ["queued", "delivered", "acknowledged", "reached"]
     assert bridge.sql("select op from sa where op = 'SetPosEnd'") == []
 
 
