@@ -358,7 +358,7 @@ def iface(qgis_app):
 
 
 def forget_settings() -> None:
-    """Take out what a test before this one left in QGIS's settings; what is taken out is written to the disk."""
+    """Take out what a test before this one left in QGIS's settings; each change is written to the disk."""
     settings = QgsSettings()
     settings.beginGroup("fleet_supervisor")
     if settings.allKeys():
