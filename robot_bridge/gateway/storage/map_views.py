@@ -193,7 +193,7 @@ class PostGisViews(MapViews):
     def readers(self) -> list[str]:
         """Return the accounts that may read the views and are not their owner."""
         found = self._connection.exec_driver_sql(
-            "select a.grantee::regrole::text from pg_namespace n, aclexplode(n.nspacl) a "  # nosec B608
+            "select a.grantee::regrole::text from pg_namespace n, aclexplode(n.nspacl) a "  # nosec B608 # names of ours
             f"where n.nspname = '{SCHEMA}' and a.privilege_type = 'USAGE' "
             "and a.grantee not in (0, n.nspowner)"
         )
@@ -206,7 +206,7 @@ class PostGisViews(MapViews):
 
     def _make(self, frame: SiteFrame, srid: int) -> list[str]:
         gis = self._gis()
-        if self._connection.exec_driver_sql(f"select 1 from pg_roles where rolname = '{SCHEMA}'").scalar():  # nosec B608
+        if self._connection.exec_driver_sql(f"select 1 from pg_roles where rolname = '{SCHEMA}'").scalar():  # nosec B608 # names of ours
             raise MapViewError(
                 f"the server has an account {SCHEMA!r}, for which the views would stand in the place of the "
                 "tables; rename that account"
@@ -230,7 +230,7 @@ class PostGisViews(MapViews):
             "geom": f"{place}::{gis}.geometry(Point, {srid})",
             "geom_4326": f"{gis}.st_transform({place}, {WGS84})::{gis}.geometry(Point, {WGS84})",
         }
-        return f"select {_listed(columns)} from {rows.source.format(schema='public.')}"  # nosec B608
+        return f"select {_listed(columns)} from {rows.source.format(schema='public.')}"  # nosec B608 # names of ours
 
     def _gis(self) -> str:
         """Return the schema that PostGIS is in, quoted where it has to be."""
@@ -273,7 +273,7 @@ class SQLiteViews(MapViews):
                 "northing": north,
             }
             source = rows.source.format(schema="")
-            self._do(f"create view {PREFIX}{name} as select {_listed(columns)} from {source}")  # nosec B608
+            self._do(f"create view {PREFIX}{name} as select {_listed(columns)} from {source}")  # nosec B608 # names of ours
         return [f"{PREFIX}{name}" for name in _ROWS]
 
 
