@@ -1,6 +1,6 @@
 """Whatever comes in, the gateway answers the next question of whoever asks, and never with a traceback.
 
-500 cases here, as every account on each kind of database; ``make bench PARTS=attack`` tries 20 000.
+350 cases here, as every account on each kind of database; ``make bench PARTS=attack`` tries 20 000.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from tests.support.hostile.siege import GENEROUS, WORST_ROWS, Siege, cases, unre
 from tests.support.processes import Processes
 from tests.support.wire import is_shut
 
-SAID, WAITING, BESIDE = 100, 25, 15
+SAID, WAITING, BESIDE = 50, 25, 15
 """cases on each kind of database: said one by one, waiting at the start, written beside an emergency stop."""
 
 

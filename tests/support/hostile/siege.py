@@ -141,6 +141,7 @@ class Siege:
             self._site,
             port=self._port,
             name=name,
+            forked=True,
         )
         self.process, self._port = served.process, served.port
         self._spoken.clear()
