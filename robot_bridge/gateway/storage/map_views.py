@@ -49,6 +49,7 @@ class PlacedRows(NamedTuple):
     theta: str | None = None
 
 
+_NUMBERS = ("x", "y", "theta", "v", "deviation", "heading", "easting", "northing")
 _NEWEST = "select max(n.id) from {schema}trajectories n where n.robot = r.name and n.received_at = ({last})"
 _LAST = "select max(m.received_at) from {schema}trajectories m where m.robot = r.name"
 
@@ -316,10 +317,20 @@ def virtual_layers(database: str, frame: SiteFrame) -> str:
         "    <GeometryType>wkbPoint</GeometryType>\n"  # nosec B608 # a name of ours
         f"    <LayerSRS>EPSG:{srid}</LayerSRS>\n"
         '    <GeometryField encoding="PointFromColumns" x="easting" y="northing"/>\n'
+        f"{_virtual_fields(rows, frame)}"
         "  </OGRVRTLayer>\n"
-        for name in _ROWS
+        for name, rows in _ROWS.items()
     )
     return f"<OGRVRTDataSource>\n{layers}</OGRVRTDataSource>\n"
+
+
+def _virtual_fields(rows: PlacedRows, frame: SiteFrame) -> str:
+    """Return the fields of a layer with their types: SQLite knows none of times, which it has as texts."""
+    names = [*rows.columns, *rows.times, *_heading(rows, frame), "easting", "northing"]
+    kinds = dict.fromkeys(rows.times, "DateTime") | dict.fromkeys(_NUMBERS, "Real") | {"id": "Integer64"}
+    return "".join(
+        f'    <Field name="{name}" src="{name}" type="{kinds.get(name, "String")}"/>\n' for name in names
+    )
 
 
 def _epsg_code(frame: SiteFrame) -> int:
