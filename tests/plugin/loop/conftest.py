@@ -38,7 +38,7 @@ class Loop:
     def start_robot(self, name, pose, *, sql=False, speed=2.5, more=()):
         way = ["--database", self._database] if sql else ["--url", f"{self.address}/robot"]
         where = ",".join(str(number) for number in pose)
-        nimble = ["--speed", str(speed), "--turn-rate", "6", "--acceleration", "8", "--rate", "10"]
+        nimble = ["--speed", str(speed), "--turn-rate", "6", "--acceleration", "8", "--rate", "5"]
         options = ["--name", name, f"--pose={where}", *nimble, *more]
         return self._processes.start_bridge(name, ["robot", *way, *options])
 
