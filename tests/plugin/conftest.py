@@ -245,8 +245,6 @@ class Window(QMainWindow):
     def __init__(self):
         super().__init__()
         self.canvas = QgsMapCanvas()
-        # As in QGIS: a layer that is still the same is not drawn again.
-        self.canvas.setCachingEnabled(True)
         self.canvas.setDestinationCrs(QgsCoordinateReferenceSystem("EPSG:32633"))
         self.setCentralWidget(self.canvas)
         self.bar = QgsMessageBar(self.canvas)
