@@ -194,6 +194,20 @@ def test_ogc_api_features_is_read_by_gdal_and_over_http(services):
     assert feature["properties"]["robot"] == "r2" and feature["properties"]["heading"] >= 0
 
 
+@pytest.mark.parametrize(
+    ("datetime", "robots"),
+    [
+        ("2026-09-21T14:13:20Z", {"r1", "r2"}),
+        ("2026-09-21T14:13:00Z/2026-09-21T14:13:20Z", {"r1", "r2"}),
+        ("../2026-09-21T14:13:19Z", set()),
+        ("2026-09-21T14:13:30Z/..", set()),
+    ],
+)
+def test_trajectories_are_asked_for_by_time(services, datetime, robots):
+    page = json.loads(services.get("wfs3/collections/Trajectories/items.json", datetime=datetime))
+    assert {one["properties"]["robot"] for one in page["features"]} == robots
+
+
 def test_qgis_is_a_client_too(services, qgis_app):
     picture = QgsRasterLayer(
         f"contextualWMSLegend=0&crs={FRAME.crs}&format=image/png&layers=Robots&styles=&url={services.url}",
