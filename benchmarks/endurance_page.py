@@ -169,7 +169,7 @@ What may grow without being a leak:
   them the figures above go up and down from one moment to the next.
 - **Commands, alarms and names** as the shift goes on, each with a bound; unloading frees them.
 - **Classes.** PyQt does not give back all of a class that is derived from Qt's, though no class, function
-  or object of the plugin stays (`tests/plugin/test_reloads.py`).
+  or object of the plugin stays (`tests/plugin/test_endurance.py`).
 - **Once only:** Python's table of names doubles, numpy keeps small arrays for later, Qt keeps the names
   of drawn buttons.
 

@@ -207,7 +207,6 @@ LONG = (
     "robot_bridge/gateway/storage/databases/test_servers_that_fail.py",
     "robot_bridge/live/test_geofence.py",
     "robot_bridge/live/test_emergency_stop.py",
-    "plugin/processing/test_export_shaping.py",
 )
 """Files that take a minute beside five other workers, however many tests they have; the longest first."""
 

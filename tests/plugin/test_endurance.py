@@ -25,7 +25,7 @@ from benchmarks.endurance_findings import (
 from tests.support.inside_qgis.endurance.play import Player
 from tests.support.inside_qgis.endurance.pulse import LATE, Pulse
 
-ROBOTS = 40
+ROBOTS = 20
 RASTER_CACHE = 4
 """MB: less than looking at the whole site alone would fill."""
 
@@ -37,11 +37,14 @@ def run(tmp_path_factory) -> Run:
         pytest.skip("there is no Xvfb; run: make setup")
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(endurance, "RASTER_CACHE", RASTER_CACHE)
-        return endure(16.0, 1, ROBOTS, pauses=(1.0, 4.0), folder=tmp_path_factory.mktemp("endurance"))
+        return endure(12.0, 1, ROBOTS, pauses=(1.0, 4.0), folder=tmp_path_factory.mktemp("endurance"))
 
 
 def test_nothing_goes_wrong_and_nothing_is_left(run):
-    """No exception, no warning of QGIS, and no thread, item, action, class or object after each unloading."""
+    """No exception, no warning of QGIS, and no thread, item, action, class or object after each unloading.
+
+    Nor anything of the version before: of each class one copy may live, which Python keeps.
+    """
     assert faults(run) == []
     assert len(run.unloaded) == 2
 

@@ -4,18 +4,24 @@ python -m tests.plugin.language.desk_in_words LANGUAGE RESULT.json [--theme NAME
 
 LANGUAGE is a locale such as hu, or ``stretched``. In a process of its own: constants of modules take their
 language when they are imported. RESULT.json has, by the name of each part, what is wrong with it.
+
+More of them, apart by ``and``, are looked at one after the other, each in a process that is forked off this
+one: half of what one takes is to load QGIS.
 """
 
 from __future__ import annotations
 
 import argparse
+import importlib
 import json
 import os
+import pkgutil
 import sys
 import tempfile
 import time
 from collections.abc import Iterator
 from pathlib import Path
+from typing import NoReturn
 
 from qgis.core import QgsApplication, QgsProject, QgsSettings
 from qgis.PyQt.QtCore import QCoreApplication, QEvent, QSettings, QSize, Qt
@@ -110,14 +116,40 @@ def settle() -> None:
         QTest.qWait(20)
 
 
+def load_what_has_no_words() -> None:
+    """Load once for all desks what says nothing to an operator: QGIS, and what the bridge shares."""
+    register_plugin_package()
+    import fleet_supervisor.robot_bridge.core as core
+
+    import tests.plugin.conftest  # noqa: F401
+
+    for module in pkgutil.walk_packages(core.__path__, f"{core.__name__}."):
+        importlib.import_module(module.name)
+
+
 def main() -> None:
+    """Look at one desk after the other, each in a process of its own; end with the first bad status."""
+    load_what_has_no_words()
+    words = sys.argv[1:]
+    while True:
+        end = words.index("and") if "and" in words else len(words)
+        desk, words = words[:end], words[end + 1 :]
+        child = os.fork()
+        if not child:
+            look_at_desk(desk)
+        status = os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])
+        if status or not words:
+            sys.exit(status)
+
+
+def look_at_desk(words: list[str]) -> NoReturn:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("language")
     parser.add_argument("result", type=Path)
     parser.add_argument("--theme")
     parser.add_argument("--points", type=int, help="size of the font")
     parser.add_argument("--pictures", type=Path)
-    wanted = parser.parse_args()
+    wanted = parser.parse_args(words)
     if wanted.pictures is not None:
         wanted.pictures.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory(prefix="fleet-words-") as folder:
@@ -132,7 +164,6 @@ def main() -> None:
             font = QApplication.font()
             font.setPointSize(wanted.points)
             QApplication.setFont(font)
-        register_plugin_package()
         language = speak(wanted.language)
         show = Show(wanted.pictures)
         show_all(show)

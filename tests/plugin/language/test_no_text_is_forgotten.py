@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import functools
 import itertools
 import re
 import string
@@ -95,13 +96,17 @@ TEXTS = {
 """Texts that nobody reads as they are, or that have to stay as they are, and why."""
 
 
+syntax_of = functools.cache(tree_of)
+"""Each source is looked through by three tests."""
+
+
 def sources() -> list[Path]:
     return [path for path in sorted((ROOT / "plugin").rglob("*.py")) if "vendor" not in path.parts]
 
 
 def forgotten(source: str) -> list[tuple[int, str]]:
     """Return line and text of what people read in ``source`` and is not translated."""
-    tree = tree_of(source)
+    tree = syntax_of(source)
     passed_over = set(_ids_passed_over(tree))
     shown = {id(text) for call in _calls(tree) for text in _texts_of(call)}
     shown |= set(_ids_beside_translated(tree))
@@ -235,7 +240,7 @@ def test_every_text_that_people_read_is_translated():
 
 
 def test_no_exception_is_for_what_is_gone():
-    trees = [tree_of(path.read_text(encoding="utf-8")) for path in sources()]
+    trees = [syntax_of(path.read_text(encoding="utf-8")) for path in sources()]
     known = {node.value for tree in trees for node in ast.walk(tree) if isinstance(node, ast.Constant)}
     assert {one for one in TEXTS if one not in known} == set()
 
@@ -244,7 +249,7 @@ def test_every_placeholder_is_given_its_value():
     """A text that is shown once in a blue moon must not fail then."""
     wrong = []
     for path in sources():
-        for call in _translations(tree_of(path.read_text(encoding="utf-8"))):
+        for call in _translations(syntax_of(path.read_text(encoding="utf-8"))):
             given = {keyword.arg for keyword in call.keywords}
             if None in given:
                 # Values that come as a dictionary are not told from the source.

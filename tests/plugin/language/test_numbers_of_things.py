@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import functools
 import re
 from pathlib import Path
 
@@ -45,6 +46,7 @@ NEVER_ONE = {
 """Texts that are never said of one thing, and why."""
 
 
+@functools.cache
 def _texts() -> dict[str, str]:
     """Return the texts of the plugin that ``tr`` takes, with the file that has each."""
     found = {}

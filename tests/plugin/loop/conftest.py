@@ -35,11 +35,11 @@ class Loop:
         found = self._processes.wait_for_line(f"gateway-{self._runs}", r"listening on (ws://\S+:(\d+))", 30)
         self.address, self.port = found.group(1), int(found.group(2))
 
-    def start_robot(self, name, pose, *, sql=False, speed=2.5, more=()):
+    def start_robot(self, name, pose, *, sql=False, speed=2.5, rate=5, more=()):
         way = ["--database", self._database] if sql else ["--url", f"{self.address}/robot"]
         where = ",".join(str(number) for number in pose)
-        nimble = ["--speed", str(speed), "--turn-rate", "6", "--acceleration", "8", "--rate", "10"]
-        options = ["--name", name, f"--pose={where}", *nimble, *more]
+        nimble = ["--speed", str(speed), "--turn-rate", "6", "--acceleration", "8"]
+        options = ["--name", name, f"--pose={where}", *nimble, "--rate", str(rate), *more]
         return self._processes.start_bridge(name, ["robot", *way, *options])
 
 

@@ -1,9 +1,11 @@
-"""Robots behind links, led by clicks on the canvas: real peers, the link's adapter, a gateway, the window."""
+"""Robots behind links, led by clicks on the canvas: a real peer, the link's adapter, a gateway, the window.
+
+To the window all links are one; that each kind is driven, aborted, stopped and cleared, its own tests show.
+"""
 
 from __future__ import annotations
 
 import math
-import sys
 from urllib.request import urlopen
 
 import pytest
@@ -12,66 +14,19 @@ from fleet_supervisor.robot_bridge.core.messages.commands import CommandState
 from qgis.PyQt.QtWidgets import QLabel, QLineEdit, QPushButton
 
 from tests.robot_bridge.links.vda5050.peers import Yard, require_peers
-from tests.support.errors import StageError
-from tests.support.patience import START
 from tests.support.processes import Processes, free_port
-from tests.support.robots.ros_nodes import Nodes
-from tests.support.robots.ros_peer import ros_python
-from tests.support.robots.rosbridge_peer import rosbridge_command
 
 ROBOT = "linked"
-SETTINGS = """
-[gateway]
-url = "{address}/link"
-
-[{kind}]
-{where}
-distribution = "{distribution}"
-
-[{kind}.topics]
-stop = "/{{robot}}/stop"
-"""
-
-
-def start_adapter(processes, kind, file):
-    command = [sys.executable, "-m", "robot_bridge", "link", kind, "--config", file]
-    processes.start(f"link-{kind}", command)
-
-
-def start_ros(kind, loop, processes, folder):
-    """A real rclpy robot at (20, 8), by DDS or through a real rosbridge server."""
-    try:
-        nodes = Nodes(processes, ros_python())
-        port = free_port()
-        if kind == "rosbridge":
-            processes.start("server", rosbridge_command(port), env=nodes.environment())
-            processes.wait_for_line("server", "listening", START)
-    except StageError as error:
-        pytest.skip(str(error))
-    where = f'url = "ws://127.0.0.1:{port}"'
-    if kind == "ros2":
-        where = f'domain = {nodes.domain}\nrange = "localhost"'
-    text = SETTINGS.format(address=loop.address, kind=kind, where=where, distribution=nodes.distribution)
-    file = folder / f"{kind}.toml"
-    file.write_text(text, encoding="utf-8")
-    start_adapter(processes, kind, file)
-    nodes.start(ROBOT, "--speed", "3")
 
 
 @pytest.fixture
-def start_linked(root, tmp_path):
-    """Start a robot of a kind at (20, 8), and the adapter that links it."""
+def linked(loop, root, tmp_path):
+    """A vehicle at (20, 8), and the adapter that links it."""
     with Processes(tmp_path / "peers") as processes:
-
-        def start(kind, loop):
-            if kind != "vda5050":
-                return start_ros(kind, loop, processes, tmp_path)
-            yard = Yard(processes, tmp_path, require_peers(root))
-            yard.start_broker()
-            yard.start_adapter(loop.address)
-            return yard.start_vehicle(ROBOT, 20.0, 8.0, speed=3.0)
-
-        yield start
+        yard = Yard(processes, tmp_path, require_peers(root))
+        yard.start_broker()
+        yard.start_adapter(loop.address)
+        yield yard.start_vehicle(ROBOT, 20.0, 8.0, speed=3.0)
 
 
 def wait_for_newest(operator, state):
@@ -117,9 +72,8 @@ def is_at(operator, x, y):
     return seen.x is not None and math.dist((seen.x, seen.y), (x, y)) <= 0.5
 
 
-@pytest.mark.parametrize("kind", ["ros2", "rosbridge", "vda5050"])
-def test_a_linked_robot_is_led_from_the_canvas(kind, loop, operator, start_linked):
-    start_linked(kind, loop)
+@pytest.mark.usefixtures("linked")
+def test_a_linked_robot_is_led_from_the_canvas(loop, operator):
     operator.connect_to(loop, [ROBOT])
     operator.wait("where it is", lambda: is_at(operator, 20.0, 8.0), 20)
 
@@ -165,7 +119,7 @@ def test_a_tracker_is_only_seen_and_a_target_for_it_is_refused_with_the_reason(l
             return False
 
     with Processes(tmp_path / "peers") as processes:
-        start_adapter(processes, "tracker", file)
+        processes.start_bridge("link-tracker", ["link", "tracker", "--config", file])
         operator.wait("the report of the phone", report, 20)
         operator.connect_to(loop, [ROBOT])
         operator.wait("where it is", lambda: operator.report(ROBOT).x is not None, 20)

@@ -1,4 +1,4 @@
-"""The algorithm inside this QGIS, and ``qgis_process`` as the process that a script starts."""
+"""Algorithms in this QGIS, by Python or by a script's words, and ``qgis_process`` as a script starts it."""
 
 from __future__ import annotations
 
@@ -23,6 +23,10 @@ from qgis.core import (
     QgsProject,
 )
 
+from tests.support.inside_qgis.processing_words import run_words
+
+SEVERAL = Path(__file__).parents[2] / "support" / "inside_qgis" / "several_runs.py"
+"""The script that has one ``qgis_process`` do several runs."""
 INI = "[PythonPlugins]\nfleet_supervisor=true\nprocessing=true\n"
 
 
@@ -161,6 +165,9 @@ def qgis_process_place(root, tmp_path_factory):
     ini = home / "cfg" / "profiles" / "default" / "QGIS" / "QGIS3.ini"
     ini.parent.mkdir(parents=True)
     ini.write_text(INI, encoding="utf-8")
+    scripts = ini.parents[1] / "processing" / "scripts"
+    scripts.mkdir(parents=True)
+    (scripts / SEVERAL.name).symlink_to(SEVERAL)
     (home / "run").mkdir(mode=0o700)
     environment = {name: value for name, value in os.environ.items() if name not in ("DISPLAY", "PYTHONPATH")}
     environment |= {
@@ -173,16 +180,16 @@ def qgis_process_place(root, tmp_path_factory):
 
 
 @pytest.fixture(scope="session")
-def qgis_process(qgis_process_place):
+def qgis_process(qgis_process_place, root):
     """Run ``qgis_process`` with the plugin to its end."""
     program, environment = qgis_process_place
 
     def run(*words, packages=True) -> Finished:
         """``packages`` shows it the packages of this environment, such as zstandard."""
-        seen = {"PYTHONPATH": sysconfig.get_path("purelib")} if packages else {}
+        paths = [str(root), *([sysconfig.get_path("purelib")] if packages else [])]
         done = subprocess.run(
             [program, *map(str, words)],
-            env={**environment, **seen},
+            env={**environment, "PYTHONPATH": os.pathsep.join(paths)},
             capture_output=True,
             text=True,
             timeout=240,
@@ -193,15 +200,40 @@ def qgis_process(qgis_process_place):
     return run
 
 
+@pytest.fixture(scope="module")
+def by_words(provider):
+    """Run what ``qgis_process`` is given as words inside this QGIS, where that shows the same."""
+
+    def run(*words) -> Finished:
+        done = run_words([str(word) for word in words])
+        return Finished(done.status, done.results, done.said)
+
+    return run
+
+
+def _export_words(layers, parameters, file) -> list[str]:
+    words = [f"OBSTACLES={layer}" for layer in layers]
+    words += [f"{name}={value}" for name, value in parameters.items()]
+    return ["run", "fleet:exportrobotmap", "--", *words, f"OUTPUT={file}"]
+
+
 @pytest.fixture(scope="session")
 def export_by_process(qgis_process, tmp_path_factory):
     """Run the algorithm by ``qgis_process``; ``layers`` are what QGIS calls sources."""
 
-    def run(*layers, output="map.txt", packages=True, **parameters) -> tuple[Finished, Path]:
-        words = [f"OBSTACLES={layer}" for layer in layers]
-        words += [f"{name}={value}" for name, value in parameters.items()]
+    def run(*layers, output="map.txt", **parameters) -> tuple[Finished, Path]:
         file = tmp_path_factory.mktemp("export") / output
-        arguments = ("run", "fleet:exportrobotmap", "--", *words, f"OUTPUT={file}")
-        return qgis_process(*arguments, packages=packages), file
+        return qgis_process(*_export_words(layers, parameters, file)), file
+
+    return run
+
+
+@pytest.fixture(scope="module")
+def export_by_words(by_words, tmp_path_factory):
+    """Run the algorithm by the same words inside this QGIS."""
+
+    def run(*layers, output="map.txt", **parameters) -> tuple[Finished, Path]:
+        file = tmp_path_factory.mktemp("export") / output
+        return by_words(*_export_words(layers, parameters, file)), file
 
     return run

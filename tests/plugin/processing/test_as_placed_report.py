@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import re
-import subprocess
-import sys
 from dataclasses import replace
 from types import SimpleNamespace
 
@@ -40,9 +38,11 @@ from qgis.core import (
 )
 from qgis.gui import QgsMessageBar
 
-from robot_bridge.gateway.storage.database import Database, read_address
+from robot_bridge.gateway.storage import revisions
+from robot_bridge.gateway.storage.database import run_once
 from robot_bridge.gateway.storage.repositories import records
 from robot_bridge.gateway.storage.repositories.records import NewPlacement
+from tests.support.bridge.command_line import run_command
 
 FIELDS = (
     "&field=planned_easting:double&field=planned_northing:double&field=easting:double&field=northing:double"
@@ -268,50 +268,32 @@ def test_features_without_places_are_left_out_and_counted(run, make_layer, liste
 
 
 @pytest.fixture
-async def exported(root, tmp_path):
+def exported(root, tmp_path):
     """Return how a gateway's placed cones, one of them far off, are exported under a name."""
-    database = Database(read_address(f"sqlite:///{tmp_path}/fleet.db"))
-    await database.open()
+    database = f"sqlite:///{tmp_path}/fleet.db"
+    run_once(database, revisions.create)
     for n, off in enumerate((0.05, 0.1, 0.5)):
-        values = {
-            "planned_x": 40.0 + 4 * n,
-            "planned_y": 8.0,
-            "x": 40.0 + 4 * n,
-            "y": 8.0 + off,
-            "theta": 0.0,
-        }
-        known = {
-            "task": f"task-{n}",
-            "robot": "r1",
-            "command": f"command-{n}",
-            "cone": f"c{n}",
-            "layout": "slalom",
-        }
-        await database.run(
-            records.add_placed_cones,
-            NewPlacement(**values, **known, deviation=off, placed_at=1_790_000_000.0 + n),
-        )
-    await database.close()
+        x = 40.0 + 4 * n
+        where = {"planned_x": x, "planned_y": 8.0, "x": x, "y": 8.0 + off, "theta": 0.0, "deviation": off}
+        known = {"task": f"task-{n}", "robot": "r1", "command": f"command-{n}", "cone": f"c{n}"}
+        placement = NewPlacement(**where, **known, layout="slalom", placed_at=1_790_000_000.0 + n)
+        run_once(database, records.add_placed_cones, placement)
 
     def export(name):
-        options = ["placements", "export", tmp_path / name, "--site", root / "resources" / "sample_site"]
-        words = [*map(str, options), "--database", f"sqlite:///{tmp_path}/fleet.db"]
-        subprocess.run([sys.executable, "-m", "robot_bridge", *words], check=True, timeout=240)
+        site = root / "resources" / "sample_site"
+        done = run_command("placements", "export", tmp_path / name, "--site", site, "--database", database)
+        assert done.returncode == 0, done.stderr
         return tmp_path / name
 
     return export
 
 
 @pytest.mark.parametrize("name", ["cones.gpkg", "cones.csv"])
-async def test_a_gateways_export_becomes_a_report_with_no_display(
-    qgis_process, exported, root, tmp_path, name
-):
+def test_a_gateways_export_becomes_a_report_by_a_script(by_words, exported, root, tmp_path, name):
     file, made = exported(name), tmp_path / "made.pdf"
     given = [f"INPUT={file}|layername=placed"] if name.endswith("gpkg") else [f"INPUT={file}", f"CRS={UTM}"]
     photo = root / "resources" / "sample_site" / "orthophoto.tif"
-    done = qgis_process(
-        "run", "fleet:asplacedreport", "--", *given, f"BACKGROUND={photo}", f"OUTPUT={made}", packages=False
-    )
+    done = by_words("run", "fleet:asplacedreport", "--", *given, f"BACKGROUND={photo}", f"OUTPUT={made}")
     assert done.status == 0, done.said
     assert (done.result("CONE_COUNT"), done.result("WITHIN_COUNT")) == (3, 2)
     assert done.result("MAX") == pytest.approx(0.5)
@@ -322,8 +304,8 @@ async def test_a_gateways_export_becomes_a_report_with_no_display(
     assert re.search(rb"/Subtype\s*/Image", content)
 
 
-async def test_a_csv_without_a_crs_is_refused_with_what_to_give(qgis_process, exported, tmp_path):
-    done = qgis_process(
+def test_a_csv_without_a_crs_is_refused_with_what_to_give(by_words, exported, tmp_path):
+    done = by_words(
         "run",
         "fleet:asplacedreport",
         "--",

@@ -98,21 +98,21 @@ def test_cancelling_gives_no_result(check, listener):
     assert check(BORDER + HOUSE).get("FINDINGS") is None
 
 
-def test_a_process_with_no_display_makes_the_layer(qgis_process, tmp_path):
+def test_a_script_makes_the_layer(by_words, tmp_path):
     file, target = tmp_path / "given.map", tmp_path / "findings.gpkg"
     file.write_text(PLACED + BORDER + HOUSE + CLOCKWISE)
-    done = qgis_process("run", "fleet:checkrobotmap", "--", f"MAP={file}", f"FINDINGS={target}")
+    done = by_words("run", "fleet:checkrobotmap", "--", f"MAP={file}", f"FINDINGS={target}")
     assert done.status == 0, done.said
     assert done.result("ERROR_COUNT") == 1
     (finding,) = QgsVectorLayer(str(target)).getFeatures()
     assert finding["kind"] == "orientation"
 
 
-def test_the_campus_has_no_error(export, qgis_process, data, tmp_path):
+def test_the_campus_has_no_error(export, by_words, data, tmp_path):
     campus = data / "upc_campus_nord" / "upc_campus_nord_local.gpkg"
     layers = [f"{campus}|layername={name}" for name in ("buildings", "walls", "furniture")]
     file = export(*layers, CENTER="48,48", WIDTH=104, HEIGHT=104).file
-    done = qgis_process("run", "fleet:checkrobotmap", "--", f"MAP={file}", f"FINDINGS={tmp_path / 'f.gpkg'}")
+    done = by_words("run", "fleet:checkrobotmap", "--", f"MAP={file}", f"FINDINGS={tmp_path / 'f.gpkg'}")
     assert done.status == 0, done.said
     assert done.result("ERROR_COUNT") == 0
     assert done.result("FINDING_COUNT") == QgsVectorLayer(str(tmp_path / "f.gpkg")).featureCount()

@@ -185,9 +185,9 @@ def test_what_cannot_be_is_refused_with_what_to_do(place, parameters, reason):
         ("EPSG:99999", "SITE_CRS EPSG:99999 is no CRS that QGIS knows"),
     ],
 )
-def test_a_crs_that_cannot_carry_a_site_is_refused(qgis_process, tmp_path, crs, reason):
+def test_a_crs_that_cannot_carry_a_site_is_refused(by_words, tmp_path, crs, reason):
     where = ("POINT=0,0", f"SITE_CRS={crs}", f"CONES={tmp_path / 'cones.gpkg'}")
-    done = qgis_process("run", "fleet:conelayout", "--", "LAYOUT=slalom", *where)
+    done = by_words("run", "fleet:conelayout", "--", "LAYOUT=slalom", *where)
     assert done.status != 0
     assert crs in done.said and reason in done.said
     assert "Traceback" not in done.said
@@ -219,10 +219,8 @@ def words_of(guide, algorithm, root, folder):
     ]
 
 
-def test_a_process_with_no_display_places_it_on_the_sample_site_as_the_guide_says(
-    qgis_process, guide, root, tmp_path
-):
-    done = qgis_process(*words_of(guide, "conelayout", root, tmp_path))
+def test_it_is_placed_on_the_sample_site_as_the_guide_says(by_words, guide, root, tmp_path):
+    done = by_words(*words_of(guide, "conelayout", root, tmp_path))
     assert done.status == 0, done.said
     assert done.result("CONE_COUNT") == 18
     assert done.result("FINDING_COUNT") == 0
@@ -233,10 +231,10 @@ def test_a_process_with_no_display_places_it_on_the_sample_site_as_the_guide_say
     assert (made[17].x() - made[1].x(), made[17].y() - made[1].y()) == pytest.approx((110, 0.17), abs=1e-6)
 
 
-def test_a_table_is_imported_as_the_guide_says(qgis_process, guide, root, tmp_path):
+def test_a_table_is_imported_as_the_guide_says(by_words, guide, root, tmp_path):
     (tmp_path / "cones.csv").write_text("x,y,colour\n0,0,blue\n5,0,yellow\n", encoding="utf-8")
     words = words_of(guide, "importconelayout", root, tmp_path)
-    done = qgis_process(*(word.replace("FILE=", f"FILE={tmp_path}/") for word in words))
+    done = by_words(*(word.replace("FILE=", f"FILE={tmp_path}/") for word in words))
     assert done.status == 0, done.said
     assert done.result("CONE_COUNT") == 2
 

@@ -379,22 +379,21 @@ def test_the_robot_map_itself_is_never_the_output(export, tmp_path):
     assert file.read_text() == MAP
 
 
-def test_a_process_without_a_display_and_packages_exports_what_another_exported(qgis_process, root, tmp_path):
+def test_a_script_exports_for_todays_robots_what_it_exported_as_a_robot_map(by_words, root, tmp_path):
     """The chain of a script: the sample site's layers, a robot map, the files of today's robots."""
     project = root / "resources" / "sample_site" / "sample_site.qgz"
     layers = [f"OBSTACLES={name}" for name in ("Buildings", "Walls", "Stairs", "Ramp")]
     source = tmp_path / "site.txt"
-    done = qgis_process(
+    done = by_words(
         *("run", "fleet:exportrobotmap", f"--PROJECT_PATH={project}", "--", *layers),
         *("CENTER=640520,5193560 [EPSG:32633]", "WIDTH=200", "HEIGHT=160"),
         f"OUTPUT={source}",
     )
     assert done.status == 0, done.said
-    done = qgis_process(
+    done = by_words(
         *("run", "fleet:exportnavigationmap", "--", f"MAP={source}", "RESOLUTION=0.1"),
         *(f"FORMATS={name}" for name in ("occupancy", "geojson", "geopackage", "svg", "png")),
         f"OUTPUT={tmp_path / 'nav'}",
-        packages=False,
     )
     assert done.status == 0, done.said
     assert done.result("FILE_COUNT") == 7
@@ -403,9 +402,9 @@ def test_a_process_without_a_display_and_packages_exports_what_another_exported(
     assert [value_at(grid, x, y) for x, y in ((98, 100), (60, 60), (145.05, 20))] == [205, 254, 0]
 
 
-def test_a_refused_export_says_why_and_has_another_exit_status(qgis_process, tmp_path):
+def test_a_refused_export_says_why_and_has_another_exit_status(by_words, tmp_path):
     (tmp_path / "broken.txt").write_text("border;\n0;1;\n")
-    done = qgis_process(
+    done = by_words(
         *("run", "fleet:exportnavigationmap", "--", f"MAP={tmp_path / 'broken.txt'}"),
         f"OUTPUT={tmp_path / 'nav'}",
     )

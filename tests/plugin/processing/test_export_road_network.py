@@ -160,13 +160,12 @@ def test_a_cancelled_export_writes_nothing(export, roads, cancels_at, tmp_path):
     assert not (tmp_path / "out").exists()
 
 
-def test_the_sample_site_is_exported_with_no_display_as_the_guide_says(qgis_process, root, tmp_path):
+def test_the_sample_site_is_exported_as_the_guide_says(by_words, root, tmp_path):
     site = root / "resources" / "sample_site" / "site.gpkg"
-    done = qgis_process(
+    done = by_words(
         "run", "fleet:exportroadnetwork", "--", f"ROADS={site}|layername=road_centrelines",
         "FORMATS=nav2", "FORMATS=lif", "FORMATS=lanelet2",
         "ORIGIN=640420,5193480", "NAME=site", f"OUTPUT={tmp_path}",
-        packages=False,
     )  # fmt: skip
     assert done.status == 0, done.said
     _, edges = nav2(tmp_path / "site.geojson")

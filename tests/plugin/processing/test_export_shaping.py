@@ -284,11 +284,11 @@ def test_tiles_are_reduced_before_they_are_cut(provider, houses, listener, tmp_p
 
 
 @pytest.fixture(scope="module")
-def export_campus(data, export_by_process):
+def export_campus(data, export_by_words):
     def run(**parameters):
         file = data / "upc_campus_nord" / "upc_campus_nord_local.gpkg"
         layers = [f"{file}|layername={name}" for name in ("buildings", "walls", "furniture")]
-        return export_by_process(*layers, CENTER="48,48", WIDTH=104, HEIGHT=104, **parameters)
+        return export_by_words(*layers, CENTER="48,48", WIDTH=104, HEIGHT=104, **parameters)
 
     return run
 
@@ -350,14 +350,14 @@ def campus_project(qgis_app, data, tmp_path_factory):
 
 
 def test_the_profile_of_the_campus_knows_what_hangs_above_the_robots_plane(
-    campus_project, qgis_process, tmp_path
+    campus_project, by_words, tmp_path
 ):
     counts = []
     for low, high in ((0.3, 1), (0.3, 1000)):
         words = [f"OBSTACLES={name}" for name in ("buildings", "walls", "furniture")]
         words += ["CENTER=48,48", "WIDTH=104", "HEIGHT=104", "PROFILE=upc_campus_nord"]
         words += [f"PLANE_LOW={low}", f"PLANE_HIGH={high}", f"OUTPUT={tmp_path / 'map.txt'}"]
-        done = qgis_process("run", "fleet:exportrobotmap", f"--PROJECT_PATH={campus_project}", "--", *words)
+        done = by_words("run", "fleet:exportrobotmap", f"--PROJECT_PATH={campus_project}", "--", *words)
         assert done.status == 0, done.said
         assert done.result("WARNING_COUNT") == 0
         counts.append(done.result("OBSTACLE_COUNT"))
@@ -373,25 +373,3 @@ def test_the_campus_dissolved_and_chained_is_half_as_large(export_campus):
     compact, binary = export_campus(DISSOLVE="true", CHAIN="true", FORMAT="compact", output="campus.rmap")
     assert decode_text(binary.read_bytes()) == file.read_text()
     assert compact.result("BYTES_PER_M2") < 0.4
-
-
-@pytest.mark.parametrize(
-    ("parameters", "words"),
-    [
-        ({"DISSOLVE": "true"}, "need the Python package shapely 2"),
-        ({"FORMAT": "compact"}, "needs the Python"),
-    ],
-)
-def test_a_missing_package_is_named_before_the_run_and_nothing_is_written(export_campus, parameters, words):
-    done, file = export_campus(**parameters, packages=False)
-    assert done.status != 0
-    assert words in done.said and "Traceback" not in done.said
-    assert "0...10" not in done.said, "a layer was read before"
-    assert not file.exists()
-
-
-def test_without_packages_what_needs_none_still_runs(export_campus):
-    done, _ = export_campus(CHAIN="true", PLANE_LOW=0.3, PLANE_HIGH=1, HEIGHT_STEP=0.5, packages=False)
-    assert done.status == 0, done.said
-    before, after = shaped_as_said(done.said, done.result)
-    assert after < before

@@ -84,9 +84,9 @@ def test_cones_too_near_to_one_another_are_findings(bring, table):
     assert finding["text"] == "Cone mine-2 is 0.20 m from mine-1: keep 0.5 m between cones."
 
 
-def test_a_process_with_no_display_places_a_real_layout(qgis_process, data, tmp_path):
+def test_a_script_places_a_real_layout(by_words, data, tmp_path):
     target = tmp_path / "cones.gpkg"
-    done = qgis_process(
+    done = by_words(
         "run", "fleet:importconelayout", "--", f"FILE={data / 'cones' / 'cone_layouts.csv'}",
         "COLOUR_FIELD=colour", "LAYOUT_FIELD=track", "LAYOUT=fssim_acceleration", f"ORIGIN={PLACE}",
         "ROTATION=30", f"SITE_CRS={UTM}", f"CONES={target}", f"FINDINGS={tmp_path / 'findings.gpkg'}",

@@ -235,20 +235,20 @@ def test_layers_that_are_opened_get_their_style(provider, tmp_path, listener):
     assert layer.renderer().classAttribute() == "height_m"
 
 
-def test_a_process_with_no_display_makes_a_geopackage(qgis_process, tmp_path):
+def test_a_script_makes_a_geopackage(by_words, tmp_path):
     file, target = tmp_path / "given.map", tmp_path / "segments.gpkg"
     file.write_bytes(encode(PLACED + HOUSE))
-    done = qgis_process("run", "fleet:loadrobotmap", "--", f"MAP={file}", f"SEGMENTS={target}")
+    done = by_words("run", "fleet:loadrobotmap", "--", f"MAP={file}", f"SEGMENTS={target}")
     assert done.status == 0, done.said
     assert done.result("SEGMENT_COUNT") == read_text(HOUSE).segment_count
     layer = QgsVectorLayer(str(target))
     assert (layer.featureCount(), layer.crs().authid()) == (4, "EPSG:32633")
 
 
-def test_a_process_says_what_is_wrong_and_fails(qgis_process, tmp_path):
+def test_a_script_hears_what_is_wrong_and_fails(by_words, tmp_path):
     file = tmp_path / "broken.map"
     file.write_text(HOUSE[:120])
-    done = qgis_process("run", "fleet:loadrobotmap", "--", f"MAP={file}", f"SEGMENTS={tmp_path / 's.gpkg'}")
+    done = by_words("run", "fleet:loadrobotmap", "--", f"MAP={file}", f"SEGMENTS={tmp_path / 's.gpkg'}")
     assert done.status != 0
     assert "it was cut off" in done.said and "Traceback" not in done.said
 
@@ -265,15 +265,6 @@ def test_the_algorithms_have_help_an_icon_and_a_style_for_their_layers(provider,
         layer = QgsVectorLayer(f"{kind}?field=height_m:double", "x", "memory")
         said, fine = layer.loadNamedStyle(str(root / "resources" / "styles" / style))
         assert fine, said
-
-
-def test_binary_without_zstandard_says_what_to_install(qgis_process, tmp_path):
-    file = tmp_path / "given.map"
-    file.write_bytes(encode(PLACED + HOUSE))
-    words = ("run", "fleet:loadrobotmap", "--", f"MAP={file}", f"SEGMENTS={tmp_path / 's.gpkg'}")
-    done = qgis_process(*words, packages=False)
-    assert done.status != 0
-    assert "needs the Python package zstandard" in done.said and "Traceback" not in done.said
 
 
 @pytest.fixture

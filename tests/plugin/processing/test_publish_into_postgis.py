@@ -116,11 +116,11 @@ def qgis_uri(url) -> QgsDataSourceUri:
     return uri
 
 
-def test_qgis_process_publishes_the_sample_site_which_is_the_same_as_in_a_folder(
-    qgis_process, sample, database, tmp_path
+def test_a_script_publishes_the_sample_site_which_is_the_same_as_in_a_folder(
+    by_words, sample, database, tmp_path
 ):
     words = (f"DATABASE={database}", f"FOLDER={tmp_path / 'site'}")
-    done = qgis_process("run", "fleet:publishsite", f"--PROJECT_PATH={sample}", "--", *words)
+    done = by_words("run", "fleet:publishsite", f"--PROJECT_PATH={sample}", "--", *words)
     assert done.status == 0, done.said
     assert "is published in the database, schema site_sample" in done.said
     assert files_in(database, "sample") == {

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import base64
 import json
-import sys
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -353,10 +352,9 @@ def by_process(qgis_process, root, tmp_path_factory):
 
 def test_a_stock_qgis_publishes_what_a_gateway_serves(by_process, tmp_path):
     _, folder = by_process
-    command = [sys.executable, "-m", "robot_bridge", "serve", "--site", folder, "--port", "0"]
-    command += ["--database", f"sqlite:///{tmp_path / 'fleet.db'}"]
+    words = ["serve", "--site", folder, "--port", "0", "--database", f"sqlite:///{tmp_path / 'fleet.db'}"]
     with Processes(tmp_path / "logs") as processes:
-        processes.start("gateway", command)
+        processes.start_bridge("gateway", words)
         address = processes.wait_for_line("gateway", r"listening on (ws://\S+:\d+)", START).group(1)
         with connect(f"{address}/robot", max_size=None) as robot:
             robot.send(json.dumps({"jsonrpc": "2.0", "id": 1, "method": "Ready", "params": {"magic": 7}}))
@@ -367,15 +365,13 @@ def test_a_stock_qgis_publishes_what_a_gateway_serves(by_process, tmp_path):
     assert shapes(served) == shapes(read_site(folder).whole_map())
 
 
-def test_the_map_of_a_publication_is_the_map_exported_from_the_layers(
-    by_process, qgis_process, root, tmp_path
-):
+def test_the_map_of_a_publication_is_the_map_exported_from_the_layers(by_process, by_words, root, tmp_path):
     _, folder = by_process
     project = root / "resources" / "sample_site" / "sample_site.qgz"
     layers = ("Buildings", "Walls", "Columns", "Litter bins", "Benches", "Stairs", "Ramp")
     words = [f"OBSTACLES={name}" for name in layers]
     words += ["EXTENT=640420,640620,5193480,5193640", f"OUTPUT={tmp_path / 'map.txt'}"]
-    done = qgis_process("run", "fleet:exportrobotmap", f"--PROJECT_PATH={project}", "--", *words)
+    done = by_words("run", "fleet:exportrobotmap", f"--PROJECT_PATH={project}", "--", *words)
     assert done.status == 0, done.said
     exported = read_text((tmp_path / "map.txt").read_text())
     published = read_site(folder).whole_map()

@@ -71,19 +71,19 @@ def test_a_folder_that_was_made_in_vain_is_taken_away(qgis_app, tmp_path):
     assert list(tmp_path.iterdir()) == []
 
 
-def test_what_a_killed_publication_left_in_the_folder_goes_with_the_next(qgis_process, root, tmp_path):
+def test_what_a_killed_publication_left_in_the_folder_goes_with_the_next(by_words, root, tmp_path):
     left = tmp_path / ".publishing-abc"
     left.mkdir()
     (left / "site.gpkg").write_text("half")
     project = root / "resources" / "sample_site" / "sample_site.qgz"
-    done = qgis_process("run", "fleet:publishsite", f"--PROJECT_PATH={project}", "--", f"FOLDER={tmp_path}")
+    done = by_words("run", "fleet:publishsite", f"--PROJECT_PATH={project}", "--", f"FOLDER={tmp_path}")
     assert done.status == 0, done.said
     assert {file.name for file in tmp_path.iterdir()} == {"site.cache", "site.gpkg", "site.toml"}
 
 
 def test_processes_that_publish_at_once_use_no_version_twice(qgis_process, data, tmp_path):
     helsinki = data / "osm" / "helsinki_centre_utm35n.gpkg"
-    words = [f"OBSTACLES={helsinki}|layername={name}" for name in ("buildings", "furniture")]
+    words = [f"OBSTACLES={helsinki}|layername={name}" for name in ("barriers", "steps")]
     words += ["PROFILE=openstreetmap", "SITE_ID=city", "SITE_CRS=EPSG:32635", f"FOLDER={tmp_path}"]
     with ThreadPoolExecutor(2) as several:
         runs = [several.submit(qgis_process, "run", "fleet:publishsite", "--", *words) for _ in range(2)]

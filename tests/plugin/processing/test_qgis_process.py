@@ -30,37 +30,22 @@ def helsinki(data):
 
 
 @pytest.fixture(scope="module")
-def export_campus(campus, export_by_process):
-    def run(**parameters):
-        layers = [f"{campus}|layername={name}" for name in CAMPUS_LAYERS]
-        return export_by_process(*layers, CENTER="48,48", WIDTH=104, HEIGHT=104, **parameters)
-
-    return run
-
-
-@pytest.fixture(scope="module")
-def campus_text(export_campus):
+def campus_text(campus, export_by_process):
     """The campus exported once: the finished process and the text of the map."""
-    done, file = export_campus()
+    layers = [f"{campus}|layername={name}" for name in CAMPUS_LAYERS]
+    done, file = export_by_process(*layers, CENTER="48,48", WIDTH=104, HEIGHT=104)
     assert done.status == 0, done.said
     return done, file.read_text()
 
 
 @pytest.fixture(scope="module")
-def export_helsinki(helsinki, export_by_process):
-    def run(x_min, y_min, x_max, y_max):
-        layers = [f"{helsinki}|layername={name}" for name in HELSINKI_LAYERS]
-        done, file = export_by_process(*layers, EXTENT=f"{x_min},{x_max},{y_min},{y_max}")
-        assert done.status == 0, done.said
-        return done, read_text(file.read_text())
-
-    return run
-
-
-@pytest.fixture(scope="module")
-def helsinki_window(export_helsinki):
-    """A window of Helsinki exported once: the finished process and the map."""
-    return export_helsinki(*HELSINKI_WINDOW)
+def helsinki_window(helsinki, export_by_words):
+    """A window of Helsinki exported once: the finished run and the map."""
+    x_min, y_min, x_max, y_max = HELSINKI_WINDOW
+    layers = [f"{helsinki}|layername={name}" for name in HELSINKI_LAYERS]
+    done, file = export_by_words(*layers, EXTENT=f"{x_min},{x_max},{y_min},{y_max}")
+    assert done.status == 0, done.said
+    return done, read_text(file.read_text())
 
 
 def segments_of(robot_map):
@@ -125,14 +110,6 @@ def test_binary_is_the_same_map_and_less_than_the_papers_three_bytes_per_square_
     assert made.text == campus_text[1]
     assert made.results["BYTES"] == made.file.stat().st_size
     assert made.results["BYTES_PER_M2"] < 3
-
-
-def test_binary_without_zstandard_says_what_to_install_and_writes_nothing(export_campus):
-    done, file = export_campus(FORMAT="binary", packages=False)
-    assert done.status != 0
-    assert "needs the Python package zstandard" in done.said
-    assert "Traceback" not in done.said
-    assert not file.exists()
 
 
 def test_helsinki_counts_every_broken_feature_names_the_first_and_ends_well(export, helsinki):
@@ -213,7 +190,7 @@ def layer_without_crs(tmp_path_factory):
 
 
 def test_a_refused_export_says_why_and_has_another_exit_status(
-    helsinki, layer_without_crs, export_by_process, qgis_process, tmp_path
+    helsinki, layer_without_crs, export_by_process, export_by_words, qgis_process, tmp_path
 ):
     """What a script sees of the errors that tests inside QGIS prove one by one.
 
@@ -227,11 +204,21 @@ def test_a_refused_export_says_why_and_has_another_exit_status(
     often = qgis_own.said.count("Could not create layer")
     assert qgis_own.status != 0 and often > 0, qgis_own.said
     buildings, here = f"{helsinki}|layername=buildings", {"CENTER": "385900,6671700"}
-    for layer, parameters, words in (
-        (buildings, {**here, "SITE_CRS": "EPSG:3857"}, "EPSG:3857 .* its metres are not metres.*UTM zone"),
-        (layer_without_crs, {"CENTER": "0,0"}, "The layer scan has no CRS.*set the layer's CRS.*LOCAL=true"),
+    for layer, parameters, words, export in (
+        (
+            buildings,
+            {**here, "SITE_CRS": "EPSG:3857"},
+            "EPSG:3857 .* its metres are not metres.*UTM zone",
+            export_by_process,
+        ),
+        (
+            layer_without_crs,
+            {"CENTER": "0,0"},
+            "The layer scan has no CRS.*set the layer's CRS.*LOCAL=true",
+            export_by_words,
+        ),
     ):
-        done, file = export_by_process(layer, **parameters)
+        done, file = export(layer, **parameters)
         assert 1 <= len(re.findall(words, done.said)) <= often, done.said
         assert done.status != 0
         assert "Traceback" not in done.said

@@ -332,12 +332,12 @@ def test_no_obstacle_anywhere_is_said(tiles, wall, listener):
     assert any("no obstacle in any tile" in warning for warning in listener.warnings)
 
 
-def test_helsinki_in_tiles_by_a_process_is_helsinki_in_one_window(qgis_process, data, tmp_path):
+def test_helsinki_in_tiles_by_a_script_is_helsinki_in_one_window(by_words, data, tmp_path):
     file = data / "osm" / "helsinki_centre_utm35n.gpkg"
     layers = [f"OBSTACLES={file}|layername={name}" for name in ("buildings", "barriers")]
     area = "EXTENT=385700,386100,6671500,6671900"
     index = tmp_path / "index.gpkg"
-    tiled = qgis_process(
+    tiled = by_words(
         "run",
         "fleet:exportrobotmaptiles",
         "--",
@@ -348,9 +348,7 @@ def test_helsinki_in_tiles_by_a_process_is_helsinki_in_one_window(qgis_process, 
         f"INDEX={index}",
     )
     assert tiled.status == 0, tiled.said
-    whole = qgis_process(
-        "run", "fleet:exportrobotmap", "--", *layers, area, f"OUTPUT={tmp_path / 'whole.txt'}"
-    )
+    whole = by_words("run", "fleet:exportrobotmap", "--", *layers, area, f"OUTPUT={tmp_path / 'whole.txt'}")
     assert whole.status == 0, whole.said
     assert tiled.result("TILE_COUNT") == 16 == QgsVectorLayer(str(index)).featureCount()
     together = sum(length_of(read_text(f.read_text())) for f in (tmp_path / "out").iterdir())

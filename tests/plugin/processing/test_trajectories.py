@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import json
 import math
-import subprocess
-import sys
 import time
 
 import pytest
@@ -21,9 +19,11 @@ from qgis.core import (
 )
 from qgis.PyQt.QtCore import QDateTime, Qt
 
-from robot_bridge.gateway.storage.database import Database, read_address
+from robot_bridge.gateway.storage import revisions
+from robot_bridge.gateway.storage.database import run_once
 from robot_bridge.gateway.storage.repositories import trajectories
 from robot_bridge.gateway.storage.repositories.trajectories import Fix, pack
+from tests.support.bridge.command_line import run_command
 
 ogr.UseExceptions()
 T0 = 1_790_000_000
@@ -189,34 +189,23 @@ def test_the_loaded_layer_can_be_played(root, make_layer):
 
 
 @pytest.fixture
-async def export(root, tmp_path):
+def export(root, tmp_path):
     """What a gateway's database gives: r1 drove east for ten seconds with 1 m/s."""
-    database = Database(read_address(f"sqlite:///{tmp_path}/fleet.db"))
-    await database.open()
+    database = f"sqlite:///{tmp_path}/fleet.db"
+    run_once(database, revisions.create)
     fixes = [Fix("r1", T0 + float(k), SendPos(20.0 + k, 8.0, 0.0, 1.0, t=float(k))) for k in range(11)]
-    await database.run(trajectories.add, list(map(pack, fixes)))
-    await database.close()
+    run_once(database, trajectories.add, list(map(pack, fixes)))
     file = tmp_path / "drives.gpkg"
     options = ["trajectories", "export", file, "--site", root / "resources" / "sample_site"]
-    subprocess.run(
-        [
-            sys.executable,
-            "-m",
-            "robot_bridge",
-            *map(str, options),
-            "--database",
-            f"sqlite:///{tmp_path}/fleet.db",
-        ],
-        check=True,
-        timeout=60,
-    )
+    done = run_command(*options, "--database", database)
+    assert done.returncode == 0, done.stderr
     return file
 
 
-async def test_a_gateways_export_becomes_lines_with_no_display(qgis_process, export, tmp_path):
+def test_a_gateways_export_becomes_lines_by_a_script(by_words, export, tmp_path):
     made = tmp_path / "lines.gpkg"
     given = f"INPUT={export}|layername=positions"
-    done = qgis_process("run", "fleet:trajectories", "--", given, f"OUTPUT={made}", packages=False)
+    done = by_words("run", "fleet:trajectories", "--", given, f"OUTPUT={made}")
     assert done.status == 0, done.said
     assert (done.result("LINE_COUNT"), done.result("POSITION_COUNT")) == (1, 11)
     source = ogr.Open(str(made))

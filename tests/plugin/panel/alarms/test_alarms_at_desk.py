@@ -69,36 +69,31 @@ def choose(window, row):
 # --- each alarm, from the wire to the panel ---
 
 
-def test_a_low_battery(at_alarms, gateway, make_robot, wait):
+def test_what_robots_tell_of_themselves_is_an_alarm_and_over_when_they_tell_better(
+    at_alarms, gateway, make_robot, wait
+):
+    def wait_for(text, state="new"):
+        wait(lambda: (text, state) in alarms(at_alarms), what=text)
+
     gateway.show(make_robot("r1", 50, 40, battery=0.12))
     wait(lambda: alarms(at_alarms) == [("r1 has 12% of its battery left", "new")])
     gateway.show(make_robot("r1", 50, 40, battery=0.9))
     wait(lambda: alarms(at_alarms) == [("r1 has 12% of its battery left", "over")])
-
-
-def test_a_lost_robot(at_alarms, gateway, make_robot, wait):
-    gateway.show(make_robot("r1", 50, 40, age=30.0, state=RobotState.LOST))
-    wait(lambda: alarms(at_alarms) == [("r1 is lost: nothing is heard of it; last at 50.0, 40.0 m", "new")])
-
-
-def test_a_robot_that_does_not_know_its_place(at_alarms, gateway, make_robot, wait):
     gateway.show(
         make_robot("r1", 50, 40, accuracy=2.5), make_robot("phone", 20, 20, accuracy=8.0, abilities="")
     )
     text = "r1 does not know its place: ± 2.5 m at 50.0, 40.0 m"
-    wait(lambda: alarms(at_alarms) == [(text, "new")])
+    wait_for(text)
     gateway.show(make_robot("r1", 50, 40, accuracy=0.06))
-    wait(lambda: alarms(at_alarms) == [(text, "over")])
-
-
-def test_a_robot_outside_the_site(at_alarms, gateway, make_robot, wait):
+    wait_for(text, "over")
     gateway.show(make_robot("r1", 203, 40))
-    wait(lambda: alarms(at_alarms) == [("r1 is outside the site at 203.0, 40.0 m", "new")])
-
-
-def test_two_robots_too_close(at_alarms, gateway, make_robot, wait):
+    wait_for("r1 is outside the site at 203.0, 40.0 m")
     gateway.show(make_robot("r1", 79.5, 60))
-    wait(lambda: alarms(at_alarms) == [("r1 and r2 are 0.5 m apart at 79.5, 60.0 m", "new")])
+    wait_for("r1 and r2 are 0.5 m apart at 79.5, 60.0 m")
+    gateway.show(make_robot("r1", 50, 40, age=30.0, state=RobotState.LOST))
+    wait_for("r1 is lost: nothing is heard of it; last at 50.0, 40.0 m")
+    # The phone gave no alarm, and each of the others one.
+    assert len(alarms(at_alarms)) == 5
 
 
 def tell_of_fences(gateway, *alarms, **more):
@@ -128,9 +123,8 @@ def test_a_robot_in_a_keepout_and_at_an_obstacle_while_it_is_there(at_alarms, ga
     wait(lambda: alarms(at_alarms) == [])
 
 
-@pytest.mark.parametrize(
-    ("how", "text"),
-    [
+def test_what_the_gateway_does_about_it_is_said(at_alarms, gateway, wait):
+    for how, text in (
         ({"action": "abort", "outcome": "aborted"}, "the gateway has aborted its task"),
         ({"action": "abort", "outcome": "asked"}, "it is being aborted"),
         ({"action": "abort", "outcome": "stopped"}, "the emergency stop holds it"),
@@ -138,11 +132,10 @@ def test_a_robot_in_a_keepout_and_at_an_obstacle_while_it_is_there(at_alarms, ga
             {"action": "abort", "outcome": "failed", "reason": "no disk"},
             "it could NOT be stopped yet: no disk",
         ),
-    ],
-)
-def test_what_the_gateway_does_about_it_is_said(at_alarms, gateway, wait, how, text):
-    tell_of_fences(gateway, fence_alarm(**how))
-    wait(lambda: alarms(at_alarms) == [(f"r1 is in the keepout Water basin: {text}", "new")])
+    ):
+        tell_of_fences(gateway, fence_alarm(**how))
+        told = [(f"r1 is in the keepout Water basin: {text}", "new")]
+        wait(lambda told=told: alarms(at_alarms) == told, what=text)
 
 
 def test_what_the_gateway_cannot_judge_is_said(at_alarms, gateway, wait):

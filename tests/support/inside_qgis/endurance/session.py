@@ -27,6 +27,7 @@ from tests.support.inside_qgis.endurance.shift import Shift
 from tests.support.inside_qgis.endurance.trouble import Trouble
 from tests.support.inside_qgis.session import Session, end, start
 
+PANELS = ("fleet_plan_panel", "fleet_observations", "fleet_replay")
 CONNECTION = "Endurance"
 CONNECTS_WITHIN = 240.0
 """Seconds: longer than the longest waits between attempts and drops meanwhile, on a busy machine."""
@@ -60,6 +61,7 @@ class Endurance:
             self._load()
             yield 0.5
             yield from self._connect(first=number == 0)
+            yield from self._open_panels()
             self._pulse.go_on()
             yield from self._work(number, self._began + self._plan["seconds"] * (number + 1) / shifts)
             yield self._connected()
@@ -90,6 +92,13 @@ class Endurance:
         menu.findChild(QAction, f"fleet_connection_{CONNECTION}").trigger()
         self._session.operator.press("fleet_connect")
         yield self._connected()
+
+    def _open_panels(self) -> Script:
+        """Show and hide each panel, however short the shift: they are made when they are shown first."""
+        for name in PANELS:
+            for _ in range(2):
+                self._window.findChild(QAction, name).trigger()
+                yield 0.1
 
     def _keep_connection(self) -> None:
         from fleet_supervisor.plugin.settings.connections import Connections, GatewayConnection
