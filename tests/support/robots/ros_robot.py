@@ -48,7 +48,7 @@ ACTIONS: dict[str, tuple[Any, Any]] = {
     "follow_path": (FollowPath, lambda goal: goal.path.poses),
     "follow_waypoints": (FollowWaypoints, lambda goal: goal.poses),
 }
-TICK = 0.05
+TICK = 0.1
 LATE = 1.5
 """seconds in which a robot thinks about a goal, and a cancel that comes meanwhile finds none."""
 MASK_PLACES = {"road": (20.0, 8.0), "excavation": (95.0, 151.0)}
@@ -276,7 +276,7 @@ def main() -> None:
     parser.add_argument("--x", type=float, default=20.0)
     parser.add_argument("--y", type=float, default=8.0)
     parser.add_argument("--speed", type=float, default=2.0)
-    parser.add_argument("--rate", type=float, default=10.0)
+    parser.add_argument("--rate", type=float, default=5.0)
     parser.add_argument("--odd", action="append", default=[], choices=ODD)
     parser.add_argument("--asks-map", action="store_true")
     parser.add_argument("--image", choices=["raw", "jpeg", "depth"])
