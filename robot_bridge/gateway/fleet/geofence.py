@@ -305,8 +305,10 @@ class GeofenceWatch:
         seen = self._robots.revision
         names, places = _placed(self._robots.changed(self._seen))
         settings = self._site.settings
-        clearances = Clearances.of(settings.geofence, settings.routes.radius_m)
-        found = await asyncio.to_thread(find_stays, names, places, fences, clearances)
+        found = FoundStays({}, {}, set())
+        if names:
+            clearances = Clearances.of(settings.geofence, settings.routes.radius_m)
+            found = await asyncio.to_thread(find_stays, names, places, fences, clearances)
         changes = self._stays.update(found, settings.geofence, self._clock.time())
         self._seen = seen
         for stay in changes.ended:

@@ -20,7 +20,7 @@ from ...core.errors import DataRefusedError, StoreError, UncertainError
 from . import revisions
 from .dialects import PATIENCE_S, Dialect, Durability, MariaDB, PostgreSQL, SQLite
 from .roles.blocking_sessions import BLOCKING_S, Offences, blocking_robots, end_blocking_sessions
-from .wakeups import GATEWAY_CHANNEL, AdaptiveWakeup, NotifiedWakeup, PollingWakeup, Wakeup
+from .wakeups import GATEWAY_CHANNEL, AdaptiveWakeup, LogWakeup, NotifiedWakeup, PollingWakeup, Wakeup
 
 # --- Where a database is: reading its URL, and writing it so that no password is in it ---
 
@@ -406,7 +406,8 @@ class Database:
     def wakeup(self, channel: str) -> Wakeup:
         """Return what tells when it is time to look for new rows; ``channel`` is one of the triggers'."""
         if not self.dialect.listens:
-            return PollingWakeup()
+            log = self.dialect.log_of(self.url)
+            return PollingWakeup() if log is None else LogWakeup(log)
         listening = NotifiedWakeup(self._engine, channel, self._worker, self.offences)
         if channel != GATEWAY_CHANNEL:
             return listening

@@ -69,6 +69,10 @@ class Dialect:
         """Return a number that changes when another connection wrote, or None where there is none."""
         return None
 
+    def log_of(self, url: URL) -> Path | None:
+        """Return the file that every write to the database changes, or None where this computer has none."""
+        return None
+
     def backend(self, connection: Connection) -> int | None:
         """Return the number under which notifications of this connection come, or None."""
         return None
@@ -303,6 +307,9 @@ class SQLite(Dialect):
         driver = connection.connection.driver_connection
         assert driver is not None
         return int(driver.execute("PRAGMA data_version").fetchone()[0])
+
+    def log_of(self, url: URL) -> Path | None:
+        return Path(f"{url.database}-wal") if url.database else None
 
     def _begin(self, connection: Connection) -> None:
         opened: _Opened | None = connection.info.get("opened")

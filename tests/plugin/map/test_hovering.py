@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import pytest
 from fleet_supervisor.plugin.map.tools.road_route_tool import BESIDE
 from fleet_supervisor.robot_bridge.core.messages.commands import CommandState
@@ -12,12 +10,6 @@ from qgis.PyQt.QtGui import QMouseEvent
 from qgis.PyQt.QtWidgets import QApplication, QLabel
 
 NO_BUTTON = Qt.MouseButton.NoButton
-
-
-@pytest.fixture
-def site(site):
-    """Robots report once here: they are fresh however long a slow machine takes."""
-    return replace(site, stale_after=3600.0, lost_after=7200.0)
 
 
 @pytest.fixture

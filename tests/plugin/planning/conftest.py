@@ -14,12 +14,6 @@ from tests.plugin.planning.panel_parts import GatewayPlans, put_cones, put_road,
 
 
 @pytest.fixture
-def site(site):
-    """Robots report once here: they are not lost before the end, however long a slow machine plans."""
-    return replace(site, lost_after=3600.0)
-
-
-@pytest.fixture
 def plans(gateway):
     return GatewayPlans(gateway)
 

@@ -156,6 +156,7 @@ async def test_what_nobody_foresaw_of_places_is_told_and_ends_no_gateway(guarded
     def broken(*_everything):
         raise ZeroDivisionError("no height")
 
+    await guarded.at(20.0, 8.0)
     with monkeypatch.context() as patch:
         patch.setattr(watch, "find_stays", broken)
         assert [(await look(guarded)).fault for _ in range(3)] == [
