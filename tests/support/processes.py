@@ -19,7 +19,7 @@ from types import FrameType
 from typing import Any
 
 from tests.support.errors import StageError
-from tests.support.forked_programs import start_forked
+from tests.support.forked_programs import BRIDGE, Program, start_forked
 
 PATIENCE_S = 5.0
 """How long a process may take to end after SIGTERM before it is killed."""
@@ -73,8 +73,14 @@ class Processes:
         self, name: str, words: Sequence[Any], *, env: Mapping[str, str] | None = None
     ) -> subprocess.Popen[bytes]:
         """Start ``robot-bridge`` with ``words``, as :meth:`start` does, and without loading its modules."""
+        return self.start_forked(BRIDGE, name, words, env=env)
+
+    def start_forked(
+        self, program: Program, name: str, words: Sequence[Any], *, env: Mapping[str, str] | None = None
+    ) -> subprocess.Popen[bytes]:
+        """Start a program with ``words``, as :meth:`start` does, and without loading its modules."""
         with self.log(name).open("wb") as log:
-            process = start_forked(words, log, {**os.environ, "PYTHONUNBUFFERED": "1", **(env or {})})
+            process = start_forked(program, words, log, {"PYTHONUNBUFFERED": "1", **(env or {})})
         self._running[name] = process
         return process
 

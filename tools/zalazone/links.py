@@ -80,7 +80,7 @@ class Links:
 
     def start_robot(self, name: str, place: Place, speed: float) -> None:
         """Start a ROS 2 robot of that name, which stands at ``place``, and wait until it is up."""
-        self._nodes.start(name, f"--x={place[0]}", f"--y={place[1]}", f"--speed={speed}")
+        self._nodes.start(name, f"--x={place[0]}", f"--y={place[1]}", f"--speed={speed}", "--rate=10")
 
     def said(self, name: str, event: str) -> list[dict]:
         """Return what the robot itself has said of an event."""

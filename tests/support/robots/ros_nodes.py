@@ -11,6 +11,7 @@ from pathlib import Path
 
 from tests.support.bridge.bridge_programs import wait_until
 from tests.support.errors import StageError
+from tests.support.forked_programs import Program
 from tests.support.operators import Desk
 from tests.support.patience import START
 from tests.support.processes import Processes
@@ -55,6 +56,7 @@ class Nodes:
     def __init__(self, processes: Processes, python: Path) -> None:
         self._processes = processes
         self._python = python
+        self._robot = Program((ROBOT.stem,), python, ROBOT.parent)
         self._started: dict[str, int] = {}
         self.domain = own_domain()
         self.distribution = DISTRIBUTION
@@ -79,10 +81,12 @@ class Nodes:
         """
         number = self._started[name] = self._started.get(name, 0) + 1
         log = f"{name}-{number}"
-        environment = self.environment(domain)
+        environment, words = self.environment(domain), [node or name, *options]
         if through:
             environment["ROS_AUTOMATIC_DISCOVERY_RANGE"] = "SUBNET"
-        self._processes.start(log, [*through, self._python, ROBOT, node or name, *options], env=environment)
+            self._processes.start(log, [*through, self._python, ROBOT, *words], env=environment)
+        else:
+            self._processes.start_forked(self._robot, log, words, env=environment)
         self._processes.wait_for_line(log, '"up"', START)
 
     def start_script(self, name: str, script: Path, *arguments: str) -> None:

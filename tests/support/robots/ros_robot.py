@@ -276,7 +276,7 @@ def main() -> None:
     parser.add_argument("--x", type=float, default=20.0)
     parser.add_argument("--y", type=float, default=8.0)
     parser.add_argument("--speed", type=float, default=2.0)
-    parser.add_argument("--rate", type=float, default=10.0)
+    parser.add_argument("--rate", type=float, default=5.0)
     parser.add_argument("--odd", action="append", default=[], choices=ODD)
     parser.add_argument("--asks-map", action="store_true")
     parser.add_argument("--image", choices=["raw", "jpeg", "depth"])

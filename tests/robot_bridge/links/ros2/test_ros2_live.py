@@ -5,13 +5,13 @@ from __future__ import annotations
 import base64
 import io
 import itertools
-import sys
 
 import pytest
 from PIL import Image
 
 from tests.support.bridge.bridge_programs import wait_until
 from tests.support.bridge.cut_line import CutNetwork, outlast_a_cut
+from tests.support.bridge.link_process import LinkProcess
 from tests.support.patience import BUSY
 from tests.support.processes import Processes
 from tests.support.robots.ros_nodes import abort_before_the_goal, events
@@ -42,37 +42,9 @@ NUMBERS = itertools.count(1)
 SLOW, FAST = ("--speed", "0.5"), ("--speed", "10")
 
 
-class AdapterProcess:
-    """``robot-bridge link ros2`` as a process of its own."""
-
-    def __init__(self, processes, file):
-        self._processes, self._file = processes, file
-        self.name = ""
-
-    def start(self):
-        """Start it and wait until it is connected."""
-        self.name = f"ros2-{next(NUMBERS)}"
-        command = [
-            "prlimit",
-            "--as=3000000000",
-            sys.executable,
-            "-m",
-            "robot_bridge",
-            "link",
-            "ros2",
-            "--config",
-            self._file,
-        ]
-        self.process = self._processes.start(self.name, command)
-
-    def kill(self):
-        """End it the way a power cut does."""
-        self.process.kill()
-        self.process.wait(5)
-
-    def output(self):
-        """Return what it has printed."""
-        return self._processes.log(self.name).read_text(encoding="utf-8")
+def ros2_link(processes, file):
+    """An adapter with memory that a hostile peer would soon use up."""
+    return LinkProcess(processes, "ros2", file, 3_000_000_000)
 
 
 @pytest.fixture(scope="module")
@@ -90,7 +62,7 @@ def adapter(bridge, nodes, tmp_path_factory):
         SETTINGS.format(address=bridge.address, domain=nodes.domain, distribution=nodes.distribution)
     )
     with Processes(folder / "logs") as processes:
-        adapter = AdapterProcess(processes, file)
+        adapter = ros2_link(processes, file)
         adapter.start()
         yield adapter
 
@@ -98,8 +70,10 @@ def adapter(bridge, nodes, tmp_path_factory):
 @pytest.fixture
 def desk(bridge):
     desk = bridge.desk()
-    desk.ask("subscribe", {"rate": 20})
-    return desk
+    desk.ask("subscribe", {"rate": 10})
+    yield desk
+    # What nobody reads any more would be sent all the same.
+    desk.hang_up()
 
 
 @pytest.fixture
@@ -299,7 +273,7 @@ def test_actions_of_another_distribution_are_named_and_the_rest_is_used(bridge, 
     file.write_text(text, encoding="utf-8")
     name = f"robot{next(NUMBERS)}"
     with Processes(tmp_path / "logs") as processes:
-        other = AdapterProcess(processes, file)
+        other = ros2_link(processes, file)
         other.start()
         nodes.start(name, *FAST, domain=nodes.other_domain)
         wait_until(lambda: f"/{name}/follow_path has the FollowPath of jazzy or kilted" in other.output(), 30)
@@ -369,7 +343,7 @@ def test_a_network_that_was_cut_loses_nothing_and_does_nothing_twice(bridge, nod
         encoding="utf-8",
     )
     with Processes(tmp_path / "logs") as processes:
-        AdapterProcess(processes, file).start()
+        ros2_link(processes, file).start()
         try:
             for name in (driving, stopped, ordered):
                 nodes.start(name, *SLOW, domain=domain, through=network.through)
@@ -388,7 +362,7 @@ def test_the_shortest_settings_of_the_guide_show_a_robot_and_send_it(bridge, nod
     file.write_text(f'[gateway]\nurl = "{bridge.address}/link"\n{text}', encoding="utf-8")
     name = f"robot{next(NUMBERS)}"
     with Processes(tmp_path / "logs") as processes:
-        AdapterProcess(processes, file).start()
+        ros2_link(processes, file).start()
         nodes.start(name, *FAST, domain=nodes.other_domain)
         desk.wait_for_robots(name)
         desk.send(f"go-{name}", name, "SetPosEnd", x=25.0, y=8.0)

@@ -5,7 +5,6 @@ from __future__ import annotations
 import asyncio
 import itertools
 import json
-import sys
 
 import pytest
 from websockets.sync.client import connect
@@ -15,6 +14,7 @@ from robot_bridge.links.rosbridge.settings import Server
 from robot_bridge.protocol.credentials import ClientCredentials
 from tests.support.bridge.bridge_programs import wait_until
 from tests.support.bridge.cut_line import CutLine, outlast_a_cut
+from tests.support.bridge.link_process import LinkProcess
 from tests.support.patience import BUSY
 from tests.support.processes import Processes
 from tests.support.robots.ros_nodes import abort_before_the_goal, events
@@ -41,28 +41,9 @@ NUMBERS = itertools.count(1)
 SLOW, FAST = ("--speed", "0.5"), ("--speed", "10")
 
 
-class AdapterProcess:
-    """``robot-bridge link rosbridge`` as a process of its own."""
-
-    def __init__(self, processes, file):
-        self._processes, self._file = processes, file
-        self.name = ""
-
-    def start(self):
-        """Start it, with memory that a hostile server would soon use up."""
-        self.name = f"rosbridge-{next(NUMBERS)}"
-        program = ["prlimit", "--as=2000000000", sys.executable, "-m", "robot_bridge"]
-        command = [*program, "link", "rosbridge", "--config", self._file]
-        self.process = self._processes.start(self.name, command)
-
-    def kill(self):
-        """End it the way a power cut does."""
-        self.process.kill()
-        self.process.wait(5)
-
-    def output(self):
-        """Return what it has printed."""
-        return self._processes.log(self.name).read_text(encoding="utf-8")
+def rosbridge_link(processes, file):
+    """An adapter with memory that a hostile peer would soon use up."""
+    return LinkProcess(processes, "rosbridge", file, 2_000_000_000)
 
 
 @pytest.fixture(scope="module")
@@ -88,7 +69,7 @@ def adapter(settings, tmp_path_factory):
     file = folder / "far.toml"
     file.write_text(settings())
     with Processes(folder / "logs") as processes:
-        adapter = AdapterProcess(processes, file)
+        adapter = rosbridge_link(processes, file)
         adapter.start()
         yield adapter
         assert "Traceback" not in adapter.output(), adapter.output()
@@ -97,8 +78,10 @@ def adapter(settings, tmp_path_factory):
 @pytest.fixture
 def desk(bridge):
     desk = bridge.desk()
-    desk.ask("subscribe", {"rate": 20})
-    return desk
+    desk.ask("subscribe", {"rate": 10})
+    yield desk
+    # What nobody reads any more would be sent all the same.
+    desk.hang_up()
 
 
 @pytest.fixture
@@ -325,7 +308,7 @@ def test_a_network_that_was_cut_loses_nothing_and_does_nothing_twice(
     file = tmp_path / "cut.toml"
     file.write_text(settings(line.address), encoding="utf-8")
     with Processes(tmp_path / "logs") as processes:
-        AdapterProcess(processes, file).start()
+        rosbridge_link(processes, file).start()
         try:
             for name in names:
                 nodes.start(name, *SLOW, domain=domain)
@@ -377,7 +360,7 @@ def test_the_shortest_settings_of_the_guide_show_a_robot_and_send_it(
     file.write_text(f'[gateway]\nurl = "{bridge.address}/link"\n{text}', encoding="utf-8")
     name = f"distant{next(NUMBERS)}"
     with Processes(tmp_path / "logs") as processes:
-        AdapterProcess(processes, file).start()
+        rosbridge_link(processes, file).start()
         nodes.start(name, *FAST, domain=domain)
         desk.wait_for_robots(name)
         desk.send(f"go-{name}", name, "SetPosEnd", x=25.0, y=8.0)

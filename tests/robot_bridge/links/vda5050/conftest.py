@@ -23,8 +23,10 @@ def bridge(start_bridge, impatient_site):
 @pytest.fixture
 def desk(bridge):
     desk = bridge.desk()
-    desk.ask("subscribe", {"rate": 20})
-    return desk
+    desk.ask("subscribe", {"rate": 10})
+    yield desk
+    # What nobody reads any more would be sent all the same.
+    desk.hang_up()
 
 
 @pytest.fixture(scope="module")
