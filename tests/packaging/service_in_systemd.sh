@@ -4,17 +4,8 @@
 set -e
 folder=$1 repository=$2 python=$3 packages=$4
 
-mount -t tmpfs tmpfs "$folder"
-mkdir "$folder/changed" "$folder/work" "$folder/root"
-root=$folder/root
-mount -t overlay overlay -o "lowerdir=/,upperdir=$folder/changed,workdir=$folder/work" "$root"
-mount -t proc proc "$root/proc"
-mount -t tmpfs tmpfs "$root/run"
-mount --rbind /dev "$root/dev"
-mount --rbind /sys "$root/sys"
-# systemd 258 works with version 2 of control groups only, whichever this system uses.
-mount -t cgroup2 cgroup2 "$root/sys/fs/cgroup"
-ip link set lo up
+. "$(dirname "$0")/systemd_world.sh"
+make_world "$folder" /
 
 make -s -C "$repository" install-service DESTDIR="$root" PREFIX=/opt/robot-bridge PROGRAM=no
 mkdir -p "$root/opt/robot-bridge/bin" "$root/opt/robot-bridge/packages" "$root/var/lib/robot-bridge"
@@ -42,5 +33,4 @@ chroot "$root" chgrp -R robot-bridge /etc/robot-bridge
 cp -r "$repository/resources/sample_site" "$root/var/lib/robot-bridge/site"
 chroot "$root" chown -R robot-bridge: /var/lib/robot-bridge
 
-exec chroot "$root" /usr/bin/env -i container=other PATH=/usr/sbin:/usr/bin:/sbin:/bin \
-    /lib/systemd/systemd --system --unit=robot-bridge.service --show-status=no
+run_systemd --unit=robot-bridge.service

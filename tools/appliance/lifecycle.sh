@@ -1,0 +1,114 @@
+# To a newer version, back where that fails, and away. Sourced by install.sh.
+# shellcheck shell=sh
+BEFORE=$PREFIX.before
+
+upgrade() {
+    [ -e "$STAMP" ] || stop "no version is installed" "Run: $HERE/install.sh"
+    if [ "$(cat "$STAMP")" = "$(sources)" ]; then
+        say "this version is installed"
+        set_up
+        return 0
+    fi
+    # The old one works on while the network is needed.
+    STEP=fetch
+    fetched=${WHEELS:-$(fetch_packages)}
+    STEP=backup
+    keep_version
+    if (WHEELS=$fetched && bring_in_version); then
+        rm -rf "$BEFORE"
+        say "upgraded"
+        STEP='' WHEELS=''
+        set_up
+        return 0
+    fi
+    go_back
+    STEP=
+    stop "the new version did not come up, for the reason above; the old one runs on" \
+        "Nothing is lost. Report it with the lines above and journalctl -u robot-bridge."
+}
+
+fetch_packages() {
+    folder=/var/cache/robot-bridge/wheels
+    mkdir -p $folder
+    "$PREFIX/bin/python" -m pip download -q --disable-pip-version-check --dest $folder ".[$PARTS]" 'setuptools>=77' >&2 ||
+        stop "pip could not fetch the packages" "Is the network there? The old version works on. Or give --wheels FOLDER."
+    printf '%s' $folder
+}
+
+# What there is to go back to: the program, its units, and the database as the old version left it.
+keep_version() {
+    rm -rf "$BEFORE" "$BEFORE.new"
+    cp -a "$PREFIX" "$BEFORE.new"
+    mkdir "$BEFORE.new/units"
+    cp -a $UNITS/robot-bridge*.service "$BEFORE.new/units/"
+    systemctl stop robot-bridge
+    if [ "$DATABASE" = postgresql ]; then
+        as_server pg_dump --create --clean --if-exists fleet >"$BEFORE.new/fleet.sql"
+    else
+        administer database backup --replace "$DATA/before-upgrade.backup" >/dev/null
+    fi || { systemctl start robot-bridge && stop "no backup could be made; the old version works on" "See the lines above."; }
+    mv "$BEFORE.new" "$BEFORE"
+}
+
+# Its status says whether the new version works; nothing in it ends what called it.
+bring_in_version() {
+    STEP=upgrade
+    by_pip env "PREFIX=$PREFIX" tools/service.sh install >/dev/null || return 1
+    [ ! -e $UNITS/robot-bridge-maps.service ] || PREFIX=$PREFIX tools/service.sh install-maps >/dev/null || return 1
+    administer database upgrade || return 1
+    systemctl daemon-reload
+    systemctl start robot-bridge || { journalctl -u robot-bridge -n 5 -o cat --no-pager >&2; return 1; }
+    with_settings "$BRIDGE" doctor || return 1
+    sources >"$STAMP" && gateway_facts >$SETTINGS/.running
+    ! systemctl is-active -q robot-bridge-maps || systemctl restart robot-bridge-maps
+}
+
+go_back() {
+    say "going back to the old version"
+    systemctl stop robot-bridge || true
+    rm -rf "$PREFIX"
+    mv "$BEFORE" "$PREFIX"
+    cp -a "$PREFIX"/units/* $UNITS/
+    systemctl daemon-reload
+    if [ "$DATABASE" = postgresql ]; then
+        as_server psql --quiet --set ON_ERROR_STOP=1 --dbname postgres <"$PREFIX/fleet.sql" >/dev/null ||
+            stop "the database could not be put back" "Run as postgres: psql -d postgres -f $PREFIX/fleet.sql"
+        rm "$PREFIX/fleet.sql"
+    else
+        administer database restore --replace "$DATA/before-upgrade.backup" >/dev/null ||
+            stop "the database could not be put back" "Run: $(administration) database restore --replace $DATA/before-upgrade.backup"
+    fi
+    rm -rf "$PREFIX/units"
+    systemctl start robot-bridge || stop "the old version does not start either" "See: journalctl -u robot-bridge -n 20"
+}
+
+# --- Away ---
+
+take_away() {
+    for unit in robot-bridge-backup.timer robot-bridge-maps.service; do
+        systemctl disable -q --now $unit 2>/dev/null || true
+    done
+    rm -f $UNITS/robot-bridge-backup.service $UNITS/robot-bridge-backup.timer "$ANNOUNCED"
+    PREFIX=$PREFIX tools/service.sh uninstall >/dev/null
+    rm -rf "$BEFORE" /var/cache/robot-bridge
+    if [ -e "$FIREWALL" ]; then
+        rm -f "$FIREWALL"
+        sed -i "\\|^$INCLUDE\$|d" /etc/nftables.conf
+        nft delete table inet robot_bridge 2>/dev/null || true
+    fi
+    if [ "$TASK" = purge ]; then
+        purge
+    else
+        say "removed; settings ($SETTINGS), data ($DATA) and backups ($BACKUPS) stay, and so do Debian's packages"
+    fi
+}
+
+purge() {
+    if [ "$DATABASE" = postgresql ] && [ -e "$ADMIN" ]; then
+        as_server psql --quiet --command 'drop database if exists fleet with (force)' || true
+    fi
+    rm -rf "$SETTINGS" "$DATA" "$BACKUPS"
+    rm -f /root/robot-bridge-*.token
+    userdel robot-bridge 2>/dev/null || true
+    say "removed with all data; Debian's packages stay"
+}
