@@ -6,7 +6,7 @@ folder=$1 repository=$2 system=$3
 make_world "$folder" "$system"
 shut_in
 
-mkdir -p "$root/srv/fleet/resources"
+mkdir -p "$root/srv/fleet/resources" "$root/srv/wheels"
 for part in pyproject.toml README.md LICENSE robot_bridge tools resources/service resources/sample_site; do
     cp -r "$repository/$part" "$root/srv/fleet/$part"
 done

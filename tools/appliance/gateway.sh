@@ -153,10 +153,17 @@ TOML
 
 # Without an account the gateway does not listen beyond this computer: docs/operation.md, TLS.
 make_first_account() {
+    [ ! -e "$SETTINGS/.account" ] || return 0
     if [ "$DATABASE" = sqlite ] && [ ! -e "$DATA/fleet.db" ]; then
         administer database create >/dev/null
     fi
-    [ -z "$(administer operators list)" ] || return 0
+    if [ -z "$(administer operators list)" ]; then
+        make_account
+    fi
+    touch "$SETTINGS/.account"
+}
+
+make_account() {
     token=/root/robot-bridge-$OPERATOR.token
     (umask 077 && administer operators add "$OPERATOR" --role supervisor >"$token" 2>/dev/null) ||
         stop "the account of $OPERATOR could not be made" "Run: $(administration) operators add $OPERATOR --role supervisor"

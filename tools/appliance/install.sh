@@ -115,6 +115,9 @@ set_up() {
     ! wanted backup || step "backup" set_up_backup
     # Last: whatever a step fails at, nobody is locked out by half an installation.
     ! wanted firewall || step "firewall" set_up_firewall
+}
+
+check_and_tell() {
     step "check" run_doctor
     say_what_next
 }
@@ -125,7 +128,10 @@ read_options "$@"
 check_machine
 check_options
 case $TASK in
-install) set_up ;;
+install)
+    set_up
+    check_and_tell
+    ;;
 upgrade) upgrade ;;
 remove | purge) take_away ;;
 esac

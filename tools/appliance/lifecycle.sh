@@ -7,6 +7,7 @@ upgrade() {
     if [ "$(cat "$STAMP")" = "$(sources)" ]; then
         say "this version is installed"
         set_up
+        check_and_tell
         return 0
     fi
     # The old one works on while the network is needed.
@@ -19,6 +20,7 @@ upgrade() {
         say "upgraded"
         STEP='' WHEELS=''
         set_up
+        say_what_next
         return 0
     fi
     go_back
