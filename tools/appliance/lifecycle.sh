@@ -6,19 +6,24 @@ upgrade() {
     [ -e "$STAMP" ] || stop "no version is installed" "Run: $HERE/install.sh"
     if [ "$(cat "$STAMP")" = "$(sources)" ]; then
         say "this version is installed"
+        rm -rf "$BEFORE"
         set_up
         check_and_tell
         return 0
     fi
-    # The old one works on while the network is needed.
-    STEP=fetch
-    fetched=${WHEELS:-$(fetch_packages)}
-    STEP=backup
-    keep_version
-    if (WHEELS=$fetched && bring_in_version); then
+    # The old one works on while the network is needed, and while it is copied.
+    [ -n "$WHEELS" ] || step "fetch" fetch_packages
+    if [ -e "$BEFORE" ]; then
+        say "an upgrade was cut short: going on with it"
+        systemctl stop robot-bridge
+    else
+        step "copy" copy_version
+        step "backup" stop_and_back_up
+    fi
+    if bring_in_version; then
         rm -rf "$BEFORE"
         say "upgraded"
-        STEP='' WHEELS=''
+        STEP=
         set_up
         say_what_next
         return 0
@@ -30,31 +35,41 @@ upgrade() {
 }
 
 fetch_packages() {
-    folder=/var/cache/robot-bridge/wheels
-    mkdir -p $folder
-    "$PREFIX/bin/python" -m pip download -q --disable-pip-version-check --dest $folder ".[$PARTS]" 'setuptools>=77' >&2 ||
+    WHEELS=/var/cache/robot-bridge/wheels
+    mkdir -p "$WHEELS"
+    "$PREFIX/bin/python" -m pip download -q --disable-pip-version-check --dest "$WHEELS" ".[$PARTS]" 'setuptools>=77' ||
         stop "pip could not fetch the packages" "Is the network there? The old version works on. Or give --wheels FOLDER."
-    printf '%s' $folder
 }
 
-# What there is to go back to: the program, its units, and the database as the old version left it.
-keep_version() {
-    rm -rf "$BEFORE" "$BEFORE.new"
-    cp -a "$PREFIX" "$BEFORE.new"
+# What there is to go back to: the program and its units, and then the database as the old version leaves it.
+copy_version() {
+    rm -rf "$BEFORE.new"
+    cp -a "$PREFIX" "$BEFORE.new" || stop "the old version could not be kept" "Free 500 MB in /opt."
     mkdir "$BEFORE.new/units"
     cp -a $UNITS/robot-bridge*.service "$BEFORE.new/units/"
+}
+
+stop_and_back_up() {
     systemctl stop robot-bridge
-    if [ "$DATABASE" = postgresql ]; then
-        as_server pg_dump --create --clean --if-exists fleet >"$BEFORE.new/fleet.sql"
-    else
-        administer database backup --replace "$DATA/before-upgrade.backup" >/dev/null
-    fi || { systemctl start robot-bridge && stop "no backup could be made; the old version works on" "See the lines above."; }
+    back_up_all || {
+        systemctl start robot-bridge
+        stop "the database could not be backed up; the old version works on" "See the lines above."
+    }
     mv "$BEFORE.new" "$BEFORE"
 }
 
-# Its status says whether the new version works; nothing in it ends what called it.
+back_up_all() {
+    if [ "$DATABASE" = postgresql ]; then
+        # Whole, with its rights, as only the server's own program writes it.
+        as_server pg_dump --create --clean --if-exists fleet >"$BEFORE.new/fleet.sql"
+    else
+        administer database backup --replace "$DATA/before-upgrade.backup" >/dev/null
+    fi
+}
+
+# Its status says whether the new version works. Asked for that, the shell goes on behind what fails: each line returns.
 bring_in_version() {
-    STEP=upgrade
+    STEP=version
     by_pip env "PREFIX=$PREFIX" tools/service.sh install >/dev/null || return 1
     [ ! -e $UNITS/robot-bridge-maps.service ] || PREFIX=$PREFIX tools/service.sh install-maps >/dev/null || return 1
     administer database upgrade || return 1
@@ -92,10 +107,10 @@ take_away() {
     done
     rm -f $UNITS/robot-bridge-backup.service $UNITS/robot-bridge-backup.timer "$ANNOUNCED"
     PREFIX=$PREFIX tools/service.sh uninstall >/dev/null
-    rm -rf "$BEFORE" /var/cache/robot-bridge
+    rm -rf "$BEFORE" "$BEFORE.new" /var/cache/robot-bridge
     if [ -e "$FIREWALL" ]; then
         rm -f "$FIREWALL"
-        sed -i "\\|^$INCLUDE\$|d" /etc/nftables.conf
+        grep -vxF "$INCLUDE" /etc/nftables.conf | write /etc/nftables.conf 755
         nft delete table inet robot_bridge 2>/dev/null || true
     fi
     if [ "$TASK" = purge ]; then
@@ -107,7 +122,8 @@ take_away() {
 
 purge() {
     if [ "$DATABASE" = postgresql ] && [ -e "$ADMIN" ]; then
-        as_server psql --quiet --command 'drop database if exists fleet with (force)' || true
+        as_server psql --quiet --command 'drop database if exists fleet with (force)' \
+            --command 'drop role if exists fleet_admin, fleet_gateway, map_services' || true
     fi
     rm -rf "$SETTINGS" "$DATA" "$BACKUPS"
     rm -f /root/robot-bridge-*.token
