@@ -15,11 +15,9 @@ HERE = Path(__file__).parent
 PLACE = Path("/var/tmp/fleet-appliance-bookworm")
 INSTALL = "/srv/fleet/tools/appliance/install.sh"
 OFFLINE = {
-    # What it needs is in the environment that the root folder comes with; of the three, pip takes the value of
-    # what is switched off.
+    # What the program needs is in the environment that the root folder comes with.
     "PIP_NO_DEPS": "1",
-    "PIP_NO_BUILD_ISOLATION": "false",
-    "PIP_NO_COMPILE": "false",
+    "PIP_NO_BUILD_ISOLATION": "false",  # pip takes it for the value of "isolation"
 }
 ASK = """
 import json, ssl, sys, urllib.request
@@ -142,7 +140,12 @@ def test_what_is_wrong_is_named_with_what_to_do(set_up):
 def test_it_is_taken_away_but_for_the_data_and_then_with_it(set_up):
     done = set_up.install("--remove")
     assert done.returncode == 0, done.stdout + done.stderr
-    assert set_up.sh("ls -d /opt/robot-bridge* /etc/systemd/system/robot-bridge* /etc/avahi/services/robot* /root/x") == ""
+    assert (
+        set_up.sh(
+            "ls -d /opt/robot-bridge* /etc/systemd/system/robot-bridge* /etc/avahi/services/robot* /root/x"
+        )
+        == ""
+    )
     assert set_up.sh("nft list tables") == "table inet filter\n"
     assert "nftables.d" not in set_up.sh("cat /etc/nftables.conf")
     assert set_up.sh("systemctl --failed --no-legend; pgrep -u robot-bridge") == ""

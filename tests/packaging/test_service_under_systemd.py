@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import shutil
 import sys
 import sysconfig
 from pathlib import Path
@@ -11,16 +12,17 @@ import pytest
 
 from tests.support.systemd_world import HAS_SYSTEMD, NO_SYSTEMD, world_of
 
+MAPS, CAPABILITIES = "robot-bridge-maps", "SERVICE=WMS&REQUEST=GetCapabilities"
 SCRIPT = Path(__file__).with_name("service_in_systemd.sh")
 
 pytestmark = pytest.mark.skipif(not HAS_SYSTEMD, reason=NO_SYSTEMD)
 
 
-@pytest.fixture
-def world(tmp_path, root):
+@pytest.fixture(scope="module")
+def world(tmp_path_factory, root):
     # The environment may lie in /tmp, of which the service sees nothing: its packages are shown elsewhere.
     python, packages = sys._base_executable, sysconfig.get_path("purelib")
-    with world_of(SCRIPT, tmp_path, root, python, packages) as world:
+    with world_of(SCRIPT, tmp_path_factory.mktemp("service"), root, python, packages) as world:
         world.until(lambda: world.fact("ActiveState") == "active", lambda: log(world))
         yield world
 
@@ -33,6 +35,34 @@ def health(world):
     """What the gateway says of itself and its links."""
     code = "import urllib.request as u; print(u.urlopen('http://127.0.0.1:8765/healthz').read().decode())"
     return world.do("/opt/robot-bridge/bin/python", "-c", code)
+
+
+@pytest.mark.skipif(
+    shutil.which("qgis_mapserver") is None, reason="qgis-server is not installed; run: make setup"
+)
+def test_the_maps_are_served_beside_it_with_the_fleet(world):
+    account = ("setpriv", "--reuid=robot-bridge", "--regid=robot-bridge", "--clear-groups")
+    fleet, database = "/var/lib/robot-bridge/fleet.vrt", "sqlite:////var/lib/robot-bridge/fleet.db"
+    views = (
+        "database",
+        "views",
+        "--site",
+        "/var/lib/robot-bridge/site",
+        "--vrt",
+        fleet,
+        "--database",
+        database,
+    )
+    made = world.run(*account, "/opt/robot-bridge/bin/python", "-m", "robot_bridge", *views)
+    assert made.returncode == 0, made.stderr
+    world.do("sed", "-i", f"s|^MAPS_OPTIONS=.*|& --fleet {fleet}|", "/etc/robot-bridge/maps.env")
+    world.do("systemctl", "start", MAPS)
+    ask = f"import urllib.request as u; print(u.urlopen('http://127.0.0.1:8790/?{CAPABILITIES}').read().decode())"
+    text = world.until(lambda: world.do("/opt/robot-bridge/bin/python", "-c", ask), lambda: log(world))
+    assert "<Name>Robots</Name>" in text and "<Name>Orthophoto</Name>" in text
+    assert world.do("ps", "-o", "user=", "-p", world.fact("MainPID", MAPS)).startswith("robot-b")
+    world.do("systemctl", "stop", MAPS)
+    assert (world.fact("ActiveState", MAPS), world.fact("Result", MAPS)) == ("inactive", "success")
 
 
 LINK = "robot-bridge-link@phones"

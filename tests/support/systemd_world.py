@@ -13,9 +13,7 @@ from typing import TypeVar
 
 NEEDED = ("unshare", "nsenter", "ip", "systemctl", "systemd-sysusers")
 SPACES = ("--pid", "--fork", "--mount", "--uts", "--ipc", "--net", "--cgroup", "--kill-child")
-HAS_SYSTEMD = (
-    os.getuid() == 0 and Path("/lib/systemd/systemd").exists() and all(map(shutil.which, NEEDED))
-)
+HAS_SYSTEMD = os.getuid() == 0 and Path("/lib/systemd/systemd").exists() and all(map(shutil.which, NEEDED))
 """Whether worlds can be made here; ``NO_SYSTEMD`` says why not."""
 NO_SYSTEMD = "needs root, systemd and util-linux"
 
