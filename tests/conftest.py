@@ -124,7 +124,6 @@ def pytest_collection(session):
     gc.disable()
     yield
     gc.enable()
-    gc.collect()
     gc.freeze()
 
 

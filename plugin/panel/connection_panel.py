@@ -103,7 +103,9 @@ class AccessFields(QWidget):
 
         :raises TokenStoreError: when QGIS does not keep it.
         """
-        QgsSettings().setValue(CA_KEY, self.ca_file())
+        settings = QgsSettings()
+        if self.ca_file() != (settings.value(CA_KEY) or ""):
+            settings.setValue(CA_KEY, self.ca_file())
         token = self._token.text().strip()
         if self._auth:
             # The connection's own; another token typed over it is for this time.

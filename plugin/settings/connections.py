@@ -299,7 +299,8 @@ class Connections:
 
     def set_last(self, name: str) -> None:
         """Note the connection that was used last by its name, empty for one without."""
-        QgsSettings().setValue(LAST, name)
+        if name != self.last:  # what is written is written to the disk, in the window's thread
+            QgsSettings().setValue(LAST, name)
 
 
 def _group(name: str) -> str:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import asyncio
 from collections.abc import Callable
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import Annotated, TypeVar
 
 import typer
@@ -14,8 +13,6 @@ from sqlalchemy import URL, Connection
 from ..core.errors import StoreError
 from ..core.files import replacement
 from ..core.messages.validation import check_robot_name
-from ..core.sites.frame import SiteFrame
-from ..core.sites.settings import SETTINGS_FILE, read_settings
 from ..core.sites.site_database import is_database_address, read_site_address
 from ..gateway.storage import revisions
 from ..gateway.storage.backup import back_up, revision_in
@@ -27,7 +24,7 @@ from ..gateway.storage.roles.choice import has_accounts, map_readers_on, role_ma
 from ..gateway.storage.singleton_lock import no_gateway
 from .accounts import NewPasswordOption, new_password
 from .audit import act_audited, audited
-from .options import DEFAULT, DatabaseOption, PasswordFileOption, database_address, site_copy
+from .options import DEFAULT, DatabaseOption, PasswordFileOption, database_address, site_settings
 
 # --- ``robot-bridge database backup`` and ``restore`` ---
 
@@ -126,7 +123,7 @@ def views(
         act_audited(address, "database views", shown(address), "removed", _without_views)
         print(f"{shown(address)}: the views are removed")
         return
-    frame = _frame_of(site)
+    frame = site_settings(site).frame
     named = read_site_address(site).shown if is_database_address(site) else site
     names = act_audited(
         address, "database views", shown(address), named, lambda db: map_views_on(db).make(frame)
@@ -142,13 +139,6 @@ def views(
                 f"{vrt} cannot be written: {error.strerror or error}; check its folder"
             ) from error
         print(f"{vrt}: open it in QGIS, or with ogrinfo")
-
-
-def _frame_of(site: str) -> SiteFrame:
-    """Return the frame of a site in a folder, or in a database, from where it is fetched for the moment."""
-    with TemporaryDirectory(prefix="robot-bridge-") as state:
-        copy = site_copy(site, Path(state))
-        return read_settings((Path(site) if copy is None else copy.folder) / SETTINGS_FILE).frame
 
 
 def reader(

@@ -24,8 +24,8 @@ from ..core.errors import BridgeError, SiteError, counted
 from ..core.json_decoder import JsonBounds, decode_json
 from ..core.logs import set_up_log
 from ..core.sites.site_database import is_database_address
-from .options import DatabaseOption, PasswordFileOption
-from .serve import SiteOption, gateway_settings
+from .options import DatabaseOption, PasswordFileOption, SiteOption
+from .serve import gateway_settings
 
 if TYPE_CHECKING:
     from ..core.sites.site import Site
@@ -233,7 +233,7 @@ def _check_gateway(settings: GatewaySettings) -> Iterator[Finding]:
     connect: Callable[..., http.client.HTTPConnection] = http.client.HTTPConnection
     if settings.tls is not None:
         # It is this computer that is connection; whether others can trust the certificate is checked above.
-        connect = partial(http.client.HTTPSConnection, context=ssl._create_unverified_context())  # nosec B323
+        connect = partial(http.client.HTTPSConnection, context=ssl._create_unverified_context())  # nosec B323 # itself
     connection = connect(host, settings.port, timeout=ANSWER_WITHIN)
     try:
         connection.request("GET", HEALTH)

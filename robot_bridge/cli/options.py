@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from datetime import UTC, datetime
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Annotated
 
 import typer
@@ -15,6 +16,7 @@ from ..core.errors import BridgeError
 if TYPE_CHECKING:
     from sqlalchemy import URL
 
+    from ..core.sites.settings import SiteSettings
     from ..gateway.site_copy import SiteCopy
 
 DEFAULT = "sqlite:///robot-bridge.db"
@@ -33,6 +35,16 @@ PasswordFileOption = Annotated[
         "--database-password-file",
         envvar="ROBOT_BRIDGE_DATABASE_PASSWORD_FILE",
         help="File with the database account's password; a command line can be seen by others.",
+    ),
+]
+
+
+SiteOption = Annotated[
+    str,
+    typer.Option(
+        help="Folder of a published site: site.toml and site.gpkg; or where it is published in PostGIS: "
+        "postgresql://ACCOUNT@HOST/NAME#SITE.",
+        envvar="ROBOT_BRIDGE_SITE",
     ),
 ]
 
@@ -61,6 +73,18 @@ def site_copy(site: str, state: Path | None) -> SiteCopy | None:
     copy = SiteCopy(read_site_address(site), state)
     copy.fetch_first()
     return copy
+
+
+def site_settings(site: str) -> SiteSettings:
+    """Return the settings of a site in a folder, or in a database, from where it is fetched for the moment.
+
+    :raises BridgeError: where it cannot be fetched. :raises SiteError: for what is no site.
+    """
+    from ..core.sites.settings import SETTINGS_FILE, read_settings
+
+    with TemporaryDirectory(prefix="robot-bridge-") as state:
+        copy = site_copy(site, Path(state))
+        return read_settings((Path(site) if copy is None else copy.folder) / SETTINGS_FILE)
 
 
 # --- Times on the command line ---

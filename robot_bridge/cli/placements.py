@@ -18,10 +18,17 @@ from ..core.errors import BridgeError, counted, listed_names
 from ..core.files import replacement, write_geopackage_layer
 from ..core.messages.records import MOST_PLACEMENTS, GetPlacements, PlacementReport
 from ..core.sites.frame import SiteFrame, projections
-from ..core.sites.settings import SETTINGS_FILE, read_settings
 from ..gateway.storage.database import Database
 from ..gateway.storage.repositories import records as stored
-from .options import DEFAULT, DatabaseOption, PasswordFileOption, database_address, time_span
+from .options import (
+    DEFAULT,
+    DatabaseOption,
+    PasswordFileOption,
+    SiteOption,
+    database_address,
+    site_settings,
+    time_span,
+)
 
 # --- Placed cones as columns: in the site frame, in the site's CRS, and their deviation along both axes
 
@@ -173,7 +180,7 @@ def placements() -> None:
 @app.command()
 def export(
     file: Annotated[Path, typer.Argument(help="The file to be written: .csv, or .gpkg for GIS.")],
-    site: Annotated[Path, typer.Option(help="Folder of the published site, for its CRS and frame.")],
+    site: SiteOption,
     database: DatabaseOption = DEFAULT,
     database_password_file: PasswordFileOption = None,
     layout: Annotated[str | None, typer.Option(help="Only the cones of this layout.")] = None,
@@ -209,7 +216,7 @@ def export(
         collected=collected,
         limit=MOST_PLACEMENTS,
     )
-    frame = read_settings(site / SETTINGS_FILE).frame
+    frame = site_settings(site).frame
     address = database_address(database, database_password_file)
 
     async def work() -> list[PlacementReport]:

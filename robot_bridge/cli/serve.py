@@ -20,7 +20,7 @@ from ..core.errors import BridgeError
 from ..core.logs import LogFormat, LogLevel, set_up_log
 from ..core.systemd import notify, watchdog_interval
 from ..gateway.monitoring.periodic_tasks import freeze_permanent_objects
-from .options import DEFAULT, DatabaseOption, PasswordFileOption, database_address, site_copy
+from .options import DEFAULT, DatabaseOption, PasswordFileOption, SiteOption, database_address, site_copy
 
 if TYPE_CHECKING:
     from ..gateway.app import GatewaySettings, Signals
@@ -32,16 +32,6 @@ LAST_MOMENT = 4.7
 """seconds after which a gateway that was told to end does so whatever it waits for."""
 
 Loop = Literal["auto", "uvloop", "asyncio"]
-
-
-SiteOption = Annotated[
-    str,
-    typer.Option(
-        help="Folder of a published site: site.toml and site.gpkg; or where it is published in PostGIS: "
-        "postgresql://ACCOUNT@HOST/NAME#SITE.",
-        envvar="ROBOT_BRIDGE_SITE",
-    ),
-]
 
 
 def serve(

@@ -13,7 +13,6 @@ import typer
 from ..core.errors import BridgeError, counted
 from ..core.messages.robots import SendPos
 from ..core.messages.validation import check_robot_name
-from ..core.sites.settings import SETTINGS_FILE, read_settings
 from ..gateway.storage.database import Database
 from ..gateway.storage.repositories.trajectories import Fix, TrajectoryQuery
 from ..gateway.trajectories.exchange import RecordedDrive, TrajectoryFile, import_drives
@@ -22,7 +21,16 @@ from ..links.base.frames import FrameSettings, LinkFrame
 from ..recordings.csv_table import TableForm
 from ..recordings.readers import ReadingOptions, read_recording
 from ..recordings.tracks import Recording, Track
-from .options import DEFAULT, DatabaseOption, PasswordFileOption, database_address, seconds_of, time_span
+from .options import (
+    DEFAULT,
+    DatabaseOption,
+    PasswordFileOption,
+    SiteOption,
+    database_address,
+    seconds_of,
+    site_settings,
+    time_span,
+)
 
 # --- ``robot-bridge trajectories import``: a recorded drive into the database ---
 
@@ -32,7 +40,7 @@ _LEAST_DATE = 1e8
 
 def import_recording(
     file: Annotated[Path, typer.Argument(help="The recording: .csv, .csv.gz, .gpx, .gpkg, or a ROS bag.")],
-    site: Annotated[Path, typer.Option(help="Folder of the published site, for its CRS and frame.")],
+    site: SiteOption,
     database: DatabaseOption = DEFAULT,
     database_password_file: PasswordFileOption = None,
     robot: Annotated[
@@ -57,7 +65,7 @@ def import_recording(
     columns = dict(_pair("--column", text) for text in column or ())
     form = TableForm(columns, delimiter, time_unit, theta_unit)
     form.check()
-    settings = read_settings(site / SETTINGS_FILE)
+    settings = site_settings(site)
     recording = read_recording(file, ReadingOptions(form, tuple(topic or ())))
     _tell_remarks(recording)
     own = FrameSettings(crs=recording.crs or crs, origin=_origin(origin), rotation_deg=rotation)
@@ -173,7 +181,7 @@ def trajectories() -> None:
 @app.command()
 def export(
     file: Annotated[Path, typer.Argument(help="The GeoPackage to be written.")],
-    site: Annotated[Path, typer.Option(help="Folder of the published site, for its CRS and frame.")],
+    site: SiteOption,
     database: DatabaseOption = DEFAULT,
     database_password_file: PasswordFileOption = None,
     robot: Annotated[list[str] | None, typer.Option(help="Only this robot; may be given repeatedly.")] = None,
@@ -199,7 +207,7 @@ def export(
         until=last,
         bounds=_bounds(bounds),
     )
-    frame = read_settings(site / SETTINGS_FILE).frame
+    frame = site_settings(site).frame
     address = database_address(database, database_password_file)
 
     async def work() -> TrajectoryFile:

@@ -13,9 +13,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 from osgeo import gdal, ogr
-from owslib.wfs import WebFeatureService
-from owslib.wms import WebMapService
-from owslib.wmts import WebMapTileService
 from qgis.core import (
     QgsMapRendererParallelJob,
     QgsMapSettings,
@@ -114,6 +111,8 @@ def places(layer) -> dict[str, tuple[float, float]]:
 
 
 def test_wms_paints_what_the_desktop_paints(services, qgis_app):
+    from owslib.wms import WebMapService
+
     wms = WebMapService(services.url, version="1.3.0")
     names = ["Orthophoto", "Road surfaces", "Buildings", "Walls", "Robots"]
     assert set(names) <= set(wms.contents)
@@ -150,6 +149,8 @@ def pixels(image: QImage) -> np.ndarray:
 
 
 def test_gdal_and_owslib_read_tiles(services):
+    from owslib.wmts import WebMapTileService
+
     tiles = WebMapTileService(f"{services.url}?SERVICE=WMTS&REQUEST=GetCapabilities")
     assert {"Orthophoto", "Robots"} <= set(tiles.contents)
     assert {FRAME.crs, "EPSG:3857"} <= set(tiles.tilematrixsets)
@@ -170,6 +171,8 @@ def web_mercator(east: float, north: float) -> tuple[float, float]:
 
 
 def test_features_are_read_by_gdal_and_owslib_and_follow_the_robots(services):
+    from owslib.wfs import WebFeatureService
+
     wfs = WebFeatureService(services.url, version="1.1.0")
     assert {"Robots", "Road_surfaces", "Road_centrelines", "Trajectories"} <= set(wfs.contents)
     services.move("r1", 21.0, 31.0, after=1.0)
@@ -189,6 +192,20 @@ def test_ogc_api_features_is_read_by_gdal_and_over_http(services):
     page = json.loads(services.get("wfs3/collections/Robots/items.json", robot="r2"))
     (feature,) = page["features"]
     assert feature["properties"]["robot"] == "r2" and feature["properties"]["heading"] >= 0
+
+
+@pytest.mark.parametrize(
+    ("datetime", "robots"),
+    [
+        ("2026-09-21T14:13:20Z", {"r1", "r2"}),
+        ("2026-09-21T14:13:00Z/2026-09-21T14:13:20Z", {"r1", "r2"}),
+        ("../2026-09-21T14:13:19Z", set()),
+        ("2026-09-21T14:13:30Z/..", set()),
+    ],
+)
+def test_trajectories_are_asked_for_by_time(services, datetime, robots):
+    page = json.loads(services.get("wfs3/collections/Trajectories/items.json", datetime=datetime))
+    assert {one["properties"]["robot"] for one in page["features"]} == robots
 
 
 def test_qgis_is_a_client_too(services, qgis_app):

@@ -332,7 +332,7 @@ class Window(QMainWindow):
 
 @pytest.fixture
 def iface(qgis_app):
-    QgsSettings().remove("fleet_supervisor")
+    forget_settings()
     QgsProject.instance().clear()
     # Tests press faster than any hand; what a double click does has a test that sets it.
     QApplication.setDoubleClickInterval(1)
@@ -347,7 +347,7 @@ def iface(qgis_app):
     yield window
     window.canvas.stopRendering()
     QgsProject.instance().clear()
-    QgsSettings().remove("fleet_supervisor")
+    forget_settings()
     if not sip.isdeleted(window):
         # QGIS's list of shortcuts does not notice that an action is deleted.
         for action in window.findChildren(QAction):
@@ -355,6 +355,14 @@ def iface(qgis_app):
         window.close()
         window.deleteLater()
     let_deleted_go()
+
+
+def forget_settings() -> None:
+    """Take out what a test before this one left in QGIS's settings; each change is written to the disk."""
+    settings = QgsSettings()
+    settings.beginGroup("fleet_supervisor")
+    if settings.allKeys():
+        settings.remove("")
 
 
 def let_deleted_go() -> None:

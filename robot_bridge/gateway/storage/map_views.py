@@ -49,6 +49,7 @@ class PlacedRows(NamedTuple):
     theta: str | None = None
 
 
+_NUMBERS = ("x", "y", "theta", "v", "deviation", "heading", "easting", "northing")
 _NEWEST = "select max(n.id) from {schema}trajectories n where n.robot = r.name and n.received_at = ({last})"
 _LAST = "select max(m.received_at) from {schema}trajectories m where m.robot = r.name"
 
@@ -193,7 +194,7 @@ class PostGisViews(MapViews):
     def readers(self) -> list[str]:
         """Return the accounts that may read the views and are not their owner."""
         found = self._connection.exec_driver_sql(
-            "select a.grantee::regrole::text from pg_namespace n, aclexplode(n.nspacl) a "  # nosec B608
+            "select a.grantee::regrole::text from pg_namespace n, aclexplode(n.nspacl) a "  # nosec B608 # names of ours
             f"where n.nspname = '{SCHEMA}' and a.privilege_type = 'USAGE' "
             "and a.grantee not in (0, n.nspowner)"
         )
@@ -206,7 +207,7 @@ class PostGisViews(MapViews):
 
     def _make(self, frame: SiteFrame, srid: int) -> list[str]:
         gis = self._gis()
-        if self._connection.exec_driver_sql(f"select 1 from pg_roles where rolname = '{SCHEMA}'").scalar():  # nosec B608
+        if self._connection.exec_driver_sql(f"select 1 from pg_roles where rolname = '{SCHEMA}'").scalar():  # nosec B608 # names of ours
             raise MapViewError(
                 f"the server has an account {SCHEMA!r}, for which the views would stand in the place of the "
                 "tables; rename that account"
@@ -230,7 +231,7 @@ class PostGisViews(MapViews):
             "geom": f"{place}::{gis}.geometry(Point, {srid})",
             "geom_4326": f"{gis}.st_transform({place}, {WGS84})::{gis}.geometry(Point, {WGS84})",
         }
-        return f"select {_listed(columns)} from {rows.source.format(schema='public.')}"  # nosec B608
+        return f"select {_listed(columns)} from {rows.source.format(schema='public.')}"  # nosec B608 # names of ours
 
     def _gis(self) -> str:
         """Return the schema that PostGIS is in, quoted where it has to be."""
@@ -273,7 +274,7 @@ class SQLiteViews(MapViews):
                 "northing": north,
             }
             source = rows.source.format(schema="")
-            self._do(f"create view {PREFIX}{name} as select {_listed(columns)} from {source}")  # nosec B608
+            self._do(f"create view {PREFIX}{name} as select {_listed(columns)} from {source}")  # nosec B608 # names of ours
         return [f"{PREFIX}{name}" for name in _ROWS]
 
 
@@ -316,10 +317,20 @@ def virtual_layers(database: str, frame: SiteFrame) -> str:
         "    <GeometryType>wkbPoint</GeometryType>\n"  # nosec B608 # a name of ours
         f"    <LayerSRS>EPSG:{srid}</LayerSRS>\n"
         '    <GeometryField encoding="PointFromColumns" x="easting" y="northing"/>\n'
+        f"{_virtual_fields(rows, frame)}"
         "  </OGRVRTLayer>\n"
-        for name in _ROWS
+        for name, rows in _ROWS.items()
     )
     return f"<OGRVRTDataSource>\n{layers}</OGRVRTDataSource>\n"
+
+
+def _virtual_fields(rows: PlacedRows, frame: SiteFrame) -> str:
+    """Return the fields of a layer with their types: SQLite knows none of times, which it has as texts."""
+    names = [*rows.columns, *rows.times, *_heading(rows, frame), "easting", "northing"]
+    kinds = dict.fromkeys(rows.times, "DateTime") | dict.fromkeys(_NUMBERS, "Real") | {"id": "Integer64"}
+    return "".join(
+        f'    <Field name="{name}" src="{name}" type="{kinds.get(name, "String")}"/>\n' for name in names
+    )
 
 
 def _epsg_code(frame: SiteFrame) -> int:

@@ -75,13 +75,16 @@ def loop(start_loop, root):
 
 @pytest.fixture
 def impatient_loop(start_loop, root, tmp_path):
-    """A gateway on the sample site, where robots are stale after 1 s and lost after 3 s."""
+    """A gateway on the sample site, where robots are stale after 3 s and lost after 6 s.
+
+    Sooner, a busy machine would have them stale between a click and its check, and nothing is sent then.
+    """
     site = tmp_path / "site"
     site.mkdir()
     sample = root / "resources" / "sample_site"
     shutil.copy(sample / "site.gpkg", site)
     settings = (sample / "site.toml").read_text().partition("[liveness]")[0]
-    (site / "site.toml").write_text(f"{settings}\n[liveness]\nstale_after_s = 1.0\nlost_after_s = 3.0\n")
+    (site / "site.toml").write_text(f"{settings}\n[liveness]\nstale_after_s = 3.0\nlost_after_s = 6.0\n")
     return start_loop(site)
 
 

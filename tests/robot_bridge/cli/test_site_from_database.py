@@ -195,6 +195,14 @@ def test_views_of_the_fleet_take_their_frame_from_it(address, new_database):
     assert "made map_robots" in done.stdout
 
 
+@pytest.mark.parametrize("command", ["trajectories", "placements"])
+def test_what_is_exported_takes_its_frame_from_it(command, address, new_database, tmp_path):
+    words = (command, "export", tmp_path / "out.gpkg", "--site", address)
+    done = run_command(*words, "--database", new_database("sqlite"))
+    assert done.returncode == 0, done.stderr
+    assert (tmp_path / "out.gpkg").is_file()
+
+
 def test_the_doctor_checks_it(address, new_database):
     done = run_command("doctor", "--site", address, "--database", new_database("sqlite"), "--port", 1)
     assert "version 1, 47 obstacles" in done.stdout, done

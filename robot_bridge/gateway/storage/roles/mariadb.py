@@ -93,7 +93,7 @@ class MariaDbRoles(RoleManager):
         """Return of which version the robots' side is, nothing when there is none."""
         side = self._text(self.robots_database())
         return self._names(
-            f"select schema_comment from information_schema.schemata where schema_name = {side}"  # nosec B608
+            f"select schema_comment from information_schema.schemata where schema_name = {side}"  # nosec B608 # names of ours
         )
 
     def _exists(self, name: str) -> bool:
@@ -179,7 +179,7 @@ class MariaDbRoles(RoleManager):
 def _identified(password: str) -> str:
     """Return the clause with the password as the server keeps it: itself it never gets into a log."""
     once = hashlib.sha1(password.encode()).digest()  # nosec B324 # the server's own form
-    return f"identified via mysql_native_password using '*{hashlib.sha1(once).hexdigest().upper()}'"  # nosec B324
+    return f"identified via mysql_native_password using '*{hashlib.sha1(once).hexdigest().upper()}'"  # nosec B324 # as MariaDB has it
 
 
 _COMMON = """\

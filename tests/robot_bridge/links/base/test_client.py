@@ -8,9 +8,11 @@ from types import SimpleNamespace
 
 import pytest
 from websockets.asyncio.server import serve
+from websockets.frames import CloseCode
 
 from robot_bridge.core.messages.links import LINK_PROTOCOL
 from robot_bridge.core.messages.robots import SetPosEnd
+from robot_bridge.links.base import client
 from robot_bridge.links.base.client import LinkClient
 from robot_bridge.links.base.errors import CommandRefusedError
 from robot_bridge.links.base.linked_robots import OVERTAKEN, Commanding
@@ -83,6 +85,27 @@ async def test_a_message_that_the_link_does_not_know_is_refused_and_the_next_is_
     assert sorted(refused) == ["r1/7", "r1/8"]
     assert "does not know it" in refused["r1/7"] and "Dance" in refused["r1/7"]
     assert [command.id for command in link.adapter.commands] == [9]
+
+
+async def test_a_frame_beyond_the_limit_ends_the_connection_and_the_link_comes_back(tmp_path, monkeypatch):
+    monkeypatch.setattr(client, "LARGEST_FRAME", 20_000)
+    gateway, came = NewerGateway([" " * 20_001]), []
+
+    async def speak(connection):
+        came.append(connection)
+        await gateway.speak(connection)
+
+    async with serve(speak, "127.0.0.1", 0) as server:
+        port = server.sockets[0].getsockname()[1]
+        link = LinkOnTheLine(SimpleNamespace(address=f"ws://127.0.0.1:{port}"), tmp_path)
+        try:
+            await asyncio.to_thread(link.do, "add", "r1", ("targets",))
+            async with asyncio.timeout(40):
+                while len(came) < 2:
+                    await asyncio.sleep(0.01)
+        finally:
+            await asyncio.to_thread(link.end)
+    assert came[0].close_code == CloseCode.MESSAGE_TOO_BIG
 
 
 async def test_what_goes_wrong_with_one_robot_keeps_a_stop_from_no_other(tmp_path, monkeypatch, caplog):

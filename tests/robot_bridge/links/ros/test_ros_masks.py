@@ -83,6 +83,25 @@ async def test_robots_with_the_same_map_share_the_masks():
     assert len(link.asked) == 1
 
 
+async def test_masks_of_the_maps_that_were_used_last_are_kept_and_of_no_others():
+    first, second, third = (
+        encode(RobotMap(Border(0.0, 0.0, width, 10.0), (), {"version": "3"})) for width in (20.0, 30.0, 40.0)
+    )
+    masks = masks_of(link := Link(YARD))
+    for one in (first, second, third, third, second):
+        await masks.of(one)
+    assert len(link.asked) == 3
+    await masks.of(first)
+    assert len(link.asked) == 4
+
+
+async def test_a_map_of_more_cells_than_a_robot_has_room_for_is_refused():
+    wide = encode(RobotMap(Border(0.0, 0.0, 4001.0, 4001.0), (), {"version": "3"}))
+    with pytest.raises(CommandRefusedError, match=r"the masks cannot be made: .*cells"):
+        await masks_of(link := Link(YARD), resolution=1.0).of(wide)
+    assert link.asked == []
+
+
 async def test_what_cannot_be_made_is_named_and_tried_again_with_the_next_map():
     masks = masks_of(link := Link(refusal="keepouts and roads have 600000 points"))
     with pytest.raises(CommandRefusedError, match="600000 points"):

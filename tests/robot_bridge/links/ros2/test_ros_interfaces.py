@@ -12,6 +12,7 @@ pytest.importorskip("rosbags", reason="rosbags is not installed; run make setup"
 from robot_bridge.links.ros.errors import FaultError, RosError
 from robot_bridge.links.ros.goals import feedback_text, missed_of
 from robot_bridge.links.ros.settings import DISTRIBUTIONS
+from robot_bridge.links.ros2 import interfaces
 from robot_bridge.links.ros2.interfaces import LARGEST_MESSAGE, Interfaces
 
 GOAL = "nav2_msgs/action/NavigateToPose_SendGoal_Request"
@@ -66,6 +67,17 @@ def test_missed_waypoints_are_read_in_each_distribution(distribution, element):
         missed = [types.make("nav2_msgs/msg/MissedWaypoint", index=number) for number in (2, 5)]
     result = types.decode(name, types.encode(name, types.make(name, missed_waypoints=missed)))
     assert missed_of(result) == [2, 5]
+
+
+def test_a_sequence_beyond_the_limit_is_refused(monkeypatch):
+    monkeypatch.setattr(interfaces, "LONGEST_SEQUENCE", 10)
+    types, name = Interfaces("kilted"), "sensor_msgs/msg/LaserScan"
+    scans = [
+        types.encode(name, types.make(name, ranges=np.zeros(count, dtype=np.float32))) for count in (10, 11)
+    ]
+    assert len(types.decode(name, scans[0]).ranges) == 10
+    with pytest.raises(FaultError, match="LaserScan"):
+        types.decode(name, scans[1])
 
 
 def test_the_feedback_of_the_newest_distribution_says_how_far_it_is():
