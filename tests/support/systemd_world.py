@@ -1,4 +1,4 @@
-"""A real systemd, which is process 1 of a small world of its own: namespaces on a copy of a system's root folder."""
+"""A real systemd, which is process 1 of a small world of its own: namespaces, on a copy of a system."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ class World:
 
 @contextmanager
 def world_of(script: Path, folder: Path, *arguments: str | Path) -> Iterator[World]:
-    """A world that ``script`` makes of an empty folder below ``folder`` and ``arguments``; it ends with the block."""
+    """A world that ``script`` makes in an empty folder, given with ``arguments``; it ends with the block."""
     (place := folder / "world").mkdir()
     command = ["unshare", *SPACES, "sh", str(script), str(place), *map(str, arguments)]
     with (folder / "said").open("wb") as said:
