@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import fcntl
 import json
+import re
 import shutil
 import subprocess
 from pathlib import Path
@@ -90,6 +91,8 @@ def test_one_command_sets_up_all(set_up):
     assert "policy drop" in rules and "tcp dport { 22, 5055, 8765 } accept" in rules
     assert set_up.sh("stat -c '%a %U' /root/robot-bridge-admin.token") == "600 root\n"
     assert set_up.sh("cat /root/robot-bridge-admin.token").startswith("fleet_op_")
+    advice = re.search("another operator, as root: (.+)", set_up.said).group(1)
+    assert set_up.sh(advice.replace("NAME", "Ada")).startswith("fleet_op_")
     secrets = "ca-key.pem server-key.pem /var/lib/robot-bridge-backups/*"
     assert set_up.sh(f"cd /etc/robot-bridge/tls && stat -c '%a %U' {secrets}").splitlines() == [
         "600 root",

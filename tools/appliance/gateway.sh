@@ -169,12 +169,12 @@ make_account() {
         stop "the account of $OPERATOR could not be made" "Run: $(administration) operators add $OPERATOR --role supervisor"
 }
 
-# The words before a command that looks after accounts, for people.
+# The words before a command that looks after accounts, for people who are root; a bare Debian has no sudo.
 administration() {
     if [ "$DATABASE" = postgresql ]; then
-        printf "sudo env \$(sudo cat %s | xargs) %s" "$ADMIN" "$BRIDGE"
+        printf "env \$(cat %s) %s" "$ADMIN" "$BRIDGE"
     else
-        printf 'sudo -u robot-bridge env ROBOT_BRIDGE_DATABASE=sqlite:///%s/fleet.db %s' "$DATA" "$BRIDGE"
+        printf 'runuser -u robot-bridge -- env ROBOT_BRIDGE_DATABASE=sqlite:///%s/fleet.db %s' "$DATA" "$BRIDGE"
     fi
 }
 
@@ -214,5 +214,5 @@ say_what_next() {
     say "  phones and desks trust $SETTINGS/tls/ca.pem; take $SETTINGS/tls/ca-key.pem off this computer"
     [ ! -e "/root/robot-bridge-$OPERATOR.token" ] ||
         say "  $OPERATOR, a supervisor, signs in with /root/robot-bridge-$OPERATOR.token; delete it then"
-    say "  another operator: $(administration) operators add NAME --role operator"
+    say "  another operator, as root: $(administration) operators add NAME --role operator"
 }
