@@ -43,7 +43,7 @@ install_program() {
     # Not the environment of this folder, which is for tests and may be anybody's.
     python3 -c 'import sys; sys.exit(sys.version_info < (3, 11))' || stop "python3 is older than 3.11"
     # One that is there is used, unless it is of a Python that the system has no more.
-    "$DESTDIR$PREFIX/bin/python" -m pip --version >/dev/null 2>&1 || python3 -m venv "$DESTDIR$PREFIX" || stop "python3 cannot make an environment: install python3-venv"
+    "$DESTDIR$PREFIX/bin/python" -c 'import pip' 2>/dev/null || python3 -m venv "$DESTDIR$PREFIX" || stop "python3 cannot make an environment: install python3-venv"
     say "installing the program into $DESTDIR$PREFIX"
     "$DESTDIR$PREFIX/bin/python" -m pip install -q --disable-pip-version-check --upgrade \
         '.[postgresql,mariadb,speed]' || stop "pip could not install it: see the lines above"
