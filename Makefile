@@ -23,7 +23,7 @@ TRACKER ?=
 MINUTES ?=
 export PYTHON DESTDIR PREFIX PROGRAM ARGS JOBS REPOSITORY TRACKER MINUTES
 
-.PHONY: help setup demo test test-core test-newer lint desktop screenshots install install-service uninstall-service serve-maps translations package docs check-plugin clean bench mutants
+.PHONY: help setup demo test test-core test-newer lint desktop screenshots install install-service install-maps-service uninstall-service serve-maps translations package docs check-plugin clean bench mutants
 
 help: ## list the targets
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-18s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -73,7 +73,10 @@ install: $(READY) ## put the plugin into your QGIS profile (PROFILE=name, LINK=1
 install-service: ## put the gateway on this computer as a systemd service (DESTDIR=, PREFIX=/opt/robot-bridge)
 	@tools/service.sh install
 
-uninstall-service: ## take that service away; settings and data stay
+install-maps-service: ## put make serve-maps on this computer as a systemd service beside it; docs/services.md
+	@tools/service.sh install-maps
+
+uninstall-service: ## take these services away; settings and data stay
 	@tools/service.sh uninstall
 
 serve-maps: $(READY) ## serve a project and the fleet as WMS, WMTS, WFS (ARGS="--fleet fleet.vrt --port 8790"); docs/services.md

@@ -14,46 +14,20 @@ PLACE=${PLACE:-/var/tmp/fleet-$SUITE}
 MIRROR=${MIRROR:-http://deb.debian.org/debian}
 OURS=$PLACE/.fleet-newer # says that this program made the folder, and may empty it
 TREE=$PLACE/srv/fleet/main
-CERTIFICATES=/etc/ssl/certs/ca-certificates.crt
 PACKAGES="qgis python3-qgis python3-venv xvfb make git ca-certificates postgresql mariadb-server python3-mysqldb nodejs npm"
 
-say() { printf 'newer: %s\n' "$*"; }
-
-stop() {
-    printf 'newer: error: %s\n' "$1" >&2
-    printf '       %s\n' "$2" >&2
-    exit 1
-}
-
-inside() { chroot "$PLACE" /usr/bin/env -i HOME=/root PATH=/usr/sbin:/usr/bin:/sbin:/bin LANG=C.UTF-8 "$@"; }
-
-# quietly WHAT COMMAND...: runs it and shows its last lines when it fails
-quietly() {
-    what=$1
-    shift
-    "$@" >>"$PLACE.log" 2>&1 || {
-        tail -n 15 "$PLACE.log" >&2
-        stop "$what failed: see the lines above and $PLACE.log." "Mend that, then run it again: it goes on from there."
-    }
-}
+NAME=newer AGAIN="make test-newer"
+. tools/debian_root.sh
 
 check_machine() {
-    [ "$(id -u)" -eq 0 ] || stop "this needs root, for chroot." "Run: sudo make test-newer"
-    command -v debootstrap >/dev/null || stop "there is no debootstrap." "Run: apt-get install debootstrap"
+    check_programs
     git rev-parse --git-dir >/dev/null || stop "git does not know $(pwd): see the line above." \
         "Run it in a clone; what is tested is what git lists there."
 }
 
 # One run at a time has the folder, and only a folder that was made for this.
 claim_place() {
-    case $PLACE in
-    /?*) ;;
-    *) stop "PLACE=$PLACE is no absolute path." "Give one, such as PLACE=/var/tmp/fleet-$SUITE" ;;
-    esac
-    if [ -e "$PLACE" ] && [ ! -e "$OURS" ] && [ -n "$(ls -A "$PLACE")" ]; then
-        stop "$PLACE holds something that this program did not put there." "Give another PLACE, or empty that folder."
-    fi
-    mkdir -p "$(dirname "$PLACE")"
+    check_place
     exec 9>"$PLACE.lock"
     flock --nonblock 9 || stop "another run is at work in $PLACE." "Wait until it ends, or give another PLACE."
 }
@@ -69,26 +43,9 @@ run_in_namespace() {
 }
 
 build_root() {
-    if [ ! -e "$PLACE/.base" ]; then
-        say "building Debian $SUITE in $PLACE (log: $PLACE.log)"
-        rm -rf --one-file-system "$PLACE" # what a run that was stopped left
-        mkdir -p "$PLACE"
-        touch "$OURS"
-        : >"$PLACE.log"
-        script=/usr/share/debootstrap/scripts/$SUITE
-        [ -e "$script" ] || script=/usr/share/debootstrap/scripts/sid
-        quietly debootstrap debootstrap --variant=minbase "$SUITE" "$PLACE" "$MIRROR" "$script"
-        touch "$PLACE/.base"
-    fi
+    build_base
     mount_all
-    if [ "$(cat "$PLACE/.packages" 2>/dev/null)" != "$PACKAGES" ]; then
-        say "installing QGIS and the database servers there (log: $PLACE.log)"
-        install_packages
-        printf '%s\n' "$PACKAGES" >"$PLACE/.packages"
-    fi
-    # Whatever this machine trusts to reach the package index is trusted there too.
-    cp "$CERTIFICATES" "$PLACE$CERTIFICATES"
-    cp -L /etc/resolv.conf "$PLACE/etc/resolv.conf"
+    build_packages
 }
 
 mount_all() {
@@ -101,21 +58,6 @@ mount_all() {
         mkdir -p "$PLACE/srv/fleet/shared"
         mount --bind -o ro "$(cd ../shared && pwd -P)" "$PLACE/srv/fleet/shared"
     fi
-}
-
-install_packages() {
-    printf '#!/bin/sh\nexit 101\n' >"$PLACE/usr/sbin/policy-rc.d" # no service starts in there
-    chmod 755 "$PLACE/usr/sbin/policy-rc.d"
-    quietly "dpkg" inside dpkg --configure -a # what a run that was stopped left half installed
-    apt_install >>"$PLACE.log" 2>&1 || { # the package lists may be old
-        quietly "apt-get update" inside apt-get update -q
-        quietly "apt-get install" apt_install
-    }
-}
-
-apt_install() {
-    # shellcheck disable=SC2086 - one word for each package
-    inside DEBIAN_FRONTEND=noninteractive apt-get install -y -q --no-install-recommends $PACKAGES
 }
 
 # What git knows of this tree, changes that are not committed included; the environment in there stays.

@@ -1,7 +1,8 @@
 #!/bin/sh
-# Puts the gateway on this computer as the systemd service robot-bridge, or takes it away again.
+# Puts the gateway on this computer as the systemd service robot-bridge, and the map services as robot-bridge-maps, or
+# takes both away again.
 #
-#   tools/service.sh install | uninstall
+#   tools/service.sh install | install-maps | uninstall
 #
 #   DESTDIR=/path   goes before every path, for packaging; nothing is started or asked of systemd then
 #   PREFIX=/path    where the program goes (default: /opt/robot-bridge)
@@ -14,8 +15,10 @@ PREFIX=${PREFIX:-/opt/robot-bridge}
 PROGRAM=${PROGRAM:-yes}
 UNIT=$DESTDIR/etc/systemd/system/robot-bridge.service
 LINK_UNIT=$DESTDIR/etc/systemd/system/robot-bridge-link@.service
+MAPS_UNIT=$DESTDIR/etc/systemd/system/robot-bridge-maps.service
 USERS=$DESTDIR/usr/lib/sysusers.d/robot-bridge.conf
 SETTINGS=$DESTDIR/etc/robot-bridge/robot-bridge.env
+MAPS_SETTINGS=$DESTDIR/etc/robot-bridge/maps.env
 
 say() { printf 'service: %s\n' "$*"; }
 
@@ -39,28 +42,36 @@ systemd_runs() { [ -z "$DESTDIR" ] && [ -d /run/systemd/system ]; }
 install_program() {
     # Not the environment of this folder, which is for tests and may be anybody's.
     python3 -c 'import sys; sys.exit(sys.version_info < (3, 11))' || stop "python3 is older than 3.11"
-    python3 -m venv "$DESTDIR$PREFIX" || stop "python3 cannot make an environment: install python3-venv"
+    # One that is there is used, unless it is of a Python that the system has no more.
+    "$DESTDIR$PREFIX/bin/python" -c 'import pip' 2>/dev/null || python3 -m venv "$DESTDIR$PREFIX" || stop "python3 cannot make an environment: install python3-venv"
     say "installing the program into $DESTDIR$PREFIX"
     "$DESTDIR$PREFIX/bin/python" -m pip install -q --disable-pip-version-check --upgrade \
         '.[postgresql,mariadb,speed]' || stop "pip could not install it: see the lines above"
 }
 
-install_service() {
+check_target() {
     may_write
     need_systemd
     case $PREFIX in /*) ;; *) stop "PREFIX=$PREFIX is no absolute path" ;; esac
+}
+
+# install_settings FILE TARGET: settings that nobody wrote yet, for the service's account to read
+install_settings() {
+    install -d -m 750 "$(dirname "$2")"
+    [ -e "$2" ] || install -m 640 "$1" "$2"
+    [ -n "$DESTDIR" ] || chgrp -R robot-bridge "$(dirname "$2")"
+}
+
+install_service() {
+    check_target
     [ "$PROGRAM" = no ] || install_program
     install -d "$(dirname "$UNIT")" "$(dirname "$USERS")"
     sed "s|@PREFIX@|$PREFIX|g" resources/service/robot-bridge.service > "$UNIT"
     sed "s|@PREFIX@|$PREFIX|g" resources/service/robot-bridge-link@.service > "$LINK_UNIT"
     install -m 644 resources/service/robot-bridge.sysusers "$USERS"
     [ -n "$DESTDIR" ] || systemd-sysusers "$USERS"
-    install -d -m 750 "$(dirname "$SETTINGS")"
-    [ -e "$SETTINGS" ] || install -m 640 resources/service/robot-bridge.env "$SETTINGS"
-    if [ -z "$DESTDIR" ]; then
-        chgrp -R robot-bridge "$(dirname "$SETTINGS")"
-        install -d -m 750 -o robot-bridge -g robot-bridge /var/lib/robot-bridge
-    fi
+    install_settings resources/service/robot-bridge.env "$SETTINGS"
+    [ -n "$DESTDIR" ] || install -d -m 750 -o robot-bridge -g robot-bridge /var/lib/robot-bridge
     say "installed $UNIT"
     say "publish a site into /var/lib/robot-bridge/site, or name its folder in $SETTINGS"
     if systemd_runs; then
@@ -71,12 +82,30 @@ install_service() {
     fi
 }
 
+install_maps() {
+    check_target
+    [ -n "$DESTDIR" ] || [ -e "$UNIT" ] || stop "the gateway's service is not here: make install-service first"
+    [ -n "$DESTDIR" ] || { command -v qgis_mapserver >/dev/null && /usr/bin/python3 -c 'import qgis.core'; } ||
+        stop "QGIS Server or PyQGIS of /usr/bin/python3 is missing: apt-get install qgis-server python3-qgis"
+    packages=$(python3 -c 'import sys; print("lib/python{}.{}/site-packages".format(*sys.version_info))')
+    install -D -m 644 tools/serve_maps.py "$DESTDIR$PREFIX/share/robot-bridge/serve_maps.py"
+    install -d "$(dirname "$MAPS_UNIT")"
+    sed "s|@PREFIX@|$PREFIX|g; s|@PACKAGES@|$packages|g" resources/service/robot-bridge-maps.service > "$MAPS_UNIT"
+    install_settings resources/service/maps.env "$MAPS_SETTINGS"
+    say "installed $MAPS_UNIT"
+    say "name your project in $MAPS_SETTINGS"
+    ! systemd_runs || systemctl daemon-reload
+    say "then start it, now and with the computer: systemctl enable --now robot-bridge-maps"
+}
+
 uninstall_service() {
     may_write
-    if [ -z "$DESTDIR" ] && [ -e "$UNIT" ]; then
-        systemctl disable --now robot-bridge || true
-    fi
-    rm -f "$UNIT" "$LINK_UNIT" "$USERS"
+    for unit in "$MAPS_UNIT" "$UNIT"; do
+        if [ -z "$DESTDIR" ] && [ -e "$unit" ]; then
+            systemctl disable --now "$(basename "$unit" .service)" || true
+        fi
+    done
+    rm -f "$UNIT" "$LINK_UNIT" "$MAPS_UNIT" "$USERS" "$DESTDIR$PREFIX/share/robot-bridge/serve_maps.py"
     if [ -e "$DESTDIR$PREFIX/pyvenv.cfg" ]; then
         rm -rf "$DESTDIR$PREFIX"
     fi
@@ -88,6 +117,7 @@ uninstall_service() {
 
 case ${1:-} in
 install) install_service ;;
+install-maps) install_maps ;;
 uninstall) uninstall_service ;;
-*) stop "say install or uninstall" ;;
+*) stop "say install, install-maps or uninstall" ;;
 esac

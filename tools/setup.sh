@@ -55,6 +55,7 @@ missing_servers() {
     ls /usr/share/postgresql/*/extension/postgis.control >/dev/null 2>&1 || echo postgresql-postgis
     has qgis_mapserver || echo qgis-server
     has chromium || has google-chrome || echo chromium
+    has debootstrap || [ -x /usr/sbin/debootstrap ] || echo debootstrap
     has mosquitto || [ -x /usr/sbin/mosquitto ] || echo mosquitto
 }
 

@@ -4,19 +4,10 @@
 set -e
 folder=$1 repository=$2 python=$3 packages=$4
 
-mount -t tmpfs tmpfs "$folder"
-mkdir "$folder/changed" "$folder/work" "$folder/root"
-root=$folder/root
-mount -t overlay overlay -o "lowerdir=/,upperdir=$folder/changed,workdir=$folder/work" "$root"
-mount -t proc proc "$root/proc"
-mount -t tmpfs tmpfs "$root/run"
-mount --rbind /dev "$root/dev"
-mount --rbind /sys "$root/sys"
-# systemd 258 works with version 2 of control groups only, whichever this system uses.
-mount -t cgroup2 cgroup2 "$root/sys/fs/cgroup"
-ip link set lo up
+. "$(dirname "$0")/systemd_world.sh"
+make_world "$folder" /
 
-make -s -C "$repository" install-service DESTDIR="$root" PREFIX=/opt/robot-bridge PROGRAM=no
+make -s -C "$repository" install-service install-maps-service DESTDIR="$root" PREFIX=/opt/robot-bridge PROGRAM=no
 mkdir -p "$root/opt/robot-bridge/bin" "$root/opt/robot-bridge/packages" "$root/var/lib/robot-bridge"
 # The service sees no /tmp of others, where the repository may lie.
 cp -r "$repository/robot_bridge" "$root/opt/robot-bridge/"
@@ -24,7 +15,7 @@ mount --bind "$packages" "$root/opt/robot-bridge/packages"
 printf '#!/bin/sh\nexport PYTHONPATH=/opt/robot-bridge:/opt/robot-bridge/packages\nexec %s "$@"\n' "$python" > "$root/opt/robot-bridge/bin/python"
 chmod 755 "$root/opt/robot-bridge/bin/python"
 # Nothing else of this system is to start; the log goes where a test can read it.
-for unit in robot-bridge robot-bridge-link@; do
+for unit in robot-bridge robot-bridge-link@ robot-bridge-maps; do
     mkdir -p "$root/etc/systemd/system/$unit.service.d"
     cat > "$root/etc/systemd/system/$unit.service.d/alone.conf" <<'END'
 [Unit]
@@ -34,6 +25,9 @@ StandardOutput=append:/var/log/robot-bridge.log
 StandardError=append:/var/log/robot-bridge.log
 END
 done
+# The packages lie elsewhere than where the program is installed.
+printf '[Service]\nEnvironment=PYTHONPATH=/opt/robot-bridge:/opt/robot-bridge/packages\n' \
+    > "$root/etc/systemd/system/robot-bridge-maps.service.d/packages.conf"
 mkdir -p "$root/etc/robot-bridge/links"
 printf 'kind = "tracker"\n[tracker]\nhttp = "127.0.0.1:5055"\n' > "$root/etc/robot-bridge/links/phones.toml"
 chroot "$root" systemd-sysusers /usr/lib/sysusers.d/robot-bridge.conf
@@ -42,5 +36,4 @@ chroot "$root" chgrp -R robot-bridge /etc/robot-bridge
 cp -r "$repository/resources/sample_site" "$root/var/lib/robot-bridge/site"
 chroot "$root" chown -R robot-bridge: /var/lib/robot-bridge
 
-exec chroot "$root" /usr/bin/env -i container=other PATH=/usr/sbin:/usr/bin:/sbin:/bin \
-    /lib/systemd/systemd --system --unit=robot-bridge.service --show-status=no
+run_systemd --unit=robot-bridge.service

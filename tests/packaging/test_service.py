@@ -34,12 +34,15 @@ def test_what_is_installed_lies_below_destdir_and_is_taken_away_again(make, tmp_
         "etc/systemd/system/robot-bridge.service",
         "usr/lib/sysusers.d/robot-bridge.conf",
     ]
+    assert make("install-maps-service").returncode == 0
+    maps = {"etc/robot-bridge/maps.env", "etc/systemd/system/robot-bridge-maps.service"}
+    assert {*files(tmp_path)} >= {*maps, "opt/robot-bridge/share/robot-bridge/serve_maps.py"}
     settings = tmp_path / "etc" / "robot-bridge" / "robot-bridge.env"
     settings.write_text("ROBOT_BRIDGE_LOG_FORMAT=json\n")
     assert make("install-service").returncode == 0
     assert settings.read_text() == "ROBOT_BRIDGE_LOG_FORMAT=json\n"
     assert make("uninstall-service").returncode == 0
-    assert files(tmp_path) == ["etc/robot-bridge/robot-bridge.env"]
+    assert files(tmp_path) == ["etc/robot-bridge/maps.env", "etc/robot-bridge/robot-bridge.env"]
 
 
 def test_a_folder_that_is_no_place_for_a_program_is_refused(make):
@@ -63,9 +66,12 @@ def test_systemd_finds_nothing_wrong_with_the_unit(make, tmp_path):
 
 
 @pytest.mark.skipif(shutil.which("systemd-analyze") is None, reason="systemd is not installed")
-def test_systemd_counts_the_service_among_those_that_are_shut_in(make, tmp_path):
-    make("install-service", PREFIX="/opt/robot-bridge")
-    unit = tmp_path / "etc" / "systemd" / "system" / "robot-bridge.service"
+@pytest.mark.parametrize("service", ["robot-bridge", "robot-bridge-maps"])
+def test_systemd_counts_the_service_among_those_that_are_shut_in(make, tmp_path, service):
+    make(
+        "install-service" if service == "robot-bridge" else "install-maps-service", PREFIX="/opt/robot-bridge"
+    )
+    unit = tmp_path / "etc" / "systemd" / "system" / f"{service}.service"
 
     def judged(text):
         unit.write_text(text)
