@@ -15,7 +15,7 @@ from qgis.PyQt.QtWidgets import QToolButton
 
 from tests.support.fleet_panel import press
 
-HOUR = 3600.0
+HOURS = 3 * 3600.0
 
 
 class Lid:
@@ -55,7 +55,7 @@ def test_the_clock_counts_sleep_where_the_system_has_one_that_does():
 
 def test_robots_are_lost_at_once_and_come_back_with_the_link(laptop, lid, gateway, wait):
     assert states(laptop) == {RobotState.FRESH}
-    lid.asleep = HOUR
+    lid.asleep = HOURS
     assert states(laptop) == {RobotState.LOST}
     wait(lambda: len(gateway.requests_of("hello")) == 2, 10, "another link")
     wait(lambda: states(laptop) == {RobotState.FRESH}, what="the robots")
@@ -63,13 +63,13 @@ def test_robots_are_lost_at_once_and_come_back_with_the_link(laptop, lid, gatewa
 
 def test_what_had_come_in_before_is_not_taken_for_new(lid, monkeypatch, plugin, gateway, wait, make_robot):
     # Here the message itself has to bring it to light.
-    monkeypatch.setattr(connection, "AWAKE_EVERY", HOUR)
+    monkeypatch.setattr(connection, "AWAKE_EVERY", HOURS)
     window = plugin.window
     window.dock.connection_panel._url.setText(gateway.url)
     window.dock.connection_panel._operator.setText("anna")
     window.actions.connect.trigger()
     wait(lambda: gateway._sockets and window.desk.state.link.phase.value == "connected", what="the link")
-    lid.asleep = HOUR
+    lid.asleep = HOURS
     gateway.tell("positions", {"t": time.time(), "robots": [to_json(make_robot("r9"))]})
     wait(lambda: len(gateway.requests_of("hello")) == 2, 10, "another link")
     wait(lambda: len(gateway.requests_of("get_commands")) == 2, what="its questions")
@@ -83,7 +83,7 @@ def test_an_order_from_before_is_handed_back_and_not_sent_again(laptop, lid, gat
     gateway.mute.add("send")
     press(laptop, QToolButton, "fleet_send_button")
     wait(lambda: gateway.requests_of("send"), what="the order")
-    lid.asleep = HOUR
+    lid.asleep = HOURS
     gateway.mute.clear()
     wait(lambda: any("it was not repeated" in text for text in iface.texts()), 10, "the order")
     assert len(gateway.requests_of("send")) == 1 and gateway.commands == {}

@@ -104,10 +104,13 @@ class Operator(OperatorAtDesk):
         """Wait as the demonstration does, on a machine that other tests keep busy."""
         return super().wait(what, condition, BUSY * seconds)
 
-    def connect_to(self, loop, robots):
+    def connect_to(self, loop, robots, *, declare_paths=True):
         """Connect, wait for the robots, and look at the whole site."""
         self.connect(f"{loop.address}/desk", "anna")
         self.wait(f"seeing {robots}", lambda: set(self.states()) == set(robots), 15)
+        if declare_paths:
+            # Who clicks before they have done so sends them straight to their targets.
+            self.wait("robots that drive paths", lambda: all(self.report(one).paths for one in robots), 15)
         self.show_site()
 
     def show_site(self, margin=0.0):

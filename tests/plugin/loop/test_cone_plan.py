@@ -264,7 +264,7 @@ def test_three_robots_place_a_lane_change_and_two_go_on_when_one_is_killed(
     found = stored_tracks(tmp_path / "fleet.db", operator)
     for a, b in combinations(sorted(found), 2):
         assert least_distance(found[a], found[b]) > ROBOT_WIDTH, (a, b)
-    last_of = {one.robot: one.cone for one in report}
+    last_of = dict.fromkeys(found) | {one.robot: one.cone for one in report}
     for one in report:
         for robot, track in found.items():
             after = track[track[:, 0] > one.placed_at]

@@ -74,7 +74,7 @@ def is_at(operator, x, y):
 
 @pytest.mark.usefixtures("linked")
 def test_a_linked_robot_is_led_from_the_canvas(loop, operator):
-    operator.connect_to(loop, [ROBOT])
+    operator.connect_to(loop, [ROBOT], declare_paths=False)
     operator.wait("where it is", lambda: is_at(operator, 20.0, 8.0), 20)
 
     send_to(operator, 26.0)
@@ -121,7 +121,7 @@ def test_a_tracker_is_only_seen_and_a_target_for_it_is_refused_with_the_reason(l
     with Processes(tmp_path / "peers") as processes:
         processes.start_bridge("link-tracker", ["link", "tracker", "--config", file])
         operator.wait("the report of the phone", report, 20)
-        operator.connect_to(loop, [ROBOT])
+        operator.connect_to(loop, [ROBOT], declare_paths=False)
         operator.wait("where it is", lambda: operator.report(ROBOT).x is not None, 20)
         operator.set_cone(ROBOT, 26.0, 8.0)
         operator.wait(

@@ -32,7 +32,7 @@ def on_site(loop, operator, root, iface):
 
     def start(*more):
         loop.start_robot("r3", POSE, speed=6, more=more)
-        operator.connect_to(loop, ["r3"])
+        operator.connect_to(loop, ["r3"], declare_paths="--no-path-cones" not in more)
         operator.wait("where r3 is", lambda: operator.report("r3").x is not None, 10)
         operator.select("r3")
         operator.choose("fleet_cone_target")

@@ -70,6 +70,7 @@ class Robot(Node):
         self.x, self.y, self.theta, self.v = options.x, options.y, 0.0, 0.0
         self.points: list[tuple[float, float]] = []
         self.driving = threading.Lock()
+        self.moved_at = time.monotonic()
         self.newest: object = None
         latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
         fast = QoSProfile(depth=5, reliability=ReliabilityPolicy.BEST_EFFORT)
@@ -168,20 +169,24 @@ class Robot(Node):
         return told
 
     def drive(self):
-        """Go on for one tick."""
+        """Go on for as long as has passed, which is more than a tick on a busy machine."""
+        now = time.monotonic()
+        left, self.moved_at = self.options.speed * (now - self.moved_at), now
         with self.driving:
-            points = self.points
-            if not points:
-                self.v = 0.0
-                return
-            x, y = points[0]
-            left, step = math.hypot(x - self.x, y - self.y), self.options.speed * TICK
-            if left <= step:
-                self.x, self.y, self.points = x, y, points[1:]
-                return
-            self.theta, self.v = math.atan2(y - self.y, x - self.x), self.options.speed
-            self.x += step * math.cos(self.theta)
-            self.y += step * math.sin(self.theta)
+            points = ahead = self.points
+            self.v = self.options.speed if points else 0.0
+            while ahead and left > 0:
+                x, y = ahead[0]
+                away = math.hypot(x - self.x, y - self.y)
+                if away <= left:
+                    self.x, self.y, ahead = x, y, ahead[1:]
+                else:
+                    self.theta = math.atan2(y - self.y, x - self.x)
+                    self.x += left * math.cos(self.theta)
+                    self.y += left * math.sin(self.theta)
+                left -= away
+            if self.points is points:  # else there is another goal by now, or none
+                self.points = ahead
 
     def report(self):
         """Say where it is."""
