@@ -185,6 +185,7 @@ LONG = (
     "plugin/panel/alarms/test_alarms_at_desk.py",
     "packaging/test_walkthrough_of_qgis.py",
     "robot_bridge/cli/test_gateway_as_service.py",
+    "packaging/test_appliance.py",
     "packaging/test_demonstrations.py",
     "packaging/test_zalazone.py",
     "robot_bridge/faults/test_faults.py",

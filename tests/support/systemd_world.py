@@ -34,7 +34,7 @@ class World:
         names = ("--mount", "--net", "--uts", "--root")
         spaces = [f"--target={pid}", *names, f"--pid=/proc/{pid}/ns/pid_for_children"]
         inside = ["nsenter", *spaces, "chroot", str(self._root), *words]
-        return subprocess.run(inside, capture_output=True, text=True, check=False, timeout=240)
+        return subprocess.run(inside, capture_output=True, text=True, check=False, timeout=900)
 
     def do(self, *words: str) -> str:
         """Return what a command says."""
@@ -44,7 +44,7 @@ class World:
         """Return a property of a service."""
         return self.do("systemctl", "show", unit, "--value", "-p", name).strip()
 
-    def until(self, condition: Callable[[], T], log: Callable[[], str], seconds: float = 60.0) -> T:
+    def until(self, condition: Callable[[], T], log: Callable[[], str], seconds: float = 240.0) -> T:
         """Return what ``condition`` finds once it finds something; ``log`` says what came instead."""
         until = time.monotonic() + seconds
         while not (found := condition()):
