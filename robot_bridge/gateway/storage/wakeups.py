@@ -95,7 +95,7 @@ class PollingWakeup:
         """Do nothing."""
 
 
-class LogWakeup:
+class LogWakeup(PollingWakeup):
     """Returns when the file ``log``, SQLite's write-ahead log, was written to, or after :data:`UNSEEN_S`.
 
     To stat a file takes a twentieth of the time of a question to the database. Two writes within one tick of
@@ -103,27 +103,20 @@ class LogWakeup:
     """
 
     def __init__(self, log: Path) -> None:
+        super().__init__()
         self._log = log
-        self._polling = PollingWakeup()
         self._seen: tuple[int, int] | None = None
         """What the log was before the reader last began to look at the tables."""
-
-    async def doze(self) -> bool:
-        """Return false: nobody tells."""
-        return False
 
     async def wait(self, *, found: bool) -> None:
         """Return when the log was written to; without a log after a pause."""
         until = time.monotonic() + UNSEEN_S
         while True:
-            await self._polling.wait(found=found)
+            await super().wait(found=found)
             state = self._state()
             if found or state is None or state != self._seen or time.monotonic() > until:
                 break
         self._seen = state
-
-    async def close(self) -> None:
-        """Do nothing."""
 
     def _state(self) -> tuple[int, int] | None:
         try:

@@ -112,7 +112,7 @@ class Nodes:
 
 
 def events(nodes: Nodes, name: str, kind: str) -> list[dict]:
-    """Return the events of one kind that a robot has told."""
+    """Return the events of one kind that a robot has printed."""
     return [event for event in nodes.events(name) if event["event"] == kind]
 
 
