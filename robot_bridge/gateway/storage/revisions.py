@@ -122,8 +122,6 @@ def _stamp(connection: Connection, revision: str) -> None:
 def _config(connection: Connection) -> Config:
     from alembic.config import Config
 
-    from .migrations import repeatable  # noqa: F401 - defined, it takes the place of Alembic's own
-
     config = Config()
     config.set_main_option("script_location", str(MIGRATIONS).replace("%", "%%"))
     config.attributes["connection"] = connection
