@@ -20,9 +20,9 @@ from robot_bridge.core.errors import OutdatedError, RefusedError, StoreError
 from robot_bridge.core.messages.commands import CommandState, Send
 from robot_bridge.core.messages.queues import GetQueue, QueueTask, ResumeQueue, SetQueue
 from robot_bridge.gateway.api.robot_sql import SqlInterface
+from robot_bridge.gateway.commands.active_command import may_become
 from robot_bridge.gateway.fleet.emergency_persistence import StopJournal
 from robot_bridge.gateway.fleet.service import Fleet
-from robot_bridge.gateway.model.command_states import is_open, may_become
 from robot_bridge.gateway.site.site_maps import SiteMaps
 from robot_bridge.gateway.traffic.road_planning import RoadPlanner
 from tests.support.bridge.mortal_database import Killed, MortalDatabase
@@ -356,7 +356,7 @@ class Play:
         for steps in lives.values():
             for now, then in itertools.pairwise(steps):
                 assert now is then or may_become(now, then), steps
-            assert not is_open(steps[-1])
+            assert not steps[-1].is_open
 
     def _stage(self):
         """Return how things stand, for whoever reads why a play failed."""
