@@ -103,7 +103,7 @@ def gateway_settings(
     from ..core.sites.settings import SETTINGS_FILE, read_settings
     from ..core.sites.settings_tables import GatewayOptions
     from ..gateway.app import GatewaySettings
-    from ..gateway.auth.tls import server_files
+    from ..gateway.auth.port import server_files
 
     copy = site_copy(site, state)
     folder = Path(site) if copy is None else copy.folder

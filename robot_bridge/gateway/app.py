@@ -34,8 +34,7 @@ from .auth.accounts import TokenKind, check_link_name
 from .auth.administration import AccountAdministration
 from .auth.client_connection import ClientConnection
 from .auth.gate import PATHS, AuthGate
-from .auth.port import address_here, check_reach, host_fault, is_loopback, listen
-from .auth.tls import ServerFiles, ServerTls
+from .auth.port import ServerFiles, ServerTls, address_here, check_reach, host_fault, is_loopback, listen
 from .field.page import SITE, FieldPage
 from .fleet.emergency_persistence import StopJournal, journal_file
 from .fleet.link_supervision import LinkProcesses
