@@ -19,7 +19,7 @@ import typer
 from ..core.errors import BridgeError
 from ..core.logs import LogFormat, LogLevel, set_up_log
 from ..core.systemd import notify, watchdog_interval
-from ..gateway.monitoring.periodic_tasks import freeze_permanent_objects
+from ..gateway.monitoring import freeze_permanent_objects
 from .options import DEFAULT, DatabaseOption, PasswordFileOption, SiteOption, database_address, site_copy
 
 if TYPE_CHECKING:

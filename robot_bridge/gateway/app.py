@@ -41,8 +41,7 @@ from .fleet.link_supervision import LinkProcesses
 from .fleet.service import Fleet
 from .model.clocks import ClockWatch, check_clock_at_start
 from .model.request_handlers import RequestHandlers
-from .monitoring.metrics import Metrics
-from .monitoring.periodic_tasks import GarbageCollection, Work, every, keep_all_going
+from .monitoring import GarbageCollection, Metrics, Work, every, keep_all_going
 from .plans.service import PlanService
 from .retention import Retention
 from .site.site_maps import SiteMaps

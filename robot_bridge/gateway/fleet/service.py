@@ -46,8 +46,7 @@ from ..model.events import (
 )
 from ..model.position_checks import NO_FIX, GroundTracks, PlaceChecks
 from ..model.robots import Robot, RobotPose, Robots
-from ..monitoring.metrics import Counters
-from ..monitoring.periodic_tasks import Steps
+from ..monitoring import Counters, Steps
 from ..queues.registry import QueueContext, QueueRegistry
 from ..queues.requests import PauseService, QueueEditor
 from ..queues.runner import QueueRunner
