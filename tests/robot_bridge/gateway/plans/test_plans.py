@@ -276,14 +276,14 @@ async def test_planning_that_counts_no_more_says_nothing_of_what_is_planned_inst
             may_end.wait(60)
         return meetings
 
-    monkeypatch.setattr("robot_bridge.gateway.plans.service.count_meetings", count)
+    monkeypatch.setattr("robot_bridge.gateway.plans.replanning.count_meetings", count)
     await drive.submit()
     await drive.plans.replan(Replan("plan-1", 1), "Ada")
     await begun.wait()
-    (first,) = drive.plans._tasks
+    (first,) = drive.plans._replanner._tasks
     discarded = await drive.plans.discard(DiscardReplan("plan-1", (await drive.seen()).revision), "Ada")
     await drive.plans.replan(Replan("plan-1", discarded.revision), "Ada")
-    await asyncio.gather(*(drive.plans._tasks - {first}))
+    await asyncio.gather(*(drive.plans._replanner._tasks - {first}))
     may_end.set()
     await first
     report = await drive.seen()
@@ -350,7 +350,7 @@ def test_bounds_of_a_submission(wrong):
 
 
 async def test_planning_that_takes_too_long_leaves_the_robots_standing_and_says_so(drive, monkeypatch):
-    monkeypatch.setattr("robot_bridge.gateway.plans.model.PATIENCE", 0.0)
+    monkeypatch.setattr("robot_bridge.gateway.plans.replanning.PATIENCE", 0.0)
     await drive.submit()
     await drive.plans.replan(Replan("plan-1", 1), "Ada")
     await drive.planned()
