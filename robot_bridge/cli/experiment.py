@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from .options import database_address
+from .options import SiteOption, database_address, site_folder
 
 if TYPE_CHECKING:
     from ..reference_robot.localisation.experiment import Record
@@ -17,11 +17,12 @@ if TYPE_CHECKING:
 
 
 def experiment(
+    context: typer.Context,
     name: Annotated[
         str,
         typer.Argument(help="a5-loop, open-square, kidnapped, parking, from-nothing, or a file."),
     ],
-    site: Annotated[Path, typer.Option(help="Folder of the published site, as of Publish site.")],
+    site: SiteOption,
     seeds: Annotated[int, typer.Option(help="How many drives, each in another world.", min=1, max=1000)] = 10,
     first_seed: Annotated[int, typer.Option(help="The seed of the first one.", min=0)] = 1,
     output: Annotated[
@@ -82,12 +83,13 @@ def experiment(
         raise BridgeError("--world and --accept need a gateway that robots report to: add --gateway")
     if reporter is not None and not accept:
         raise BridgeError("--reporter is the robot whose observations are accepted: add --accept")
-    robot_map = read_site(world or site).whole_map()
+    folder = context.with_resource(site_folder(site))
+    robot_map = read_site(world or folder).whole_map()
     chosen_seeds = range(first_seed, first_seed + seeds)
     compiled = False if numpy else None
     found: Iterable[Record] = (drives.run(robot_map, settings, seed, compiled) for seed in chosen_seeds)
     if gateway:
-        served = _served(site, file.stem, database, output)
+        served = _served(folder, file.stem, database, output)
         served = replace(served, at_once=at_once, people=people, pace=pace, compiled=compiled)
         other = None if reporter is None else drives.read_settings(_settings_file(reporter))
         served = replace(served, window=window, accept=accept, reporter=other)

@@ -20,7 +20,7 @@ from typing import IO, Any, Protocol
 from sqlalchemy import URL, Connection, create_engine, delete, func, inspect, select
 from sqlalchemy.pool import NullPool
 
-from ...core.errors import BridgeError, StoreError, counted
+from ...core.errors import BridgeError, StoreError, counted, in_one_line
 from ...core.files import replacement
 from ...core.json_decoder import SHORT, decode_json
 from . import revisions
@@ -135,7 +135,7 @@ class ServerBackups:
             errors.seek(0)
             stderr = errors.read(4096).decode(errors="replace")
         if status:
-            reason = " ".join(stderr.split())[:600] or f"status {status}"
+            reason = in_one_line(stderr)[:600] or f"status {status}"
             raise StoreError(f"database {shown(self._url)}: {Path(command[0]).name} failed: {reason}")
 
     def _program(self, name: str) -> str:
