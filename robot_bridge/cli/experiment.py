@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from ..core.errors import BridgeError
 from .options import SiteOption, database_address, site_folder
 
 if TYPE_CHECKING:
@@ -70,7 +71,6 @@ def experiment(
     numpy: Annotated[bool, typer.Option("--numpy", help="Cast rays by numpy even where numba is.")] = False,
 ) -> None:
     """Drive a simulated robot that finds itself on its map, and tell how far it is off."""
-    from ..core.errors import BridgeError
     from ..core.sites.site import read_site
     from ..reference_robot.localisation import experiment as drives
     from ..reference_robot.localisation.experiment_plot import svg_of
@@ -113,7 +113,6 @@ def experiment(
 
 def _settings_file(name: str) -> Path:
     """Return the settings of an experiment; raises BridgeError for a name that is none."""
-    from ..core.errors import BridgeError
     from ..reference_robot.localisation import experiment as drives
 
     file = Path(name) if name.endswith(".toml") else drives.EXPERIMENTS / f"{name}.toml"
@@ -127,7 +126,6 @@ def _settings_file(name: str) -> Path:
 
 def _served(site: Path, name: str, database: str | None, output: Path | None) -> ServedDrives:
     """Return where the drives of an experiment are made and stored."""
-    from ..core.errors import BridgeError
     from .served_experiment import ServedDrives
 
     if database is None and output is None:
@@ -140,7 +138,6 @@ def _served(site: Path, name: str, database: str | None, output: Path | None) ->
 
 
 def _write(folder: Path, name: str, text: str) -> None:
-    from ..core.errors import BridgeError
     from ..core.files import replacement
 
     try:
