@@ -236,14 +236,14 @@ class Play:
         (found,) = (await self.ask(lambda fleet: fleet.queues.read(GetQueue(robot, paths=True)))).queues
         return found
 
-    async def give(self, *tasks, robot="r1"):
+    async def set_queue(self, *tasks, robot="r1"):
         """Give a robot a queue."""
 
-        async def give(fleet):
+        async def replace(fleet):
             (seen,) = (await fleet.queues.read(GetQueue(robot))).queues
             return await fleet.queues.set(SetQueue(robot, seen.revision, list(tasks)), "Ada")
 
-        await self.ask(give)
+        await self.ask(replace)
 
     async def resume(self, robot="r1"):
         """Let a robot's queue go on."""
