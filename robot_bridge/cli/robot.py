@@ -16,7 +16,7 @@ import typer
 
 from ..core.errors import BridgeError
 from ..core.messages.robots import SetObject
-from ..core.standard_input import call_at_end_of_input
+from ..core.parent_process import call_at_end_of_input
 from ..reference_robot.body import BodyLimits, ScriptedObject, SimulatedVehicle
 from .options import PasswordFileOption, UntilStdinCloses, database_address
 
