@@ -148,7 +148,7 @@ class PlanService:
         self._plans: dict[str, _Followed] = {}
         self._lock = asyncio.Lock()
         self._tasks: set[asyncio.Task[None]] = set()
-        self._began = context.clock.time()
+        self._began = context.clock.steady()
 
     async def restore(self) -> None:
         """Go on with the plans that an earlier gateway left."""
@@ -318,7 +318,7 @@ class PlanService:
 
     def _is_settling(self) -> bool:
         """Tell whether the gateway has only begun: robots that drive on are not heard of yet."""
-        return self._context.clock.time() < self._began + self._context.site.report.lost_after
+        return self._context.clock.steady() < self._began + self._context.site.report.lost_after
 
     async def _follow(self, one: _Followed) -> bool:
         """Take in how the plan's queues, robots and roads are; false when nothing has changed."""
