@@ -1,4 +1,4 @@
-"""Small disks of one's own that can be filled up, and one that can lose its power; they are mounted by root."""
+"""Small disks of one's own that can be filled up, and one that can lose its power; root mounts them."""
 
 from __future__ import annotations
 
