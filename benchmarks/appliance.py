@@ -237,7 +237,8 @@ def _watched(
         for (name, group), (cpu, throttling) in zip(groups.items(), before.values(), strict=True)
     }
     taken = pictures.end()
-    return Run(setting, crowd.line(), taken, used, used.pop(""), with_files, whole.killed())
+    killed = max(whole.killed(), sum(group.killed() for group in parts.values()))
+    return Run(setting, crowd.line(), taken, used, used.pop(""), with_files, killed)
 
 
 @contextmanager

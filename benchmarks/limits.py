@@ -100,7 +100,10 @@ class Group:
         return int(self._read("memory", name)) / 1e6
 
     def killed(self) -> int:
-        """Return how many of its processes the system killed for want of memory."""
+        """Return how many of its processes the system killed for want of memory.
+
+        Those of groups below it count in the second version of control groups only.
+        """
         name = "memory.events" if self._is_second else "memory.oom_control"
         return self._numbers("memory", name)["oom_kill"]
 

@@ -174,9 +174,7 @@ def test_a_shift_that_is_too_large_misses_its_goal():
 
 
 def test_a_small_computer_holds_what_runs_on_it():
-    busy = (
-        "import time; x = bytes(30_000_000); end = time.monotonic() + 0.4\nwhile time.monotonic() < end: pass"
-    )
+    busy = "import time; end = time.monotonic() + 0.4\nwhile time.monotonic() < end: pass"
     limits = {"cores": 0.2, "megabytes": 200, "cpus": "0"}
     try:
         with small_computer(f"fleet-test-{os.getpid()}", ("busy", "idle"), **limits) as (whole, parts):
@@ -187,11 +185,10 @@ def test_a_small_computer_holds_what_runs_on_it():
             assert whole.killed() == 0 and whole.megabytes() < 200
             too_much = [*parts["idle"].through, sys.executable, "-c", "bytearray(300_000_000)"]
             assert subprocess.run(too_much).returncode == -signal.SIGKILL
-            assert parts["idle"].killed() + whole.killed() == 1
+            assert max(parts["idle"].killed(), whole.killed()) == 1
     except LimitError as error:
         pytest.skip(str(error))
-    left = [path for path in Path("/sys/fs/cgroup").rglob(f"fleet-test-{os.getpid()}")]
-    assert left == []
+    assert not list(Path("/sys/fs/cgroup").rglob(f"fleet-test-{os.getpid()}"))
 
 
 def test_what_panel_and_page_subscribe_to_is_found_in_their_sources():
