@@ -15,14 +15,10 @@ PERIOD_US = 10_000
 _KINDS = ("cpu", "cpuacct", "cpuset", "memory")
 """Controllers, each with a tree of its own in the first version of control groups."""
 _ENTER = 'for group in $GROUPS_TO_ENTER; do echo $$ >"$group/cgroup.procs" || exit; done; exec "$@"'
-_REMOVE = """
-read -r _
-for time in 1 2 3 4 5 6 7 8 9 10; do
-    for group; do [ ! -d "$group" ] || rmdir "$group" 2>/dev/null; done
-    [ -d "$group" ] || exit 0
-    sleep 0.2
-done
-"""
+_REMOVE = (
+    'read -r _; for time in once again and again and then once more; do for group; do [ ! -d "$group" ] || '
+    'rmdir "$group"; done; [ -d "$group" ] || break; sleep 0.2; done 2>/dev/null'
+)
 """Once nobody writes to it any more."""
 
 
@@ -135,10 +131,12 @@ def small_computer(
     made = {kind: root / name for kind, root in roots.items()}
     folders = [made, *({kind: folder / part for kind, folder in made.items()} for part in parts)]
     with _removing([folder for each in reversed(folders) for folder in dict.fromkeys(each.values())]):
-        for each in folders:
-            _make(each)
         whole, *below = (Group(each) for each in folders)
+        _make(made)
+        # Before there are groups below it, which would have what is taken from it.
         whole.hold(cores=cores, megabytes=megabytes, cpus=cpus)
+        for each in folders[1:]:
+            _make(each)
         yield whole, dict(zip(parts, below, strict=True))
 
 
