@@ -45,7 +45,7 @@ MODEL, CORES, SHARE, MEGABYTES = "Raspberry Pi 4", 4, 0.4, 2000
 GATEWAY, DATABASE, MAPS = "gateway", "database", "maps"
 SQLITE, POSTGRESQL = "SQLite", "PostgreSQL"
 ROBOTS, ROBOT_RATE, DESKS, PHONES = 50, 3.0, 3, 5
-SETTLE, SECONDS, STOPS = size((20.0, 120.0, 8), (3.0, 12.0, 2))
+SETTLE, SECONDS, STOPS = size((20.0, 90.0, 6), (3.0, 12.0, 2))
 STOP_MS, MAP_EVERY = 1000.0, 1.0
 """milliseconds in which a stop is to be at the last robot, and seconds from one map to the next."""
 PICTURE, PICTURE_SIDES = (640, 480), (100.0, 75.0)
@@ -59,8 +59,8 @@ PAGE = ROOT / "robot_bridge" / "gateway" / "field" / "assets" / "field.js"
 
 TEXT = """\
 A {model} on paper, {cores} cores and {megabytes} MB; nobody ran this on one. A core of it is taken to do
-{share:.0%} of what one of this machine does. So {time:g} cores' processor time on {cpus} processors is
-all that control groups let the gateway, its database and QGIS Server have together, counted anew every
+{percent:.0f} % of what one of this machine does. So {time:g} cores' processor time on {cpus} processors
+is all that control groups let the gateway, its database and QGIS Server have together, counted anew every
 {period:g} ms, and {megabytes} MB of memory, the system's copies of files included. Two of four rows hold
 each of the three to the time of one such core besides: a gateway hardly uses more than one, and of this
 machine's it is given a whole one otherwise. A card or a disk of such a computer is not imitated, and nor
@@ -69,12 +69,13 @@ is its network.
 Outside of the limits, on the same processors: {robots} robots, each on a WebSocket, which drive and say
 where they are {robot_rate:g} times a second; {desks} desks that subscribe as the panel does, to a table
 at {desk_rate:g} Hz; {phones} phones that subscribe as the field page does, to a table at {phone_rate:g}
-Hz. All of it is TLS, without accounts. A client asks QGIS Server for a map every {map_every:g} s, of
-{wide} × {high} pixels and another place each time, with {layers}. After {settle:g} s {seconds:g} s count,
-in which a desk makes {stops} emergency stops. Delays are from the robot's clock, of positions that are
-new to whoever is told: at {desk_rate:g} Hz the newest one waits for up to {desk_wait:.0f} ms by nature,
-at {phone_rate:g} Hz for up to {phone_wait:.0f} ms. A stop's are from when the desk asks to when the last
-robot has heard of it.
+Hz, and for less where that takes more than {budget_kb:.0f} kB a minute: here in the end to `{last_form}`
+at {last_rate:g} Hz. All of it is TLS, without accounts. A client asks QGIS Server for a map every
+{map_every:g} s, of {wide} × {high} pixels and another place each time, with {layers}. After {settle:g} s
+{seconds:g} s count, in which a desk makes {stops} emergency stops. Delays are from the robot's clock, of
+positions that are new to whoever is told: at {desk_rate:g} Hz the newest one waits for up to
+{desk_wait:.0f} ms by nature, at {phone_rate:g} Hz for up to {phone_wait:.0f} ms. A stop's are from when
+the desk asks to when the last robot has heard of it.
 
 {delays}
 
@@ -88,8 +89,7 @@ themselves, and, of all together, with the system's copies of files. *Held back*
 something waited for processor time that was used up; for the whole, and for that part.
 
 The slowest stop was at the last robot after {slowest:.0f} ms ({stop_goal}). A phone took {phone_kb:.0f}
-kB a minute at most, where its page asks for less from {budget_kb:.0f} kB on. Killed for want of memory:
-{killed}.
+kB a minute at most. Killed for want of memory: {killed}.
 """
 
 
@@ -147,7 +147,7 @@ def measure(_data: Path) -> Part:
     try:
         for setting in settings:
             runs.append(_run(setting))
-            print(runs[-1], file=sys.stderr, flush=True)
+            print(" | ".join(_delay_row(runs[-1])), file=sys.stderr, flush=True)
     except (LimitError, StageError) as error:
         return Part(heading, f"Not measured: {error}.", failed=True)
     return report(heading, runs)
@@ -159,9 +159,16 @@ def report(heading: str, runs: list[Run]) -> Part:
     in_time, killed = slowest <= STOP_MS, sum(run.killed for run in runs)
     failures = [text for run in runs for text in run.pictures.failures]
     asked = sum(len(run.pictures.times) + len(run.pictures.failures) for run in runs)
-    desk, phone, budget = subscriptions()
+    desk, phone, _, budget = subscriptions()
+    last = runs[-1].seen["phone"]["subscription"]
     text = TEXT.format(
-        **{"model": MODEL, "cores": CORES, "megabytes": MEGABYTES, "share": SHARE, "time": CORES * SHARE},
+        **{
+            "model": MODEL,
+            "cores": CORES,
+            "megabytes": MEGABYTES,
+            "percent": 100 * SHARE,
+            "time": CORES * SHARE,
+        },
         **{"cpus": os.cpu_count(), "period": PERIOD_US / 1000, "robots": ROBOTS, "robot_rate": ROBOT_RATE},
         **{"desks": DESKS, "desk_rate": desk["rate"], "desk_wait": 1000 / desk["rate"]},
         **{"phones": PHONES, "phone_rate": phone["rate"], "phone_wait": 1000 / phone["rate"]},
@@ -169,24 +176,35 @@ def report(heading: str, runs: list[Run]) -> Part:
         **{"settle": SETTLE, "seconds": SECONDS, "stops": STOPS, "slowest": slowest},
         delays=_delays(runs),
         used=_used(runs),
-        maps_counted=f"{asked} maps were asked for, and {len(failures) or 'none'} not answered.",
+        maps_counted=f"Of {asked} maps that were asked for {len(failures) or 'none'} failed.",
         stop_goal=goal(f"at most {STOP_MS:.0f} ms", in_time),
         phone_kb=max(run.seen["phone"]["bytes"] for run in runs) / SECONDS * 60 / 1000,
         budget_kb=budget / 1000,
+        last_form=last["form"],
+        last_rate=last["rate"],
         killed=killed or "nothing",
     )
     wrong = "".join(f"\n- {text}" for text in sorted(set(failures)))
     return Part(heading, text + wrong, bool(killed or failures or not in_time), settings=MALLOC)
 
 
-def subscriptions() -> tuple[dict[str, Any], dict[str, Any], int]:
-    """Return what the panel and the field page subscribe to, and from how many bytes a minute on the page
-    asks for less, as their sources say."""
+class Subscriptions(NamedTuple):
+    """What the panel and the field page subscribe to at first, and by what the page asks for less then."""
+
+    desk: dict[str, Any]
+    phone: dict[str, Any]
+    phone_rates: list[float]
+    budget: int
+
+
+def subscriptions() -> Subscriptions:
+    """Return what the sources of panel and page say."""
     page = PAGE.read_text(encoding="utf-8")
     rate = float(_found(r"positions_rate: float = ([\d.]+)", PANEL.read_text(encoding="utf-8")))
-    phone_rate, form = float(_found(r"RATES = \[([\d.]+)", page)), _found(r'this\.form = "(\w+)";\n', page)
+    rates = [float(text) for text in _found(r"RATES = \[([\d., ]+)\]", page).split(",")]
+    form = _found(r'this\.form = "(\w+)";\n', page)
     budget = int(_found(r"BUDGET = ([\d_]+)", page))
-    return {"rate": rate, "form": "columns"}, {"rate": phone_rate, "form": form}, budget
+    return Subscriptions({"rate": rate, "form": "columns"}, {"rate": rates[0], "form": form}, rates, budget)
 
 
 def _found(pattern: str, text: str) -> str:
@@ -249,7 +267,7 @@ def _serving(
     for group in parts.values():
         group.hold(cores=setting.cores)
     files = certificates.create(folder / "tls", ["localhost"], ["127.0.0.1"])
-    desk, phone, _ = subscriptions()
+    asked = subscriptions()
     with ExitStack() as stack:
         processes = stack.enter_context(Processes(folder / "logs"))
         database, fleet = _database(setting, folder, parts, stack)
@@ -272,7 +290,10 @@ def _serving(
         client = PictureClient(f"http://127.0.0.1:{port}/")
         client.warm()
         yield (
-            Plan(served.address, str(files.ca), ROBOTS, ROBOT_RATE, DESKS, desk, PHONES, phone),
+            Plan(
+                *(served.address, str(files.ca), ROBOTS, ROBOT_RATE, DESKS, asked.desk, PHONES, asked.phone),
+                *(asked.phone_rates, asked.budget),
+            ),
             client,
         )
         processes.require_running()
@@ -390,9 +411,9 @@ def _used(runs: list[Run]) -> str:
                 [
                     run.setting.name,
                     name,
-                    f"{use.cpu:.0%}",
+                    f"{100 * use.cpu:.0f} %",
                     f"{use.megabytes:.0f}{files}",
-                    f"{share:.1%}" if use.throttling.periods else "–",
+                    f"{100 * share:.1f} %" if use.throttling.periods else "–",
                     f"{use.throttling.seconds:.1f}" if use.throttling.periods else "–",
                 ]
             )

@@ -13,13 +13,16 @@ import math
 import ssl
 import sys
 import time
-from collections.abc import Callable
+from collections import defaultdict, deque
+from collections.abc import Callable, Iterator
 from dataclasses import asdict, dataclass, field
 from typing import Any
 
+import numpy as np
 from websockets.asyncio.client import ClientConnection, connect
 
-from robot_bridge.core.position_frame import split_frame
+from robot_bridge.core.messages.positions import PLACE_COLUMNS, PositionForm
+from robot_bridge.core.position_frame import PLACE_VALUE, POSITION_HEAD, POSITION_VALUE
 
 ARRIVED_WITHIN = 120.0
 STOP_WITHIN = 30.0
@@ -30,13 +33,22 @@ CENTRES, RADIUS, SPEED = (30.0, 12.0, 14.0), 5.0, 1.0
 """Robots drive round on circles in rows: the first one's centre and the distance between two, in metres; the
 metres of the radius, and metres a second."""
 COLUMNS = 10
+PLACES, REMEMBERED = 3, 60
+"""digits after the point of a metre, which tell places apart, and places of each robot that are kept."""
+MEASURED_S = 5
+"""seconds of which a phone counts the bytes, as its page does."""
+PLACES_FORM = PositionForm.PLACES.value
+
+Place = tuple[float, float]
 
 
 @dataclass(frozen=True)
 class Plan:
     """Who is there: ``ca`` is the file of the authority that signed for ``address``.
 
-    Desks and phones ask for positions by ``desk`` and ``phone``, the parameters of ``subscribe``.
+    Desks and phones ask for positions by ``desk`` and ``phone``, the parameters of ``subscribe``. A phone to
+    which more than ``budget`` bytes come in a minute asks for less, as its page does: for places alone, and
+    then at the next of ``phone_rates``.
     """
 
     address: str
@@ -47,14 +59,20 @@ class Plan:
     desk: dict[str, Any]
     phones: int
     phone: dict[str, Any]
+    phone_rates: list[float]
+    budget: int
 
 
 @dataclass
 class Watched:
-    """What one kind of client was told in a window: delays in milliseconds, and bytes a client."""
+    """What one kind of client was told in a window: delays in milliseconds, bytes a client, and what for.
+
+    ``subscription`` is what the first of them had asked for by the end.
+    """
 
     delays: list[float] = field(default_factory=list)
     bytes: float = 0.0
+    subscription: dict[str, Any] = field(default_factory=dict)
 
 
 @dataclass
@@ -75,19 +93,50 @@ class Seen:
     own_cpu: float = 0.0
 
 
+class Sayings:
+    """When robots said where they are, by robot and place: a table of places alone tells no times."""
+
+    def __init__(self) -> None:
+        self._said: dict[str, dict[Place, float]] = defaultdict(dict)
+
+    def note(self, robot: str, place: Place, at: float) -> None:
+        """Note where a robot says that it is, and forget what it said long ago."""
+        said = self._said[robot]
+        said.setdefault(place, at)
+        if len(said) > REMEMBERED:
+            del said[next(iter(said))]
+
+    def times(self, frame: bytes) -> Iterator[tuple[str, float]]:
+        """Yield when robots said what a table of positions tells of them."""
+        begin = POSITION_HEAD + int.from_bytes(frame[:POSITION_HEAD], "little")
+        head = json.loads(frame[POSITION_HEAD:begin])["params"]
+        columns = head["columns"]
+        value = PLACE_VALUE if set(columns) <= set(PLACE_COLUMNS) else POSITION_VALUE
+        table = dict(
+            zip(columns, np.frombuffer(frame, value, -1, begin).reshape(len(columns), -1), strict=True)
+        )
+        if not {"x", "y"} <= table.keys():
+            return
+        places = zip(*(np.round(table[name].astype(float), PLACES).tolist() for name in "xy"), strict=True)
+        for robot, place in zip(head["robots"], places, strict=True):
+            if (at := self._said[robot].get(place)) is not None:
+                yield robot, at
+
+
 class Robot:
     """One robot: it acknowledges all that it is sent, and stands once it is told to."""
 
-    def __init__(self, number: int, socket: ClientConnection) -> None:
-        self._socket, self._number = socket, number
+    def __init__(self, number: int, socket: ClientConnection, sayings: Sayings) -> None:
+        self._socket, self._number, self._sayings = socket, number, sayings
+        self._name = f"load-{number}"
         self._angle, self._moved_at = float(number), time.monotonic()
         self.has_map, self.heard_stop = False, asyncio.Event()
         self.stands = False
 
     @classmethod
-    async def arrive(cls, number: int, plan: Plan, context: ssl.SSLContext) -> Robot:
+    async def arrive(cls, number: int, plan: Plan, context: ssl.SSLContext, sayings: Sayings) -> Robot:
         """Return a robot that has said Ready."""
-        robot = cls(number, await _open(plan, f"/robot?robot=load-{number}", context))
+        robot = cls(number, await _open(plan, f"/robot?robot=load-{number}", context), sayings)
         await robot._socket.send(_call("Ready", {"magic": number + 1}, 1))
         return robot
 
@@ -111,19 +160,24 @@ class Robot:
         self._moved_at = now
         x, y, apart = CENTRES
         row, column = divmod(self._number, COLUMNS)
-        pose = {
-            "x": round(x + column * apart + RADIUS * math.cos(self._angle), 3),
-            "y": round(y + row * apart + RADIUS * math.sin(self._angle), 3),
-            "theta": round(math.remainder(self._angle + math.pi / 2, 2 * math.pi), 4),
-        }
-        await self._socket.send(_call("SendPos", {**pose, "v": speed, "t": time.time()}))
+        place = (
+            round(x + column * apart + RADIUS * math.cos(self._angle), PLACES),
+            round(y + row * apart + RADIUS * math.sin(self._angle), PLACES),
+        )
+        theta, at = math.remainder(self._angle + math.pi / 2, 2 * math.pi), time.time()
+        pose = {"x": place[0], "y": place[1], "theta": round(theta, 4), "v": speed, "t": at}
+        self._sayings.note(self._name, place, at)
+        await self._socket.send(_call("SendPos", pose))
 
 
 class Watcher:
     """A desk or a phone, which only looks; a desk also stops everybody."""
 
-    def __init__(self, socket: ClientConnection, watched: Callable[[], Watched | None]) -> None:
-        self._socket, self._watched = socket, watched
+    def __init__(
+        self, socket: ClientConnection, sayings: Sayings, watched: Callable[[], Watched | None]
+    ) -> None:
+        self._socket, self._sayings, self._watched = socket, sayings, watched
+        self._received = 0
         self._ids, self._answers = itertools.count(3), dict[int, asyncio.Future[Any]]()
 
     @classmethod
@@ -132,10 +186,12 @@ class Watcher:
         plan: Plan,
         context: ssl.SSLContext,
         subscription: dict[str, Any],
+        sayings: Sayings,
         watched: Callable[[], Watched | None],
     ) -> Watcher:
         """Return one that has asked for positions."""
-        watcher = cls(await _open(plan, "/desk", context), watched)
+        watcher = cls(await _open(plan, "/desk", context), sayings, watched)
+        watcher.subscription = subscription
         await watcher._socket.send(_call("hello", {"operator": "Ada"}, 1))
         await watcher._socket.send(_call("subscribe", subscription, 2))
         return watcher
@@ -145,16 +201,33 @@ class Watcher:
         newest: dict[str, float] = {}
         async for message in self._socket:
             now, watched = time.time(), self._watched()
+            self._received += len(message)
             if watched is not None:
                 watched.bytes += len(message)
             if isinstance(message, str):
                 self._settle(json.loads(message))
                 continue
-            for robot, sent in _sent_at(message):
+            for robot, sent in self._sayings.times(message):
                 if sent > newest.get(robot, 0.0):
                     newest[robot] = sent
                     if watched is not None:
                         watched.delays.append((now - sent) * 1e3)
+
+    async def keep_to(self, budget: int, rates: list[float]) -> None:
+        """Ask for less when more than ``budget`` bytes a minute come, by the rule of the field page."""
+        received = deque([self._received], maxlen=MEASURED_S + 1)
+        while True:
+            await asyncio.sleep(1.0)
+            received.append(self._received)
+            if len(received) <= MEASURED_S or (received[-1] - received[0]) / MEASURED_S * 60 <= budget:
+                continue
+            slower = [rate for rate in rates if rate < self.subscription["rate"]]
+            if self.subscription["form"] != PLACES_FORM:
+                self.subscription = {**self.subscription, "form": PLACES_FORM}
+            elif slower:
+                self.subscription = {**self.subscription, "rate": max(slower)}
+            await self.ask("subscribe", self.subscription)
+            received = deque([self._received], maxlen=MEASURED_S + 1)
 
     async def ask(self, method: str, params: dict[str, Any]) -> Any:
         """Return the answer to a request.
@@ -186,6 +259,8 @@ class Crowd:
         self._tasks: list[asyncio.Task[None]] = []
         self._robots: list[Robot] = []
         self._desks: list[Watcher] = []
+        self._phones: list[Watcher] = []
+        self._sayings = Sayings()
         self._numbers = itertools.count()
 
     async def arrive(self) -> None:
@@ -195,16 +270,20 @@ class Crowd:
         """
         plan, context = self._plan, self._context
         for number in range(plan.robots):
-            robot = await Robot.arrive(number, plan, context)
+            robot = await Robot.arrive(number, plan, context, self._sayings)
             self._robots.append(robot)
             self._tasks.append(asyncio.create_task(robot.hear()))
         for _ in range(plan.desks):
-            desk = await Watcher.arrive(plan, context, plan.desk, lambda: self._seen and self._seen.desk)
+            watched = lambda: self._seen and self._seen.desk  # noqa: E731
+            desk = await Watcher.arrive(plan, context, plan.desk, self._sayings, watched)
             self._desks.append(desk)
             self._tasks.append(asyncio.create_task(desk.look()))
         for _ in range(plan.phones):
-            phone = await Watcher.arrive(plan, context, plan.phone, lambda: self._seen and self._seen.phone)
+            watched = lambda: self._seen and self._seen.phone  # noqa: E731
+            phone = await Watcher.arrive(plan, context, plan.phone, self._sayings, watched)
+            self._phones.append(phone)
             self._tasks.append(asyncio.create_task(phone.look()))
+            self._tasks.append(asyncio.create_task(phone.keep_to(plan.budget, plan.phone_rates)))
         async with asyncio.timeout(ARRIVED_WITHIN):
             while not all(robot.has_map for robot in self._robots):
                 await asyncio.sleep(0.1)
@@ -227,8 +306,9 @@ class Crowd:
         seen.positions /= time.monotonic() - began
         driving.cancel()
         await asyncio.gather(driving, return_exceptions=True)
-        for kind, count in ((seen.desk, self._plan.desks), (seen.phone, self._plan.phones)):
-            kind.bytes /= count
+        for kind, watchers in ((seen.desk, self._desks), (seen.phone, self._phones)):
+            kind.bytes /= len(watchers)
+            kind.subscription = watchers[0].subscription
         return seen
 
     async def _sleep_until(self, at: float) -> None:
@@ -266,15 +346,6 @@ class Crowd:
         await desk.ask("clear_emergency_stop", {"stop": stop, "reason": "measured"})
         for robot in self._robots:
             robot.stands = False
-
-
-def _sent_at(frame: bytes) -> list[tuple[str, float]]:
-    """Return by the robots' clocks when they said what a table of positions tells, of those that did."""
-    found = split_frame(frame)
-    if "device_time" not in found.columns:
-        return []
-    times = found.table[found.columns.index("device_time")].tolist()
-    return [(robot, at) for robot, at in zip(found.robots, times, strict=True) if not math.isnan(at)]
 
 
 def _call(method: str, params: dict[str, Any], id: int | None = None) -> str:

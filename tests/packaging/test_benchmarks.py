@@ -192,13 +192,18 @@ def test_a_small_computer_holds_what_runs_on_it():
 
 
 def test_what_panel_and_page_subscribe_to_is_found_in_their_sources():
-    desk, phone, budget = subscriptions()
-    assert desk["rate"] > phone["rate"] > 0 and phone["form"] == "columns" and budget > 100_000
+    desk, phone, rates, budget = subscriptions()
+    assert desk["rate"] > phone["rate"] == max(rates) > min(rates) > 0
+    assert phone["form"] == "columns" and budget > 100_000
 
 
 def test_a_stop_that_some_robot_never_heard_of_misses_its_goal():
     seen = {"positions": 150.0, "late": 3.0, "stops": [20.0, float("nan")], "answers": [9.0]}
-    seen |= {who: {"delays": [10.0, 30.0, 20.0], "bytes": 1000.0} for who in ("desk", "phone")}
+    desk = subscriptions().desk
+    seen |= {
+        who: {"delays": [10.0, 30.0, 20.0], "bytes": 1000.0, "subscription": desk}
+        for who in ("desk", "phone")
+    }
     use = Use(0.5, 100.0, Throttling(100, 7, 0.1))
     parts = dict.fromkeys(("gateway", "database", "maps"), use)
     run = SmallRun(Setting("SQLite", None), seen, Pictures([300.0]), parts, use, 500.0, 0)

@@ -108,7 +108,11 @@ def leave_work_behind(bridge):
     robot.plug_in(1)
     say_place(robot, 20.0)
     desk.ask("emergency_stop", {"command": FIRST, "reason": "seen"})
+    # At once, and as the message that is stored.
     robot.obey_until("Abort")
+    robot.obey_until("Abort")
+    say_place(robot, 20.0, v=0.0)
+    desk.until(lambda: desk.emergency["standing"] == 1)
     desk.ask("clear_emergency_stop", {"stop": FIRST, "reason": "seen"})
     tasks = [{"task": f"task-000{n}", "kind": "drive", "x": 30.0 + n, "y": 8.0} for n in (1, 2)]
     desk.ask("set_queue", {"robot": "r1", "revision": 0, "tasks": tasks})
