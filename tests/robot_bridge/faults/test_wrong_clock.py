@@ -78,7 +78,7 @@ def test_a_clock_of_1970_is_set_right_while_robots_drive_and_back_again(bridge):
     desk.send("by-the-wrong-clock", "r1", "SetPosEnd", x=AHEAD[0], y=AHEAD[1])
     robot.obey_until("SetPosEnd")
     desk.ask("subscribe", {"rate": 20.0})
-    desk.until(lambda: desk.robots["r1"]["state"] == "fresh")
+    desk.until(lambda: desk.robots.get("r1", {}).get("state") == "fresh")
     desk.snapshots.clear()
     drive_until_clock_is_set(bridge, desk, robot, 0)
     say_place(robot, AHEAD[0], v=0.0)
@@ -116,7 +116,7 @@ def leave_work_behind(bridge):
     desk.ask("clear_emergency_stop", {"stop": FIRST, "reason": "seen"})
     tasks = [{"task": f"task-000{n}", "kind": "drive", "x": 30.0 + n, "y": 8.0} for n in (1, 2)]
     desk.ask("set_queue", {"robot": "r1", "revision": 0, "tasks": tasks})
-    robot.obey_until("SetPosEnd")
+    robot.until(lambda: [call for call in robot.calls if call["method"] in ("SetPath", "SetPosEnd")])
     wait_until(lambda: bridge.sql("select count(*) from trajectories") != [(0,)])
 
 
