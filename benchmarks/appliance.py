@@ -45,7 +45,7 @@ MODEL, CORES, SHARE, MEGABYTES = "Raspberry Pi 4", 4, 0.4, 2000
 GATEWAY, DATABASE, MAPS = "gateway", "database", "maps"
 SQLITE, POSTGRESQL = "SQLite", "PostgreSQL"
 ROBOTS, ROBOT_RATE, DESKS, PHONES = 50, 3.0, 3, 5
-SETTLE, SECONDS, STOPS = size((20.0, 90.0, 6), (3.0, 12.0, 2))
+SETTLE, SECONDS, STOPS = size((15.0, 45.0, 4), (3.0, 12.0, 2))
 STOP_MS, MAP_EVERY = 1000.0, 1.0
 """milliseconds in which a stop is to be at the last robot, and seconds from one map to the next."""
 PICTURE, PICTURE_SIDES = (640, 480), (100.0, 75.0)
