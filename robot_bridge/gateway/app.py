@@ -206,7 +206,7 @@ class Gateway:
         if (step := self._clock_watch.measure_step()) is not None:
             way = "forward" if step.by > 0 else "back"
             log.warning("the clock of this computer was set %s by %.0f s", way, abs(step.by))
-            self._fleet.robots.clock_was_set(step)
+            self._fleet.clock_was_set(step)
         fleet = self._fleet
         fleet.age()
         self._robots.update()

@@ -58,7 +58,7 @@ class PlanService:
         self._stops = stops
         self._plans = FollowedPlans(context, closures, listeners)
         self._replanner = Replanner(context, editor, self._plans, stops)
-        self._began = context.clock.time()
+        self._began = context.clock.steady()
 
     async def restore(self) -> None:
         """Go on with the plans that an earlier gateway left."""
@@ -220,7 +220,7 @@ class PlanService:
 
     def _is_settling(self) -> bool:
         """Tell whether the gateway has only begun: robots that drive on are not heard of yet."""
-        return self._context.clock.time() < self._began + self._context.site.report.lost_after
+        return self._context.clock.steady() < self._began + self._context.site.report.lost_after
 
     # --- small parts ----------------------------------------------------------------------------------
 

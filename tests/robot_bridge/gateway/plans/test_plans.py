@@ -35,6 +35,7 @@ from robot_bridge.core.messages.plans import (
 from robot_bridge.core.messages.queues import TaskState
 from robot_bridge.core.messages.safety import ClearEmergencyStop, EmergencyStop
 from robot_bridge.core.messages.validation import MessageError
+from robot_bridge.gateway.model.clocks import ClockWatch
 from robot_bridge.gateway.plans.service import PlanService
 
 CONES = {"c1": (30.0, 40.0), "c2": (40.0, 40.0), "c3": (50.0, 40.0), "c4": (60.0, 40.0)}
@@ -172,9 +173,15 @@ async def test_it_is_paused_by_anybody_and_goes_on_from_there(drive):
     assert (await drive.seen()).state is PlanState.FINISHED and drive.cones() == ALL
 
 
-async def test_the_cones_of_a_lost_robot_are_placed_by_another_by_itself(drive):
+@pytest.mark.parametrize("set_back", [0.0, 365 * 86400.0])
+async def test_the_cones_of_a_lost_robot_are_placed_by_another_by_itself(drive, set_back):
     await drive.submit(by_itself=True)
     await drive.go(robots=["r1"])
+    drive.yard.now += LOST
+    watch = ClockWatch(drive.yard.clock)
+    drive.yard.clock.wall -= set_back
+    if set_back:
+        drive.yard.fleet.clock_was_set(watch.measure_step())
     await drive.lose()
     assert (await drive.seen()).state is PlanState.REPLANNING
     await drive.planned()

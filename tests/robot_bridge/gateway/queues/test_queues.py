@@ -232,6 +232,21 @@ async def test_a_queue_goes_on_by_itself_when_the_gateway_was_away_for_less_than
     assert await is_held(line) is (away > 300)
 
 
+@pytest.mark.parametrize("behind", [4.0, 60.0, 50 * 365 * 86400.0])
+async def test_nor_when_the_clock_stood_still_meanwhile_and_nobody_knows_for_how_long(line, behind):
+    await line.set(task("a"), task("b"))
+    await line.yard.take()
+    await line.yard.at(*PLACES["a"])
+    await line.yard.fleet.save()
+    line.yard.clock.wall -= behind
+    await line.yard.restart()
+    line.yard.fleet.age()
+    assert all(0 <= robot.age <= robot.pose_age for robot in line.yard.fleet.reports())
+    await line.yard.ready()
+    await line.go()
+    assert await is_held(line) is (behind > 5)
+
+
 async def test_a_robot_that_had_nothing_to_do_while_it_was_away_may_be_given_a_queue(line):
     line.yard.now += 400
     line.yard.fleet.age()

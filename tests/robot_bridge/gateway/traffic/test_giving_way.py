@@ -11,6 +11,7 @@ from robot_bridge.core.errors import RefusedError, StoreError
 from robot_bridge.core.messages.commands import AbortAll, AbortTask
 from robot_bridge.core.messages.roads import ResolveConflict
 from robot_bridge.core.messages.robots import GetPath
+from robot_bridge.gateway.model.clocks import ClockWatch
 from robot_bridge.gateway.storage.repositories import closures as stored_closures
 from tests.support.bridge.road_places import highest
 
@@ -44,6 +45,18 @@ async def test_a_head_on_conflict_is_resolved_by_another_way(roads):
     assert (await roads.fleet.roads.traffic.conflicts()).conflicts == []
     states = await roads.states()
     assert (states["one"], states["two"]) == ("superseded", "acknowledged")
+
+
+async def test_a_robot_that_waits_does_so_no_longer_when_the_clock_is_set_back(roads):
+    await roads.drive("one", [(16.0, 8.0), (44.0, 22.0), (90.0, 22.0)])
+    await roads.drive("two", [(13.0, 22.0), (56.0, 22.0), (56.0, 40.0)], robot="r2")
+    await roads.fleet.roads.traffic.resolve(ResolveConflict("r1", "r2", "waiting"), "Ada")
+    (hold,) = (await roads.fleet.roads.traffic.conflicts()).waiting
+    watch = ClockWatch(roads.clock)
+    roads.clock.wall -= 365 * 86400.0
+    roads.fleet.clock_was_set(watch.measure_step())
+    (moved,) = (await roads.fleet.roads.traffic.conflicts()).waiting
+    assert hold.until - moved.until == 365 * 86400.0
 
 
 async def test_a_robot_waits_for_another_at_a_crossing_and_is_sent_on(each):
