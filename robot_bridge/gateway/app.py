@@ -29,6 +29,7 @@ from ..protocol.credentials import AccessError
 from .api.operator_server import OWN, OperatorSession
 from .api.robot_sql import SqlInterface
 from .api.robot_websockets import WebSocketInterface
+from .api.site_queries import SiteQueries
 from .api.status_pages import HEALTH, METRICS, StatusPages
 from .auth.accounts import TokenKind, check_link_name
 from .auth.administration import AccountAdministration
@@ -148,10 +149,11 @@ class Gateway:
         links: LinkProcesses,
         handlers: RequestHandlers,
         field_page: FieldPage,
+        queries: SiteQueries,
         tls: ServerTls | None = None,
     ) -> None:
         self._fleet = fleet
-        self._field = field_page
+        self._field, self._queries = field_page, queries
         self._handlers = handlers
         self._links = links
         self._gate = gate
@@ -227,6 +229,9 @@ class Gateway:
             return await self._status_page(visitor, request, path)
         if self._field.serves(path):
             return await self._field_page(visitor, request, path)
+        if self._queries.serves(path):
+            refusal = await self._gate.may_read(visitor, request)
+            return refusal if refusal is not None else await self._queries.answer(request)
         if (document := served(path)) is not None:
             response = visitor.respond(http.HTTPStatus.OK, document)
             del response.headers["Content-Type"]
@@ -358,7 +363,7 @@ async def run(settings: GatewaySettings, signals: Signals, started: Callable[[st
         links = LinkProcesses(site.settings.links, folder)
         watch = SiteWatch(folder, stamp, maps, fleet, signals.reload)
         handlers = request_handlers(fleet, plans, database, watch)
-        gateway = Gateway(fleet, gate, links, handlers, FieldPage(maps), tls)
+        gateway = Gateway(fleet, gate, links, handlers, FieldPage(maps), SiteQueries(maps, handlers), tls)
         if doubt is not None:
             log.warning("%s", doubt.text)
             if doubt.may_be_ahead:
