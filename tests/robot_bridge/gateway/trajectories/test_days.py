@@ -18,6 +18,7 @@ from robot_bridge.core.messages.robots import SendPos
 from robot_bridge.core.sites.settings_tables import LimitSettings, TrajectorySettings
 from robot_bridge.core.sites.site import read_site
 from robot_bridge.gateway import app
+from robot_bridge.gateway.api.site_queries import SiteQueries
 from robot_bridge.gateway.auth.gate import AuthGate
 from robot_bridge.gateway.field.page import FieldPage
 from robot_bridge.gateway.fleet.link_supervision import LinkProcesses
@@ -222,7 +223,8 @@ async def test_the_gateway_makes_the_next_days_in_time(database, site, tmp_path,
     fleet = Fleet(maps, database)
     gate = AuthGate(database, LimitSettings(), may_be_open=True)
     links = LinkProcesses(site.settings.links, tmp_path)
-    gateway = app.Gateway(fleet, gate, links, RequestHandlers(), FieldPage(maps))
+    queries = SiteQueries(maps, RequestHandlers())
+    gateway = app.Gateway(fleet, gate, links, RequestHandlers(), FieldPage(maps), queries)
     gateway.retention._clock = clock = ManualClock(wall=(THEN + 0.999) * DAY)
     working = asyncio.create_task(gateway.works("ws://127.0.0.1:1")["days of positions"]())
     wanted = {day_name(THEN + n) for n in range(DAYS_AHEAD)}
