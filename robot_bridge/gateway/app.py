@@ -187,6 +187,10 @@ class Gateway:
             "audit log": self._gate.journal.run,
             "garbage": lambda: every(GARBAGE_INTERVAL, self._clear_away, "garbage", tally),
         }
+        if fleet.database.dialect.partitions_days:
+            works["days of positions"] = lambda: every(
+                PRUNE_INTERVAL, self.retention.make_days, "days of positions", tally
+            )
         if has_accounts(fleet.database.dialect.name):
             works["stuck robots"] = lambda: every(
                 STUCK_INTERVAL, fleet.database.end_stuck, "stuck robots", tally
@@ -362,6 +366,9 @@ async def run(settings: GatewaySettings, signals: Signals, started: Callable[[st
             log.warning("%s", doubt.text)
             if doubt.may_be_ahead:
                 gateway.retention.doubt_clock()
+        # Without them positions are stored all the same; what is wrong is logged when it is tried again.
+        with contextlib.suppress(StoreError):
+            await gateway.retention.make_days()
         server = await gateway.serve(settings.host, settings.port)
         gate.warn()
         stack.push_async_callback(notify_clients, server, fleet)

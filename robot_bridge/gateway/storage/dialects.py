@@ -58,6 +58,8 @@ class Dialect:
     """Whether it can be asked cheaply if another connection wrote (see :meth:`version`)."""
     listens: ClassVar[bool] = False
     """Whether the database tells its readers of new rows (see :mod:`.wakeups`)."""
+    partitions_days: ClassVar[bool] = False
+    """Whether positions are kept in partitions of a day, which have to be made before it begins."""
 
     def engine(self, url: URL, patience: float | None) -> Engine:
         """Return an engine on ``url``; raises ModuleNotFoundError when its driver is not installed."""
@@ -197,6 +199,7 @@ class PostgreSQL(Dialect):
 
     name = "postgresql"
     listens = True
+    partitions_days = True
 
     def engine(self, url: URL, patience: float | None) -> Engine:
         engine = sqlalchemy.create_engine(
