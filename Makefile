@@ -23,7 +23,7 @@ TRACKER ?=
 MINUTES ?=
 export PYTHON DESTDIR PREFIX PROGRAM ARGS JOBS REPOSITORY TRACKER MINUTES
 
-.PHONY: help setup demo test test-core test-newer lint desktop screenshots install install-service install-maps-service uninstall-service serve-maps translations package docs check-plugin clean bench mutants
+.PHONY: help setup demo test test-core test-newer test-release lint desktop screenshots install install-service install-maps-service uninstall-service serve-maps translations package docs check-plugin clean bench mutants
 
 help: ## list the targets
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-18s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -41,6 +41,9 @@ demo: $(READY) build/run ## run the main job once, headless, on the sample site;
 
 test: $(READY) build/run ## run every test, style and import rules included, headless
 	@$(HEADLESS) $(RUN) -m pytest -q -rfEs $(SIDE_BY_SIDE) --durations=5 --durations-min=1 $(ARGS)
+
+test-release: $(READY) build/run ## run before a release: every test on everything; one that would be skipped fails
+	@$(HEADLESS) $(RUN) -m pytest -q -rfE $(SIDE_BY_SIDE) --release $(ARGS)
 
 test-core: $(READY) ## run within a minute what needs neither QGIS nor database servers nor a display
 	@$(RUN) -m pytest -q -rfE -p no:pytest_qgis --core -n 2 --dist loadfile --no-loadscope-reorder $(ARGS)

@@ -8,8 +8,9 @@ import os
 import re
 import signal
 import sys
-from collections import deque
+from collections import defaultdict, deque
 from pathlib import Path
+from zlib import crc32
 
 import pytest
 from hypothesis import HealthCheck, settings
@@ -129,9 +130,15 @@ def pytest_collection(session):
 
 def pytest_addoption(parser):
     parser.addoption("--core", action="store_true", help="run only what needs no QGIS, no server, no display")
+    parser.addoption(
+        "--release", action="store_true", help="repeat tests on everything; what would be skipped fails"
+    )
 
 
 def pytest_configure(config):
+    config.addinivalue_line(
+        "markers", "again(shown): run for a release only; what shows the same in every run, on something else"
+    )
     if config.getoption("--core"):
         # Whoever imports it all the same fails.
         sys.modules["qgis"] = sys.modules["osgeo"] = None
@@ -155,12 +162,67 @@ def is_core(item) -> bool:
 
 
 def pytest_collection_modifyitems(config, items):
-    """Select the core where that is asked for, and put the files in order."""
+    """Select what is asked for, and put the files in order."""
+    chosen = items
     if config.getoption("--core"):
-        left_out = [item for item in items if not is_core(item)]
-        config.hook.pytest_deselected(items=left_out)
-        items[:] = [item for item in items if is_core(item)]
+        chosen = [item for item in items if is_core(item)]
+    elif not config.getoption("--release"):
+        chosen = in_turn([item for item in items if item.get_closest_marker("again") is None])
+    kept = set(chosen)
+    config.hook.pytest_deselected(items=[item for item in items if item not in kept])
+    items[:] = chosen
     deal_out(items)
+
+
+# --- make test: one database server in turn, where the other does nothing of its own ---
+
+IN_TURN = (
+    "robot_bridge/cli/test_sole_gateway.py",
+    "robot_bridge/cli/test_trouble.py",
+    "robot_bridge/gateway/api",
+    "robot_bridge/gateway/commands",
+    "robot_bridge/gateway/fleet",
+    "robot_bridge/gateway/plans",
+    "robot_bridge/gateway/queues",
+    "robot_bridge/gateway/storage/databases/test_bridge_on_each.py",
+    "robot_bridge/gateway/traffic",
+    "robot_bridge/gateway/trajectories",
+    "robot_bridge/live",
+)
+"""Tests of what the gateway does with its database; what a server decides by itself is in storage."""
+IN_TURN_PATHS = {ROOT / "tests" / name for name in IN_TURN}
+STOPS = re.compile(r"stop|abort|paus|emergency")
+"""What is run on both servers, whatever it has to do with them."""
+
+
+def in_turn(items):
+    """Leave one of two tests that differ by their database server alone: half of them on each."""
+    pairs = defaultdict(dict)
+    for item in items:
+        values = getattr(item, "callspec", None)
+        servers = SERVERS.intersection(map(str, values.params.values())) if values is not None else ()
+        for server in servers if may_rest(item) else ():
+            pairs[item.nodeid.replace(server, "SERVER")][server] = item
+    resting = {
+        servers[sorted(servers)[crc32(name.encode()) % 2]]
+        for name, servers in pairs.items()
+        if servers.keys() == SERVERS
+    }
+    return [item for item in items if item not in resting]
+
+
+def may_rest(item) -> bool:
+    """Whether what a test shows on one database server it need not show on the other in each run."""
+    in_room = not IN_TURN_PATHS.isdisjoint((item.path, *item.path.parents))
+    return in_room and STOPS.search(item.nodeid) is None
+
+
+@pytest.hookimpl(hookwrapper=True)
+def pytest_runtest_makereport(item):
+    """Have a test that is skipped fail in a run for a release: its machine has everything."""
+    report = (yield).get_result()
+    if item.config.getoption("--release") and report.skipped and not hasattr(report, "wasxfail"):
+        report.outcome, report.longrepr = "failed", f"skipped: {report.longrepr[2]}"
 
 
 LONG = (

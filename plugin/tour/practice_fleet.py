@@ -16,6 +16,8 @@ POSES = {"r1": "20,8,0", "r2": "48,84,0", "r3": "92,22,3.1416"}
 """Where each robot stands at first: x, y (metres) and theta (radians) in the sample site's frame."""
 LISTENING = re.compile(r"listening on (ws://127\.0\.0\.1:\d+)")
 PATIENCE_MS = 3000
+WITH_QGIS = "--until-stdin-closes"
+"""Has a program end with its QGIS, also when that crashes."""
 
 
 def find_program() -> str:
@@ -68,7 +70,8 @@ class PracticeFleet(QObject):
         gateway.readyReadStandardOutput.connect(self._read)
         gateway.finished.connect(self._ended)
         gateway.errorOccurred.connect(self._ended)
-        gateway.start(self.program, ["serve", "--site", str(SITE), "--port", "0", "--database", database])
+        words = ["serve", "--site", str(SITE), "--port", "0", "--database", database, WITH_QGIS]
+        gateway.start(self.program, words)
 
     def stop(self) -> None:
         """End every process, in good order where they do so soon."""
@@ -109,7 +112,7 @@ class PracticeFleet(QObject):
         for name, pose in POSES.items():
             robot = self._process()
             robot.setStandardOutputFile(QProcess.nullDevice())
-            robot.start(self.program, ["robot", "--url", url, "--name", name, f"--pose={pose}"])
+            robot.start(self.program, ["robot", "--url", url, "--name", name, f"--pose={pose}", WITH_QGIS])
 
     def _ended(self, *_: object) -> None:
         if self._gateway is None:

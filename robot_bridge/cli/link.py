@@ -11,6 +11,7 @@ import typer
 from ..core.logs import LogFormat, LogLevel, set_up_log
 from ..links.base.settings import kind_in
 from ..links.kinds import KINDS, load
+from .options import UntilStdinCloses
 
 app = typer.Typer(
     help="Run an adapter: robots and trackers of another kind, over one connection.", no_args_is_help=True
@@ -23,14 +24,12 @@ Format = Annotated[
 Level = Annotated[LogLevel, typer.Option(help="The least that is logged.", envvar="ROBOT_BRIDGE_LOG_LEVEL")]
 Check = Annotated[bool, typer.Option("--check", help="Only say whether the settings can be used.")]
 
-Until = Annotated[bool, typer.Option("--until-stdin-closes", hidden=True)]
-
 
 def _running(kind: str | None) -> Callable[..., None]:
     def command(
         config: Config,
         check: Check = False,
-        until_stdin_closes: Until = False,
+        until_stdin_closes: UntilStdinCloses = False,
         log_format: Format = "text",
         log_level: Level = "warning",
     ) -> None:

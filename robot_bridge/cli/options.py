@@ -37,6 +37,8 @@ PasswordFileOption = Annotated[
         help="File with the database account's password; a command line can be seen by others.",
     ),
 ]
+UntilStdinCloses = Annotated[bool, typer.Option("--until-stdin-closes", hidden=True)]
+"""For who starts a program that must not outlive it, however it ends."""
 
 
 SiteOption = Annotated[

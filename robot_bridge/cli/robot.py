@@ -16,8 +16,9 @@ import typer
 
 from ..core.errors import BridgeError
 from ..core.messages.robots import SetObject
+from ..core.standard_input import call_at_end_of_input
 from ..reference_robot.body import ScriptedObject
-from .options import PasswordFileOption, database_address
+from .options import PasswordFileOption, UntilStdinCloses, database_address
 
 if TYPE_CHECKING:
     from ..reference_robot.body import BodyLimits, SimulatedVehicle
@@ -80,6 +81,7 @@ def robot(
         bool, typer.Option(help="Whether it knows at first where it stands, or looks for that on its map.")
     ] = True,
     gps: Annotated[bool, typer.Option("--gps", help="It has a GPS receiver, too.")] = False,
+    until_stdin_closes: UntilStdinCloses = False,
 ) -> None:
     """Run the reference robot: a simulated body that speaks the protocol."""
     from ..protocol.credentials import ClientCredentials
@@ -110,7 +112,7 @@ def robot(
     )
 
     async def work(settings: ReferenceRobotSettings) -> None:
-        await run(settings, _stop_event())
+        await run(settings, _stop_event(until_stdin_closes))
 
     if world is None:
         asyncio.run(work(settings))
@@ -171,8 +173,10 @@ def _bytes(file: Path) -> bytes:
         raise BridgeError(f"image {file} cannot be read: {error.strerror or error}") from None
 
 
-def _stop_event() -> asyncio.Event:
+def _stop_event(until_stdin_closes: bool) -> asyncio.Event:
     stop = asyncio.Event()
+    if until_stdin_closes:
+        call_at_end_of_input(stop.set)
     loop = asyncio.get_running_loop()
     for number in (signal.SIGINT, signal.SIGTERM):
         loop.add_signal_handler(number, stop.set)

@@ -11,6 +11,7 @@ import sys
 import threading
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal
 
@@ -18,9 +19,18 @@ import typer
 
 from ..core.errors import BridgeError
 from ..core.logs import LogFormat, LogLevel, set_up_log
+from ..core.standard_input import call_at_end_of_input
 from ..core.systemd import notify, watchdog_interval
 from ..gateway.monitoring.periodic_tasks import freeze_permanent_objects
-from .options import DEFAULT, DatabaseOption, PasswordFileOption, SiteOption, database_address, site_copy
+from .options import (
+    DEFAULT,
+    DatabaseOption,
+    PasswordFileOption,
+    SiteOption,
+    UntilStdinCloses,
+    database_address,
+    site_copy,
+)
 
 if TYPE_CHECKING:
     from ..gateway.app import GatewaySettings, Signals
@@ -91,6 +101,7 @@ def serve(
         LogLevel, typer.Option(help="The least that is logged.", envvar="ROBOT_BRIDGE_LOG_LEVEL")
     ] = "warning",
     loop: Annotated[Loop, typer.Option(help="Event loop; auto is uvloop where it is installed.")] = "auto",
+    until_stdin_closes: UntilStdinCloses = False,
 ) -> None:
     """Serve one site to robots (/robot, and tables rr and sa) and to operators (/desk).
 
@@ -107,7 +118,7 @@ def serve(
     cluster = cluster_settings(settings.site, gateway_name, bus, bus_password_file)
     settings = replace(settings, site_as_given=site_as_given, cluster=cluster)
     with asyncio.Runner(loop_factory=_loop_factory(loop)) as runner:
-        runner.run(_serve(settings))
+        runner.run(_serve(settings, until_stdin_closes))
 
 
 def gateway_settings(
@@ -166,7 +177,7 @@ def cluster_settings(site: Path, name: str, bus: str, password_file: Path | None
     return ClusterSettings(name, bus or given.bus or "postgresql", password, given.when_cut_off == "stop")
 
 
-async def _serve(settings: GatewaySettings) -> None:
+async def _serve(settings: GatewaySettings, until_stdin_closes: bool) -> None:
     from ..gateway.app import Signals, run
 
     signals = Signals()
@@ -174,6 +185,8 @@ async def _serve(settings: GatewaySettings) -> None:
     for number in (signal.SIGINT, signal.SIGTERM):
         running.add_signal_handler(number, _stop, signals)
     running.add_signal_handler(signal.SIGHUP, signals.reload.set)
+    if until_stdin_closes:
+        call_at_end_of_input(partial(_stop, signals))
     feeding = asyncio.create_task(_feed_watchdog())
     try:
         await run(settings, signals, _started)

@@ -29,6 +29,7 @@ from ..protocol.credentials import AccessError
 from .api.operator_server import OWN, OperatorSession
 from .api.robot_sql import SqlInterface
 from .api.robot_websockets import WebSocketInterface
+from .api.site_queries import SiteQueries
 from .api.status_pages import HEALTH, METRICS, StatusPages
 from .auth.accounts import TokenKind, check_link_name
 from .auth.administration import AccountAdministration
@@ -152,10 +153,11 @@ class Gateway:
         links: LinkProcesses,
         handlers: Answering,
         field_page: FieldPage,
+        queries: SiteQueries,
         tls: ServerTls | None = None,
     ) -> None:
         self._fleet = fleet
-        self._field = field_page
+        self._field, self._queries = field_page, queries
         self._handlers = handlers
         self._links = links
         self._gate = gate
@@ -227,6 +229,9 @@ class Gateway:
             return await self._status_page(visitor, request, path)
         if self._field.serves(path):
             return await self._field_page(visitor, request, path)
+        if self._queries.serves(path):
+            refusal = await self._gate.may_read(visitor, request)
+            return refusal if refusal is not None else await self._queries.answer(request)
         if (document := served(path)) is not None:
             response = visitor.respond(http.HTTPStatus.OK, document)
             del response.headers["Content-Type"]
@@ -361,7 +366,8 @@ async def run(settings: GatewaySettings, signals: Signals, started: Callable[[st
         handlers = request_handlers(fleet, plans, database, watch)
         relays = None if cluster is None else _relays(settings, cluster, fleet, handlers)
         answering = handlers if relays is None else relays.requests
-        gateway = Gateway(fleet, gate, links, answering, FieldPage(maps), tls)
+        queries = SiteQueries(maps, handlers)
+        gateway = Gateway(fleet, gate, links, answering, FieldPage(maps), queries, tls)
         if relays is not None:
             relays.reach(gateway.robots)
         if doubt is not None:

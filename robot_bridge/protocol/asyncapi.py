@@ -1,4 +1,4 @@
-"""AsyncAPI 3 document of all endpoints, and the schema files that the gateway serves."""
+"""AsyncAPI 3 document of all endpoints of a WebSocket, and the schema files that the gateway serves."""
 
 from __future__ import annotations
 
@@ -23,6 +23,7 @@ from ..core.messages.operator_requests import DESK_REQUESTS, Done
 from ..core.messages.robots import ANSWERS, REQUESTS, OpAck, SendGPS, SendPos, Start
 from ..core.messages.validation import ROBOT_NAME
 from .json_schemas import HEADS, JSON_SCHEMA, NOTIFICATIONS, Schema, definitions, plain_text, schema_of
+from .openapi import openapi
 
 # --- The pieces of an AsyncAPI document: channels, JSON-RPC frames as messages, and operations ---
 
@@ -358,6 +359,7 @@ def documents() -> dict[str, str]:
     ``robot`` holds what robots say, ``gateway`` what they are told, ``link`` what links say, ``link-gateway``
     what those are told, ``desk`` what operators ask, ``result`` what they are answered with, ``news`` what
     they are told unasked, and ``head`` what stands in the heads of binary frames; ``index.json`` lists them.
+    ``asyncapi.json`` describes the WebSockets, ``openapi.json`` the questions over HTTP.
     """
     files = {f"robot/{op}.json": schema_of(cls, closed=True) for op, cls in REQUESTS.items()}
     files |= {f"gateway/{op}.json": schema_of(cls) for op, cls in ANSWERS.items()}
@@ -367,6 +369,7 @@ def documents() -> dict[str, str]:
     files |= {f"head/{method}.json": schema_of(cls) for method, cls in HEADS.items()}
     files |= link_documents()
     files["asyncapi.json"] = asyncapi()
+    files["openapi.json"] = openapi()
     files["index.json"] = {"documents": sorted(files)}
     return {path: json.dumps(content, indent=2) + "\n" for path, content in files.items()}
 

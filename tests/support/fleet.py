@@ -81,7 +81,7 @@ def start_gateway(processes: Processes, database: Path, site: Path = SITE) -> st
 
     :raises StageError: when it does not come up.
     """
-    return serve(processes, site, f"sqlite:///{database}").address
+    return serve(processes, site, f"sqlite:///{database}", forked=True).address
 
 
 def new_database(folder: Path) -> Path:
@@ -106,7 +106,7 @@ def start_robots(
         pose = ",".join(str(number) for number in start.pose)
         robot = ["robot", *way, "--name", start.name, f"--pose={pose}"]
         robot += ["--seed", str(seed), "--speed", str(speed)]
-        started[start.name] = processes.start(start.name, [sys.executable, "-m", "robot_bridge", *robot])
+        started[start.name] = processes.start_bridge(start.name, robot)
     return started
 
 

@@ -3,8 +3,9 @@
 A test session starts hundreds of gateways and robots, and most of what each costs is the loading of modules.
 Each is a process of its own all the same, a child of the test's, that is signalled, killed and waited for.
 What is to be shown of a start itself is started as a user does, with ``python -m robot_bridge``.
+A shell runs them, too: ``write_shell_command`` makes it a command that has one forked and waits for its end.
 
-Run as a program this is the process that forks: it takes orders on the socket whose number it is given.
+Run as a program this is the process that forks: it takes orders on the sockets whose numbers it is given.
 It knows nothing of this project, so that a Python of another environment may run it.
 """
 
@@ -17,6 +18,7 @@ import gc
 import importlib
 import json
 import os
+import select
 import signal
 import socket
 import subprocess
@@ -84,18 +86,33 @@ class ForkedProcess(subprocess.Popen[bytes]):
         self._waitpid_lock = threading.Lock()
 
 
+@dataclass(frozen=True)
+class Forking:
+    """The ways to a process that forks a program."""
+
+    orders: socket.socket
+    lock: threading.Lock
+    """Held from an order to its answer."""
+    shells: str
+    """The address at which shells have the program forked."""
+
+
 @functools.cache
-def _forking(program: Program) -> tuple[socket.socket, threading.Lock]:
-    """Return the way to this session's process that forks the program, which ends with the session."""
+def _forking(program: Program) -> Forking:
+    """Return the ways to this session's process that forks the program, which ends with the session."""
     ours, its = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+    shells = socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+    # No file: the address is gone with the process.
+    address = f"\0{program.modules[0]}-{os.getpid()}-{id(its):x}"
+    shells.bind(address)
+    shells.listen()
     path = {"PYTHONPATH": str(program.path)} if program.path else {}
+    numbers = [its.fileno(), shells.fileno()]
     # By its file: another Python has no package of tests.
-    command = [program.python, __file__, str(its.fileno()), *program.modules]
-    with its:
-        subprocess.Popen(
-            command, pass_fds=[its.fileno()], env={**os.environ, "PYTHONUNBUFFERED": "1", **path}
-        )
-    return ours, threading.Lock()
+    command = [program.python, __file__, *map(str, numbers), *program.modules]
+    with its, shells:
+        subprocess.Popen(command, pass_fds=numbers, env={**os.environ, "PYTHONUNBUFFERED": "1", **path})
+    return Forking(ours, threading.Lock(), address)
 
 
 @contextlib.contextmanager
@@ -119,7 +136,7 @@ def start_forked(
 
     It prints into ``log``, and is killed when this process ends.
     """
-    ours, lock = _forking(program)
+    forking = _forking(program)
     command = [str(word) for word in words]
     order = {
         "words": command,
@@ -127,46 +144,94 @@ def start_forked(
         "folder": str(Path.cwd()),
         "parent": os.getpid(),
     }
-    with lock, _adopting():
-        socket.send_fds(ours, [json.dumps(order).encode()], [log.fileno()])
-        pid = int(ours.recv(64))
+    with forking.lock, _adopting():
+        socket.send_fds(forking.orders, [json.dumps(order).encode()], [log.fileno()])
+        pid = int(forking.orders.recv(64))
     return ForkedProcess(pid, [program.modules[0], *command])
 
 
-def _serve(orders: socket.socket, modules: Sequence[str]) -> None:
-    """Fork a program for each order; return in the forked one, and end with the other side of the socket."""
+SHELL_COMMAND = """#!{python} -IS
+import json, os, socket, sys
+with socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET) as forking:
+    forking.connect({address!r})
+    order = {{"words": sys.argv[1:], "env": dict(os.environ), "folder": os.getcwd()}}
+    socket.send_fds(forking, [json.dumps(order).encode()], [0, 1, 2])
+    sys.exit(int(forking.recv(64)))
+"""
+
+
+def write_shell_command(file: Path, program: Program = BRIDGE) -> None:
+    """Write a command for shells that runs the program, with the shell's environment, folder and files.
+
+    It works for as long as this session lasts; the program is killed with the command.
+    """
+    text = SHELL_COMMAND.format(python=program.python, address=_forking(program).shells)
+    file.write_text(text, encoding="utf-8")
+    file.chmod(0o755)
+
+
+def _serve(orders: socket.socket, shells: socket.socket, modules: Sequence[str]) -> None:
+    """Fork a program for each order; return in the forked one, and end with the other side of ``orders``."""
     for name in modules:
         importlib.import_module(name)
     gc.collect()
     gc.freeze()
+    asking, text, files = _await_order(orders, shells)
+    shells.close()
+    order = json.loads(text)
+    parent = order.get("parent") or os.getpid()
+    program = os.fork()
+    if program:
+        if asking is not orders:
+            _wait_for(program, asking)
+        os._exit(0)
+    _become(order, modules[0], parent)
+    if asking is orders:
+        # Not before: whoever waits for a process that is not its child yet is told that there is none.
+        asking.send(str(os.getpid()).encode())
+    orders.close()
+    asking.close()
+    _connect_to(files)
+
+
+def _await_order(orders: socket.socket, shells: socket.socket) -> tuple[socket.socket, bytes, list[int]]:
+    """Fork for each order, and return it in the forked process: who asks, the order and its files."""
     while True:
-        text, files, _, _ = socket.recv_fds(orders, LARGEST_ORDER, 1)
-        if not text:
+        ready, _, _ = select.select([orders, shells], [], [])
+        asking = shells.accept()[0] if shells in ready else orders
+        text, files, _, _ = socket.recv_fds(asking, LARGEST_ORDER, 3)
+        if not text and asking is orders:
             sys.exit()
         between = os.fork()
-        if between:
+        if not between:
+            return asking, text, files
+        if asking is orders:
             os.waitpid(between, 0)
-            os.close(files[0])
-            continue
-        if os.fork():
-            os._exit(0)
-        _become(json.loads(text), modules[0], files[0], orders)
+        else:
+            asking.close()
+        for file in files:
+            os.close(file)
+        with contextlib.suppress(ChildProcessError):
+            while os.waitpid(-1, os.WNOHANG)[0]:
+                pass
+
+
+def _wait_for(program: int, shell: socket.socket) -> None:
+    """Send a shell the status of a program when it has ended; kill the program if the shell ends first."""
+    end = os.pidfd_open(program)
+    ready, _, _ = select.select([end, shell], [], [])
+    if end not in ready:
+        os.kill(program, signal.SIGKILL)
         return
+    status = os.waitstatus_to_exitcode(os.waitpid(program, 0)[1])
+    shell.send(str(status if status >= 0 else 128 - status).encode())
 
 
-def _become(order: dict[str, Any], module: str, output: int, orders: socket.socket) -> None:
-    """Make of this process what it would be if it had been started with ``order``."""
-    while os.getppid() != order["parent"]:
+def _become(order: dict[str, Any], module: str, parent: int) -> None:
+    """Make of this process what it would be if ``parent`` had started it with ``order``."""
+    while os.getppid() != parent:
         time.sleep(0.0005)
     _libc.prctl(PR_SET_PDEATHSIG, signal.SIGKILL, 0, 0, 0)
-    # Not before: whoever waits for a process that is not its child yet is told that there is none.
-    orders.send(str(os.getpid()).encode())
-    orders.close()
-    for number in (1, 2):
-        os.dup2(output, number)
-    os.close(output)
-    with open(os.devnull) as nothing:  # noqa: PTH123
-        os.dup2(nothing.fileno(), 0)
     os.chdir(order["folder"])
     # A Python may have set for itself where its libraries are.
     libraries = {name: os.environ[name] for name in ("LD_LIBRARY_PATH",) if name in os.environ}
@@ -176,9 +241,19 @@ def _become(order: dict[str, Any], module: str, output: int, orders: socket.sock
     sys.argv = [sys.modules[module].__file__ or "", *order["words"]]
 
 
+def _connect_to(files: Sequence[int]) -> None:
+    """Have the program read from and write to ``files``: one for all that it writes, or one of each."""
+    with open(os.devnull) as nothing:  # noqa: PTH123
+        streams = files if len(files) == 3 else (nothing.fileno(), *files, *files)
+        for number, file in enumerate(streams):
+            os.dup2(file, number)
+    for file in files:
+        os.close(file)
+
+
 def _main() -> None:
-    socket_number, *modules = sys.argv[1:]
-    _serve(socket.socket(fileno=int(socket_number)), modules)
+    orders, shells, *modules = sys.argv[1:]
+    _serve(socket.socket(fileno=int(orders)), socket.socket(fileno=int(shells)), modules)
     sys.modules[modules[0]].main()
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import sys
 from pathlib import Path
 
 from robot_bridge.core.sites.settings import SiteSettings
@@ -90,8 +89,7 @@ class Links:
         file = self._folder / f"{name}.toml"
         file.write_text(settings, encoding="utf-8")
         state = {"ROBOT_BRIDGE_STATE": str(self._folder)}
-        command = [sys.executable, "-m", "robot_bridge", "link", kind, "--config", file]
-        self._processes.start(f"link-{name}", command, env=state)
+        self._processes.start_bridge(f"link-{name}", ["link", kind, "--config", file], env=state)
 
 
 def peer() -> Path:

@@ -6,7 +6,6 @@ import asyncio
 import contextlib
 import itertools
 import logging
-import os
 import random
 import signal
 from collections import deque
@@ -26,6 +25,7 @@ from ...core.messages.robots import Abort, Alive, OpAck, Ready, Request, SendGPS
 from ...core.messages.safety import Ability
 from ...core.messages.validation import MessageError, check_robot_name
 from ...core.sites.frame import SiteFrame
+from ...core.standard_input import call_at_end_of_input
 from ...core.systemd import notify
 from ...protocol import jsonrpc
 from ...protocol.codec import decode_answer, params_of
@@ -541,7 +541,7 @@ async def _adapt(client: LinkClient, adapter: Adapter) -> None:
 async def _run_until_stdin_closes(work: Coroutine[Any, Any, None], until_stdin_closes: bool) -> None:
     stop = asyncio.Event()
     if until_stdin_closes:
-        asyncio.get_running_loop().add_reader(0, _read_stdin, stop)
+        call_at_end_of_input(stop.set)
     for number in (signal.SIGINT, signal.SIGTERM):
         asyncio.get_running_loop().add_signal_handler(number, stop.set)
     working, stopping = asyncio.create_task(work), asyncio.create_task(stop.wait())
@@ -552,9 +552,3 @@ async def _run_until_stdin_closes(work: Coroutine[Any, Any, None], until_stdin_c
     working.cancel()
     with contextlib.suppress(asyncio.CancelledError):
         await working
-
-
-def _read_stdin(stop: asyncio.Event) -> None:
-    if not os.read(0, 4096):
-        asyncio.get_running_loop().remove_reader(0)
-        stop.set()

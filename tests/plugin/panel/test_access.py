@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import os
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
@@ -27,6 +25,7 @@ from qgis.PyQt.QtCore import Qt
 from qgis.PyQt.QtTest import QTest
 from qgis.PyQt.QtWidgets import QCheckBox, QLabel, QLineEdit, QToolButton
 
+from tests.support.bridge.command_line import run_command
 from tests.support.processes import Processes
 
 SECRET = "fleet_op_0123456789abcdefghijklmnopqrstuvwxyzABCDEFG"
@@ -45,17 +44,16 @@ def bridge(root, tmp_path_factory):
         @staticmethod
         def run(*words, on_database=True):
             ending = ["--database", database] if on_database else []
-            command = [sys.executable, "-m", "robot_bridge", *map(str, words), *ending]
-            return subprocess.run(
-                command, capture_output=True, text=True, check=True, cwd=root
-            ).stdout.strip()
+            done = run_command(*words, *ending)
+            assert done.returncode == 0, done.stderr
+            return done.stdout.strip()
 
     Gateway.run("tls", "create", Gateway.files, "--name", "localhost", on_database=False)
     Gateway.token = Gateway.run("operators", "add", "Ada", "--role", "operator")
     with Processes(folder / "logs") as processes:
         options = ["--certificate", Gateway.files / "server.pem", "--key", Gateway.files / "server-key.pem"]
         serve = ["serve", "--site", root / "resources" / "sample_site", "--port", "0", "--database", database]
-        processes.start("gateway", [sys.executable, "-m", "robot_bridge", *serve, *options])
+        processes.start_bridge("gateway", [*serve, *options])
         found = processes.wait_for_line("gateway", r"listening on wss://127\.0\.0\.1:(\d+)", 20)
         Gateway.port = int(found.group(1))
         Gateway.url = f"wss://localhost:{Gateway.port}/desk"

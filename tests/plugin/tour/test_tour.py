@@ -203,6 +203,8 @@ def test_a_practice_fleet_is_driven_and_ends_with_the_tour(tour, wait):
     wait(lambda: len(tour.desk.state.robots.views(tour.desk.clock.steady())) == 3, 60, "three robots")
     processes = list(tour.action.fleet.findChildren(type(tour.action.fleet._processes[0])))
     assert len(processes) == 4
+    # Else they would outlive a QGIS that crashes.
+    assert all("--until-stdin-closes" in process.arguments() for process in processes)
     wait(lambda: "is connected" in tour.text("fleet_tour_said"))
     sent = next(at for at, step in enumerate(STEPS) if step.target == "fleet_cone_target_button")
     tour.go_to(sent)

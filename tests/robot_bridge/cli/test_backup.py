@@ -203,9 +203,8 @@ def test_a_backup_of_an_older_version_is_restored_and_then_upgraded(empty, tmp_p
     assert [row[:4] for row in run_once(new, contents)["emergency_stops"]] == [tuple(stop.values())]
 
 
-def test_a_backup_is_not_restored_into_older_tables(address, empty, tmp_path, kind):
-    if kind == "sqlite":
-        pytest.skip("a backup of SQLite brings its tables")
+@pytest.mark.parametrize("kind", ["postgresql", "mariadb"])
+def test_a_backup_is_not_restored_into_older_tables(address, empty, tmp_path):
     old, file = empty(), tmp_path / "backup"
     run_once(old, revisions.create, OLDER)
     back_up(address, file)
@@ -253,9 +252,8 @@ def test_a_damaged_backup_changes_nothing(address, tmp_path):
         assert run_once(address, contents) == before
 
 
-def test_a_backup_that_the_server_refuses_changes_nothing(address, tmp_path, kind):
-    if kind == "sqlite":
-        pytest.skip("SQLite is copied page by page")
+@pytest.mark.parametrize("kind", ["postgresql", "mariadb"])
+def test_a_backup_that_the_server_refuses_changes_nothing(address, tmp_path):
     file = tmp_path / "backup"
     back_up(address, file)
     before = run_once(address, contents)
@@ -315,9 +313,8 @@ def test_a_database_is_no_backup_of_itself(address):
     assert file.stat().st_ino == before
 
 
+@pytest.mark.parametrize("kind", ["postgresql", "mariadb"])
 def test_a_program_that_is_missing_is_named_and_no_password(address, tmp_path, kind, monkeypatch):
-    if kind == "sqlite":
-        pytest.skip("SQLite needs no program")
     monkeypatch.setenv("PATH", str(tmp_path))
     with pytest.raises(StoreError) as caught:
         back_up(address, tmp_path / "backup")

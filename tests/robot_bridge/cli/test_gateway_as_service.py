@@ -20,6 +20,8 @@ from prometheus_client.parser import text_string_to_metric_families
 from robot_bridge.core.robotmap.binary import decode
 from robot_bridge.core.sites.site import read_site, write_site
 from tests.support.bridge.bridge_programs import wait_until
+from tests.support.operators import ask
+from tests.support.patience import BUSY
 
 
 @pytest.fixture
@@ -204,6 +206,23 @@ def serve(*options, seconds=20, **environment):
         check=False,
         env={**os.environ, **environment},
     )
+
+
+def test_gateway_and_robot_end_with_whoever_started_them_where_that_is_asked_for(site, tmp_path):
+    def start(*words):
+        command = [sys.executable, "-m", "robot_bridge", *map(str, words), "--until-stdin-closes"]
+        return subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
+
+    gateway = start("serve", "--site", site, "--port", 0, "--database", f"sqlite:///{tmp_path}/fleet.db")
+    address = gateway.stdout.readline().removeprefix("listening on ").strip()
+    robot = start("robot", "--url", f"{address}/robot", "--name", "r1", "--pose=20,8,0")
+    wait_until(lambda: ask(address, ("get_positions", {}))[0]["robots"], 20)
+    for process in (robot, gateway):
+        assert process.poll() is None
+        # As the system does it when that one is killed.
+        process.stdin.close()
+        assert process.wait(BUSY * 10) == 0
+        process.stdout.close()
 
 
 def test_a_second_gateway_on_the_same_database_is_refused(bridge, site):

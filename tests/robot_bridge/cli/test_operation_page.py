@@ -6,7 +6,6 @@ import os
 import re
 import shutil
 import subprocess
-import sys
 from dataclasses import fields
 
 import pytest
@@ -18,6 +17,7 @@ from robot_bridge.gateway.storage.database import run_once
 from robot_bridge.gateway.storage.repositories import records, trajectories
 from robot_bridge.gateway.storage.repositories.records import NewPlacement
 from robot_bridge.gateway.storage.repositories.trajectories import Fix, pack
+from tests.support.forked_programs import write_shell_command
 
 SHELL = ["sh", "-eu"]
 
@@ -31,8 +31,7 @@ def test_the_commands_for_sqlite_do_what_they_say(page, root, sample_site, tmp_p
     shutil.copytree(sample_site, tmp_path / "site", ignore=shutil.ignore_patterns("*.tif", "*.py", "drawing"))
     program = tmp_path / "bin" / "robot-bridge"
     program.parent.mkdir()
-    program.write_text(f'#!/bin/sh\nexec {sys.executable} -m robot_bridge "$@"\n')
-    program.chmod(0o755)
+    write_shell_command(program)
     blocks = re.findall(r"^```sh sqlite\n(.*?)^```$", page, re.DOTALL | re.MULTILINE)
     assert len(blocks) == 4
     # The track of a robot that was never there is refused, and a layout without a cone.

@@ -81,8 +81,6 @@ async def test_the_lock_is_in_nobodys_way(address, kind):
 
 @pytest.fixture
 def server(kind, request):
-    if kind == "sqlite":
-        pytest.skip("SQLite has no server")
     return request.getfixturevalue(f"{kind}_server")
 
 
@@ -96,6 +94,7 @@ async def holding(gateway):
     return asyncio.create_task(gateway.hold())
 
 
+@pytest.mark.parametrize("kind", ["postgresql", "mariadb"])
 async def test_the_lock_is_taken_again_when_the_server_comes_back(address, server, often, caplog):
     gateway = SingletonLock(address)
     hold = await holding(gateway)
@@ -117,6 +116,7 @@ async def test_the_lock_is_taken_again_when_the_server_comes_back(address, serve
     await gateway.release()
 
 
+@pytest.mark.parametrize("kind", ["postgresql", "mariadb"])
 async def test_a_gateway_that_another_replaced_while_it_was_cut_off_ends(address, server, often):
     gateway = SingletonLock(address)
     hold = await holding(gateway)

@@ -24,12 +24,15 @@ from robot_bridge.protocol.asyncapi import documents, link_documents, served
 from robot_bridge.protocol.codec import decode_request
 from robot_bridge.protocol.json_schemas import HEADS, NOTIFICATIONS, plain_text, schema_of
 
+OTHERS = {"asyncapi.json", "index.json", "openapi.json"}
+"""Documents that are no schemas of messages."""
+
 
 def accepts(schema, value) -> bool:
     return jsonschema.Draft202012Validator(schema).is_valid(value)
 
 
-@pytest.mark.parametrize("path", sorted(set(documents()) - {"asyncapi.json", "index.json"}))
+@pytest.mark.parametrize("path", sorted(set(documents()) - OTHERS))
 def test_every_document_is_a_json_schema_that_describes_itself(path):
     schema = json.loads(documents()[path])
     jsonschema.Draft202012Validator.check_schema(schema)
@@ -40,7 +43,7 @@ def test_every_document_is_a_json_schema_that_describes_itself(path):
 
 
 def test_there_is_one_for_every_message():
-    paths = set(documents()) - {"asyncapi.json", "index.json"}
+    paths = set(documents()) - OTHERS
     assert paths == {
         *(f"robot/{op}.json" for op in REQUESTS),
         *(f"gateway/{op}.json" for op in ANSWERS),
@@ -50,7 +53,9 @@ def test_there_is_one_for_every_message():
         *(f"head/{method}.json" for method in HEADS),
         *link_documents(),
     }
-    assert json.loads(documents()["index.json"])["documents"] == sorted({*paths, "asyncapi.json"})
+    assert json.loads(documents()["index.json"])["documents"] == sorted(
+        {*paths, "asyncapi.json", "openapi.json"}
+    )
 
 
 def test_what_is_served_is_found_by_its_path():

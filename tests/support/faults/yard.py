@@ -125,7 +125,7 @@ class Yard:
         """Start the gateway on the port it had; return once it listens."""
         self._gateways += 1
         name, url = f"gateway-{self._gateways}", self.place.gateway_url
-        served = serve(self._processes, self._site, url, port=self._port, name=name)
+        served = serve(self._processes, self._site, url, port=self._port, name=name, forked=True)
         self._gateway, self.address, self._port = served.process, served.address, served.port
 
     def kill_gateway(self) -> None:

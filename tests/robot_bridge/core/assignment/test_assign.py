@@ -307,6 +307,7 @@ def test_whatever_the_job_pyvrp_keeps_to_it(job: AssignmentJob) -> None:
     planned(job, "balanced", PYVRP, seconds=0.3)
 
 
+@pytest.mark.again("test_small_jobs_are_as_short_as_they_can_be_and_nearly_so_in_a_preview")
 def test_a_public_instance_is_solved_to_its_optimum() -> None:
     pytest.importorskip("pyvrp")
     from benchmarks import e_n51_k5

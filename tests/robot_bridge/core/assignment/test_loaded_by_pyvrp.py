@@ -167,7 +167,10 @@ def test_what_was_driven_in_earlier_stages_is_gone_from_the_battery(objective: s
     assert_is_best(replace(job, robots=robots), objective, before, gate_s)
 
 
-@OBJECTIVES
+@pytest.mark.parametrize(
+    "objective",
+    [pytest.param(BALANCED, marks=pytest.mark.again("test_no_other_plan_is_better")), LEAST_DISTANCE],
+)
 def test_it_is_better_than_a_preview_and_says_who_found_it(objective: str) -> None:
     job = loaded(1, TO_START, 32, 12, robots=4)
     preview, plan = (

@@ -8,7 +8,6 @@ import shlex
 import shutil
 import ssl
 import subprocess
-import sys
 from dataclasses import fields
 from pathlib import Path
 
@@ -17,6 +16,7 @@ import pytest
 from robot_bridge.core.messages.operator_requests import Role
 from robot_bridge.core.sites.settings_tables import LimitSettings
 from tests.support.bridge.bridge_accounts import bearing
+from tests.support.forked_programs import write_shell_command
 from tests.support.operators import Desk
 from tests.support.patience import START
 from tests.support.processes import Processes
@@ -32,9 +32,7 @@ def shell(tmp_path_factory, sample_site):
     """Run commands in one folder, where /srv/fleet is and robot-bridge can be called."""
     folder = tmp_path_factory.mktemp("fleet")
     (folder / "bin").mkdir()
-    program = folder / "bin" / "robot-bridge"
-    program.write_text(f'#!/bin/sh\nexec {shlex.quote(sys.executable)} -m robot_bridge "$@"\n')
-    program.chmod(0o755)
+    write_shell_command(folder / "bin" / "robot-bridge")
     shutil.copytree(sample_site, folder / "site")
     environment = {**os.environ, "PATH": f"{folder / 'bin'}:{os.environ['PATH']}", "PYTHONPATH": str(ROOT)}
 
@@ -59,7 +57,7 @@ def test_the_page_is_run_from_top_to_bottom_and_does_what_it_says(shell, tmp_pat
                 continue
             words = shlex.split(text.replace("/srv/fleet", str(folder)))[1:]
             database = ["--database", f"sqlite:///{folder}/fleet.db", "--port", "0"]
-            processes.start("gateway", [sys.executable, "-m", "robot_bridge", *words, *database])
+            processes.start_bridge("gateway", [*words, *database])
             found = processes.wait_for_line("gateway", r"listening on wss://0\.0\.0\.0:(\d+)", START)
             renewed = (folder / "tls" / "server.pem").read_bytes()
             context = ssl.create_default_context(cafile=folder / "tls" / "ca.pem")

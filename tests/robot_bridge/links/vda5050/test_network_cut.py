@@ -42,7 +42,10 @@ def cut_yard(bridge, modules, tmp_path):
         assert "Traceback" not in yard.output("adapter"), yard.output("adapter")
 
 
-@pytest.mark.parametrize("reset", [False, True])
+LATE = pytest.param(False, id="bytes come late", marks=pytest.mark.again("bytes are lost"))
+
+
+@pytest.mark.parametrize("reset", [LATE, pytest.param(True, id="bytes are lost")])
 def test_a_cut_of_ten_seconds_loses_nothing_and_does_nothing_twice(cut_yard, desk, reset):
     """One vehicle is on its way, another is sent off meanwhile: that is refused, and stays so."""
     yard, line = cut_yard

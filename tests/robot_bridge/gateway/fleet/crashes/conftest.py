@@ -2,9 +2,9 @@
 
 Moments are the transactions that a scenario takes, or its seconds. One that stops robots is played once for
 each of them from the order until all go on again, and a while longer; what is driven before and then, and
-every other scenario, for every fourth, beginning with the next one from scenario to scenario. With
-EVERY_CRASH=1 in the environment all are played at each, before and after the commit, with all that robots may
-do meanwhile.
+every other scenario, for every eighth, beginning with the next one from scenario to scenario; in a run for a
+release for every fourth. With EVERY_CRASH=1 in the environment all are played at each, before and after the
+commit, with all that robots may do meanwhile.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from tests.support.bridge.mortal_database import Death
 
 STOPS = {"paused", "aborted", "aborted_too_late", "halted", "continued_at_once", "stopped"}
 """Scenarios in which operators stop robots."""
-EVERY = 4
+EVERY, EVERY_FOR_RELEASE = 8, 4
 """Of how many moments one is played, where no robot is stopped."""
 STILL_ALL = 10
 """For how many transactions each is played after robots were told to go on."""
@@ -79,8 +79,9 @@ def play(crash, sqlite_url, quick_folder):
 
 
 @pytest.fixture
-def moments():
+def moments(request):
     """Pair moments with what happens then: ``moments(scenario, all_moments, ways, while_stopped)``."""
+    every = EVERY_FOR_RELEASE if request.config.getoption("--release") else EVERY
 
     def moments(scenario, times, ways, while_stopped):
         if os.environ.get("EVERY_CRASH"):
@@ -88,7 +89,7 @@ def moments():
         first = list(SCENARIOS).index(scenario)
         stopped = [at for at in times if scenario in STOPS and at in while_stopped]
         driven = [at for at in times if at not in stopped]
-        some = sorted(stopped + driven[first % EVERY :: EVERY])
+        some = sorted(stopped + driven[first % every :: every])
         return [(at, ways[number % len(ways)]) for number, at in enumerate(some, first)]
 
     return moments

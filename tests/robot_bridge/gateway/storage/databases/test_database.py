@@ -193,9 +193,8 @@ async def test_a_map_of_some_megabytes_is_kept(database):
     assert (row.payload, len(row.params)) == (content, 200_000)
 
 
-async def test_two_transactions_that_lock_each_other_out_are_both_done(url, kind):
-    if kind == "sqlite":
-        pytest.skip("SQLite knows one writer at a time")
+@pytest.mark.parametrize("kind", ["postgresql", "mariadb"], indirect=True)
+async def test_two_transactions_that_lock_each_other_out_are_both_done(url):
     one, two = Database(url), Database(url)
     await one.run(add, "a")
     await one.run(add, "b")

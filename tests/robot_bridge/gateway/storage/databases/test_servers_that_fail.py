@@ -16,7 +16,7 @@ from robot_bridge.core.errors import StoreError, UncertainError
 from robot_bridge.gateway.storage.database import Database
 from robot_bridge.gateway.storage.schema import rr
 
-pytestmark = pytest.mark.parametrize("kind", ["postgresql", "mariadb"], indirect=True)
+SERVERS = pytest.mark.parametrize("kind", ["postgresql", "mariadb"], indirect=True)
 
 
 @pytest.fixture
@@ -60,6 +60,7 @@ def frozen(server):
                 os.kill(pid, signal.SIGCONT)
 
 
+@SERVERS
 async def test_a_server_that_was_restarted_between_two_pieces_of_work_is_not_noticed(database, server):
     await database.run(add, "before")
     server.kill()
@@ -68,6 +69,7 @@ async def test_a_server_that_was_restarted_between_two_pieces_of_work_is_not_not
     assert await database.read(names) == ["after", "before"]
 
 
+@SERVERS
 async def test_work_on_a_server_that_is_gone_is_refused_at_once_and_done_when_it_is_back(database, server):
     server.kill()
     began = time.monotonic()
@@ -80,6 +82,7 @@ async def test_work_on_a_server_that_is_gone_is_refused_at_once_and_done_when_it
     assert await database.read(names) == ["r1"]
 
 
+@SERVERS
 async def test_nobody_waits_for_a_server_that_no_longer_answers(database, server):
     await database.run(add, "r1")
     began = time.monotonic()
@@ -95,6 +98,7 @@ async def test_nobody_waits_for_a_server_that_no_longer_answers(database, server
     assert await database.run(names) == ["r1"]
 
 
+@SERVERS
 async def test_a_statement_that_takes_too_long_is_ended(database, kind):
     numbers = "information_schema.columns"
     slow = "select pg_sleep(30)"
@@ -107,6 +111,7 @@ async def test_a_statement_that_takes_too_long_is_ended(database, kind):
     assert await database.run(names) == []
 
 
+@SERVERS
 async def test_a_connection_lost_during_the_commit_leaves_it_open_whether_it_was_done(database, server):
     def dies_before_it_is_committed(connection):
         add(connection, "r1")
@@ -118,6 +123,7 @@ async def test_a_connection_lost_during_the_commit_leaves_it_open_whether_it_was
     assert await database.run(names) == []
 
 
+@SERVERS
 async def test_a_robot_that_locks_its_rows_keeps_nobody_else_waiting_for_ever(url, kind, database, server):
     other = Database(url)
     await other.run(add, "r1")
@@ -140,9 +146,8 @@ async def test_a_robot_that_locks_its_rows_keeps_nobody_else_waiting_for_ever(ur
     await other.close()
 
 
-async def test_notifications_are_heard_again_after_a_restart(database, server, kind, url):
-    if kind == "mariadb":
-        pytest.skip("MariaDB has no notifications")
+@pytest.mark.parametrize("kind", ["postgresql"], indirect=True)
+async def test_notifications_are_heard_again_after_a_restart(database, server, url):
     wakeup = database.wakeup("rr")
     other = Database(url)
 

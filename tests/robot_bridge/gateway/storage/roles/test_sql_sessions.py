@@ -7,7 +7,6 @@ import re
 import shlex
 import shutil
 import subprocess
-import sys
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -16,6 +15,7 @@ import pytest
 from robot_bridge.core.robotmap.binary import decode
 from tests.support.bridge.bridge_programs import wait_until
 from tests.support.databases.database_server import DatabaseServer
+from tests.support.forked_programs import write_shell_command
 from tests.support.operators import Desk
 from tests.support.patience import START
 from tests.support.processes import Processes
@@ -35,7 +35,7 @@ class Shell:
         (folder / "bin").mkdir()
         # Who sits here may become anybody.
         script(folder / "bin" / "sudo", 'case "$1" in -u) shift 2;; esac; exec "$@"')
-        script(folder / "bin" / "robot-bridge", f'exec {shlex.quote(sys.executable)} -m robot_bridge "$@"')
+        write_shell_command(folder / "bin" / "robot-bridge")
         self._shell = subprocess.Popen(
             ["bash"],
             cwd=folder,
@@ -130,7 +130,7 @@ def gateway(place, sample_site, tmp_path):
     words = shlex.split(line)[1:]
     words[words.index("gateway.password")] = str(place.shell.folder / "gateway.password")
     with Processes(tmp_path / "logs") as processes:
-        processes.start("gateway", [sys.executable, "-m", "robot_bridge", *words, "--port", "0"])
+        processes.start_bridge("gateway", [*words, "--port", "0"])
         address = processes.wait_for_line("gateway", r"listening on (ws://\S+)", START).group(1)
         yield Desk(f"{address}/desk", "Ada")
         assert "Traceback" not in processes.log("gateway").read_text(encoding="utf-8")
