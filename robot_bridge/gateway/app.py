@@ -369,7 +369,7 @@ async def run(settings: GatewaySettings, signals: Signals, started: Callable[[st
         queries = SiteQueries(maps, handlers)
         gateway = Gateway(fleet, gate, links, answering, FieldPage(maps), queries, tls)
         if relays is not None:
-            relays.reach(gateway.robots)
+            relays.reach(gateway.robots.abort)
         if doubt is not None:
             log.warning("%s", doubt.text)
             if doubt.may_be_ahead:

@@ -4,15 +4,14 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 
-from .api.robot_websockets import WebSocketInterface
 from .cluster.cluster import Cluster
 from .cluster.messages import Wake
 from .cluster.position_relay import PositionRelay
 from .cluster.request_relay import RequestRelay
 from .cluster.step_feed import StepFeed
-from .cluster.stop_relay import StopRelay
+from .cluster.stop_relay import EmergencyStopRelay
 from .fleet.service import Fleet
 from .model.request_handlers import Answering
 from .monitoring.metrics import Counters
@@ -43,7 +42,7 @@ class ClusterRelays:
         membership, exchange, database = cluster.membership, cluster.exchange, fleet.database
         self._cluster = cluster
         self._fleet = fleet
-        self.stops = StopRelay(
+        self.stops = EmergencyStopRelay(
             fleet.emergency, membership, exchange, lease, stops_when_cut_off=stops_when_cut_off
         )
         fleet.emergency.relay_by(self.stops)
@@ -53,9 +52,9 @@ class ClusterRelays:
         self._owners_changed = asyncio.Event()
         exchange.subscribe(Wake, self._woken)
 
-    def reach(self, robots: WebSocketInterface) -> None:
-        """Have Aborts of other gateways sent over the open connections of ``robots``."""
-        self.requests.reach(robots.abort)
+    def reach(self, link: Callable[[str, str], bool]) -> None:
+        """Call ``link`` with a robot and the id of a call where another gateway has it aborted directly."""
+        self.requests.reach(link)
 
     def works(self, works: Mapping[str, Work], tally: Counters) -> dict[str, Work]:
         """Return ``works`` of a gateway as one of several does them, and what it does beside."""
@@ -92,7 +91,7 @@ class ClusterRelays:
         while True:
             self._owners_changed.clear()
             await takeover.claim_left()
-            await takeover.look()
+            await takeover.follow()
             with contextlib.suppress(TimeoutError):
                 async with asyncio.timeout(OWNERS_INTERVAL_S):
                     await self._owners_changed.wait()

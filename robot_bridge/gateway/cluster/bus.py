@@ -68,7 +68,7 @@ class NoBus:
         await asyncio.Event().wait()
 
 
-class Outgoing:
+class OutgoingMessages:
     """Messages that wait to be sent, in their order; a stop is before all others."""
 
     def __init__(self) -> None:
@@ -108,7 +108,7 @@ class NotifyBus:
     def __init__(self, url: URL, gateway: str) -> None:
         self._url = url
         self._subjects = (STOP, EVERYBODY, POSITIONS, own_subject(gateway))
-        self._outgoing = Outgoing()
+        self._outgoing = OutgoingMessages()
         self._connected = False
         self._said = ""
 
@@ -215,7 +215,7 @@ class NatsBus:
         self._subjects = (STOP, EVERYBODY, POSITIONS, own_subject(gateway))
         self._password = password
         self._client: Any = None
-        self._outgoing = Outgoing()
+        self._outgoing = OutgoingMessages()
         self._said = ""
 
     @property

@@ -15,7 +15,7 @@ from ...core.logs import RepeatedLines
 from ..model.events import EventBus
 from ..storage.repositories import metadata
 from .bus import EVERYBODY, STOP, Bus, own_subject
-from .messages import Beat, BusMessageError, Codec, Message, StopCall, Wake
+from .messages import Beat, BusMessage, BusMessageError, Codec, StopCall, Wake
 
 log = logging.getLogger(__name__)
 
@@ -24,7 +24,7 @@ KEY = "bus_key"
 HEARD_S = 5.0
 """seconds after which a gateway that says nothing is not heard any more."""
 
-Kind = TypeVar("Kind", bound=Message)
+Kind = TypeVar("Kind", bound=BusMessage)
 
 
 def fleet_key(connection: Connection) -> bytes:
@@ -50,7 +50,7 @@ class Exchange:
         """Call ``handler``, which must not block, with each message of ``kind`` from another gateway."""
         self._events.subscribe(kind, handler)
 
-    def send(self, subject: str, message: Message) -> bool:
+    def send(self, subject: str, message: BusMessage) -> bool:
         """Send a message; return at once, true where some bus took it."""
         content = self._codec.encode(message)
         urgent = subject == STOP or isinstance(message, Wake)

@@ -42,23 +42,23 @@ class BusMessageError(BridgeError):
     """Bytes on the bus that are no message of this fleet."""
 
 
-class Message(msgspec.Struct, array_like=True, frozen=True, tag=True):
+class BusMessage(msgspec.Struct, array_like=True, frozen=True, tag=True):
     """A message; ``gw`` is the gateway that sent it."""
 
     gw: Gateway
 
 
-class Beat(Message, frozen=True, tag="beat"):
+class Beat(BusMessage, frozen=True, tag="beat"):
     """The gateway is there."""
 
 
-class Wake(Message, frozen=True, tag="wake"):
+class Wake(BusMessage, frozen=True, tag="wake"):
     """Something was committed that concerns another gateway, which had better look at once."""
 
     what: Literal["requests", "answers", "owners", "steps", "stops"]
 
 
-class StopCall(Message, frozen=True, tag="stop"):
+class StopCall(BusMessage, frozen=True, tag="stop"):
     """Every robot is to stop; sent again until each gateway has answered."""
 
     id: Id
@@ -67,7 +67,7 @@ class StopCall(Message, frozen=True, tag="stop"):
     reason: Line | None = None
 
 
-class StopSeen(Message, frozen=True, tag="stopped"):
+class StopSeen(BusMessage, frozen=True, tag="stopped"):
     """The stop is in force at the gateway, and on its way to its robots; how far they are."""
 
     id: Id
@@ -78,14 +78,14 @@ class StopSeen(Message, frozen=True, tag="stopped"):
     refused: Names = []
 
 
-class AbortCall(Message, frozen=True, tag="abort"):
+class AbortCall(BusMessage, frozen=True, tag="abort"):
     """A robot is to be told to abort over its open connection, by whoever has that: it may not be stored."""
 
     robot: Robot
     call_id: Annotated[str, Meta(max_length=100)]
 
 
-class PositionBatch(Message, frozen=True, tag="positions"):
+class PositionBatch(BusMessage, frozen=True, tag="positions"):
     """Where robots of the gateway are, at the database's time ``t``, in seconds.
 
     ``numbers`` are float32, robot by robot, :data:`COLUMNS` of each, NaN where there is none; ``flags`` a
@@ -114,7 +114,7 @@ class Codec:
     def __init__(self, key: bytes) -> None:
         self._key = key
 
-    def encode(self, message: Message) -> bytes:
+    def encode(self, message: BusMessage) -> bytes:
         """Return a message as bytes."""
         content = FORM + _ENCODER.encode(message)
         return self._signature(content) + content

@@ -104,10 +104,10 @@ class Ownership:
         return sorted(got)
 
     def forget(self, robots: Iterable[str]) -> None:
-        """Take these robots for nobody's until the next :meth:`look`."""
+        """Take these robots for nobody's until the next :meth:`refresh`."""
         self._robots.forget(robots)
 
-    async def look(self) -> OwnerChanges:
+    async def refresh(self) -> OwnerChanges:
         """Return what has changed in the database of who has which robot; raises StoreError.
 
         The robots that are lost are nobody's here from then on.

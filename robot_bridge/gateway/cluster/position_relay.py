@@ -50,9 +50,9 @@ class PositionRelay:
         """Tell until cancelled."""
         while True:
             await asyncio.sleep(TICK_S)
-            self.tell()
+            self.send_changes()
 
-    def tell(self) -> None:
+    def send_changes(self) -> None:
         """Tell what changed since the last time, and everything once in a while."""
         now = self._membership.database_time()
         everything = now - self._told_all_at >= IDLE_S

@@ -294,12 +294,12 @@ class RequestRelay:
         """Deal with what others ask, until cancelled; raises StoreError."""
         while True:
             self._asked.clear()
-            await self.look()
+            await self.begin_waiting()
             with contextlib.suppress(TimeoutError):
                 async with asyncio.timeout(LOOK_S):
                     await self._asked.wait()
 
-    async def look(self) -> None:
+    async def begin_waiting(self) -> None:
         """Begin with what waits for robots of this gateway; raises StoreError."""
         for request in await self._database.run(relayed.take, self._membership.me, MOST_AT_ONCE):
             task = asyncio.create_task(self._do(request))

@@ -43,14 +43,14 @@ class StepFeed:
         try:
             while True:
                 self._woken.clear()
-                await self.look()
+                await self.catch_up()
                 with contextlib.suppress(TimeoutError):
                     async with asyncio.timeout(LOOK_S):
                         await self._woken.wait()
         finally:
             waking.cancel()
 
-    async def look(self) -> None:
+    async def catch_up(self) -> None:
         """Tell operators of the steps since the last look; raises StoreError."""
         if self._newest is None:
             self._newest = await self._database.read(step_feed.newest)

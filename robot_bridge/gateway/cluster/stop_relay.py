@@ -33,7 +33,7 @@ CUT_OFF_S = 5.0
 MOST_NAMES = 50
 
 
-class Stops(Protocol):
+class LocalStops(Protocol):
     """The emergency stops of this gateway."""
 
     @property
@@ -57,7 +57,7 @@ class Stops(Protocol):
         """Take in how a stop is stored."""
 
 
-class StopRelay:
+class EmergencyStopRelay:
     """Tells other gateways of stops made here, and learns of those made there.
 
     What an operator's stop does for its own robots waits for nothing of this.
@@ -65,7 +65,7 @@ class StopRelay:
 
     def __init__(
         self,
-        stops: Stops,
+        stops: LocalStops,
         membership: Membership,
         exchange: Exchange,
         lease: Database,
@@ -134,7 +134,7 @@ class StopRelay:
                 task.cancel()
             await asyncio.gather(*tasks, return_exceptions=True)
 
-    async def look(self) -> None:
+    async def read_stored(self) -> None:
         """Learn from the database of stops, and of their end; raises StoreError."""
         current = self._stops.current
         mine = current.id if current is not None and self._stops.in_force else None
@@ -153,7 +153,7 @@ class StopRelay:
         while True:
             self._look_now.clear()
             try:
-                await self.look()
+                await self.read_stored()
             except StoreError as error:
                 log.debug("emergency stops cannot be looked up: %s", error)
                 await self._stop_if_cut_off()

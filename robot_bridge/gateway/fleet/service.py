@@ -237,7 +237,7 @@ class Fleet:
         await self.suspensions.restore()
         if self.takeover is not None:
             await self.takeover.claim_left()
-            await self.takeover.look()
+            await self.takeover.follow()
             return
         start = self.reception.greeting()
         greetings = [RequestOutcome(robot.name, answer=start) for robot in known if robot.link == "sql"]

@@ -67,9 +67,9 @@ class Takeover:
         """Have the robots that no living gateway has, if this gateway leads; raises StoreError."""
         await self._take_up(await self._ownership.claim_left())
 
-    async def look(self) -> None:
+    async def follow(self) -> None:
         """Drop the robots that another gateway has by now, and learn which others there are (StoreError)."""
-        changes = await self._ownership.look()
+        changes = await self._ownership.refresh()
         for robot in sorted(changes.lost):
             self._drop(robot, changes.gateways.get(robot))
         if changes.new:

@@ -16,7 +16,7 @@ from robot_bridge.gateway.cluster.bus import (
     STOP,
     NatsBus,
     NotifyBus,
-    Outgoing,
+    OutgoingMessages,
     check_version,
     own_subject,
 )
@@ -81,7 +81,7 @@ def signed(content):
 
 
 async def test_a_stop_is_sent_before_what_waits_and_nothing_grows_without_end():
-    outgoing = Outgoing()
+    outgoing = OutgoingMessages()
     for number in range(2 * MOST_WAITING):
         outgoing.add(POSITIONS, str(number).encode())
     outgoing.add(STOP, b"stop")

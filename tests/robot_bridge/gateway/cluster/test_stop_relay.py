@@ -13,7 +13,7 @@ from robot_bridge.gateway.cluster import stop_relay
 from robot_bridge.gateway.cluster.bus import STOP
 from robot_bridge.gateway.cluster.exchange import Exchange
 from robot_bridge.gateway.cluster.messages import Beat, Codec, StopCall, StopSeen, Wake
-from robot_bridge.gateway.cluster.stop_relay import CUT_OFF_S, StopRelay
+from robot_bridge.gateway.cluster.stop_relay import CUT_OFF_S, EmergencyStopRelay
 from robot_bridge.gateway.storage.repositories import emergency_stops
 from robot_bridge.gateway.storage.repositories.emergency_stops import StopRow
 from tests.support.patience import BUSY
@@ -67,7 +67,8 @@ class Place:
         self.yard, self.stops = yard, yard.fleet.emergency
         self.bus, self.company, self.clock = Bus(), Company("a"), ManualClock(uptime=100.0)
         self.exchange, self.lease = Exchange("b", KEY, [self.bus]), Lease(yard.database)
-        self.relay = StopRelay(self.stops, self.company, self.exchange, self.lease, self.clock, **how)
+        parts = self.stops, self.company, self.exchange, self.lease, self.clock
+        self.relay = EmergencyStopRelay(*parts, **how)
         self.stops.relay_by(self.relay)
         self.told = []
         self.stops.reach(self.told.append)
@@ -104,7 +105,7 @@ async def test_a_call_stops_the_robots_here_is_answered_and_stored(place):
     assert [op for op in place.yard.waiting("r1") if op == "Abort"] == ["Abort"]
     # However often, and by whichever way, it comes.
     place.say(CALL)
-    await place.relay.look()
+    await place.relay.read_stored()
     await place.until(lambda: len(place.bus.of(StopSeen)) >= 2)
     assert place.told == ["emergency-stop-number-a"]
 
@@ -139,7 +140,7 @@ async def test_who_has_not_answered_is_called_again(place, monkeypatch):
 
 async def test_a_stop_that_no_message_told_of_is_found_in_the_database(place):
     await place.store(StopRow("stop-number-a", 1000.0, "Ada"))
-    await place.relay.look()
+    await place.relay.read_stored()
     assert place.stops.in_force and place.told == ["emergency-stop-number-a"]
 
 
@@ -147,7 +148,7 @@ async def test_it_ends_when_its_own_row_says_so(place):
     place.say(CALL)
     await place.until(lambda: place.stops.in_force and place.stops.report().stored)
     await place.yard.database.run(emergency_stops.clear, 1010.0, "Eve", "clear", {"stop-number-a"})
-    await place.relay.look()
+    await place.relay.read_stored()
     report = place.stops.report()
     assert (report.in_force, report.cleared_by, report.clear_reason) == (False, "Eve", "clear")
     # A call that was late does not begin it anew.
@@ -159,7 +160,7 @@ async def test_it_ends_when_its_own_row_says_so(place):
 async def test_another_stop_that_was_cleared_ends_nothing_here(place):
     await place.store(StopRow("old", 900.0, "Ada", None, 950.0, "Eve"))
     await place.stops.stop(EmergencyStop("stop-number-b"), "Bob")
-    await place.relay.look()
+    await place.relay.read_stored()
     assert place.stops.in_force
 
 
@@ -167,7 +168,7 @@ async def test_a_newer_stop_holds_when_the_one_before_ends(place):
     await place.stops.stop(EmergencyStop("stop-number-b"), "Bob")
     await place.yard.database.run(emergency_stops.clear, 1010.0, "Eve", None, {"stop-number-b"})
     await place.store(StopRow("stop-number-a", 1011.0, "Ada"))
-    await place.relay.look()
+    await place.relay.read_stored()
     assert place.stops.in_force and place.stops.report().stop == "stop-number-a"
 
 
@@ -179,16 +180,16 @@ async def test_nobody_clears_a_stop_that_this_gateway_does_not_know_of(place):
     ):
         await place.stops.clear(ClearEmergencyStop(), "Eve")
     assert place.stops.in_force
-    await place.relay.look()
+    await place.relay.read_stored()
     assert not (await place.stops.clear(ClearEmergencyStop(), "Eve")).in_force
 
 
 async def cut_off(place):
-    await place.relay.look()
+    await place.relay.read_stored()
     place.lease.away = True
     place.clock.advance(CUT_OFF_S + 0.1)
     with pytest.raises(StoreError):
-        await place.relay.look()
+        await place.relay.read_stored()
     await place.relay._stop_if_cut_off()
 
 
