@@ -110,9 +110,9 @@ NOT_CORE = (
 )
 """Tests that take long, or need more than Python."""
 NOT_CORE_PATHS = {ROOT / "tests" / name for name in NOT_CORE}
-MORE_THAN_CORE = {"start_bridge", "postgresql_server", "mariadb_server", "data"}
+MORE_THAN_CORE = {"start_bridge", "postgresql_server", "mariadb_server", "nats", "data"}
 """Fixtures that start programs, or read much."""
-SERVERS = {"postgresql", "mariadb"}
+SERVERS = {"postgresql", "mariadb", "nats"}
 GIS = re.compile(r"^\s*(?:from|import) (?:qgis|osgeo|PyQt5)\b", re.MULTILINE)
 
 

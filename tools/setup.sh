@@ -164,6 +164,7 @@ servers=$(missing_servers | tr '\n' ' ')
 check_versions "$python"
 make_venv "$python"
 tools/asyncapi_parser.sh || say "without AsyncAPI's parser the test that asks it is skipped"
+tools/nats_server.sh >/dev/null || say "without a NATS server the tests of gateways on it are skipped"
 tools/vda5050_vehicles.sh >/dev/null || say "without virtual vehicles the tests that lead them are skipped"
 touch $STAMP
 say "ready: $($VENV/bin/python -c 'from qgis.core import Qgis; print("QGIS", Qgis.QGIS_VERSION)'), $VENV"

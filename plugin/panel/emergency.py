@@ -135,6 +135,12 @@ def _counts(report: EmergencyReport) -> list[str]:
             standing=report.standing,
         )
     ]
+    if report.gateways is not None:
+        at = report.gateways
+        lines.append(tr("In force at {reached} of {of} gateways", reached=at.reached, of=at.of))
+        if at.missing:
+            names = ", ".join(first_of(at.missing, MOST_NAMES, at.of - at.reached))
+            lines.append(tr("NOT REACHED: gateways {names}. Watch their robots", names=names))
     if report.waiting:
         # The gateway names some fifty at most, and counts all of them.
         silent = report.robots - report.acknowledged - len(report.refused)

@@ -4689,8 +4689,18 @@
         </message>
         <message>
             <location filename="../../plugin/panel/emergency.py" />
+            <source>In force at {reached} of {of} gateways</source>
+            <translation>En vigor a {reached} de {of} passarel·les</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/emergency.py" />
             <source>Keep it in force</source>
             <translation>Mantén-la en vigor</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/emergency.py" />
+            <source>NOT REACHED: gateways {names}. Watch their robots</source>
+            <translation>NO S'HA ARRIBAT a les passarel·les {names}. Vigileu els seus robots</translation>
         </message>
         <message>
             <location filename="../../plugin/panel/emergency.py" />

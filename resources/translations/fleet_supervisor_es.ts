@@ -4689,8 +4689,18 @@
         </message>
         <message>
             <location filename="../../plugin/panel/emergency.py" />
+            <source>In force at {reached} of {of} gateways</source>
+            <translation>En vigor en {reached} de {of} pasarelas</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/emergency.py" />
             <source>Keep it in force</source>
             <translation>Mantenerla en vigor</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/emergency.py" />
+            <source>NOT REACHED: gateways {names}. Watch their robots</source>
+            <translation>NO SE HA LLEGADO a las pasarelas {names}. Vigile sus robots</translation>
         </message>
         <message>
             <location filename="../../plugin/panel/emergency.py" />

@@ -4662,8 +4662,18 @@
         </message>
         <message>
             <location filename="../../plugin/panel/emergency.py" />
+            <source>In force at {reached} of {of} gateways</source>
+            <translation>{of} átjáró közül {reached} helyen érvényes</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/emergency.py" />
             <source>Keep it in force</source>
             <translation>Maradjon érvényben</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/emergency.py" />
+            <source>NOT REACHED: gateways {names}. Watch their robots</source>
+            <translation>NEM ELÉRHETŐ átjárók: {names}. Figyelje a robotjaikat</translation>
         </message>
         <message>
             <location filename="../../plugin/panel/emergency.py" />

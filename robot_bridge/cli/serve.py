@@ -33,6 +33,7 @@ from .options import (
 
 if TYPE_CHECKING:
     from ..gateway.app import GatewaySettings, Signals
+    from ..gateway.cluster.cluster import ClusterSettings
 
 log = logging.getLogger(__name__)
 
@@ -57,6 +58,28 @@ def serve(
         Path | None, typer.Option(help="The gateway's certificate (PEM), for wss://.")
     ] = None,
     key: Annotated[Path | None, typer.Option(help="Its key (PEM).")] = None,
+    gateway_name: Annotated[
+        str,
+        typer.Option(
+            help="Name of this gateway, where several serve one fleet on one PostgreSQL database.",
+            envvar="ROBOT_BRIDGE_GATEWAY_NAME",
+        ),
+    ] = "",
+    bus: Annotated[
+        str,
+        typer.Option(
+            help="What gateways with names tell each other by: postgresql, none, or nats://HOST:PORT, "
+            "several with commas between them.",
+            envvar="ROBOT_BRIDGE_BUS",
+        ),
+    ] = "",
+    bus_password_file: Annotated[
+        Path | None,
+        typer.Option(
+            help="File with the password of the account in the URL of the bus.",
+            envvar="ROBOT_BRIDGE_BUS_PASSWORD_FILE",
+        ),
+    ] = None,
     site_as_given: Annotated[
         bool,
         typer.Option("--site-as-given", help="Serve --site, whatever site a supervisor chose at a desk."),
@@ -91,7 +114,8 @@ def serve(
     gc.enable()
     set_up_log(log_format, log_level)
     settings = gateway_settings(site, state, database, database_password_file, host, port, certificate, key)
-    settings = replace(settings, site_as_given=site_as_given)
+    cluster = cluster_settings(settings.site, gateway_name, bus, bus_password_file)
+    settings = replace(settings, site_as_given=site_as_given, cluster=cluster)
     with asyncio.Runner(loop_factory=_loop_factory(loop)) as runner:
         runner.run(_serve(settings, until_stdin_closes))
 
@@ -129,6 +153,27 @@ def gateway_settings(
         state=state,
         site_copy=copy,
     )
+
+
+def cluster_settings(site: Path, name: str, bus: str, password_file: Path | None) -> ClusterSettings | None:
+    """Return how a gateway is one of several, None for one that has its database alone.
+
+    :raises BridgeError: for a password that cannot be read, and for a bus without a name.
+    """
+    from ..core.sites.settings import SETTINGS_FILE, read_settings
+    from ..core.sites.settings_tables import GatewayOptions
+    from ..gateway.cluster.cluster import ClusterSettings
+    from ..gateway.storage.database import read_password
+
+    if not name:
+        if bus:
+            raise BridgeError(
+                "--bus is for gateways with names; give this one a name with --gateway-name, too"
+            )
+        return None
+    given = read_settings(site / SETTINGS_FILE).gateway if site.is_dir() else GatewayOptions()
+    password = None if password_file is None else read_password(password_file)
+    return ClusterSettings(name, bus or given.bus or "postgresql", password, given.when_cut_off == "stop")
 
 
 async def _serve(settings: GatewaySettings, until_stdin_closes: bool) -> None:

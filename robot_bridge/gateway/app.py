@@ -36,12 +36,14 @@ from .auth.administration import AccountAdministration
 from .auth.client_connection import ClientConnection
 from .auth.gate import PATHS, AuthGate
 from .auth.port import ServerFiles, ServerTls, address_here, check_reach, host_fault, is_loopback, listen
+from .cluster.cluster import Cluster, ClusterSettings, join_cluster, lease_database
+from .cluster_relays import ClusterRelays
 from .field.page import SITE, FieldPage
 from .fleet.emergency_persistence import StopJournal, journal_file
 from .fleet.link_supervision import LinkProcesses
 from .fleet.service import Fleet
 from .model.clocks import ClockWatch, check_clock_at_start
-from .model.request_handlers import RequestHandlers
+from .model.request_handlers import Answering, RequestHandlers
 from .monitoring import GarbageCollection, Metrics, Work, every, keep_all_going
 from .plans.service import PlanService
 from .retention import Retention
@@ -116,7 +118,8 @@ class GatewaySettings:
 
     ``state`` is the folder for what it notes on this computer, None for the one that the site's lies in.
     A site that a supervisor chose goes before ``site``, unless it has to be served ``site_as_given``. Where
-    ``site`` is the folder of a ``site_copy``, that is kept as new as its database.
+    ``site`` is the folder of a ``site_copy``, that is kept as new as its database. With ``cluster`` it is one
+    of several gateways that serve the fleet.
     """
 
     site: Path
@@ -127,6 +130,7 @@ class GatewaySettings:
     state: Path | None = None
     site_as_given: bool = False
     site_copy: SiteCopy | None = None
+    cluster: ClusterSettings | None = None
 
 
 @dataclass
@@ -145,7 +149,7 @@ class Gateway:
         fleet: Fleet,
         gate: AuthGate,
         links: LinkProcesses,
-        handlers: RequestHandlers,
+        handlers: Answering,
         field_page: FieldPage,
         queries: SiteQueries,
         tls: ServerTls | None = None,
@@ -156,7 +160,7 @@ class Gateway:
         self._links = links
         self._gate = gate
         self._tls = tls
-        self._robots = WebSocketInterface(fleet)
+        self.robots = WebSocketInterface(fleet)
         metrics = Metrics(fleet.tally)
         fleet.database.add_observer(metrics.database.observe)
         self._status = StatusPages(fleet, metrics)
@@ -213,8 +217,8 @@ class Gateway:
             self._fleet.clock_was_set(step)
         fleet = self._fleet
         fleet.age()
-        self._robots.update()
-        fleet.links.update(self._robots.links(), self._links.states)
+        self.robots.update()
+        fleet.links.update(self.robots.links(), self._links.states)
 
     async def _admit(self, visitor: ClientConnection, request: Request) -> Response | None:
         path = urlsplit(request.path).path
@@ -286,9 +290,9 @@ class Gateway:
         if kind is TokenKind.OPERATOR:
             await OperatorSession(self._fleet, visitor, self._gate, self._handlers).run()
         elif kind is TokenKind.LINK:
-            await self._robots.serve_link(visitor, self._gate)
+            await self.robots.serve_link(visitor, self._gate)
         else:
-            await self._robots.serve(visitor, visitor.identity.name)
+            await self.robots.serve(visitor, visitor.identity.name)
 
 
 def request_handlers(
@@ -325,6 +329,8 @@ async def run(settings: GatewaySettings, signals: Signals, started: Callable[[st
     """
     # Threads that wait for one another's ways must not keep others waiting.
     asyncio.get_running_loop().set_default_executor(ThreadPoolExecutor(MOST_THREADS, "gateway"))
+    if settings.cluster is not None:
+        settings.cluster.check(settings.database)
     tls = ServerTls(settings.tls) if settings.tls else None
     stamp = await asyncio.to_thread(stamp_of, settings.site)
     await asyncio.to_thread(check_site, settings.site)
@@ -332,9 +338,7 @@ async def run(settings: GatewaySettings, signals: Signals, started: Callable[[st
         database = Database(settings.database)
         stack.push_async_callback(database.close, CLOSE_WITHIN)
         await database.open()
-        sole = SingletonLock(settings.database)
-        await sole.acquire()
-        stack.push_async_callback(sole.release)
+        cluster, holding = await _hold_database(settings, database, stack)
         # After the database: a city takes a while to read, and a wrong address is told at once.
         site = await asyncio.to_thread(read_site, settings.site)
         # Before anything is stored by this clock.
@@ -351,17 +355,23 @@ async def run(settings: GatewaySettings, signals: Signals, started: Callable[[st
         maps = SiteMaps(site)
         planner = await asyncio.to_thread(RoadPlanner, maps)
         stack.callback(planner.close)
-        fleet = Fleet(maps, database, planner=planner, stops=journal, note=gate.journal.note)
+        fleet = Fleet(maps, database, planner=planner, stops=journal, note=gate.journal.note, cluster=cluster)
         await fleet.start()
         plans = PlanService(
             fleet.queue_context, fleet.queues, fleet.roads.closures, fleet.emergency, fleet.listeners
         )
-        await plans.restore()
+        if cluster is None:
+            await plans.restore()
         stack.push_async_callback(_save_last, fleet, plans, gate)
         links = LinkProcesses(site.settings.links, folder)
         watch = SiteWatch(folder, stamp, maps, fleet, signals.reload)
         handlers = request_handlers(fleet, plans, database, watch)
-        gateway = Gateway(fleet, gate, links, handlers, FieldPage(maps), SiteQueries(maps, handlers), tls)
+        relays = None if cluster is None else _relays(settings, cluster, fleet, handlers)
+        answering = handlers if relays is None else relays.requests
+        queries = SiteQueries(maps, handlers)
+        gateway = Gateway(fleet, gate, links, answering, FieldPage(maps), queries, tls)
+        if relays is not None:
+            relays.reach(gateway.robots.abort)
         if doubt is not None:
             log.warning("%s", doubt.text)
             if doubt.may_be_ahead:
@@ -374,16 +384,47 @@ async def run(settings: GatewaySettings, signals: Signals, started: Callable[[st
         stack.push_async_callback(notify_clients, server, fleet)
         address = _address(server, tls is not None)
         started(address)
-        works = {
-            **gateway.works(address),
-            "plans": lambda: every(PLANS_INTERVAL, plans.watch, "plans", fleet.tally),
-            "site": watch.run,
-            "sole gateway": sole.hold,
-        }
+        works = {**gateway.works(address), "site": watch.run, **holding}
+        if relays is None:
+            works["plans"] = lambda: every(PLANS_INTERVAL, plans.watch, "plans", fleet.tally)
+        else:
+            works = relays.works(works, fleet.tally)
         if (copy := settings.site_copy) is not None:
             stack.push_async_callback(copy.close)
             works["site copy"] = lambda: every(LOOK_INTERVAL, copy.refresh, "site copy", fleet.tally)
         await _until_stopped(keep_all_going(works, fleet.tally), signals.stop)
+
+
+async def _hold_database(
+    settings: GatewaySettings, database: Database, stack: contextlib.AsyncExitStack
+) -> tuple[Cluster | None, dict[str, Work]]:
+    """Have the database alone, or enter the fleet that it is; return that, and the work that keeps it so.
+
+    :raises BridgeError: when others have it in a way that does not go with this one's; StoreError.
+    """
+    if settings.cluster is None:
+        sole = SingletonLock(settings.database)
+        await sole.acquire()
+        stack.push_async_callback(sole.release)
+        return None, {"sole gateway": sole.hold}
+    lease = lease_database(settings.database)
+    stack.push_async_callback(lease.close, CLOSE_WITHIN)
+    fleet = await database.run(metadata.database_id)
+    cluster = await join_cluster(settings.cluster, database, lease, fleet)
+    stack.push_async_callback(cluster.membership.leave)
+    # At once: to read a city takes longer than a lease lasts.
+    holding = asyncio.create_task(cluster.membership.hold())
+    stack.callback(holding.cancel)
+    return cluster, {"lease": lambda: asyncio.shield(holding)}
+
+
+def _relays(
+    settings: GatewaySettings, cluster: Cluster, fleet: Fleet, handlers: RequestHandlers
+) -> ClusterRelays:
+    assert settings.cluster is not None
+    return ClusterRelays(
+        cluster, fleet, handlers, cluster.lease, stops_when_cut_off=settings.cluster.stops_when_cut_off
+    )
 
 
 async def _site_folder(settings: GatewaySettings, database: Database) -> Path:
@@ -415,7 +456,8 @@ def _chosen(folder: Path, given: Site) -> Site:
 
 def _journal(settings: GatewaySettings) -> StopJournal | None:
     folder = settings.state or settings.site.resolve().parent
-    file = journal_file(settings.database, folder)
+    name = None if settings.cluster is None else settings.cluster.name
+    file = journal_file(settings.database, folder, name)
     if file is None:
         return None
     journal = StopJournal(file)

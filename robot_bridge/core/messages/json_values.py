@@ -40,7 +40,7 @@ from .roads import (
     WayOut,
     WaysOut,
 )
-from .safety import EmergencyReport, RobotState
+from .safety import EmergencyReport, RobotState, StoppedGateways
 from .validation import known_fields
 
 # --- Messages to and from plain JSON values ---
@@ -145,7 +145,11 @@ def plan_report(values: dict[str, Any]) -> PlanReport:
 
 def emergency_report(values: dict[str, Any]) -> EmergencyReport:
     """Return how an emergency stop stands, as a gateway sent it as JSON."""
-    return EmergencyReport(**known_fields(EmergencyReport, values))
+    report = EmergencyReport(**known_fields(EmergencyReport, values))
+    if not isinstance(report.gateways, dict):
+        return report
+    gateways = StoppedGateways(**known_fields(StoppedGateways, report.gateways))
+    return dataclasses.replace(report, gateways=gateways)
 
 
 # --- What gateways tell of roads, from plain JSON values; unknown fields of newer gateways are passed over

@@ -57,13 +57,27 @@ def check_override(override: str | None) -> None:
 
 
 @dataclass(frozen=True)
+class StoppedGateways:
+    """Where several gateways serve the fleet: an emergency stop is in force at ``reached`` ``of`` them.
+
+    ``missing`` names the others: they have not answered yet, or cannot be reached. They learn of the stop
+    from the database within a second of reaching that.
+    """
+
+    reached: int
+    of: int
+    missing: list[str] = field(default_factory=list)
+
+
+@dataclass(frozen=True)
 class EmergencyReport:
     """The emergency stop in force, or the last one that was cleared; without ``stop`` there was none.
 
     Of ``robots`` known robots ``acknowledged`` have said that they stop and ``standing`` were seen to stand
     since; ``waiting`` names those that have not answered, ``refused`` those that answered that they will not
-    (some fifty at most of either). ``stored`` is false while the database could not be written: the stop
-    holds, and the next gateway on this computer learns of it from a file.
+    (some fifty at most of either); ``gateways`` is None where one gateway serves the fleet. ``stored`` is
+    false while the database could not be written: the stop holds, and the next gateway on this computer
+    learns of it from a file.
     """
 
     in_force: bool = False
@@ -80,6 +94,7 @@ class EmergencyReport:
     cleared_at: float | None = None
     cleared_by: str | None = None
     clear_reason: str | None = None
+    gateways: StoppedGateways | None = None
 
 
 @dataclass(frozen=True)

@@ -283,7 +283,9 @@ class FieldPageOptions:
 class GatewayOptions:
     """What ``robot-bridge serve`` takes where its command line does not say it; None for its own default.
 
-    ``certificate`` and ``key`` are files in PEM; a relative one lies in the folder of ``site.toml``.
+    ``certificate`` and ``key`` are files in PEM; a relative one lies in the folder of ``site.toml``. ``bus``
+    is that between several gateways of one fleet, and ``when_cut_off`` what becomes of the robots of one that
+    reaches neither the database nor any other gateway for five seconds.
     """
 
     host: str | None = None
@@ -291,6 +293,8 @@ class GatewayOptions:
     database: str | None = None
     certificate: str | None = None
     key: str | None = None
+    bus: str | None = None
+    when_cut_off: Literal["stop", "go on"] = "stop"
 
 
 @dataclass(frozen=True)

@@ -10,6 +10,7 @@ from typing import Any, Protocol
 
 from websockets.exceptions import ConnectionClosed
 
+from ...core.clock import steady_time
 from ...core.errors import StoreError
 from ...core.logs import log_unforeseen
 from ...core.messages.json_values import to_json
@@ -54,8 +55,11 @@ class Channel(Protocol):
     async def answers(self) -> bool:
         """Tell whether the other end is there; takes a second at most."""
 
-    async def release(self, reason: str) -> None:
-        """Tell the other end that the robot has another connection now, and carry nothing more for it."""
+    async def release(self, reason: str, *, again: bool = False) -> None:
+        """Tell the other end that the robot has another connection now, and carry nothing more for it.
+
+        It had better connect ``again`` where that may not be so.
+        """
 
 
 # --- How a robot's outbox goes out over its connection, and an emergency stop before anything else ---
@@ -152,6 +156,7 @@ class Delivery:
             # Noted first: it must never be taken back as something that the robot cannot have. All else is
             # noted afterwards, so that no Abort waits for the database, nor behind what does.
             drives = row.op in HELD_BACK
+            checked_at = steady_time()
             is_due = not drives or await self._fleet.mailboxes.hand_over(self._robot, row.id)
             if self._stops != stops:
                 return False
@@ -159,6 +164,8 @@ class Delivery:
                 async with self._channel.lane(urgent=bool(row.urgent), large=len(frame) > LARGE):
                     # While this waited for its turn the robot may have been told to stop.
                     if self._stops != stops:
+                        return False
+                    if drives and not self._fleet.mailboxes.may_send(self._robot, checked_at):
                         return False
                     await self._channel.send(frame)
             last[row.urgent] = row.id

@@ -42,7 +42,7 @@ from ..auth.client_connection import ClientConnection
 from ..auth.gate import AuthGate
 from ..fleet.operator_updates import EVERYTHING, Tick
 from ..fleet.service import Fleet
-from ..model.request_handlers import RequestHandlers
+from ..model.request_handlers import Answering
 
 # --- The order of requests, and what one overtakes ---
 
@@ -210,7 +210,7 @@ class OperatorSession:
     """
 
     def __init__(
-        self, fleet: Fleet, connection: ClientConnection, gate: AuthGate, handlers: RequestHandlers
+        self, fleet: Fleet, connection: ClientConnection, gate: AuthGate, handlers: Answering
     ) -> None:
         self._fleet = fleet
         self._handlers = handlers

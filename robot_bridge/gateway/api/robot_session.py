@@ -10,6 +10,7 @@ from contextlib import AbstractAsyncContextManager, nullcontext
 from typing import Any
 
 from websockets.exceptions import ConnectionClosed, ConnectionClosedOK
+from websockets.frames import CloseCode
 
 from ...core.errors import BridgeError, DataRefusedError, NotReadyError, StoreError
 from ...core.messages.json_values import to_json
@@ -91,11 +92,11 @@ class RobotSession:
         """Whether the robot has connected again elsewhere: what still comes in is passed over."""
         return self._closing is not None
 
-    def replace(self) -> None:
-        """Carry nothing more, because the robot has connected again."""
+    def replace(self, reason: str = ANEW, *, again: bool = False) -> None:
+        """Carry nothing more: the robot has connected again, or had better do so ``again``."""
         self._delivery.end()
         # A connection whose robot is gone takes seconds to close, and the new one must not wait for it.
-        self._closing = asyncio.create_task(self._channel.release(ANEW))
+        self._closing = asyncio.create_task(self._channel.release(reason, again=again))
 
     def end(self) -> None:
         """Deliver nothing more: the channel is gone."""
@@ -323,9 +324,9 @@ class RobotChannel:
         """Tell whether the robot answers a ping within a second."""
         return await is_answering(self._connection)
 
-    async def release(self, reason: str) -> None:
+    async def release(self, reason: str, *, again: bool = False) -> None:
         """Close the connection."""
-        await self._connection.close(REPLACED, reason)
+        await self._connection.close(CloseCode.SERVICE_RESTART if again else REPLACED, reason)
 
 
 class RobotConnection:

@@ -37,6 +37,7 @@ from ..auth.client_connection import ClientConnection
 from ..auth.gate import ANY_LINK, AuthGate
 from ..fleet.link_supervision import ConnectedLink
 from ..fleet.service import Fleet
+from ..model.events import RobotLeft
 from ..model.robots import RobotPose
 from .robot_session import RobotConnection, RobotSession, RobotSessions, is_answering, send_frame
 from .shared_connection import SEPARATOR, LinkedRobotChannel
@@ -374,7 +375,8 @@ class WebSocketInterface:
         self._links: set[LinkConnection] = set()
         self._holders = RobotSessions(fleet.reception.holds)
         fleet.emergency.reach(self._stop_all)
-        fleet.orders.reach(self._abort)
+        fleet.orders.reach(self.abort)
+        fleet.events.subscribe(RobotLeft, self._let_go)
 
     async def serve(self, connection: ClientConnection, robot: str | None) -> None:
         """Serve one connection to its end; without a name the robot is given one."""
@@ -424,12 +426,19 @@ class WebSocketInterface:
             with log_and_continue(log, f"telling robot {session.robot!r} of an emergency stop"):
                 session.stop_now(call_id)
 
-    def _abort(self, robot: str, call_id: str) -> bool:
+    def abort(self, robot: str, call_id: str) -> bool:
         """Send an Abort that cannot be stored; return whether the robot is connected."""
         session = self._holders.get(robot)
         if session is not None:
             session.stop_now(call_id, emergency=False)
         return session is not None
+
+    def _let_go(self, event: RobotLeft) -> None:
+        """Close the connection of a robot that another gateway has; one that is here says Ready again."""
+        if (session := self._holders.get(event.robot)) is not None:
+            self._holders.release(session)
+            reason = f"gateway {event.gateway} has this robot now; connect and say Ready again"
+            session.replace(reason, again=True)
 
     def _free_name(self) -> str:
         taken = {*self._fleet.robots.names(), *self._names}

@@ -114,7 +114,7 @@ class LinkedRobotChannel:
         """Tell whether the link is there: whether the robot behind it is, only the link can know."""
         return await self._shared.answers()
 
-    async def release(self, reason: str) -> None:
+    async def release(self, reason: str, *, again: bool = False) -> None:
         """Tell the link that it speaks for the robot no more."""
         self.end()
         self._shared.forget(self)

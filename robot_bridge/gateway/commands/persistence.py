@@ -15,6 +15,7 @@ from ...core.messages.commands import CommandReport
 from ...core.messages.robots import Abort, Answer, Command, SetPosIni
 from ...protocol.codec import decode_answer
 from ..storage.database import Database
+from ..storage.owner_fence import SOLE_FENCE, OwnerFence
 from ..storage.repositories import closures, commands, queues
 from ..storage.repositories import requests as answers
 from ..storage.repositories.commands import StoredCommand
@@ -218,6 +219,10 @@ class UnstoredAborts:
         """Return the names of the robots of which there are some."""
         return list(self._orders)
 
+    def drop(self, robot: str) -> None:
+        """Forget the Aborts of a robot."""
+        self._orders.pop(robot, None)
+
     def discard(self, order: CommandOrder) -> None:
         """Forget an Abort, unless a newer one is kept in its place."""
         mine = self._orders.get(order.robot, {})
@@ -261,9 +266,10 @@ class RobotLocks:
     else is done with any robot.
     """
 
-    def __init__(self, database: Database, known: StoredCommands) -> None:
+    def __init__(self, database: Database, known: StoredCommands, fence: OwnerFence = SOLE_FENCE) -> None:
         self._database = database
         self._known = known
+        self._fence = fence
         self._locks = NamedLocks()
         self._doubts = self._settled = 0
 
@@ -283,10 +289,28 @@ class RobotLocks:
                 self._settled = max(self._settled, before)
             yield
 
-    async def run(self, work: Callable[..., T], *arguments: Any) -> T:
-        """Run ``work`` in a transaction; raises StoreError, and UncertainError when it may have been done."""
+    async def run(self, names: Iterable[str], work: Callable[..., T], *arguments: Any) -> T:
+        """Run ``work``, which concerns the robots ``names``, in a transaction.
+
+        :raises FencedError: when this gateway has not all of them: nothing is done then.
+        :raises StoreError: when the database cannot be used; UncertainError when it may have been done.
+        """
         try:
-            return await self._database.run(work, *arguments)
+            if self._fence is SOLE_FENCE:
+                return await self._database.run(work, *arguments)
+            return await self._database.run(_fenced, self._fence, sorted(set(names)), work, *arguments)
         except UncertainError:
             self._doubts += 1
             raise
+
+    async def confirm(self, names: Sequence[str]) -> None:
+        """Raise FencedError unless this gateway has the robots ``names``; StoreError where nobody knows."""
+        if self._fence is not SOLE_FENCE:
+            await self._database.read(self._fence.check, names)
+
+
+def _fenced(
+    connection: Connection, fence: OwnerFence, names: Sequence[str], work: Callable[..., T], *arguments: Any
+) -> T:
+    fence.check(connection, names)
+    return work(connection, *arguments)

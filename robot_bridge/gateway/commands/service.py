@@ -19,6 +19,7 @@ from ..model.arrival import PathArrival, arrival_judge
 from ..model.events import CommandChanged, EventBus, OutboxChanged
 from ..model.robots import RobotPose, Robots
 from ..storage.database import Database, to_its_end
+from ..storage.owner_fence import CHECK_VALID_S, SOLE_FENCE, FencedError, OwnerFence
 from ..storage.repositories import commands
 from ..storage.repositories.commands import StoredCommand
 from .active_command import (
@@ -78,6 +79,7 @@ class CommandService(CommandReader):
         rules: CommandRules,
         waiting: WaitingRobots,
         events: EventBus,
+        fence: OwnerFence = SOLE_FENCE,
     ) -> None:
         super().__init__(ActiveCommands())
         self.drafting = CommandValidator(self._open, robots, rules, waiting)
@@ -86,7 +88,8 @@ class CommandService(CommandReader):
         self._robots = robots
         self._clock = clock
         self._events = events
-        self._held = RobotLocks(database, self)
+        self._fence = fence
+        self._held = RobotLocks(database, self, fence)
         self._turns = NamedLocks()
         self._late: set[tuple[str, int]] = set()
         self._unstored = UnstoredAborts()
@@ -98,7 +101,21 @@ class CommandService(CommandReader):
     async def restore(self) -> None:
         """Take up the commands that an earlier gateway left open."""
         for stored in await self._database.run(commands.still_open):
+            if self._fence.owns(stored.report.robot):
+                self._open.add(self._restored(stored))
+
+    async def take_up(self, robots: Sequence[str]) -> None:
+        """Take up the commands of robots that another gateway had; raises StoreError."""
+        for stored in await self._database.run(commands.still_open, robots):
             self._open.add(self._restored(stored))
+
+    def drop(self, robots: Iterable[str]) -> None:
+        """Know nothing more of the commands of robots that another gateway has."""
+        for robot in robots:
+            for command in self._open.of(robot):
+                self._open.remove(command.report.command)
+            self._unstored.drop(robot)
+            self._late = {late for late in self._late if late[0] != robot}
 
     async def issue(self, orders: list[CommandOrder], also: Also | None = None) -> list[CommandReport]:
         """Store new commands with their messages, all or none, and ``also`` more; return them as stored.
@@ -120,11 +137,27 @@ class CommandService(CommandReader):
 
         Were it noted afterwards, a gateway that is killed in between would leave a command queued that the
         robot carries out, and take it back as one that never reached it.
+
+        :raises FencedError: when another gateway has the robot, or may have it by now.
         """
-        if sa_id not in self._open.queued:
+        known = True
+        if sa_id in self._open.queued:
+            await to_its_end(self._delivered([sa_id]))
+            known = any(command.sa_id == sa_id for command in self._open.of(robot))
+        else:
+            await self._held.confirm([robot])
+        if not self._fence.may_command(robot):
+            raise FencedError(f"robot {robot!r} is sent nowhere: another gateway may have it by now")
+        return known
+
+    def may_send(self, robot: str, checked_at: float) -> bool:
+        """Tell whether what :meth:`hand_over` allowed at ``checked_at`` (steady clock) may be sent still.
+
+        A process that stood still in between may find that another gateway has the robot by now.
+        """
+        if self._fence is SOLE_FENCE:
             return True
-        await to_its_end(self._delivered([sa_id]))
-        return any(command.sa_id == sa_id for command in self._open.of(robot))
+        return self._fence.may_command(robot) and self._clock.steady() - checked_at < CHECK_VALID_S
 
     async def delivered(self, sa_ids: Iterable[int]) -> None:
         """Note that the messages ``sa_ids`` have reached their robots."""
@@ -232,7 +265,8 @@ class CommandService(CommandReader):
             self._late.discard((robot, sa_id))
         driven = self._open.progress(DRIVEN_STEP)
         if driven:
-            await self._database.run(write_driven, driven)
+            driving = [name for command in driven if (name := self.robot_of(command)) is not None]
+            await self._held.run(driving, write_driven, driven)
             self._open.note_progress(driven)
 
     # --- what has to be done to its end, with the robots' locks held --------------------------------------
@@ -273,7 +307,7 @@ class CommandService(CommandReader):
     ) -> list[CommandReport]:
         now = self._clock.time()
         drafts = [self.drafting.draft(order, fault, now) for order, fault in zip(orders, found, strict=True)]
-        issued, changed = await self._held.run(insert_commands, drafts, also)
+        issued, changed = await self._held.run([o.robot for o in orders], insert_commands, drafts, also)
         for command in changed:
             self._apply(command)
         for command in issued:
@@ -288,7 +322,7 @@ class CommandService(CommandReader):
             await self.drafting.consider_way(path)
             async with self._held.of([robot]):
                 self.drafting.check_way(robot, task, path)
-                await self._held.run(write)
+                await self._held.run([robot], write)
                 self._events.publish(OutboxChanged(robot))
 
     async def _delivered(self, sa_ids: list[int]) -> None:
@@ -309,7 +343,7 @@ class CommandService(CommandReader):
                 command.acknowledgement_waits = False
             steps = [] if command is None else self._answered(command, ack)
             # One transaction: a message that is gone from SA with its step unsaved would be lost.
-            await self._held.run(write_acknowledged, robot, ack.id, steps)
+            await self._held.run([robot], write_acknowledged, robot, ack.id, steps)
             for step in steps:
                 self._apply(step)
             return command.written_at if command is not None and command.is_on_its_way else None
@@ -317,7 +351,7 @@ class CommandService(CommandReader):
     async def _note_late(self, robot: str, sa_id: int) -> None:
         """Note that the robot read a message whose command has ended; what cannot be stored now is kept."""
         try:
-            report = await self._held.run(write_late, robot, sa_id, self._clock.time())
+            report = await self._held.run([robot], write_late, robot, sa_id, self._clock.time())
         except DataRefusedError:
             raise
         except StoreError:
@@ -360,7 +394,7 @@ class CommandService(CommandReader):
                 self._open.of(robot), reason, self._clock.time(), expire_after, self._robots.pose
             )
             again = anew.again, anew.ended
-            for command in await self._held.run(write_again, robot, welcome, *again, note_run):
+            for command in await self._held.run([robot], write_again, robot, welcome, *again, note_run):
                 self._apply(command)
             self._events.publish(OutboxChanged(robot))
 
@@ -371,7 +405,8 @@ class CommandService(CommandReader):
             now, reason = self._clock.time(), "the robot did not fetch it in time"
             recalls = [Recall(c, c.step(CommandState.EXPIRED, now, GATEWAY, reason)) for c in late]
             if recalls:
-                for command in await self._held.run(write_recalls, recalls):
+                robots = [recall.queued.report.robot for recall in recalls]
+                for command in await self._held.run(robots, write_recalls, recalls):
                     self._apply(command)
 
     async def _give_up(self, robot: str, reason: str) -> None:
@@ -398,7 +433,7 @@ class CommandService(CommandReader):
 
     async def _save(self, steps: list[ActiveCommand]) -> None:
         if steps:
-            await self._held.run(write_steps, steps)
+            await self._held.run([step.report.robot for step in steps], write_steps, steps)
             for command in steps:
                 self._apply(command)
 
@@ -411,11 +446,12 @@ class CommandService(CommandReader):
 
     async def read_again(self) -> None:
         """Take over what the database holds, after a transaction that may have been done or not."""
-        stored = {s.report.command: s for s in await self._database.run(commands.still_open)}
+        found = await self._database.run(commands.still_open)
+        stored = {s.report.command: s for s in found if self._fence.owns(s.report.robot)}
         here = {command.report.command: command for command in self._open}
         ended = await self._database.run(commands.find_all, sorted(here.keys() - stored.keys()))
-        for found in [*ended.values(), *stored.values()]:
-            known = here.get(found.report.command)
-            if known is None or (known.report, known.sa_id) != (found.report, found.sa_id):
-                self._apply(self._restored(found))
-                self._events.publish(OutboxChanged(found.report.robot))
+        for one in [*ended.values(), *stored.values()]:
+            known = here.get(one.report.command)
+            if known is None or (known.report, known.sa_id) != (one.report, one.sa_id):
+                self._apply(self._restored(one))
+                self._events.publish(OutboxChanged(one.report.robot))

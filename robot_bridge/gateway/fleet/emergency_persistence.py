@@ -40,16 +40,18 @@ from ..storage.repositories.emergency_stops import StopRow
 log = logging.getLogger(__name__)
 
 
-def journal_file(database: URL, folder: Path) -> Path | None:
+def journal_file(database: URL, folder: Path, gateway: str | None = None) -> Path | None:
     """Return the file for the stops of a gateway on ``database``; None for a database in memory.
 
-    Beside the file of an SQLite database, else in ``folder``: gateways of several databases may share that.
+    Beside the file of an SQLite database, else in ``folder``: gateways of several databases may share that,
+    and those of one that have names, each a ``gateway``.
     """
     if database.get_backend_name() == "sqlite":
         file = sqlite_file_of(database)
         return None if file is None else Path(f"{file}.stop")
     of = f"{database.host}:{database.port}/{database.database}"
-    return folder / f"emergency-stop-{hashlib.sha256(of.encode()).hexdigest()[:12]}.json"
+    name = "" if gateway is None else f"-{gateway}"
+    return folder / f"emergency-stop-{hashlib.sha256(of.encode()).hexdigest()[:12]}{name}.json"
 
 
 FULL = (errno.ENOSPC, errno.EDQUOT)

@@ -8,7 +8,7 @@ import time
 import uuid
 from collections.abc import Callable, Iterable
 from enum import IntEnum
-from typing import Any
+from typing import Any, Protocol
 
 from sqlalchemy import Connection
 
@@ -122,6 +122,19 @@ NAME_PREFIX = "emergency-"
 """Begins the id of the call that tells a robot of a stop directly: a text, unlike the ids of SA."""
 
 
+class StopRelay(Protocol):
+    """Tells other gateways of stops, and knows what came of that there. Nothing of it waits."""
+
+    def announce(self, stop: StopRow) -> None:
+        """Tell all others of a stop."""
+
+    def note_change(self) -> None:
+        """Note that something has changed that :meth:`EmergencyStops.local_counts` tells."""
+
+    def add_counts(self, counts: dict[str, Any], stop: str) -> dict[str, Any]:
+        """Return ``counts`` of a stop with those of the other gateways, as an EmergencyReport has them."""
+
+
 class EmergencyStops:
     """The stop in force, if one is, and what the robots say to it.
 
@@ -145,6 +158,7 @@ class EmergencyStops:
         self._listeners = listeners
         self._journal = journal
         self._links: list[Callable[[str], None]] = []
+        self._relays: list[StopRelay] = []
         self._stop: StopRow | None = None
         self._unstored: list[StopRow] = []
         self._unlisted: list[StopRow] = []
@@ -153,10 +167,15 @@ class EmergencyStops:
         self._seen: set[str] = set()
         self._tally = StopAnswers()
         self._writing = asyncio.Lock()
+        self._storing: asyncio.Future[None] | None = None
 
     def reach(self, link: Callable[[str], None]) -> None:
         """Call ``link`` with the id of the call at every stop: it tells every robot at its other end."""
         self._links.append(link)
+
+    def relay_by(self, relay: StopRelay) -> None:
+        """Have ``relay`` tell other gateways of each stop that is made here."""
+        self._relays.append(relay)
 
     @property
     def in_force(self) -> bool:
@@ -173,6 +192,9 @@ class EmergencyStops:
         stop = self._stop
         if stop is None:
             return EmergencyReport()
+        counts = self.local_counts()
+        for relay in self._relays:
+            counts = relay.add_counts(counts, stop.id)
         return EmergencyReport(
             in_force=self.in_force,
             stop=stop.id,
@@ -183,8 +205,17 @@ class EmergencyStops:
             cleared_at=stop.cleared_at,
             cleared_by=stop.cleared_by,
             clear_reason=stop.clear_reason,
-            **self._tally.counts(),
+            **counts,
         )
+
+    @property
+    def current(self) -> StopRow | None:
+        """The stop in force, or the one that was cleared last."""
+        return self._stop
+
+    def local_counts(self) -> dict[str, Any]:
+        """Return what the robots of this gateway said, as an EmergencyReport has it."""
+        return self._tally.counts()
 
     async def restore(self) -> None:
         """Take up the stop that an earlier gateway left in force, stored or not, and what robots said to it.
@@ -236,6 +267,49 @@ class EmergencyStops:
         await asyncio.wait({storing}, timeout=STORED_WITHIN)
         return self.report()
 
+    async def stop_elsewhere(self, stop: StopRow) -> None:
+        """Put a stop in force that was made at another gateway; returns when the robots here are being told.
+
+        It is stored from here as well: the other gateway may not come to that.
+        """
+        if stop.id in self._seen:
+            return
+        # At once: it may come over several ways at the same time.
+        self._seen.add(stop.id)
+        await asyncio.shield(asyncio.ensure_future(self._begin(stop, is_own=False)))
+        self._storing = asyncio.ensure_future(self._store_and_log())
+
+    async def learn(self, stop: StopRow) -> None:
+        """Take in how a stop is stored: put in force one that is new, end the one in force that was cleared.
+
+        What is not stored yet stays in force, whatever others have cleared.
+        """
+        if stop.cleared_at is None:
+            await self.stop_elsewhere(stop)
+            return
+        self._seen.add(stop.id)
+        mine = self._stop
+        if mine is None or mine.id != stop.id or not self.in_force or stop in self._unstored:
+            return
+        self._stop = stop
+        self._writer.clear()
+        self._note()
+        log.warning(
+            "emergency stop of %s cleared by %s%s", stop.by, stop.cleared_by, _because(stop.clear_reason)
+        )
+        self.announce()
+
+    def take_over(self, robots: Iterable[str]) -> None:
+        """Count robots that another gateway had; those that were sent no Abort yet are owed one."""
+        stop = self._stop
+        if stop is None or not self.in_force:
+            return
+        for robot in robots:
+            self._tally.note_sent(robot)
+            if not self._book.awaits_stop(robot):
+                self._writer.owe(stop, [robot])
+        self.announce()
+
     @handles(ClearEmergencyStop)
     async def clear(self, request: ClearEmergencyStop, supervisor: str) -> EmergencyReport:
         """Let robots be sent again. Raises RefusedError, and StoreError when that cannot be stored."""
@@ -254,14 +328,19 @@ class EmergencyStops:
                 )
             await self._store()
             at, supervisor, reason = self._clock.time(), _name(supervisor), request.reason or None
-            await self._database.run(emergency_stops.clear, at, supervisor, reason)
+            unknown = await self._database.run(emergency_stops.clear, at, supervisor, reason, self._seen)
+            if unknown is not None:
+                raise RefusedError(
+                    f"{unknown.by} made another emergency stop at {_clock(unknown.at)}"
+                    f"{_because(unknown.reason)}, at another gateway; look at that one first, then clear it"
+                )
             if self._stop is stop:
                 self._stop = stop._replace(cleared_at=at, cleared_by=supervisor, clear_reason=reason)
                 self._writer.clear()
                 self._unlisted.clear()
                 self._note()
                 log.warning("emergency stop of %s cleared by %s%s", stop.by, supervisor, _because(reason))
-        self._announce()
+        self.announce()
         return self.report()
 
     async def store(self) -> None:
@@ -279,23 +358,23 @@ class EmergencyStops:
         if not self._book.awaits_stop(robot):
             order = CommandOrder(str(uuid.uuid4()), robot, Abort(emergency=True), stop.by, stop.reason)
             await self._book.issue([order])
-        self._announce()
+        self.announce()
 
     def answered(self, robot: str, call_id: str, refused: bool) -> None:
         """Note what a robot answered to the call that told it directly."""
         if call_id == self.call_id and self._tally.answer(robot, refused=refused):
-            self._announce()
+            self.announce()
 
     def forget(self, robot: str) -> None:
         """Wait for a robot no more: it was removed."""
         self._writer.forget(robot)
         if self._tally.forget(robot) and self.in_force:
-            self._announce()
+            self.announce()
 
     def note_step(self, report: CommandReport) -> None:
         """Note what became of the Abort that a robot was sent."""
         if self.in_force and self._tally.note_step(report):
-            self._announce()
+            self.announce()
 
     def _put_in_force(self, stop: StopRow) -> None:
         self._seen.add(stop.id)
@@ -303,7 +382,7 @@ class EmergencyStops:
         self._unstored.append(stop)
         self._tally.begin(self._robots.commanded())
 
-    async def _begin(self, stop: StopRow) -> None:
+    async def _begin(self, stop: StopRow, *, is_own: bool = True) -> None:
         self._put_in_force(stop)
         # Whatever goes wrong in one of these, what comes after it is done.
         with log_and_continue(log, "noting an emergency stop"):
@@ -312,8 +391,11 @@ class EmergencyStops:
         for link in self._links:
             with log_and_continue(log, "sending an emergency stop over open connections"):
                 link(f"{NAME_PREFIX}{stop.id}")
+        for relay in self._relays if is_own else ():
+            with log_and_continue(log, "telling other gateways of an emergency stop"):
+                relay.announce(stop)
         log.warning("emergency stop by %s%s", stop.by, _because(stop.reason))
-        self._announce()
+        self.announce()
 
     def _note(self) -> asyncio.Future[None] | None:
         """Have what is not stored noted on the disk."""
@@ -337,10 +419,14 @@ class EmergencyStops:
             self._unstored.remove(stop)
             with log_and_continue(log, "noting that an emergency stop is stored"):
                 self._note()
-            self._announce()
+            self.announce()
         await self._writer.write_owed()
 
-    def _announce(self) -> None:
+    def announce(self) -> None:
+        """Tell every operator, and other gateways, how things stand."""
+        for relay in self._relays:
+            with log_and_continue(log, "telling other gateways of an emergency stop"):
+                relay.note_change()
         with log_and_continue(log, "announcing an emergency stop"):
             self._listeners.announce("emergency", "emergency", to_json(self.report()))
 

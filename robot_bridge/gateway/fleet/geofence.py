@@ -319,7 +319,8 @@ class GeofenceWatch:
     def _begin(self, stay: Stay) -> None:
         x, y = stay.place
         log.warning("robot %s is %s at (%.2f, %.2f)", stay.robot, _where(stay), x, y)
-        if stay.action == "none":
+        # What another gateway has, that one stops.
+        if stay.action == "none" or self._robots.gateway_of(stay.robot) is not None:
             return
         stay.outcome = "asked"
         acting = asyncio.create_task(self._act(stay), name=f"geofence: {stay.action} {stay.robot}")

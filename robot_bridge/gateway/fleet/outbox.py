@@ -179,6 +179,10 @@ class RobotOutboxes:
         """Note that message ``id`` of SA is about to be sent to its robot; false where it must not be."""
         return await self._commands.hand_over(robot, id)
 
+    def may_send(self, robot: str, checked_at: float) -> bool:
+        """Tell whether what :meth:`hand_over` allowed at ``checked_at`` (steady clock) may be sent still."""
+        return self._commands.may_send(robot, checked_at)
+
     async def delivered(self, ids: Iterable[int]) -> None:
         """Note that messages of SA have reached their robots."""
         await self._commands.delivered(ids)

@@ -25,6 +25,7 @@ from ..trajectories.recording import TrajectoryWriter
 from .emergency_stop import EmergencyStops
 from .outbox import RequestOutcome, RobotOutboxes
 from .robot_answers import MapSender
+from .takeover import Takeover
 
 # --- Who holds a robot's name: a second robot that says Ready under the same account is noticed and refused
 
@@ -95,7 +96,9 @@ class Registration:
         saving: TrajectoryWriter,
         database: Database,
         clock: Clock,
+        takeover: Takeover | None = None,
     ) -> None:
+        self._takeover = takeover
         self.holds = ConnectionClaims()
         self._site = site
         self._robots = robots
@@ -132,6 +135,8 @@ class Registration:
             if reason is not None:
                 log.warning("link %s: a second robot said Ready: %s", link, reason)
                 return RequestOutcome(robot, OpAck(id=id, ok=False, reason=reason, magic=request.magic))
+            if self._takeover is not None:
+                await self._takeover.claim(robot)
             content, part = None, False
             if request.abilities is None or "map" in request.abilities:
                 offer = await self._maps.first(robot)

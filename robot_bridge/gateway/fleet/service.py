@@ -31,6 +31,7 @@ from ...core.messages.robots import (
     Stopped,
 )
 from ...core.messages.validation import LONGEST_REFUSAL, one_line
+from ..cluster.cluster import Cluster
 from ..commands.requests import CommandRequests
 from ..commands.service import CommandService
 from ..commands.validation import CommandRules, WaitingRobots
@@ -53,6 +54,7 @@ from ..queues.requests import PauseService, QueueEditor
 from ..queues.runner import QueueRunner
 from ..site.places import ServedSite
 from ..storage.database import Database
+from ..storage.owner_fence import SOLE_FENCE
 from ..storage.repositories import robots as stored_robots
 from ..traffic.road_planning import RoadPlanner
 from ..traffic.service import RoadTraffic
@@ -66,6 +68,7 @@ from .operator_updates import ObservationService, Snapshots
 from .outbox import RequestOutcome, RobotOutboxes
 from .registration import Decommissioning, Registration
 from .robot_answers import MapSender, RobotAnswers
+from .takeover import Takeover
 
 log = logging.getLogger(__name__)
 
@@ -84,7 +87,10 @@ class Fleet:
         planner: Planner | None = None,
         stops: StopJournal | None = None,
         note: AuditNote | None = None,
+        cluster: Cluster | None = None,
     ) -> None:
+        fence = SOLE_FENCE if cluster is None else cluster.ownership
+        self._fence = fence
         self.site = site
         self._database = database
         self._clock = clock
@@ -96,11 +102,11 @@ class Fleet:
         self.snapshots = Snapshots(self.robots, clock)
         rules, waiting = CommandRules(site, self.robots), WaitingRobots()
         self._book = CommandService(
-            database, self.robots, site.report.reached_tolerance, clock, rules, waiting, self.events
+            database, self.robots, site.report.reached_tolerance, clock, rules, waiting, self.events, fence
         )
         self.orders = CommandRequests(site, self.robots, self._book, database)
         self.emergency = EmergencyStops(self._book, database, clock, self.robots, self.listeners, stops)
-        self._queue_book = QueueRegistry(database, self.robots, self.listeners, self.events)
+        self._queue_book = QueueRegistry(database, self.robots, self.listeners, self.events, fence)
         planner = planner or StraightPlanner()
         self.queue_context = QueueContext(
             site, self.robots, self._book, self._queue_book, database, clock, waiting, planner
@@ -129,9 +135,10 @@ class Fleet:
             self.robots, self.links, self.roads.traffic, site, clock, self.listeners
         )
         self.recorder = TrajectoryRecorder(site)
-        self._saving = TrajectoryWriter(database, self.robots, self.recorder, clock)
+        self._saving = TrajectoryWriter(database, self.robots, self.recorder, clock, fence)
         self.mailboxes = RobotOutboxes(database, self.robots, self._book, self.emergency, self._saving)
         self.maps = MapSender(site, self.robots, self.mailboxes, database)
+        self.takeover = None if cluster is None else self._follow_owners(cluster)
         self.reception = Registration(
             site,
             self.robots,
@@ -142,6 +149,7 @@ class Fleet:
             self._saving,
             database,
             clock,
+            self.takeover,
         )
         self.removals = Decommissioning(
             self.robots,
@@ -161,6 +169,21 @@ class Fleet:
         self.tally = Counters()
         self.repeated = RepeatedLines()
         self._subscribe()
+
+    def _follow_owners(self, cluster: Cluster) -> Takeover:
+        """Have robots taken up that this gateway gets, and dropped that others have."""
+        return Takeover(
+            cluster.ownership,
+            cluster.exchange,
+            self.robots,
+            self._book,
+            self._queue_book,
+            self.emergency,
+            self._saving,
+            self._database,
+            self._clock,
+            self.events,
+        )
 
     def _subscribe(self) -> None:
         """Say who is told of what; each is told in this order, whatever becomes of those before."""
@@ -195,6 +218,9 @@ class Fleet:
         """Go on where the last gateway on this database stopped, and tell its robots Start."""
         await self.reception.restore()
         known = await self._database.run(stored_robots.load)
+        if self.takeover is not None:
+            # Those of gateways that are gone are taken up once all others are known of.
+            known = [robot for robot in known if self._fence.owns(robot.name)]
         for robot in known:
             self.robots.restore(robot, self._clock.time())
         await self._book.restore()
@@ -202,10 +228,17 @@ class Fleet:
         for robot in known:
             self.robots.assign(robot.name, self._book.busy_with(robot.name))
         await self.emergency.restore()
-        await self.roads.restore()
+        if self.takeover is None:
+            await self.roads.restore()
+        else:
+            await self.roads.closures.restore()
         await self._queue_book.restore()
         await self.observations.restore()
         await self.suspensions.restore()
+        if self.takeover is not None:
+            await self.takeover.claim_left()
+            await self.takeover.follow()
+            return
         start = self.reception.greeting()
         greetings = [RequestOutcome(robot.name, answer=start) for robot in known if robot.link == "sql"]
         await self.mailboxes.finish(greetings, [], acks=False)

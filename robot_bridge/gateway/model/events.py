@@ -67,6 +67,17 @@ class RobotReturned:
         return f"the return of robot {self.robot!r}"
 
 
+@dataclass(frozen=True)
+class RobotLeft:
+    """Another gateway of the fleet has a robot that this one had."""
+
+    robot: str
+    gateway: str
+
+    def __str__(self) -> str:
+        return f"robot {self.robot!r} that went to gateway {self.gateway!r}"
+
+
 Event = TypeVar("Event")
 
 

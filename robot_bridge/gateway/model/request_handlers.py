@@ -5,7 +5,7 @@ from __future__ import annotations
 import inspect
 from collections.abc import Callable, Collection, Coroutine
 from dataclasses import dataclass
-from typing import Any, Generic, ParamSpec, TypeVar, overload
+from typing import Any, Generic, ParamSpec, Protocol, TypeVar, overload
 
 from ...core.messages.json_values import to_json
 from ...core.messages.operator_requests import DESK_REQUESTS, DeskRequest
@@ -46,6 +46,13 @@ class handles(Generic[R]):  # noqa: N801 - a decorator
         """Note what ``method`` answers, and return it as it is."""
         _HANDLED[method] = self._kind
         return method
+
+
+class Answering(Protocol):
+    """Answers the requests of operators."""
+
+    async def answer(self, request: DeskRequest[Any], operator: str) -> dict[str, Any]:
+        """Return the result of a request as JSON values; raises what its handler raises."""
 
 
 class RequestHandlers:

@@ -56,6 +56,17 @@ class AcceptedArea(NamedTuple):
     step: float
 
 
+class ReportedElsewhere(NamedTuple):
+    """What another gateway says of a robot; times by this computer's clock."""
+
+    received_at: float
+    ended_in_order: bool
+    located: bool
+    only_seen: bool
+    pose: SendPos | None
+    pose_at: float | None
+
+
 @dataclass
 class Robot:
     """One robot. ``received_at`` is the gateway's time of its last message, ``pose_at`` that of its pose.
@@ -65,7 +76,8 @@ class Robot:
     where it is since its last Ready: until then its pose is what was stored of it, or what it was before its
     link broke, and it may have driven on unseen. ``doubt`` is why the place that it said last is not
     believed. ``says_magic`` is true once this run has said its number with a message. ``abilities`` are what
-    it can do with spaces between them, None for everything.
+    it can do with spaces between them, None for everything. ``gateway`` is the other gateway of the fleet
+    that has it, None for this one: all else is what that one tells then.
     """
 
     name: str
@@ -84,6 +96,7 @@ class Robot:
     revision: int = 0
     paths: PathDeclaration | None = None
     abilities: str | None = None
+    gateway: str | None = None
     order: PoseOrder = field(default_factory=PoseOrder)
 
     @property
@@ -127,8 +140,27 @@ class Robots:
         return sorted(self._robots)
 
     def commanded(self) -> list[str]:
-        """Return the names of those that are not only seen, sorted."""
-        return sorted(name for name, robot in self._robots.items() if robot.abilities != "")
+        """Return the names of those that this gateway has and that are not only seen, sorted."""
+        return sorted(
+            name for name, robot in self._robots.items() if robot.abilities != "" and robot.gateway is None
+        )
+
+    def commanded_elsewhere(self) -> list[str]:
+        """Return the names of those that other gateways have and that are not only seen, sorted."""
+        return sorted(
+            name
+            for name, robot in self._robots.items()
+            if robot.abilities != "" and robot.gateway is not None
+        )
+
+    def doing(self, command: str) -> str | None:
+        """Return the robot that is busy with a command, None where none is known to be."""
+        return next((name for name, robot in self._robots.items() if robot.command == command), None)
+
+    def gateway_of(self, name: str) -> str | None:
+        """Return the other gateway of the fleet that has a robot; None for this one, and for none at all."""
+        robot = self._robots.get(name)
+        return None if robot is None else robot.gateway
 
     def is_only_seen(self, name: str) -> bool:
         """Tell whether the robot said that it can do nothing, so that it is told nothing."""
@@ -237,6 +269,10 @@ class Robots:
         Over SQL all come under one name: a run that has said its ``magic`` number says it with everything.
         """
         robot = self.get(name)
+        if robot.gateway is not None:
+            raise NotReadyError(
+                f"robot {name!r} said Ready to gateway {robot.gateway!r} last; send Ready first"
+            )
         if magic == robot.magic:
             robot.says_magic = True
         elif magic is not None or (robot.says_magic and link == "sql"):
@@ -319,6 +355,30 @@ class Robots:
                 moved.append(report)
         self.revision = revision
         return moved, others
+
+    def let_go(self, name: str, gateway: str) -> None:
+        """Note that another gateway has a robot."""
+        robot = self._robots.get(name)
+        if robot is not None and robot.gateway != gateway:
+            robot.gateway, robot.link = gateway, f"gateway {gateway}"
+            self._touch(robot)
+
+    def observe_elsewhere(self, name: str, gateway: str, seen: ReportedElsewhere) -> None:
+        """Take in what another gateway says of a robot that it has; of others nothing is taken in."""
+        robot = self._robots.get(name)
+        if robot is None:
+            robot = self._robots[name] = Robot(
+                name, 0, f"gateway {gateway}", seen.received_at, gateway=gateway
+            )
+            self._removed.pop(name, None)
+        if robot.gateway != gateway:
+            return
+        robot.received_at, robot.ended_in_order = seen.received_at, seen.ended_in_order
+        robot.located = seen.located
+        robot.abilities = "" if seen.only_seen else robot.abilities
+        if seen.pose is not None:
+            robot.pose, robot.pose_at = seen.pose, seen.pose_at
+        self._touch(robot)
 
     def disbelieve(self, name: str, link: str, now: float, doubt: str, *, waited: bool = False) -> None:
         """Note that the robot is heard, and that the place that it says cannot be."""

@@ -21,6 +21,7 @@ from ..model.robots import Robots
 from ..model.task_queue import Queue, QueuedTask, queue_report
 from ..site.places import ServedSite
 from ..storage.database import Database
+from ..storage.owner_fence import SOLE_FENCE, OwnerFence
 from ..storage.repositories import queues
 from ..storage.repositories.queues import ChangedError
 
@@ -43,8 +44,10 @@ class QueueRegistry:
         robots: Robots,
         listeners: Listeners,
         events: EventBus,
+        fence: OwnerFence = SOLE_FENCE,
     ) -> None:
         self._database = database
+        self._fence = fence
         self._robots = robots
         self._listeners = listeners
         self._events = events
@@ -55,11 +58,26 @@ class QueueRegistry:
 
     async def restore(self) -> None:
         """Take up the queues that an earlier gateway left."""
-        self._queues = await self._database.run(queues.load)
+        found = await self._database.run(queues.load)
+        self._queues = {robot: queue for robot, queue in found.items() if self._fence.owns(robot)}
         for robot in self._queues:
             self._ended[robot] = await self._database.run(queues.newest_ended, robot, REPORTED_ENDED)
         for robot in self.names():
             self._events.publish(QueueChanged(robot))
+
+    async def take_up(self, robots: Sequence[str]) -> None:
+        """Take up the queues of robots that another gateway had; raises StoreError."""
+        for robot, queue in (await self._database.run(queues.load, robots)).items():
+            self._ended[robot] = await self._database.run(queues.newest_ended, robot, REPORTED_ENDED)
+            self._queues[robot] = queue
+            self._events.publish(QueueChanged(robot))
+
+    def drop(self, robots: Iterable[str]) -> None:
+        """Know nothing more of the queues of robots that another gateway has."""
+        for robot in robots:
+            self._queues.pop(robot, None)
+            self._ended.pop(robot, None)
+            self._doubtful.discard(robot)
 
     def get(self, robot: str) -> Queue:
         """Return a robot's queue as it was stored last; an empty one where there is none."""

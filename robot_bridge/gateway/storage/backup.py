@@ -39,7 +39,7 @@ from .singleton_lock import no_gateway
 # there is old by the time of a restore, and robots repeat what was not acknowledged.
 
 MARK = b"-- robot-bridge backup "
-LEFT_OUT = frozenset({"rr", "bridge"})
+LEFT_OUT = frozenset({"rr", "bridge", "gateways", "robot_owners", "relayed_requests"})
 NUMBERED = frozenset(
     name for name, table in metadata.tables.items() if "id" in table.c and table.c.id.type.python_type is int
 )

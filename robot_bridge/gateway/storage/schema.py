@@ -347,3 +347,44 @@ audit = Table(
     Column("detail", Text, nullable=True),
     sqlite_autoincrement=True,
 )
+
+# The gateways of a fleet that several serve. Each lives until ``lease_until``, by the database's own clock,
+# unless it renews that; ``run`` tells one process from the next of the same name.
+gateways = Table(
+    "gateways",
+    metadata,
+    Column("gw", String(32), primary_key=True),
+    Column("run", String(32), nullable=False),
+    Column("version", String(32), nullable=False),
+    Column("host", String(255), nullable=False),
+    Column("process", BigInteger, nullable=False),
+    Column("since", Double, nullable=False),
+    Column("lease_until", Double, nullable=False),
+)
+
+# Which run of which gateway has a robot: only that one writes what concerns it. ``fence`` counts its owners.
+robot_owners = Table(
+    "robot_owners",
+    metadata,
+    Column("robot", String(63), primary_key=True),
+    Column("gw", String(32), nullable=False),
+    Column("run", String(32), nullable=False),
+    Column("fence", BigInteger, nullable=False),
+)
+
+# What an operator asked at one gateway of a robot that another one has. ``answer`` is JSON, null until there
+# is one; ``begun_by`` is the run that began to do it.
+relayed_requests = Table(
+    "relayed_requests",
+    metadata,
+    _id(),
+    _robot(),
+    Column("method", String(32), nullable=False),
+    Column("params", _LongText, nullable=False),
+    Column("operator", String(128), nullable=False),
+    Column("asked_by", String(32), nullable=False),
+    Column("asked_at", Double, nullable=False),
+    Column("begun_by", String(32), nullable=True),
+    Column("answer", _LongText, nullable=True),
+    sqlite_autoincrement=True,
+)

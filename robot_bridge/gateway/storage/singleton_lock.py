@@ -12,6 +12,7 @@ import contextlib
 import json
 import logging
 import os
+import random
 import socket
 import time
 import uuid
@@ -22,11 +23,12 @@ from typing import Any, Protocol
 from sqlalchemy import URL, Connection, Engine, insert, inspect, select, text, update
 from sqlalchemy.exc import DBAPIError, SQLAlchemyError
 
-from ...core.errors import BridgeError, FatalError, StoreError
+from ...core.errors import BridgeError, FatalError, StoreError, listed_names
 from ...core.json_decoder import SHORT, DecodingError, decode_json
 from .database import open_engine, shown
 from .dialects import Dialect, SQLite, sqlite_file_of
-from .schema import bridge
+from .repositories import gateways as stored_gateways
+from .schema import bridge, gateways
 
 log = logging.getLogger(__name__)
 
@@ -59,6 +61,9 @@ class GatewayLock(Protocol):
     def read(self) -> dict[str, Any]:
         """Return which gateway wrote itself down last."""
 
+    def fleet(self) -> list[str]:
+        """Return the gateways that serve the database together, without this lock."""
+
     def release(self) -> None:
         """Give the lock back."""
 
@@ -89,6 +94,10 @@ class SingletonLock:
                 other = await asyncio.to_thread(self._lock.read)
                 raise BridgeError(f"database {self._where}: {_taken(self._does, other)}")
             await asyncio.sleep(0.1)
+        # After the lock: a gateway of a fleet enters itself first, and looks for the lock then.
+        if fleet := await asyncio.to_thread(self._lock.fleet):
+            await self.release()
+            raise BridgeError(f"database {self._where}: {_serve_together(self._does, fleet)}")
         await asyncio.to_thread(self._lock.write, self._run)
 
     async def hold(self) -> None:
@@ -190,6 +199,10 @@ class FileLock:
             return _run_in(path.read_text(encoding="utf-8") if path else None)
         return {}
 
+    def fleet(self) -> list[str]:
+        """Return none: one gateway serves a file."""
+        return []
+
     def release(self) -> None:
         """Give the lock back; its file stays, since somebody may wait for it already."""
         if self._file is not None:
@@ -244,12 +257,44 @@ class ServerLock:
         with _explained(self._url, self._dialect), self._engine.connect() as connection:
             return _run_in(connection.scalar(select(bridge.c.value).where(bridge.c.name == RUN)))
 
+    def fleet(self) -> list[str]:
+        """Return the gateways that serve the database together; an older version had no table of them."""
+        if self._dialect.name != "postgresql":
+            return []
+        with _explained(self._url, self._dialect), self._engine.connect() as connection:
+            if not inspect(connection).has_table(gateways.name):
+                return []
+            return sorted(member.gw for member in stored_gateways.members(connection) if member.alive)
+
+    def is_free(self) -> bool:
+        """Tell whether nobody holds the lock, without taking it for longer than that takes."""
+        try:
+            return self.acquire()
+        finally:
+            self.release()
+
     def release(self) -> None:
         """Give the lock back."""
         connection, self._connection = self._connection, None
         if connection is not None:
             with contextlib.suppress(SQLAlchemyError):
                 connection.close()
+
+
+def check_no_sole_gateway(url: URL) -> None:
+    """Raise BridgeError where a gateway has a database alone, or a command works there that wants none.
+
+    To be called by a gateway that has entered itself among those that serve it together. Waits.
+    """
+    lock, until = ServerLock(url), time.monotonic() + PATIENCE_AT_START
+    # Another one that looks, too, holds it for a moment.
+    while not lock.is_free():
+        if time.monotonic() > until:
+            found = _taken(GATEWAY, lock.read())
+            raise BridgeError(
+                f"database {shown(url)}: {found}; or start that one with --gateway-name as well"
+            )
+        time.sleep(random.uniform(0.02, 0.2))  # nosec B311 # no secret
 
 
 _LOCKING = {
@@ -317,6 +362,17 @@ def _taken(does: str, other: dict[str, Any]) -> str:
         f"a gateway runs on it{_named(other)}; end it there, as a service with 'systemctl stop "
         f"robot-bridge', then run '{does}' again {cut_off}"
     )
+
+
+def _serve_together(does: str, fleet: list[str]) -> str:
+    """Return in words that gateways serve the database together, to whoever ``does`` something there."""
+    names = f"{'gateway' if len(fleet) == 1 else 'gateways'} {listed_names(fleet)}"
+    if does == GATEWAY:
+        return (
+            f"{names} serve it together with others; start this one with --gateway-name NAME to be one of "
+            "them, or give it a database of its own"
+        )
+    return f"{names} serve it; end all of them, then run '{does}' again"
 
 
 def _named(run: dict[str, Any]) -> str:

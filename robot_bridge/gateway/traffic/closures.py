@@ -295,6 +295,14 @@ class ClosureService:
             await self._put([row])
         return RoadClosed(self._reported(row), await self._lead_round(row))
 
+    async def follow(self) -> None:
+        """Take in what other gateways of the fleet closed and opened; raises StoreError."""
+        stored = await self._database.read(closures.in_force)
+        if {row.id for row in stored} != self._rows.keys():
+            self._doubtful = True
+            async with self._looked_up():
+                return
+
     async def catch_up(self) -> None:
         """Lead those robots round that could not be led when their road was closed, as Detours tells."""
         placed = self._detours.placed()

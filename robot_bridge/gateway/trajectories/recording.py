@@ -21,6 +21,7 @@ from ..model.arrival import standing
 from ..model.request_handlers import handles
 from ..model.robots import RobotPose, Robots
 from ..storage.database import Database, to_its_end
+from ..storage.owner_fence import SOLE_FENCE, OwnerFence
 from ..storage.repositories import robots as stored_robots
 from ..storage.repositories import trajectories
 from ..storage.repositories.trajectories import Fix, PackedFix, PageMark, TrajectoryQuery, pack
@@ -173,12 +174,18 @@ class TrajectoryWriter:
     """
 
     def __init__(
-        self, database: Database, robots: Robots, recorder: TrajectoryRecorder, clock: Clock
+        self,
+        database: Database,
+        robots: Robots,
+        recorder: TrajectoryRecorder,
+        clock: Clock,
+        fence: OwnerFence = SOLE_FENCE,
     ) -> None:
         self._database = database
         self._robots = robots
         self._recorder = recorder
         self._clock = clock
+        self._fence = fence
         self._unsaved: set[str] = set()
         self._stored: set[str] = set()
         """robots that are stored, unless somebody has removed them from there."""
@@ -192,6 +199,11 @@ class TrajectoryWriter:
     def begin(self, robots: Iterable[str]) -> None:
         """Go on with ``robots``, which an earlier gateway stored."""
         self._stored.update(robots)
+
+    def drop(self, robots: Iterable[str]) -> None:
+        """Store nothing more of where robots are that another gateway has."""
+        self._unsaved.difference_update(robots)
+        self._stored.difference_update(robots)
 
     def take_removed(self) -> set[str]:
         """Return the robots that somebody has removed from the database since the last call."""
@@ -271,7 +283,9 @@ class TrajectoryWriter:
     async def _write(self, known: Sequence[Row], fixes: Sequence[PackedFix]) -> WrittenRobots:
         """Store robots and positions; of what the database refuses as data only that is left out."""
         try:
-            return WrittenRobots(await self._database.run(_write, known, fixes, self._stored), set())
+            return WrittenRobots(
+                await self._database.run(_write, known, fixes, self._stored, self._fence), set()
+            )
         except DataRefusedError as error:
             halves = _halves(known, fixes)
             if halves is None:
@@ -319,14 +333,19 @@ def _halves(
 
 
 def _write(
-    connection: Connection, robots: Sequence[Row], fixes: Sequence[PackedFix], stored: Set[str]
+    connection: Connection,
+    robots: Sequence[Row],
+    fixes: Sequence[PackedFix],
+    stored: Set[str],
+    fence: OwnerFence,
 ) -> set[str]:
     """Write robots and positions; return those of the robots ``stored`` that are there no more.
 
-    They are not written again: somebody has removed them.
+    They are not written again: somebody has removed them. Nor are robots that another gateway has.
     """
-    removed = stored_robots.missing(connection, stored)
-    stored_robots.save(connection, [row for row in robots if row[0] not in removed])
+    removed = fence.missing(connection, stored)
+    held = fence.held(connection, [row[0] for row in robots])
+    stored_robots.save(connection, [row for row in robots if row[0] in held and row[0] not in removed])
     trajectories.add(connection, fixes)
     return removed
 

@@ -8,7 +8,7 @@ import pytest
 from fleet_supervisor.plugin.panel.emergency import ClearDialog, in_words
 from fleet_supervisor.plugin.ui.dialogs import ShrinkableScrollArea
 from fleet_supervisor.robot_bridge.core.messages.robots import SetPosEnd
-from fleet_supervisor.robot_bridge.core.messages.safety import EmergencyReport
+from fleet_supervisor.robot_bridge.core.messages.safety import EmergencyReport, StoppedGateways
 from qgis.PyQt.QtCore import QEvent, Qt
 from qgis.PyQt.QtTest import QTest
 from qgis.PyQt.QtWidgets import (
@@ -363,6 +363,15 @@ def test_of_many_robots_it_counts_all_that_have_not_answered(robots, acknowledge
         refused=[f"x{k}" for k in range(refused)],
     )
     assert in_words(report, pending=False, connected=True).splitlines()[2:] == lines
+
+
+def test_of_several_gateways_it_says_at_how_many_it_is_in_force():
+    at = StoppedGateways(2, 4, ["east", "west"])
+    report = EmergencyReport(True, "stop", by="eve", robots=3, acknowledged=3, gateways=at)
+    assert in_words(report, pending=False, connected=True).splitlines()[2:] == [
+        "In force at 2 of 4 gateways",
+        "NOT REACHED: gateways east, west. Watch their robots",
+    ]
 
 
 def test_the_latency_of_each_link_stands_in_the_table(at_desk, gateway, make_robot, wait):

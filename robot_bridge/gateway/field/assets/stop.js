@@ -78,6 +78,7 @@ export class EmergencyStop {
       lines.push(
         tr("STOP IN FORCE, by {who}: {acknowledged} of {robots} robots have answered, {standing} stand.", { ...stop, who: stop.by }),
       );
+      if (stop.gateways) lines.push(tr("At {reached} of {of} gateways.", stop.gateways));
       if (stop.waiting.length) lines.push(tr("Not answered: {robots}", { robots: named(stop.waiting) }));
       if (stop.refused.length) lines.push(tr("Refused: {robots}", { robots: named(stop.refused) }));
       if (!stop.stored) lines.push(tr("It is not in the database yet; it holds all the same."));

@@ -63,6 +63,11 @@ const TEXTS = {
     "el vostre rol, {role}, no pot aturar robots. Feu servir el botó d'aturada dels robots.",
     "su rol, {role}, no puede parar robots. Use el botón de parada de los robots.",
   ],
+  "At {reached} of {of} gateways.": [
+    "{of} átjáróból {reached} helyen érvényes.",
+    "A {reached} de {of} passarel·les.",
+    "En {reached} de {of} pasarelas.",
+  ],
   "STOP IN FORCE, by {who}: {acknowledged} of {robots} robots have answered, {standing} stand.": [
     "LEÁLLÍTÁS ÉRVÉNYBEN, {who}: {robots} robotból {acknowledged} válaszolt, {standing} áll.",
     "ATURADA EN VIGOR, per {who}: han respost {acknowledged} de {robots} robots, {standing} estan aturats.",

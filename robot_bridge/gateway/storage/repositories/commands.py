@@ -114,10 +114,12 @@ def newest(connection: Connection, robot: str | None, limit: int) -> list[Comman
     return [command.report for command in _load(connection, query)]
 
 
-def still_open(connection: Connection) -> list[StoredCommand]:
-    """Return the commands that have a step to come, oldest first."""
+def still_open(connection: Connection, robots: Sequence[str] | None = None) -> list[StoredCommand]:
+    """Return the commands that have a step to come, oldest first, of some robots or of all."""
     states = [state.value for state in CommandState if state.is_open]
     query = select(commands).where(commands.c.state.in_(states)).order_by(commands.c.sa_id)
+    if robots is not None:
+        query = query.where(commands.c.robot.in_(robots))
     return _load(connection, query)
 
 

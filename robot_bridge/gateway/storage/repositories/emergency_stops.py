@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from typing import Any, NamedTuple
 
 from sqlalchemy import Connection, insert, select, update
+from sqlalchemy.dialects import postgresql
 
 from ..rows import delete_oldest
 from ..schema import emergency_stops
@@ -23,8 +25,13 @@ class StopRow(NamedTuple):
 
 
 def add(connection: Connection, stop: StopRow) -> None:
-    """Write a new emergency stop; one that is stored already stays as it is."""
-    if find(connection, stop.id) is None:
+    """Write a new emergency stop; one that is stored already stays as it is.
+
+    Several gateways may write the same one at the same time.
+    """
+    if connection.dialect.name == "postgresql":
+        connection.execute(postgresql.insert(emergency_stops).on_conflict_do_nothing(), stop._asdict())
+    elif find(connection, stop.id) is None:
         connection.execute(insert(emergency_stops), stop._asdict())
 
 
@@ -43,17 +50,33 @@ def newest(connection: Connection) -> StopRow | None:
     return None if row is None else StopRow(*row)
 
 
+def in_force(connection: Connection) -> list[StopRow]:
+    """Return the stops that are in force, the newest first."""
+    c = emergency_stops.c
+    query = select(*_COLUMNS).where(c.cleared_at.is_(None)).order_by(c.at.desc())
+    return [StopRow(*row) for row in connection.execute(query)]
+
+
 def ids(connection: Connection, most: int = 1000) -> set[str]:
     """Return the ids of the newest stops."""
     query = select(emergency_stops.c.id).order_by(emergency_stops.c.at.desc()).limit(most)
     return set(connection.scalars(query))
 
 
-def clear(connection: Connection, at: float, by: str, reason: str | None) -> None:
-    """End every stop that is in force."""
+def clear(
+    connection: Connection, at: float, by: str, reason: str | None, known: Collection[str]
+) -> StopRow | None:
+    """End every stop that is in force; none where one is not ``known`` to who asks, which is returned.
+
+    One that another gateway stores at the same time stays in force.
+    """
+    found = in_force(connection)
+    if unknown := next((stop for stop in found if stop.id not in known), None):
+        return unknown
     values = {"cleared_at": at, "cleared_by": by, "clear_reason": reason}
-    in_force = emergency_stops.c.cleared_at.is_(None)
-    connection.execute(update(emergency_stops).where(in_force).values(values))
+    ids_of = emergency_stops.c.id.in_([stop.id for stop in found])
+    connection.execute(update(emergency_stops).where(ids_of).values(values))
+    return None
 
 
 def forget(connection: Connection, before: float, limit: int) -> int:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import uuid
 
 from sqlalchemy import Connection, delete, func, insert, select
+from sqlalchemy.dialects import postgresql
 
 from ..schema import audit, bridge, commands, observations, robots, trajectories
 
@@ -17,10 +18,20 @@ _SITE = "site"
 
 def database_id(connection: Connection) -> str:
     """Return what tells this database from every other; one that has none yet is given it."""
-    found = connection.scalar(select(bridge.c.value).where(bridge.c.name == ID))
-    if found is None:
-        found = str(uuid.uuid4())
-        connection.execute(insert(bridge).values(name=ID, value=found))
+    return fact(connection, ID, str(uuid.uuid4()))
+
+
+def fact(connection: Connection, name: str, value: str) -> str:
+    """Return what is known under ``name``; ``value``, which is noted then, where nothing is.
+
+    Several gateways may ask at once, and are told the same.
+    """
+    query = select(bridge.c.value).where(bridge.c.name == name)
+    if (found := connection.scalar(query)) is None:
+        kind = postgresql.insert if connection.dialect.name == "postgresql" else insert
+        add = kind(bridge).values(name=name, value=value)
+        connection.execute(add.on_conflict_do_nothing() if isinstance(add, postgresql.Insert) else add)
+        found = connection.scalar(query)
     return str(found)
 
 

@@ -53,9 +53,10 @@ def note_run(connection: Connection, robot: Robot, magic: int) -> bool:
     return True
 
 
-def load(connection: Connection) -> list[Robot]:
-    """Return the robots that an earlier gateway knew."""
-    return [_robot(row) for row in connection.execute(select(robots)).mappings()]
+def load(connection: Connection, names: Sequence[str] | None = None) -> list[Robot]:
+    """Return the robots that a gateway knew, or those of them that have one of ``names``."""
+    query = select(robots) if names is None else select(robots).where(robots.c.name.in_(names))
+    return [_robot(row) for row in connection.execute(query).mappings()]
 
 
 def _robot(row: Mapping[Any, Any]) -> Robot:

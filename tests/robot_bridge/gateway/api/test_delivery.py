@@ -10,6 +10,7 @@ import json
 import pytest
 from websockets.exceptions import ConnectionClosedOK
 
+from robot_bridge.core.clock import steady_time
 from robot_bridge.core.errors import StoreError
 from robot_bridge.gateway.api import delivery
 from robot_bridge.gateway.api.delivery import Delivery
@@ -24,13 +25,17 @@ def row(id, op="SetPosEnd", params=TARGET, payload=None, urgent=False):
 
 
 class Mailboxes:
-    """The outbox of one robot, and what was noted of it; ``before`` is awaited as one is handed over."""
+    """The outbox of one robot, and what was noted of it; ``before`` is awaited as one is handed over.
+
+    ``late`` are answers to whether what was handed over may be sent still; true when there are none left.
+    """
 
     def __init__(self):
         self.rows, self.noted, self.asked = [], [], []
         self.ended = set()
         self.signal = asyncio.Event()
         self.before = None
+        self.late = []
         self.fails, self.fault = 0, StoreError("the database is away")
 
     def event(self, robot):
@@ -52,6 +57,10 @@ class Mailboxes:
         if self.before is not None:
             await self.before()
         return id not in self.ended
+
+    def may_send(self, robot, checked_at):
+        assert robot == "r1" and checked_at <= steady_time()
+        return self.late.pop() if self.late else True
 
     async def delivered(self, ids):
         self.noted.append(("delivered", *ids))
@@ -173,6 +182,16 @@ async def test_what_is_urgent_waits_for_no_turn_and_what_a_stop_overtakes_in_its
     await rest()
     assert line.connection.sent == [(3, "Abort"), ("stop-1", "Abort"), (2, "SetPosEnd")]
     assert channel.asked[2:] == [(False, True)]
+
+
+async def test_what_may_not_be_sent_any_more_when_its_turn_comes_is_handed_over_again(line):
+    """Another gateway may have the robot by then."""
+    line.boxes.late = [False]
+    await line.put(row(1), row(2))
+    line.delivery.begin()
+    await rest()
+    assert line.boxes.noted == [("handed over", 1), ("handed over", 1), ("handed over", 2)]
+    assert line.connection.sent == [(1, "SetPosEnd"), (2, "SetPosEnd")]
 
 
 async def test_what_has_ended_meanwhile_is_not_sent_and_not_asked_for_again(line):

@@ -16,6 +16,7 @@ from robot_bridge.gateway.api.robot_session import RobotConnection, RobotSession
 from robot_bridge.gateway.api.robot_websockets import LinkConnection, WebSocketInterface
 from robot_bridge.gateway.api.shared_connection import LinkedRobotChannel
 from robot_bridge.gateway.fleet.registration import ConnectionClaims
+from robot_bridge.gateway.model.events import EventBus
 from robot_bridge.gateway.monitoring import Counters
 from robot_bridge.links.base.linked_robots import frame_of
 from robot_bridge.protocol import jsonrpc
@@ -114,8 +115,9 @@ async def test_what_a_robot_said_is_asked_for_again_unless_the_database_refuses_
 def test_a_connection_that_fails_keeps_no_stop_from_the_others(caplog):
     told = []
     reached = SimpleNamespace(reach=lambda _link: None)
+    reception = SimpleNamespace(holds=None)
     link = WebSocketInterface(
-        SimpleNamespace(emergency=reached, orders=reached, reception=SimpleNamespace(holds=None))
+        SimpleNamespace(emergency=reached, orders=reached, reception=reception, events=EventBus())
     )
     good = [SimpleNamespace(robot=f"r{n}", stop_now=told.append) for n in range(3)]
     bad = [SimpleNamespace(robot=f"b{n}", stop_now=fail) for n in range(3)]

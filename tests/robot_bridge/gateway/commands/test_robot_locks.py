@@ -35,7 +35,7 @@ def held_robots(meanwhile=None):
 
 async def lose(held):
     with pytest.raises(UncertainError):
-        await held.run(None)
+        await held.run((), None)
 
 
 async def test_what_is_in_doubt_is_looked_up_once_before_any_robot_is_held():

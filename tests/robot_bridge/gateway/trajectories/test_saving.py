@@ -141,7 +141,7 @@ class ForgetfulServer:
     async def jot(self, _work, fixes):
         self.jotted += fixes
 
-    async def run(self, _write, _robots, fixes, _stored):
+    async def run(self, _write, _robots, fixes, _stored, _fence):
         self.kept += [*self.jotted, *fixes]
         self.jotted = []
         return set()
@@ -170,10 +170,10 @@ async def test_what_a_killed_server_may_have_forgotten_is_stored_again(killed):
 
 async def test_a_server_that_is_killed_while_it_stores_is_told_again_what_it_forgot():
     class KilledOnce(ForgetfulServer):
-        async def run(self, write, robots, fixes, stored):
+        async def run(self, write, robots, fixes, stored, fence):
             if self.session == 1:
                 self.kill()
-            return await super().run(write, robots, fixes, stored)
+            return await super().run(write, robots, fixes, stored, fence)
 
     server = KilledOnce()
     yard = Yard(server)

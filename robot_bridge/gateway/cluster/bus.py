@@ -1,0 +1,385 @@
+"""The bus between the gateways of a fleet: what may be lost travels over it. Its makes are none and two.
+
+What may not be lost is in the database; a bus only makes it known sooner. A message is handed over while the
+bus is connected, or not at all: what waited for a connection would arrive as if it were new.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import logging
+import random
+from base64 import b64decode, b64encode
+from binascii import Error as Base64Error
+from collections import deque
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any, Protocol
+from urllib.parse import urlsplit
+
+from sqlalchemy import URL, create_engine
+
+from ...core.errors import BridgeError
+
+if TYPE_CHECKING:
+    from psycopg import AsyncConnection
+
+log = logging.getLogger(__name__)
+
+Receive = Callable[[str, bytes], None]
+"""Takes in a message: its subject and its content. It must not block."""
+STOP, EVERYBODY, POSITIONS = "stop", "all", "positions"
+"""Subjects that every gateway listens to; one of its own is :func:`own_subject`."""
+MOST_WAITING = 256
+"""messages that wait to be handed to the bus; of what is beyond that the oldest are dropped, stops last."""
+RETRY_S = 1.0
+
+
+def own_subject(gateway: str) -> str:
+    """Return the subject that only ``gateway`` listens to."""
+    return f"wake.{gateway}"
+
+
+class Bus(Protocol):
+    """Carries messages from each gateway to the others, as long as it is connected."""
+
+    @property
+    def connected(self) -> bool:
+        """Whether messages get out at the moment, as far as is known."""
+
+    def publish(self, subject: str, content: bytes) -> bool:
+        """Send a message; return at once, false where it cannot be sent now. Raises nothing."""
+
+    async def run(self, receive: Receive) -> None:
+        """Connect, and hand what comes in to ``receive``, until cancelled; connects again by itself."""
+
+
+class NoBus:
+    """The bus of a gateway that serves its fleet alone, or whose fleet is content to look once a second."""
+
+    connected = False
+
+    def publish(self, subject: str, content: bytes) -> bool:
+        """Send nothing."""
+        return False
+
+    async def run(self, receive: Receive) -> None:
+        """Wait until cancelled."""
+        await asyncio.Event().wait()
+
+
+class OutgoingMessages:
+    """Messages that wait to be sent, in their order; a stop is before all others."""
+
+    def __init__(self) -> None:
+        self._stops: deque[tuple[str, bytes]] = deque(maxlen=MOST_WAITING)
+        self._others: deque[tuple[str, bytes]] = deque(maxlen=MOST_WAITING)
+        self._some = asyncio.Event()
+
+    def add(self, subject: str, content: bytes) -> None:
+        """Have a message sent."""
+        (self._stops if subject == STOP else self._others).append((subject, content))
+        self._some.set()
+
+    def clear(self) -> None:
+        """Forget all: the connection is gone, and what was said is old by the next one."""
+        self._stops.clear()
+        self._others.clear()
+
+    async def next(self) -> tuple[str, bytes]:
+        """Return the next message once there is one."""
+        while not (self._stops or self._others):
+            self._some.clear()
+            await self._some.wait()
+        return (self._stops or self._others).popleft()
+
+
+# --- PostgreSQL: LISTEN and NOTIFY, for two or three gateways, without a further server ---
+
+CHANNEL = "fleet"
+LARGEST_NOTIFICATION = 5900
+"""bytes of a message: PostgreSQL takes 8000 characters, and base64 makes four of three bytes."""
+SENT_WITHIN_S = 2.0
+
+
+class NotifyBus:
+    """One connection that listens, one that notifies; both are opened anew when one of them fails."""
+
+    def __init__(self, url: URL, gateway: str) -> None:
+        self._url = url
+        self._subjects = (STOP, EVERYBODY, POSITIONS, own_subject(gateway))
+        self._outgoing = OutgoingMessages()
+        self._connected = False
+        self._said = ""
+
+    @property
+    def connected(self) -> bool:
+        """Whether both connections stand."""
+        return self._connected
+
+    def publish(self, subject: str, content: bytes) -> bool:
+        """Send a message; false while there is no connection, and for one that is too long to be notified."""
+        if not self._connected or len(content) > LARGEST_NOTIFICATION:
+            return False
+        self._outgoing.add(subject, content)
+        return True
+
+    async def run(self, receive: Receive) -> None:
+        """Listen and notify until cancelled."""
+        import psycopg
+
+        while True:
+            try:
+                await self._serve(receive)
+            except (psycopg.Error, OSError, TimeoutError) as error:
+                reason = " ".join(str(error).split()) or "PostgreSQL does not answer"
+                if reason != self._said:
+                    log.warning("bus on PostgreSQL: %s; connecting again until it works", reason)
+                self._said = reason
+            finally:
+                self._connected = False
+                self._outgoing.clear()
+            await asyncio.sleep(RETRY_S)
+
+    async def _serve(self, receive: Receive) -> None:
+        async with contextlib.AsyncExitStack() as stack:
+            listening = await stack.enter_async_context(await self._connect())
+            sending = await stack.enter_async_context(await self._connect())
+            for subject in self._subjects:
+                await listening.execute(f'listen "{CHANNEL}.{subject}"'.encode())
+            self._connected, self._said = True, ""
+            tasks = [
+                asyncio.create_task(self._hear(listening, receive)),
+                asyncio.create_task(self._send(sending)),
+            ]
+            try:
+                # The first that fails ends both.
+                await asyncio.gather(*tasks)
+            finally:
+                for task in tasks:
+                    task.cancel()
+                await asyncio.gather(*tasks, return_exceptions=True)
+
+    async def _connect(self) -> AsyncConnection[Any]:
+        import psycopg
+
+        from ..storage.dialects import CONNECT_ARGUMENTS
+
+        engine = create_engine(self._url.set(drivername="postgresql+psycopg"))
+        arguments, options = engine.dialect.create_connect_args(engine.url)
+        return await psycopg.AsyncConnection.connect(
+            *arguments, **{**options, **CONNECT_ARGUMENTS, "autocommit": True}
+        )
+
+    async def _hear(self, connection: AsyncConnection[Any], receive: Receive) -> None:
+        async for notification in connection.notifies():
+            try:
+                content = b64decode(notification.payload, validate=True)
+            except (Base64Error, ValueError):
+                content = b""
+            receive(notification.channel.removeprefix(f"{CHANNEL}."), content)
+
+    async def _send(self, connection: AsyncConnection[Any]) -> None:
+        while True:
+            subject, content = await self._outgoing.next()
+            values = (f"{CHANNEL}.{subject}", b64encode(content).decode("ascii"))
+            async with asyncio.timeout(SENT_WITHIN_S):
+                await connection.execute("select pg_notify(%s, %s)", values)
+
+
+# --- NATS: for any number of gateways ---
+
+OLDEST_NATS = (2, 10, 26)
+CONNECT_S, PING_S, PINGS_OUT, FLUSH_S = 2.0, 1, 2, 2.0
+PENDING_BYTES = 4 << 20
+"""bytes that wait for a slow server; a stop of the network is known after three seconds by pings."""
+
+
+class NatsBus:
+    """One connection to a NATS server or cluster; ``servers`` are its URLs.
+
+    :raises BridgeError: when nats-py is not installed.
+    """
+
+    def __init__(self, servers: list[str], gateway: str, prefix: str, password: str | None = None) -> None:
+        try:
+            import nats
+        except ImportError:
+            raise BridgeError(
+                "the bus nats:// needs nats-py; install it with: "
+                "pip install 'fleet-supervisor-robot-bridge[cluster]'"
+            ) from None
+        self._nats = nats
+        self._servers = servers
+        self._prefix = prefix
+        self._subjects = (STOP, EVERYBODY, POSITIONS, own_subject(gateway))
+        self._password = password
+        self._client: Any = None
+        self._outgoing = OutgoingMessages()
+        self._said = ""
+
+    @property
+    def connected(self) -> bool:
+        """Whether the connection stands."""
+        return self._client is not None and bool(self._client.is_connected)
+
+    def publish(self, subject: str, content: bytes) -> bool:
+        """Send a message; false while there is no connection."""
+        if not self.connected:
+            return False
+        self._outgoing.add(subject, content)
+        return True
+
+    async def check(self) -> None:
+        """Connect for a moment.
+
+        :raises BridgeError: when there is no server, it is too old, or it does not let this gateway speak.
+        """
+        faults: list[str] = []
+        heard = asyncio.Event()
+
+        async def note(error: Exception) -> None:
+            faults.append(str(error))
+            heard.set()
+
+        async def hear(_message: Any) -> None:
+            heard.set()
+
+        try:
+            async with asyncio.timeout(self._patience):
+                client = await self._connect(note, allow_reconnect=False)
+        except (self._nats.errors.Error, OSError, TimeoutError) as error:
+            raise BridgeError(
+                f"bus {self._where}: {str(error) or 'no server answers'}{_all(faults)}; check that NATS "
+                "runs there, and the account of this gateway"
+            ) from None
+        try:
+            check_version(self._where, client.connected_server_version)
+            subject = self._subjects[-1]
+            await client.subscribe(f"{self._prefix}.{subject}", cb=hear)
+            await client.publish(f"{self._prefix}.{subject}", b"")
+            async with asyncio.timeout(FLUSH_S):
+                await heard.wait()
+        except TimeoutError:
+            faults.append("what this gateway publishes does not come back to it")
+        finally:
+            await client.close()
+        if faults:
+            raise BridgeError(
+                f"bus {self._where}: {_all(faults).lstrip(': ')}; the account of this gateway has to be "
+                f"allowed to publish and to subscribe to {self._prefix}.>"
+            )
+
+    async def run(self, receive: Receive) -> None:
+        """Connect and send until cancelled; the client connects again by itself."""
+        while True:
+            try:
+                await self._serve(receive)
+            except (self._nats.errors.Error, OSError, TimeoutError, BridgeError) as error:
+                self._say(str(error) or "no server answers")
+            finally:
+                self._outgoing.clear()
+                client, self._client = self._client, None
+                if client is not None:
+                    with contextlib.suppress(Exception):
+                        async with asyncio.timeout(FLUSH_S):
+                            await client.close()
+            await asyncio.sleep(RETRY_S)
+
+    async def _serve(self, receive: Receive) -> None:
+        lost = asyncio.Event()
+
+        async def ended() -> None:
+            lost.set()
+
+        async def note(error: Exception) -> None:
+            self._say(str(error))
+
+        async with asyncio.timeout(self._patience):
+            # A connection that is lost is made anew here, not by the client: it would keep what is published
+            # meanwhile, and send that as if it were new.
+            client = await self._connect(note, allow_reconnect=False, disconnected_cb=ended, closed_cb=ended)
+        self._client = client
+        check_version(self._where, client.connected_server_version)
+        cut = len(self._prefix) + 1
+
+        async def hear(message: Any) -> None:
+            receive(message.subject[cut:], message.data)
+
+        for subject in self._subjects:
+            # Each has a queue of its own: no stop waits behind positions.
+            await client.subscribe(f"{self._prefix}.{subject}", cb=hear)
+        self._said = ""
+        sending = asyncio.create_task(self._send(client))
+        losing = asyncio.create_task(lost.wait())
+        try:
+            await asyncio.wait({sending, losing}, return_when=asyncio.FIRST_COMPLETED)
+            if sending.done():
+                sending.result()
+        finally:
+            for task in (sending, losing):
+                task.cancel()
+            await asyncio.gather(sending, losing, return_exceptions=True)
+        raise OSError("the connection is lost")
+
+    async def _send(self, client: Any) -> None:
+        while True:
+            subject, content = await self._outgoing.next()
+            await client.publish(f"{self._prefix}.{subject}", content)
+
+    async def _connect(self, note: Any, **options: Any) -> Any:
+        """Connect to one of the servers; raises what the last one brought about."""
+        servers = random.sample(self._servers, len(self._servers))
+        for server in servers:
+            try:
+                return await self._connect_to(server, note, **options)
+            except (self._nats.errors.Error, OSError, TimeoutError):
+                if server is servers[-1]:
+                    raise
+        raise AssertionError("there is a server")
+
+    async def _connect_to(self, server: str, note: Any, **options: Any) -> Any:
+        if self._password is not None:
+            options |= {"user": urlsplit(server).username, "password": self._password}
+        return await self._nats.connect(
+            server,
+            error_cb=note,
+            connect_timeout=CONNECT_S,
+            reconnect_time_wait=0.1,
+            max_reconnect_attempts=1,
+            ping_interval=PING_S,
+            max_outstanding_pings=PINGS_OUT,
+            pending_size=PENDING_BYTES,
+            no_echo=False,
+            name="robot-bridge",
+            **options,
+        )
+
+    @property
+    def _patience(self) -> float:
+        return 2 * CONNECT_S * len(self._servers)
+
+    @property
+    def _where(self) -> str:
+        return ",".join(server.rpartition("@")[2].removeprefix("nats://") for server in self._servers)
+
+    def _say(self, reason: str) -> None:
+        if reason != self._said:
+            log.warning("bus %s: %s; connecting again until it works", self._where, reason)
+        self._said = reason
+
+
+def check_version(where: str, version: Any) -> None:
+    """Raise BridgeError for a server that is too old; ``version`` is what nats-py knows of it."""
+    found = (version.major, version.minor, version.patch)
+    if found < OLDEST_NATS:
+        wanted = ".".join(map(str, OLDEST_NATS))
+        raise BridgeError(
+            f"bus {where}: NATS {'.'.join(map(str, found))} lets one reader that stands still delay all "
+            f"others for seconds; install {wanted} or newer (Debian 13's package nats-server runs on Debian "
+            "12)"
+        )
+
+
+def _all(faults: list[str]) -> str:
+    return f": {'; '.join(dict.fromkeys(faults))}" if faults else ""

@@ -1,0 +1,188 @@
+"""Membership: a gateway enters the fleet, renews its lease each second, and knows who else lives."""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+import os
+import socket
+import uuid
+from collections.abc import Sequence
+
+from sqlalchemy import Connection
+
+from ...core.clock import SYSTEM_CLOCK, Clock
+from ...core.errors import BridgeError, FatalError, StoreError
+from ..monitoring import gateway_version
+from ..storage.database import Database
+from ..storage.repositories import gateways
+from ..storage.repositories.gateways import Member
+from ..storage.singleton_lock import check_no_sole_gateway
+from .leases import LEASE_S, RENEW_S, LeaseTrust, check_gateway_name, leads
+
+log = logging.getLogger(__name__)
+
+LEASE_PATIENCE_S = 2.0
+"""seconds that a renewal may take: the next one is to have its turn while the lease still counts."""
+CLOCK_TOLERANCE_S = 1.0
+"""seconds that this computer's clock may be off the database's before the log is told."""
+OFF_AGAIN_S = 60.0
+
+
+class Membership:
+    """One gateway among those of a fleet.
+
+    The lease has a connection of its own: what is stored at the same time must not keep it waiting. After
+    :meth:`join` it is renewed by :meth:`renew`, to be called every :data:`.RENEW_S` seconds.
+    """
+
+    def __init__(self, name: str, lease: Database, clock: Clock = SYSTEM_CLOCK) -> None:
+        self.me = Member(
+            check_gateway_name(name), uuid.uuid4().hex, gateway_version(), socket.gethostname(), os.getpid()
+        )
+        self.trust = LeaseTrust(clock)
+        self.members: Sequence[Member] = ()
+        """all gateways, as they were at the last renewal."""
+        self.clock_offset = 0.0
+        """seconds that the database's clock is ahead of this computer's."""
+        self._lease = lease
+        self._clock = clock
+        self._clock_said_at = -OFF_AGAIN_S
+
+    @property
+    def name(self) -> str:
+        """The name of this gateway."""
+        return self.me.gw
+
+    @property
+    def leads(self) -> bool:
+        """Whether this gateway does what is to be done once per database, and may count on that."""
+        return self.trust.holds and leads(self.me, self.members)
+
+    def others(self) -> list[str]:
+        """Return the names of the other gateways that lived at the last renewal."""
+        return [member.gw for member in self.members if member.alive and member.gw != self.name]
+
+    def database_time(self) -> float:
+        """Return the time by the database's clock, which all gateways go by."""
+        return self._clock.time() + self.clock_offset
+
+    async def join(self) -> None:
+        """Enter the fleet; raises BridgeError where another gateway has this name, or has the database alone.
+
+        The lease of one that was killed a moment ago runs out first; one that renews it is there.
+        """
+        first_end = None
+        while True:
+            asked_at = self._clock.steady()
+            if await self._lease.run(gateways.join, self.me, LEASE_S):
+                break
+            other = await self._namesake()
+            end = asked_at if other is None else asked_at + other.left
+            first_end = end if first_end is None else first_end
+            if end > first_end + RENEW_S / 2:
+                raise BridgeError(self._name_is_taken(other))
+            await asyncio.sleep(0.25)
+        self.trust.renewed(asked_at)
+        try:
+            await asyncio.to_thread(check_no_sole_gateway, self._lease.url)
+        except BaseException:
+            await self.leave()
+            raise
+        await self.renew()
+        self._compare_versions()
+
+    async def renew(self) -> None:
+        """Renew the lease and learn who else lives.
+
+        :raises FatalError: when another process goes by the name of this gateway.
+        :raises StoreError: when the database cannot be used: the lease runs out, unless a later call
+        succeeds.
+        """
+        asked_at = self._clock.steady()
+        if not await self._lease.run(gateways.renew, self.me, LEASE_S) and not await self._lease.run(
+            gateways.join, self.me, LEASE_S
+        ):
+            self.trust.lost()
+            taken = self._name_is_taken(await self._namesake())
+            raise FatalError(
+                f"{taken}. It took the name while this one was cut off from the database; this one ends"
+            )
+        self.trust.renewed(asked_at)
+        before = set(self.others())
+        began = self._clock.time()
+        self.members, now = await self._lease.read(_look)
+        self._compare_clocks(began, self._clock.time(), now)
+        self._name_changes(before, set(self.others()))
+
+    async def hold(self) -> None:
+        """Renew the lease until cancelled; raises FatalError as :meth:`renew`."""
+        said = ""
+        while True:
+            await asyncio.sleep(RENEW_S)
+            try:
+                await self.renew()
+                said = ""
+            except FatalError:
+                raise
+            except StoreError as error:
+                if str(error) != said:
+                    log.error("%s; the lease of gateway %s is renewed as soon as it can be", error, self.name)
+                said = str(error)
+            except Exception:
+                log.exception("the lease of gateway %s could not be renewed", self.name)
+
+    async def leave(self) -> None:
+        """Leave the fleet in good order: its robots are anybody's at once. Goes on where that fails."""
+        self.trust.lost()
+        try:
+            await self._lease.run(gateways.leave, self.me)
+        except StoreError as error:
+            log.warning("gateway %s could not take leave, and its lease has to run out: %s", self.name, error)
+
+    async def _namesake(self) -> Member | None:
+        """Return the gateway of this name that is entered."""
+        found = await self._lease.read(gateways.members)
+        return next((member for member in found if member.gw == self.name), None)
+
+    def _name_is_taken(self, other: Member | None) -> str:
+        who = f": process {other.process} on {other.host}" if other is not None else ""
+        return (
+            f"database {self._lease.where}: another gateway named {self.name!r} serves this fleet{who}; give "
+            "each gateway a name of its own with --gateway-name, or end that one first"
+        )
+
+    def _compare_versions(self) -> None:
+        others = {m.version: m.gw for m in self.members if m.alive and m.version != self.me.version}
+        for version, name in others.items():
+            log.warning(
+                "gateway %s is version %s, this one (%s) is %s; let versions differ no longer than an "
+                "upgrade takes",
+                name,
+                version,
+                self.name,
+                self.me.version,
+            )
+
+    def _compare_clocks(self, began: float, ended: float, database: float) -> None:
+        self.clock_offset = database - (began + ended) / 2
+        now = self._clock.steady()
+        if abs(self.clock_offset) > CLOCK_TOLERANCE_S + (ended - began) and (
+            now - self._clock_said_at >= OFF_AGAIN_S
+        ):
+            self._clock_said_at = now
+            log.warning(
+                "the clock of this computer is %.1f s off the database's; times of commands and positions of "
+                "this gateway do not fit the others': let NTP set all clocks",
+                abs(self.clock_offset),
+            )
+
+    def _name_changes(self, before: set[str], after: set[str]) -> None:
+        for name in sorted(after - before):
+            log.warning("gateway %s serves this fleet, too", name)
+        for name in sorted(before - after):
+            log.warning("gateway %s is gone, or could not renew its lease for %g s", name, LEASE_S)
+
+
+def _look(connection: Connection) -> tuple[list[Member], float]:
+    return gateways.members(connection), gateways.clock(connection)

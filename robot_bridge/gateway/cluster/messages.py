@@ -1,0 +1,151 @@
+"""What gateways of a fleet tell each other over the bus: encoded, signed, decoded and bounded here alone.
+
+Whoever may write to the bus could say anything: an account of a robot may NOTIFY on PostgreSQL, and a NATS
+server may serve others as well. So every message is signed with a key that the fleet's database holds and
+robots cannot read. What is not signed with it, or cannot be understood, counts for nothing.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import hmac
+from typing import Annotated, Literal
+
+import msgspec
+import numpy as np
+import numpy.typing as npt
+from msgspec import Meta
+
+from ...core.errors import BridgeError
+
+FORM = b"\x01"
+"""The form of all messages; gateways that speak another one do not understand each other."""
+LARGEST = 256 * 1024
+"""bytes of a message."""
+SIGNATURE = 16
+"""bytes."""
+MOST_ROBOTS = 8192
+"""in one message of positions."""
+COLUMNS = 6
+"""numbers of a robot: x, y (m, site frame), theta (rad), v (m/s), seconds since its pose, and since its
+last message."""
+
+Gateway = Annotated[str, Meta(max_length=32)]
+Robot = Annotated[str, Meta(max_length=63)]
+Id = Annotated[str, Meta(max_length=64)]
+Line = Annotated[str, Meta(max_length=600)]
+Names = Annotated[list[Robot], Meta(max_length=50)]
+Count = Annotated[int, Meta(ge=0, le=10_000_000)]
+
+
+class BusMessageError(BridgeError):
+    """Bytes on the bus that are no message of this fleet."""
+
+
+class BusMessage(msgspec.Struct, array_like=True, frozen=True, tag=True):
+    """A message; ``gw`` is the gateway that sent it."""
+
+    gw: Gateway
+
+
+class Beat(BusMessage, frozen=True, tag="beat"):
+    """The gateway is there."""
+
+
+class Wake(BusMessage, frozen=True, tag="wake"):
+    """Something was committed that concerns another gateway, which had better look at once."""
+
+    what: Literal["requests", "answers", "owners", "steps", "stops"]
+
+
+class StopCall(BusMessage, frozen=True, tag="stop"):
+    """Every robot is to stop; sent again until each gateway has answered."""
+
+    id: Id
+    at: float
+    by: Annotated[str, Meta(max_length=200)]
+    reason: Line | None = None
+
+
+class StopSeen(BusMessage, frozen=True, tag="stopped"):
+    """The stop is in force at the gateway, and on its way to its robots; how far they are."""
+
+    id: Id
+    robots: Count
+    acknowledged: Count
+    standing: Count
+    waiting: Names = []
+    refused: Names = []
+
+
+class AbortCall(BusMessage, frozen=True, tag="abort"):
+    """A robot is to be told to abort over its open connection, by whoever has that: it may not be stored."""
+
+    robot: Robot
+    call_id: Annotated[str, Meta(max_length=100)]
+
+
+class PositionBatch(BusMessage, frozen=True, tag="positions"):
+    """Where robots of the gateway are, at the database's time ``t``, in seconds.
+
+    ``numbers`` are float32, robot by robot, :data:`COLUMNS` of each, NaN where there is none; ``flags`` a
+    byte of each robot: 1 it ended in good order, 2 it has said where it is since its Ready, 4 it is only
+    seen.
+    """
+
+    t: float
+    names: Annotated[list[Robot], Meta(max_length=MOST_ROBOTS)]
+    numbers: Annotated[bytes, Meta(max_length=4 * COLUMNS * MOST_ROBOTS)]
+    flags: Annotated[bytes, Meta(max_length=MOST_ROBOTS)]
+
+    def table(self) -> npt.NDArray[np.float32]:
+        """Return the numbers, a row for each robot."""
+        return np.frombuffer(self.numbers, dtype="<f4").reshape(len(self.names), COLUMNS)
+
+
+AnyMessage = Beat | Wake | StopCall | StopSeen | AbortCall | PositionBatch
+_DECODER = msgspec.msgpack.Decoder(AnyMessage)
+_ENCODER = msgspec.msgpack.Encoder()
+
+
+class Codec:
+    """Messages as signed bytes and back; ``key`` is the secret of the fleet."""
+
+    def __init__(self, key: bytes) -> None:
+        self._key = key
+
+    def encode(self, message: BusMessage) -> bytes:
+        """Return a message as bytes."""
+        content = FORM + _ENCODER.encode(message)
+        return self._signature(content) + content
+
+    def decode(self, data: bytes) -> AnyMessage:
+        """Return the message that ``data`` is; raises BusMessageError, which says why it is none."""
+        if len(data) > LARGEST:
+            raise BusMessageError(f"a message of {len(data)} bytes; {LARGEST} are the most")
+        content = data[SIGNATURE:]
+        if not hmac.compare_digest(data[:SIGNATURE], self._signature(content)):
+            raise BusMessageError(
+                "a message that is not signed by this fleet: another fleet, or somebody else, writes to its "
+                "subjects; give each fleet a bus, or an account on it, of its own"
+            )
+        if content[:1] != FORM:
+            raise BusMessageError(
+                "a message of another version of robot-bridge; bring all gateways to the same version"
+            )
+        try:
+            message: AnyMessage = _DECODER.decode(content[1:])
+        except msgspec.DecodeError as error:
+            raise BusMessageError(f"a message that cannot be read: {error}") from None
+        if isinstance(message, PositionBatch):
+            _check_lengths(message)
+        return message
+
+    def _signature(self, content: bytes) -> bytes:
+        return hashlib.blake2b(content, digest_size=SIGNATURE, key=self._key).digest()
+
+
+def _check_lengths(batch: PositionBatch) -> None:
+    count = len(batch.names)
+    if len(batch.numbers) != 4 * COLUMNS * count or len(batch.flags) != count:
+        raise BusMessageError(f"positions of {count} robots with numbers of others")

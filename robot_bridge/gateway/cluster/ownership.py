@@ -1,0 +1,149 @@
+"""Ownership: claims of robots, and the fence of whatever is written of them."""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+from collections.abc import Collection, Iterable, Sequence
+from collections.abc import Set as AbstractSet
+from typing import NamedTuple
+
+from sqlalchemy import Connection
+
+from ...core.errors import StoreError, listed_names
+from ..storage.database import Database, to_its_end
+from ..storage.owner_fence import FencedError
+from ..storage.repositories import gateways
+from ..storage.repositories import robots as stored_robots
+from ..storage.repositories.gateways import Claimed
+from .leases import OwnedRobots
+from .membership import Membership
+
+log = logging.getLogger(__name__)
+
+BATCH_S, BATCH = 0.02, 500
+"""seconds for which claims wait for one another, and how many are made at once: fleets connect together."""
+
+
+class OwnerChanges(NamedTuple):
+    """Robots that another gateway has taken over, that turned out to be this one's, and who has which.
+
+    Of those that are ``gone`` no more is stored: they are new, or were removed.
+    """
+
+    lost: set[str]
+    new: set[str]
+    gone: set[str]
+    gateways: dict[str, str]
+
+
+class Ownership:
+    """Which robots this gateway has: a :class:`.OwnerFence` for what is written of them, and claims.
+
+    All of it goes over the connection by which robots are written: what is known here is in the order of
+    what is stored.
+    """
+
+    def __init__(self, membership: Membership, database: Database) -> None:
+        self._membership = membership
+        self._database = database
+        self._robots = OwnedRobots()
+        self._waiting: dict[str, asyncio.Future[bool]] = {}
+        self._claiming: asyncio.Task[None] | None = None
+
+    # --- the fence --------------------------------------------------------------------------------------
+
+    def owns(self, robot: str) -> bool:
+        """Tell whether this gateway has the robot, for all that it knows."""
+        return robot in self._robots
+
+    def may_command(self, robot: str) -> bool:
+        """Tell whether the robot may be set in motion now: this gateway has it, and may trust that."""
+        return robot in self._robots and self._membership.trust.holds
+
+    def check(self, connection: Connection, robots: Collection[str]) -> None:
+        """Raise FencedError unless this gateway has all ``robots``, and does until the transaction ends."""
+        if missing := set(robots) - self.held(connection, sorted(robots)):
+            raise FencedError(
+                f"{listed_names(sorted(missing))}: connected to another gateway by now, or to none; ask "
+                "again in a moment"
+            )
+
+    def held(self, connection: Connection, robots: Sequence[str]) -> AbstractSet[str]:
+        """Return those of ``robots`` that this gateway has until the transaction ends."""
+        return self._robots.matching(gateways.held(connection, self._membership.me, robots))
+
+    def missing(self, connection: Connection, stored: AbstractSet[str]) -> set[str]:
+        """Return those of its robots ``stored`` that somebody has removed from the database."""
+        if gateways.present(connection, self._membership.me) == len(stored):
+            return set()
+        return set(stored).difference(stored_robots.names(connection))
+
+    # --- claims -----------------------------------------------------------------------------------------
+
+    async def claim(self, robot: str) -> bool:
+        """Have a robot, whoever had it; return whether what is stored of it has to be read first.
+
+        Claims that come together are made together. Raises StoreError.
+        """
+        waiting = self._waiting.get(robot)
+        if waiting is None:
+            waiting = self._waiting[robot] = asyncio.get_running_loop().create_future()
+            if self._claiming is None or self._claiming.done():
+                self._claiming = asyncio.create_task(self._claim_together())
+        return await asyncio.shield(waiting)
+
+    async def claim_left(self) -> list[str]:
+        """Have the robots that no living gateway has, if this one leads; return them. Raises StoreError."""
+        if not self._membership.leads:
+            return []
+        got = await self._database.run(gateways.claim_left, self._membership.me)
+        self._robots.gained(got)
+        if got:
+            log.warning("%d robots had no gateway, and have this one now", len(got))
+        return sorted(got)
+
+    def forget(self, robots: Iterable[str]) -> None:
+        """Take these robots for nobody's until the next :meth:`refresh`."""
+        self._robots.forget(robots)
+
+    async def refresh(self) -> OwnerChanges:
+        """Return what has changed in the database of who has which robot; raises StoreError.
+
+        The robots that are lost are nobody's here from then on.
+        """
+        me = self._membership.me
+        owners = await self._database.read(gateways.owners)
+        mine = {robot: o.fence for robot, o in owners.items() if (o.gw, o.run) == (me.gw, me.run)}
+        lost, new = self._robots.compare(mine)
+        self._robots.forget(lost)
+        # A claim of which nobody knew whether it was stored.
+        self._robots.gained({robot: mine[robot] for robot in new})
+        gone = {robot for robot, owner in owners.items() if not owner.stored}
+        return OwnerChanges(lost, new, gone, {robot: owner.gw for robot, owner in owners.items()})
+
+    async def _claim_together(self) -> None:
+        await asyncio.sleep(BATCH_S)
+        while self._waiting:
+            some = dict(list(self._waiting.items())[:BATCH])
+            for robot in some:
+                del self._waiting[robot]
+            try:
+                claims: dict[str, Claimed] = await to_its_end(
+                    self._database.run(gateways.claim, self._membership.me, sorted(some))
+                )
+            except Exception as error:
+                _fail(some.values(), error)
+                continue
+            unknown = self._robots.claimed(self._membership.me, claims)
+            for robot, waiting in some.items():
+                if not waiting.done():
+                    waiting.set_result(robot in unknown)
+
+
+def _fail(waiting: Iterable[asyncio.Future[bool]], error: Exception) -> None:
+    for one in waiting:
+        if not one.done():
+            one.set_exception(error if isinstance(error, StoreError) else StoreError(str(error)))
+            # Whoever waited may have gone.
+            one.exception()

@@ -1,0 +1,117 @@
+"""Positions across gateways: what changed goes out in columns, newest only; what is old is dropped."""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+import math
+from collections.abc import Iterable
+
+import numpy as np
+import numpy.typing as npt
+
+from ...core.messages.robots import SendPos
+from ..model.robots import ReportedElsewhere, Robot, Robots
+from .bus import LARGEST_NOTIFICATION, POSITIONS
+from .exchange import Exchange
+from .membership import Membership
+from .messages import COLUMNS, MOST_ROBOTS, PositionBatch
+
+log = logging.getLogger(__name__)
+
+TICK_S = 0.2
+"""seconds between two messages: of each robot only the newest position of a tick goes out."""
+OLD_S = 1.0
+"""seconds after which a message is dropped: it has waited somewhere, and newer ones follow it."""
+IDLE_S = 1.0
+"""seconds after which robots that say nothing new are told again: another gateway may have come."""
+ENDED, LOCATED, ONLY_SEEN = 1, 2, 4
+NAME_BYTES = 24
+"""bytes that a robot's name takes on average at most, for how many fit into a notification."""
+
+
+class PositionRelay:
+    """Tells other gateways where the robots of this one are, and takes in where theirs are."""
+
+    def __init__(
+        self, robots: Robots, membership: Membership, exchange: Exchange, *, small: bool = False
+    ) -> None:
+        """:param small: that a message has to fit into a notification of PostgreSQL."""
+        self._robots = robots
+        self._membership = membership
+        self._exchange = exchange
+        self._most = LARGEST_NOTIFICATION // (4 * COLUMNS + 1 + NAME_BYTES) if small else MOST_ROBOTS
+        self._revision = -1
+        self._told_all_at = -math.inf
+        self._newest: dict[str, float] = {}
+        exchange.subscribe(PositionBatch, self._take)
+
+    async def run(self) -> None:
+        """Tell until cancelled."""
+        while True:
+            await asyncio.sleep(TICK_S)
+            self.send_changes()
+
+    def send_changes(self) -> None:
+        """Tell what changed since the last time, and everything once in a while."""
+        now = self._membership.database_time()
+        everything = now - self._told_all_at >= IDLE_S
+        since, self._revision = (-1 if everything else self._revision), self._robots.revision
+        if everything:
+            self._told_all_at = now
+        if not self._exchange.connected:
+            return
+        mine = [robot for robot in self._robots.changed(since) if robot.gateway is None]
+        for begin in range(0, len(mine), self._most):
+            some = mine[begin : begin + self._most]
+            self._exchange.send(POSITIONS, self._batch(some, now))
+
+    def _batch(self, robots: list[Robot], now: float) -> PositionBatch:
+        wall = now - self._membership.clock_offset
+        return PositionBatch(
+            self._exchange.gateway,
+            now,
+            [robot.name for robot in robots],
+            _numbers(robots, wall).tobytes(),
+            bytes(_flags(robots)),
+        )
+
+    def _take(self, batch: PositionBatch) -> None:
+        now = self._membership.database_time()
+        age = now - batch.t
+        if abs(age) > OLD_S or batch.t < self._newest.get(batch.gw, -math.inf):
+            return
+        self._newest[batch.gw] = batch.t
+        wall = batch.t - self._membership.clock_offset
+        for name, row, flags in zip(batch.names, batch.table().tolist(), batch.flags, strict=True):
+            x, y, theta, v, pose_age, age_of = row
+            if not math.isfinite(age_of):
+                continue
+            has_pose = all(map(math.isfinite, (x, y, theta, v, pose_age)))
+            seen = ReportedElsewhere(
+                received_at=wall - age_of,
+                ended_in_order=bool(flags & ENDED),
+                located=bool(flags & LOCATED),
+                only_seen=bool(flags & ONLY_SEEN),
+                pose=SendPos(x, y, theta, v) if has_pose else None,
+                pose_at=wall - pose_age if has_pose else None,
+            )
+            self._robots.observe_elsewhere(name, batch.gw, seen)
+
+
+def _numbers(robots: Iterable[Robot], wall: float) -> npt.NDArray[np.float32]:
+    rows = []
+    for robot in robots:
+        pose, at = robot.pose, robot.pose_at
+        place = (
+            (math.nan,) * 5 if pose is None or at is None else (pose.x, pose.y, pose.theta, pose.v, wall - at)
+        )
+        rows.append((*place, wall - robot.received_at))
+    return np.array(rows, dtype="<f4").reshape(len(rows), COLUMNS)
+
+
+def _flags(robots: Iterable[Robot]) -> list[int]:
+    return [
+        ENDED * robot.ended_in_order | LOCATED * robot.located | ONLY_SEEN * (robot.abilities == "")
+        for robot in robots
+    ]

@@ -1,0 +1,399 @@
+"""Requests across gateways: what an operator asks of a robot is done by the gateway that has the robot.
+
+The request is committed into table ``relayed_requests`` before that gateway is woken, and done by the same
+handlers as if it had been asked there: one gateway alone writes what concerns a robot. An Abort that is not
+answered within a second goes over the bus as well, to the robot's open connection.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import logging
+import uuid
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import msgspec
+
+from ...core.errors import (
+    BusyError,
+    DataRefusedError,
+    ForbiddenError,
+    OutdatedError,
+    OverridableError,
+    RefusedError,
+    StoreError,
+    listed_names,
+)
+from ...core.json_decoder import decode_json
+from ...core.logs import log_and_continue, log_unforeseen
+from ...core.messages.commands import AbortAll, AbortTask, Send, SendMap, SetPositions
+from ...core.messages.json_values import to_json
+from ...core.messages.operator_requests import DeskRequest
+from ...core.messages.plans import SubmitPlan
+from ...core.messages.queues import (
+    AddTasks,
+    GetQueue,
+    MakeCurrent,
+    MoveTask,
+    PauseQueue,
+    PauseRobot,
+    RemoveTask,
+    ResumeQueue,
+    SetQueue,
+)
+from ...core.messages.robots import Abort
+from ...core.messages.validation import MessageError
+from ...protocol.codec import decode_desk_request
+from ..model.request_handlers import Answering
+from ..model.robots import Robots
+from ..storage.database import Database
+from ..storage.owner_fence import FencedError
+from ..storage.repositories import commands, relayed
+from ..storage.repositories.relayed import NewRequest, TakenRequest
+from .bus import STOP
+from .exchange import Exchange
+from .membership import Membership
+from .messages import AbortCall, Wake
+
+log = logging.getLogger(__name__)
+
+RELAYED = (
+    Send,
+    SendMap,
+    AbortTask,
+    SetQueue,
+    AddTasks,
+    MoveTask,
+    RemoveTask,
+    MakeCurrent,
+    PauseQueue,
+    PauseRobot,
+    ResumeQueue,
+    GetQueue,
+)
+"""Requests that concern one robot, and are done by the gateway that has it."""
+LOOK_S = 1.0
+"""seconds between two looks for requests, and for answers, that nobody told of."""
+ANSWER_WITHIN_S = 12.0
+"""seconds that an operator waits: of a gateway that died the robots are taken up within seven."""
+TOO_OLD_S = 20.0
+"""seconds after which nothing is begun that sets a robot in motion: nobody counts on it any more."""
+STORED_WITHIN_S = 1.0
+"""seconds after which an Abort that is not answered goes over the bus as well."""
+MOST_AT_ONCE = 200
+FORGET_S = 3600.0
+
+
+class RelayedOverrideError(OverridableError):
+    """What another gateway would do only with an override."""
+
+    def __init__(self, text: str, found: list[str]) -> None:
+        RefusedError.__init__(self, text)
+        self.found = found
+
+
+_PLAIN: dict[str, type[Exception]] = {
+    cls.__name__: cls
+    for cls in (MessageError, ForbiddenError, BusyError, DataRefusedError, StoreError, RefusedError)
+}
+
+
+class RequestRelay:
+    """Answers operators as ``handlers`` do, those requests excepted that concern robots of other gateways."""
+
+    def __init__(
+        self,
+        handlers: Answering,
+        robots: Robots,
+        membership: Membership,
+        exchange: Exchange,
+        database: Database,
+    ) -> None:
+        self._handlers = handlers
+        self._robots = robots
+        self._membership = membership
+        self._exchange = exchange
+        self._database = database
+        self._asked = asyncio.Event()
+        self._answered: dict[int, asyncio.Event] = {}
+        self._doing: set[asyncio.Task[None]] = set()
+        self._links: list[Callable[[str, str], bool]] = []
+        exchange.subscribe(Wake, self._woken)
+        exchange.subscribe(AbortCall, self._abort)
+
+    def reach(self, link: Callable[[str, str], bool]) -> None:
+        """Call ``link`` with a robot and the id of a call where another gateway has it aborted directly."""
+        self._links.append(link)
+
+    # --- what operators of this gateway ask -----------------------------------------------------------------
+
+    async def answer(self, request: DeskRequest[Any], operator: str) -> dict[str, Any]:
+        """Return the result of ``request`` as JSON values; raises what its handler raises."""
+        if isinstance(request, RELAYED):
+            robot = await self._robot_of(request)
+            if robot is not None:
+                return await self._answer_of(robot, request, operator)
+        elif isinstance(request, AbortAll):
+            return await self._abort_all(request, operator)
+        elif isinstance(request, SetPositions):
+            return await self._set_positions(request, operator)
+        else:
+            self._refuse_others(request)
+        return await self._handlers.answer(request, operator)
+
+    async def _answer_of(self, robot: str, request: DeskRequest[Any], operator: str) -> dict[str, Any]:
+        """Return what the gateway answers that has ``robot``."""
+        if self._robots.gateway_of(robot) is None:
+            try:
+                return await self._handlers.answer(request, operator)
+            except StoreError as error:
+                if not (isinstance(error, FencedError) or isinstance(error.__cause__, FencedError)):
+                    raise
+                # Another one got it a moment ago.
+        (result,) = await self._relay([(robot, request)], operator)
+        return result
+
+    async def _robot_of(self, request: DeskRequest[Any]) -> str | None:
+        robot: str | None = getattr(request, "robot", None)
+        if robot is not None or not isinstance(request, AbortTask) or request.aborts is None:
+            return robot
+        if (robot := self._robots.doing(request.aborts)) is not None:
+            return robot
+        # Whoever has it can say that it has ended, and no Abort waits for a database that is away.
+        with contextlib.suppress(StoreError, TimeoutError):
+            async with asyncio.timeout(STORED_WITHIN_S):
+                found = await self._database.read(commands.find, request.aborts)
+                return None if found is None else found.robot
+        return None
+
+    async def _abort_all(self, request: AbortAll, operator: str) -> dict[str, Any]:
+        """Abort the own robots at once, and have the others abort theirs at the same time."""
+        id = request.command or str(uuid.uuid4())
+        aborts: list[tuple[str, DeskRequest[Any]]] = [
+            (name, AbortTask(str(uuid.uuid5(uuid.NAMESPACE_OID, f"{id} {name}")), name, None, request.reason))
+            for name in self._robots.commanded_elsewhere()
+        ]
+        own = asyncio.ensure_future(self._handlers.answer(AbortAll(id, request.reason), operator))
+        if not aborts:
+            return await own
+        others = await asyncio.gather(self._relay(aborts, operator), return_exceptions=True)
+        result = await own
+        for found in others:
+            if isinstance(found, BaseException):
+                raise found
+            result["commands"] = [*result["commands"], *found]
+        return result
+
+    async def _set_positions(self, request: SetPositions, operator: str) -> dict[str, Any]:
+        owners = {self._robots.gateway_of(position.robot) for position in request.positions}
+        if owners <= {None}:
+            return await self._handlers.answer(request, operator)
+        if len(owners) > 1:
+            raise RefusedError(
+                "set_positions: these robots are connected to several gateways, so that it cannot be all of "
+                "them or none; send each its target by itself"
+            )
+        (result,) = await self._relay([(request.positions[0].robot, request)], operator)
+        return result
+
+    def _refuse_others(self, request: DeskRequest[Any]) -> None:
+        """Raise RefusedError for what is not done across gateways yet."""
+        if isinstance(request, SubmitPlan):
+            raise RefusedError(
+                "submit_plan: a plan is driven where one gateway serves the fleet; with several it is not "
+                "yet: give the robots tasks of their queues"
+            )
+        robots = [getattr(request, name, None) for name in ("robot", "other")]
+        owners = {
+            r: g for r in robots if isinstance(r, str) and (g := self._robots.gateway_of(r)) is not None
+        }
+        if owners and not request.method.startswith("get_"):
+            names = listed_names(sorted(owners))
+            raise RefusedError(
+                f"{request.method}: {names} is connected to gateway {next(iter(owners.values()))}; this is "
+                "done at a desk of that gateway only, so far"
+            )
+
+    async def _relay(
+        self, requests: Sequence[tuple[str, DeskRequest[Any]]], operator: str
+    ) -> list[dict[str, Any]]:
+        """Return the results of requests of robots that others have; raises as their handlers do."""
+        stops = [(robot, r) for robot, r in requests if _stops(r)]
+        relaying = asyncio.ensure_future(self._ask(requests, operator))
+        await asyncio.wait({relaying}, timeout=STORED_WITHIN_S if stops else None)
+        sent: list[str] = []
+        if stops and (not relaying.done() or relaying.exception() is not None):
+            sent = [robot for robot, request in stops if self._send_abort(robot, request)]
+        try:
+            answers = await relaying
+        except StoreError as error:
+            if not stops:
+                raise
+            to = f"sent over the bus to the gateways of {listed_names(sent)}" if sent else "sent to no robot"
+            raise StoreError(
+                f"{error}. The Abort is not stored; it was {to}: look whether they stand"
+            ) from error
+        return [_result_in(answer) for answer in answers]
+
+    def _send_abort(self, robot: str, request: DeskRequest[Any]) -> bool:
+        call_id = f"abort-{getattr(request, 'command', uuid.uuid4())}"
+        # It may be connected here, all the same.
+        self._abort_here(robot, call_id)
+        return self._exchange.send(STOP, AbortCall(self._exchange.gateway, robot, call_id))
+
+    async def _ask(self, requests: Sequence[tuple[str, DeskRequest[Any]]], operator: str) -> list[str]:
+        rows = [
+            NewRequest(robot, request.method, msgspec.json.encode(to_json(request)).decode())
+            for robot, request in requests
+        ]
+        ids = await self._database.run(relayed.add, rows, operator, self._membership.name)
+        for gateway in {self._robots.gateway_of(robot) for robot, _ in requests} - {None}:
+            self._exchange.wake("requests", gateway)
+        # The robots may have come here meanwhile.
+        self._asked.set()
+        return await self._collect(ids, [robot for robot, _ in requests])
+
+    async def _collect(self, ids: list[int], robots: list[str]) -> list[str]:
+        """Return the answers in the order of ``ids``; raises RefusedError where one does not come."""
+        event = asyncio.Event()
+        self._answered.update(dict.fromkeys(ids, event))
+        answers: dict[int, str] = {}
+        until = asyncio.get_running_loop().time() + ANSWER_WITHIN_S
+        try:
+            while len(answers) < len(ids):
+                left = [id for id in ids if id not in answers]
+                event.clear()
+                answers.update(await self._database.run(relayed.collect, left))
+                pause = min(LOOK_S, until - asyncio.get_running_loop().time())
+                if len(answers) == len(ids):
+                    break
+                if pause <= 0:
+                    raise RefusedError(await self._unanswered(left, robots))
+                with contextlib.suppress(TimeoutError):
+                    async with asyncio.timeout(pause):
+                        await event.wait()
+        finally:
+            for id in ids:
+                self._answered.pop(id, None)
+        return [answers[id] for id in ids]
+
+    async def _unanswered(self, ids: list[int], robots: list[str]) -> str:
+        back = await self._database.run(relayed.withdraw, ids)
+        names = listed_names(
+            sorted({f"{self._robots.gateway_of(robot) or 'none'} ({robot})" for robot in robots})
+        )
+        what = "was not done" if len(back) == len(ids) else "may have been done: look at the robot's commands"
+        return f"gateway {names} has not answered within {ANSWER_WITHIN_S:g} s; what was asked {what}"
+
+    # --- what other gateways ask of robots of this one
+    # --------------------------------------------------------
+
+    async def run(self) -> None:
+        """Deal with what others ask, until cancelled; raises StoreError."""
+        while True:
+            self._asked.clear()
+            await self.begin_waiting()
+            with contextlib.suppress(TimeoutError):
+                async with asyncio.timeout(LOOK_S):
+                    await self._asked.wait()
+
+    async def begin_waiting(self) -> None:
+        """Begin with what waits for robots of this gateway; raises StoreError."""
+        for request in await self._database.run(relayed.take, self._membership.me, MOST_AT_ONCE):
+            task = asyncio.create_task(self._do(request))
+            self._doing.add(task)
+            task.add_done_callback(self._doing.discard)
+
+    async def forget(self) -> None:
+        """Delete what nobody has collected for an hour; raises StoreError."""
+        await self._database.run(relayed.forget, FORGET_S)
+
+    async def _do(self, request: TakenRequest) -> None:
+        answer = await self._answer_to(request)
+        with log_and_continue(log, f"answering gateway {request.asked_by}"):
+            await self._database.run(relayed.answer, request.id, msgspec.json.encode(answer).decode())
+            self._exchange.wake("answers", request.asked_by)
+            # A gateway that asked itself: the robot came to it meanwhile.
+            self._note_answers()
+
+    async def _answer_to(self, taken: TakenRequest) -> dict[str, Any]:
+        try:
+            request = decode_desk_request(taken.method, decode_json(taken.params))
+            if not isinstance(request, (*RELAYED, SetPositions)):
+                raise MessageError(f"{taken.method} is nothing that one gateway does for another")
+            _check_timely(taken, request)
+            return {"result": await self._handlers.answer(request, taken.operator)}
+        except Exception as error:
+            if type(error).__name__ not in _PLAIN and not isinstance(
+                error, (OutdatedError, RefusedError, StoreError)
+            ):
+                log_unforeseen(log, f"gateway {taken.asked_by}, {taken.method}")
+            return {"error": _error_out(error)}
+
+    # --- the bus ------------------------------------------------------------------------------------------
+
+    def _woken(self, wake: Wake) -> None:
+        if wake.what == "requests":
+            self._asked.set()
+        elif wake.what == "answers":
+            self._note_answers()
+
+    def _note_answers(self) -> None:
+        for event in set(self._answered.values()):
+            event.set()
+
+    def _abort(self, call: AbortCall) -> None:
+        self._abort_here(call.robot, call.call_id)
+
+    def _abort_here(self, robot: str, call_id: str) -> None:
+        for link in self._links:
+            with log_and_continue(log, f"sending robot {robot!r} an Abort that is not stored"):
+                link(robot, call_id)
+
+
+def _stops(request: DeskRequest[Any]) -> bool:
+    return isinstance(request, AbortTask) or (isinstance(request, Send) and request.op == Abort.__name__)
+
+
+def _check_timely(taken: TakenRequest, request: DeskRequest[Any]) -> None:
+    """Raise RefusedError for what nobody counts on any more, or what may have been done before."""
+    if taken.age > TOO_OLD_S and not _stops(request):
+        raise RefusedError(
+            f"{taken.method}: asked {taken.age:.0f} s ago, too long ago to be done now; ask again"
+        )
+    if taken.begun_by is not None and not isinstance(request, (Send, AbortTask)):
+        raise RefusedError(
+            f"{taken.method}: the gateway that had the robot ended while it did this, or lost the robot; "
+            "look whether it is done, then ask again"
+        )
+
+
+def _error_out(error: Exception) -> dict[str, Any]:
+    kind = next(
+        (cls.__name__ for cls in type(error).__mro__ if cls.__name__ in _PLAIN), RefusedError.__name__
+    )
+    out: dict[str, Any] = {"kind": kind, "text": str(error)}
+    if isinstance(error, OutdatedError):
+        out |= {"kind": OutdatedError.__name__, "newer": error.newer}
+    elif isinstance(error, OverridableError):
+        out |= {"kind": OverridableError.__name__, "found": error.found}
+    return out
+
+
+def _result_in(answer: str) -> dict[str, Any]:
+    """Return the result in an answer; raises the error that is in it."""
+    content = decode_json(answer)
+    if isinstance(content, dict) and isinstance(content.get("result"), dict):
+        result: dict[str, Any] = content["result"]
+        return result
+    error = content.get("error") if isinstance(content, dict) else None
+    if not isinstance(error, dict):
+        raise StoreError(f"an answer of another gateway cannot be read: {answer[:80]}")
+    kind, said = error.get("kind"), str(error.get("text", ""))
+    if kind == OutdatedError.__name__:
+        raise OutdatedError(said, dict(error.get("newer") or {}))
+    if kind == OverridableError.__name__:
+        raise RelayedOverrideError(said, [str(one) for one in error.get("found") or []])
+    raise _PLAIN.get(str(kind), RefusedError)(said)

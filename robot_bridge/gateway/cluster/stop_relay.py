@@ -1,0 +1,245 @@
+"""Emergency stops across gateways: over the bus with an answer of each, and by a look each second."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import logging
+import uuid
+from collections.abc import Sequence
+from typing import Any, Protocol
+
+from sqlalchemy import Connection
+
+from ...core.clock import SYSTEM_CLOCK, Clock
+from ...core.errors import StoreError
+from ...core.messages.safety import StoppedGateways
+from ..storage.database import Database
+from ..storage.repositories import emergency_stops
+from ..storage.repositories.emergency_stops import StopRow
+from .bus import STOP
+from .exchange import Exchange
+from .membership import Membership
+from .messages import StopCall, StopSeen, Wake
+
+log = logging.getLogger(__name__)
+
+LOOK_S = 1.0
+"""seconds between two looks into the database, and between two calls over the bus to who has not answered."""
+TELL_S = 0.1
+"""seconds for which changes of what robots answered wait for one another before others are told."""
+CUT_OFF_S = 5.0
+"""seconds without the database and without any other gateway after which a gateway counts as cut off."""
+MOST_NAMES = 50
+
+
+class LocalStops(Protocol):
+    """The emergency stops of this gateway."""
+
+    @property
+    def in_force(self) -> bool:
+        """Whether robots must not be sent anywhere."""
+
+    @property
+    def current(self) -> StopRow | None:
+        """The stop in force, or the one that was cleared last."""
+
+    def local_counts(self) -> dict[str, Any]:
+        """Return what the robots of this gateway said."""
+
+    def announce(self) -> None:
+        """Tell every operator how things stand."""
+
+    async def stop_elsewhere(self, stop: StopRow) -> None:
+        """Put a stop in force that was made at another gateway."""
+
+    async def learn(self, stop: StopRow) -> None:
+        """Take in how a stop is stored."""
+
+
+class EmergencyStopRelay:
+    """Tells other gateways of stops made here, and learns of those made there.
+
+    What an operator's stop does for its own robots waits for nothing of this.
+    """
+
+    def __init__(
+        self,
+        stops: LocalStops,
+        membership: Membership,
+        exchange: Exchange,
+        lease: Database,
+        clock: Clock = SYSTEM_CLOCK,
+        *,
+        stops_when_cut_off: bool = True,
+    ) -> None:
+        self._stops = stops
+        self._membership = membership
+        self._exchange = exchange
+        self._lease = lease
+        self._clock = clock
+        self._seen: dict[str, StopSeen] = {}
+        """what each other gateway said of the stop in force."""
+        self._changed = asyncio.Event()
+        self._look_now = asyncio.Event()
+        self._tasks: set[asyncio.Task[None]] = set()
+        self._looked_at = clock.steady()
+        self._has_company = False
+        """whether there were other gateways when the database was reached last."""
+        self._stops_when_cut_off = stops_when_cut_off
+        exchange.subscribe(StopCall, self._called)
+        exchange.subscribe(StopSeen, self._answered)
+        exchange.subscribe(Wake, self._woken)
+
+    # --- as a fleet.emergency_stop.StopRelay ----------------------------------------------------------------
+
+    def announce(self, stop: StopRow) -> None:
+        """Tell all others of a stop."""
+        self._seen.clear()
+        self._exchange.send(
+            STOP, StopCall(self._exchange.gateway, stop.id, stop.at, stop.by[:200], stop.reason)
+        )
+        self._changed.set()
+
+    def note_change(self) -> None:
+        """Note that the robots of this gateway have answered."""
+        self._changed.set()
+
+    def add_counts(self, counts: dict[str, Any], stop: str) -> dict[str, Any]:
+        """Return ``counts`` of a stop with those of the other gateways."""
+        seen = {name: one for name, one in self._seen.items() if one.id == stop}
+        sums = {
+            name: counts[name] + sum(getattr(one, name) for one in seen.values())
+            for name in ("robots", "acknowledged", "standing")
+        }
+        names = {
+            name: sorted({*counts[name], *(robot for one in seen.values() for robot in getattr(one, name))})[
+                :MOST_NAMES
+            ]
+            for name in ("waiting", "refused")
+        }
+        others = self._others(seen)
+        missing = [name for name in others if name not in seen]
+        return {**sums, **names, "gateways": StoppedGateways(1 + len(seen), 1 + len(others), missing)}
+
+    # --- what goes on -------------------------------------------------------------------------------------
+
+    async def run(self) -> None:
+        """Look, and tell others what the robots answered, until cancelled."""
+        tasks = [asyncio.create_task(work()) for work in (self._look_again, self._tell, self._call_again)]
+        try:
+            await asyncio.gather(*tasks)
+        finally:
+            for task in tasks:
+                task.cancel()
+            await asyncio.gather(*tasks, return_exceptions=True)
+
+    async def read_stored(self) -> None:
+        """Learn from the database of stops, and of their end; raises StoreError."""
+        current = self._stops.current
+        mine = current.id if current is not None and self._stops.in_force else None
+        found = await self._lease.read(_look, mine)
+        self._looked_at = self._clock.steady()
+        self._has_company = bool(self._membership.others())
+        for stop in found:
+            await self._stops.learn(stop)
+
+    def is_cut_off(self) -> bool:
+        """Tell whether this gateway reaches neither the database nor any other gateway, and had others."""
+        silent = self._clock.steady() - self._looked_at
+        return self._has_company and silent > CUT_OFF_S and not self._exchange.heard()
+
+    async def _look_again(self) -> None:
+        while True:
+            self._look_now.clear()
+            try:
+                await self.read_stored()
+            except StoreError as error:
+                log.debug("emergency stops cannot be looked up: %s", error)
+                await self._stop_if_cut_off()
+            with contextlib.suppress(TimeoutError):
+                async with asyncio.timeout(LOOK_S):
+                    await self._look_now.wait()
+
+    async def _stop_if_cut_off(self) -> None:
+        if not (self._stops_when_cut_off and self.is_cut_off()) or self._stops.in_force:
+            return
+        log.error(
+            "neither the database nor any other gateway has been reached for %g s: all robots stop", CUT_OFF_S
+        )
+        reason = "cut off from the database and from every other gateway"
+        by = f"gateway {self._exchange.gateway}"
+        await self._stops.stop_elsewhere(StopRow(f"cut-off-{uuid.uuid4()}", self._clock.time(), by, reason))
+
+    async def _tell(self) -> None:
+        while True:
+            await self._changed.wait()
+            await asyncio.sleep(TELL_S)
+            self._changed.clear()
+            self._answer()
+
+    async def _call_again(self) -> None:
+        while True:
+            await asyncio.sleep(LOOK_S)
+            stop = self._stops.current
+            if stop is None or not self._stops.in_force:
+                continue
+            if any(
+                name not in self._seen or self._seen[name].id != stop.id for name in self._others(self._seen)
+            ):
+                self._exchange.send(
+                    STOP, StopCall(self._exchange.gateway, stop.id, stop.at, stop.by[:200], stop.reason)
+                )
+
+    def _answer(self) -> None:
+        stop = self._stops.current
+        if stop is None or not self._stops.in_force:
+            # It was cleared, which only the database can tell the others.
+            self._exchange.wake("stops")
+            return
+        counts = self._stops.local_counts()
+        self._exchange.send(
+            STOP,
+            StopSeen(
+                self._exchange.gateway,
+                stop.id,
+                *(counts[name] for name in ("robots", "acknowledged", "standing")),
+                *(counts[name][:MOST_NAMES] for name in ("waiting", "refused")),
+            ),
+        )
+
+    def _others(self, seen: object) -> list[str]:
+        """Return the other gateways that are to answer: those that live, and those that are heard."""
+        return sorted({*self._membership.others(), *self._exchange.heard()})
+
+    # --- what comes in ------------------------------------------------------------------------------------
+
+    def _called(self, call: StopCall) -> None:
+        stop = StopRow(call.id, call.at, call.by, call.reason)
+        task = asyncio.create_task(self._stop(stop))
+        self._tasks.add(task)
+        task.add_done_callback(self._tasks.discard)
+
+    async def _stop(self, stop: StopRow) -> None:
+        await self._stops.stop_elsewhere(stop)
+        self._answer()
+
+    def _answered(self, seen: StopSeen) -> None:
+        stop = self._stops.current
+        if stop is not None and seen.id == stop.id:
+            is_new = self._seen.get(seen.gw) != seen
+            self._seen[seen.gw] = seen
+            if is_new:
+                self._stops.announce()
+
+    def _woken(self, wake: Wake) -> None:
+        if wake.what == "stops":
+            self._look_now.set()
+
+
+def _look(connection: Connection, mine: str | None) -> Sequence[StopRow]:
+    """Return the stops in force, and how the one is stored that is in force here."""
+    found = emergency_stops.in_force(connection)
+    own = None if mine is None else emergency_stops.find(connection, mine)
+    # The end of one last: another one that is in force is to hold by then.
+    return [*reversed(found), *([own] if own is not None and own.cleared_at is not None else [])]

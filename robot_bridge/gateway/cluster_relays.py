@@ -1,0 +1,122 @@
+"""Relays between the gateways of a fleet, put together on what the fleet of this one is."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+from collections.abc import Callable, Mapping
+
+from .cluster.cluster import Cluster
+from .cluster.messages import Wake
+from .cluster.position_relay import PositionRelay
+from .cluster.request_relay import RequestRelay
+from .cluster.step_feed import StepFeed
+from .cluster.stop_relay import EmergencyStopRelay
+from .fleet.service import Fleet
+from .model.request_handlers import Answering
+from .monitoring import Counters, Work, every
+from .storage.database import Database
+
+BEAT_INTERVAL_S = 1.0
+OWNERS_INTERVAL_S = 1.0
+CLOSURES_INTERVAL_S = 1.0
+FORGET_INTERVAL_S = 600.0
+LEADER_LOOK_S = 0.25
+ONCE_PER_DATABASE = ("sql link", "links", "prune", "stuck robots", "suspensions")
+"""Work that the leader does for all gateways."""
+
+
+class ClusterRelays:
+    """What a gateway of several does beside what one alone does."""
+
+    def __init__(
+        self,
+        cluster: Cluster,
+        fleet: Fleet,
+        handlers: Answering,
+        lease: Database,
+        *,
+        stops_when_cut_off: bool,
+    ) -> None:
+        membership, exchange, database = cluster.membership, cluster.exchange, fleet.database
+        self._cluster = cluster
+        self._fleet = fleet
+        self.stops = EmergencyStopRelay(
+            fleet.emergency, membership, exchange, lease, stops_when_cut_off=stops_when_cut_off
+        )
+        fleet.emergency.relay_by(self.stops)
+        self.requests = RequestRelay(handlers, fleet.robots, membership, exchange, database)
+        self._positions = PositionRelay(fleet.robots, membership, exchange, small=cluster.has_small_messages)
+        self._steps = StepFeed(fleet.robots, fleet.listeners, fleet.events, exchange, database)
+        self._owners_changed = asyncio.Event()
+        exchange.subscribe(Wake, self._woken)
+
+    def reach(self, link: Callable[[str, str], bool]) -> None:
+        """Call ``link`` with a robot and the id of a call where another gateway has it aborted directly."""
+        self.requests.reach(link)
+
+    def works(self, works: Mapping[str, Work], tally: Counters) -> dict[str, Work]:
+        """Return ``works`` of a gateway as one of several does them, and what it does beside."""
+        once = {name: self._led(name, works[name], tally) for name in ONCE_PER_DATABASE if name in works}
+        return {
+            **works,
+            **once,
+            "bus": self._cluster.exchange.run,
+            "stops of others": self.stops.run,
+            "beat": self._beat,
+            "owners": self._follow_owners,
+            "requests of others": self.requests.run,
+            "steps of others": self._steps.run,
+            "positions of others": self._positions.run,
+            "closures of others": lambda: every(
+                CLOSURES_INTERVAL_S, self._fleet.roads.closures.follow, "closures of others", tally
+            ),
+            "old requests": self._led(
+                "old requests",
+                lambda: every(FORGET_INTERVAL_S, self.requests.forget, "old requests", tally),
+                tally,
+            ),
+        }
+
+    async def _beat(self) -> None:
+        """Tell others that this gateway is there, whatever else waits."""
+        while True:
+            self._cluster.exchange.beat()
+            await asyncio.sleep(BEAT_INTERVAL_S)
+
+    async def _follow_owners(self) -> None:
+        takeover = self._fleet.takeover
+        assert takeover is not None
+        while True:
+            self._owners_changed.clear()
+            await takeover.claim_left()
+            await takeover.follow()
+            with contextlib.suppress(TimeoutError):
+                async with asyncio.timeout(OWNERS_INTERVAL_S):
+                    await self._owners_changed.wait()
+
+    def _woken(self, wake: Wake) -> None:
+        if wake.what == "owners":
+            self._owners_changed.set()
+
+    def _led(self, name: str, work: Work, tally: Counters) -> Work:
+        """Return the work that does ``work`` while this gateway leads."""
+
+        async def led() -> None:
+            membership = self._cluster.membership
+            while True:
+                while not membership.leads:
+                    # It is well with what another gateway does.
+                    tally.beat(name)
+                    await asyncio.sleep(LEADER_LOOK_S)
+                task = asyncio.ensure_future(work())
+                try:
+                    while membership.leads and not task.done():
+                        await asyncio.wait({task}, timeout=LEADER_LOOK_S)
+                    if task.done():
+                        return task.result()
+                finally:
+                    task.cancel()
+                    await asyncio.gather(task, return_exceptions=True)
+
+        return led

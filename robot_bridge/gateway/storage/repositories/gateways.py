@@ -1,0 +1,220 @@
+"""Gateways of a fleet that several serve: their leases, and which of them has which robot.
+
+PostgreSQL alone. Times are seconds by the database's own clock, the one that all gateways share; ``now``
+takes its place where a test turns the clock.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any, NamedTuple
+
+from sqlalchemy import Connection, text
+
+from ....core.errors import StoreError
+
+_NOW = "coalesce(cast(:now as double precision), extract(epoch from clock_timestamp())::double precision)"
+_ALIVE = f"g.lease_until > {_NOW}"
+
+
+class Member(NamedTuple):
+    """A gateway of the fleet; ``since`` is when it joined, ``left`` the seconds that its lease has left.
+
+    Who joins later has a later ``since``, also where the database's clock was set back.
+    """
+
+    gw: str
+    run: str
+    version: str = ""
+    host: str = ""
+    process: int = 0
+    since: float = 0.0
+    left: float = 0.0
+
+    @property
+    def alive(self) -> bool:
+        """Whether its lease has not run out."""
+        return self.left > 0
+
+
+class Owner(NamedTuple):
+    """Which run of which gateway has a robot; ``fence`` counts the owners that it has had.
+
+    ``stored`` is false for a robot of which no more is known: it is new, or was removed.
+    """
+
+    gw: str
+    run: str
+    fence: int
+    stored: bool = True
+
+
+class Claimed(NamedTuple):
+    """A robot that was claimed: the fence of its new owner, and the owner before, if there was one."""
+
+    fence: int
+    before: Owner | None
+
+
+class NoMemberError(StoreError):
+    """A gateway whose lease has run out, or whose name another process took, asks for robots."""
+
+
+# --- Leases ---
+
+_JOIN = text(
+    f"""
+    insert into gateways (gw, run, version, host, process, since, lease_until)
+    select :gw, :run, :version, :host, :process, greatest({_NOW}, max(since) + 0.001), {_NOW} + :lease
+    from gateways
+    on conflict (gw) do update set run = excluded.run, version = excluded.version, host = excluded.host,
+        process = excluded.process, since = excluded.since, lease_until = excluded.lease_until
+    where gateways.run = excluded.run or gateways.lease_until <= {_NOW}
+    returning run
+    """
+)
+_ONE_JOINS = text("lock table gateways in share row exclusive mode")
+_RENEW = text(
+    f"""
+    update gateways set lease_until = {_NOW} + :lease
+    where gw = :gw and run = :run and lease_until > {_NOW} returning since
+    """
+)
+_MEMBERS = text(
+    f"select gw, run, version, host, process, since, lease_until - {_NOW} from gateways order by since, gw"
+)
+_LEAVE = text("delete from gateways where gw = :gw and run = :run")
+
+
+def join(connection: Connection, me: Member, lease_s: float, now: float | None = None) -> bool:
+    """Enter a gateway for ``lease_s`` seconds; false where another one of its name lives."""
+    # One after the other: who sees no older one is to be the oldest.
+    connection.execute(_ONE_JOINS)
+    values = {**me._asdict(), "lease": lease_s, "now": now}
+    return connection.execute(_JOIN, values).first() is not None
+
+
+def renew(connection: Connection, me: Member, lease_s: float, now: float | None = None) -> bool:
+    """Let a gateway live ``lease_s`` seconds from now; false where its lease has run out."""
+    values = {"gw": me.gw, "run": me.run, "lease": lease_s, "now": now}
+    return connection.execute(_RENEW, values).first() is not None
+
+
+def members(connection: Connection, now: float | None = None) -> list[Member]:
+    """Return all gateways that are entered, the one that joined first before all others."""
+    return [Member(*row) for row in connection.execute(_MEMBERS, {"now": now})]
+
+
+def leave(connection: Connection, me: Member) -> None:
+    """Strike a gateway off: its robots are nobody's at once."""
+    connection.execute(_LEAVE, {"gw": me.gw, "run": me.run})
+
+
+def clock(connection: Connection) -> float:
+    """Return the database's time."""
+    return float(connection.execute(text(f"select {_NOW}"), {"now": None}).scalar_one())
+
+
+# --- Who has which robot ---
+
+_IS_ALIVE = text(f"select 1 from gateways g where g.gw = :gw and g.run = :run and {_ALIVE}")
+_LOCKED = text(
+    "select robot, gw, run, fence from robot_owners where robot = any(:robots) order by robot for update"
+)
+_CLAIM = text(
+    """
+    insert into robot_owners (robot, gw, run, fence)
+    select robot, :gw, :run, 1 from unnest(cast(:robots as text[])) as robot order by robot
+    on conflict (robot) do update set gw = excluded.gw, run = excluded.run, fence = robot_owners.fence + 1
+    where (robot_owners.gw, robot_owners.run) is distinct from (excluded.gw, excluded.run)
+    returning robot, fence
+    """
+)
+_CLAIM_LEFT = text(
+    f"""
+    update robot_owners o set gw = :gw, run = :run, fence = o.fence + 1
+    where not exists (select 1 from gateways g where g.gw = o.gw and g.run = o.run and {_ALIVE})
+    returning robot, fence
+    """
+)
+_CLAIM_NEW = text(
+    """
+    insert into robot_owners (robot, gw, run, fence)
+    select name, :gw, :run, 1 from robots r
+    where not exists (select 1 from robot_owners o where o.robot = r.name)
+    on conflict (robot) do nothing returning robot, fence
+    """
+)
+_HELD = text(
+    "select robot, fence from robot_owners where robot = any(:robots) and gw = :gw and run = :run "
+    "order by robot for share"
+)
+_OWNED = text("select robot, fence from robot_owners where gw = :gw and run = :run")
+_ALL = text(
+    "select o.robot, o.gw, o.run, o.fence, r.name is not null from robot_owners o "
+    "left join robots r on r.name = o.robot"
+)
+_PRESENT = text(
+    "select count(*) from robots r join robot_owners o on o.robot = r.name where o.gw = :gw and o.run = :run"
+)
+
+
+def claim(
+    connection: Connection, me: Member, robots: Sequence[str], now: float | None = None
+) -> dict[str, Claimed]:
+    """Let a gateway have some robots, whoever had them: their newest connection counts.
+
+    Of those that it has already nothing changes, the fence included.
+
+    :raises NoMemberError: when its lease has run out.
+    """
+    _check_alive(connection, me, now)
+    names = sorted(set(robots))
+    before = {row[0]: Owner(*row[1:]) for row in connection.execute(_LOCKED, {"robots": names})}
+    got: dict[str, int] = dict(
+        connection.execute(_CLAIM, {"gw": me.gw, "run": me.run, "robots": names}).all()
+    )
+    mine = {robot: owner.fence for robot, owner in before.items() if robot not in got}
+    return {robot: Claimed(fence, before.get(robot)) for robot, fence in {**mine, **got}.items()}
+
+
+def claim_left(connection: Connection, me: Member, now: float | None = None) -> dict[str, int]:
+    """Let a gateway have all robots whose gateway lives no more, or that have none; return their fences.
+
+    :raises NoMemberError: when its own lease has run out.
+    """
+    _check_alive(connection, me, now)
+    values = {"gw": me.gw, "run": me.run}
+    left = connection.execute(_CLAIM_LEFT, {**values, "now": now}).all()
+    new = connection.execute(_CLAIM_NEW, values).all()
+    return dict([*left, *new])
+
+
+def held(connection: Connection, me: Member, robots: Sequence[str]) -> dict[str, int]:
+    """Return the fences of those of some robots that a gateway has, and keep them so for this transaction."""
+    values: dict[str, Any] = {"gw": me.gw, "run": me.run, "robots": list(robots)}
+    return dict(connection.execute(_HELD, values).all())
+
+
+def owned(connection: Connection, me: Member) -> dict[str, int]:
+    """Return the fences of all robots that a gateway has."""
+    return dict(connection.execute(_OWNED, {"gw": me.gw, "run": me.run}).all())
+
+
+def owners(connection: Connection) -> dict[str, Owner]:
+    """Return the owner of each robot that has one."""
+    return {row[0]: Owner(*row[1:]) for row in connection.execute(_ALL)}
+
+
+def present(connection: Connection, me: Member) -> int:
+    """Return how many of the robots that a gateway has are stored."""
+    return int(connection.execute(_PRESENT, {"gw": me.gw, "run": me.run}).scalar_one())
+
+
+def _check_alive(connection: Connection, me: Member, now: float | None) -> None:
+    values = {"gw": me.gw, "run": me.run, "now": now}
+    if connection.execute(_IS_ALIVE, values).first() is None:
+        raise NoMemberError(
+            f"gateway {me.gw!r} is no member of the fleet at the moment: its lease in the database has run "
+            "out; it claims no robot until it could renew that"
+        )

@@ -1,0 +1,212 @@
+"""The buses between gateways: what is sent arrives, and what is not of the fleet counts for nothing."""
+
+from __future__ import annotations
+
+import asyncio
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from robot_bridge.core.errors import BridgeError
+from robot_bridge.gateway.cluster.bus import (
+    EVERYBODY,
+    MOST_WAITING,
+    POSITIONS,
+    STOP,
+    NatsBus,
+    NotifyBus,
+    OutgoingMessages,
+    check_version,
+    own_subject,
+)
+from robot_bridge.gateway.cluster.exchange import Exchange
+from robot_bridge.gateway.cluster.messages import (
+    LARGEST,
+    Beat,
+    BusMessageError,
+    Codec,
+    PositionBatch,
+    StopCall,
+    StopSeen,
+    Wake,
+)
+from robot_bridge.gateway.storage.database import read_address
+from tests.support.patience import BUSY
+
+KEY = b"k" * 32
+CALL = StopCall("a", "stop-1", 1000.0, "Ada", "a child on the road")
+
+
+async def until(condition, seconds=10.0):
+    async with asyncio.timeout(BUSY * seconds):
+        while not condition():
+            await asyncio.sleep(0.005)
+
+
+# --- messages ---------------------------------------------------------------------------------------------
+
+
+def test_a_message_comes_out_as_it_went_in():
+    codec = Codec(KEY)
+    for message in (CALL, Beat("a"), Wake("a", "steps"), StopSeen("a", "stop-1", 5, 3, 2, ["r1"], [])):
+        assert codec.decode(codec.encode(message)) == message
+    numbers = np.arange(12, dtype="<f4")
+    batch = PositionBatch("a", 1000.0, ["r1", "r2"], numbers.tobytes(), b"\0\1")
+    assert codec.decode(codec.encode(batch)).table().tolist() == numbers.reshape(2, 6).tolist()
+
+
+@pytest.mark.parametrize(
+    ("spoilt", "why"),
+    [
+        (lambda data: data[:-1], "not signed by this fleet"),
+        (lambda data: b"", "not signed by this fleet"),
+        (lambda data: Codec(b"another").encode(CALL), "not signed by this fleet"),
+        (lambda data: bytes(LARGEST + 1), "are the most"),
+        (lambda data: signed(b"\x02" + data[17:]), "another version"),
+        (lambda data: signed(b"\x01garbage"), "cannot be read"),
+        (lambda data: Codec(KEY).encode(Wake("a", "nonsense")), "cannot be read"),
+        (lambda data: Codec(KEY).encode(Beat("a" * 33)), "cannot be read"),
+        (lambda data: Codec(KEY).encode(PositionBatch("a", 1.0, ["r1"], b"", b"\0")), "numbers of others"),
+    ],
+)
+def test_what_is_no_message_of_the_fleet_is_refused(spoilt, why):
+    with pytest.raises(BusMessageError, match=why):
+        Codec(KEY).decode(spoilt(Codec(KEY).encode(CALL)))
+
+
+def signed(content):
+    codec = Codec(KEY)
+    return codec._signature(content) + content
+
+
+async def test_a_stop_is_sent_before_what_waits_and_nothing_grows_without_end():
+    outgoing = OutgoingMessages()
+    for number in range(2 * MOST_WAITING):
+        outgoing.add(POSITIONS, str(number).encode())
+    outgoing.add(STOP, b"stop")
+    assert await outgoing.next() == (STOP, b"stop")
+    assert await outgoing.next() == (POSITIONS, str(MOST_WAITING).encode())
+
+
+class Recorder:
+    """A bus that only keeps what it is given."""
+
+    def __init__(self, connected=True):
+        self.connected, self.sent = connected, []
+
+    def publish(self, subject, content):
+        if self.connected:
+            self.sent.append((subject, content))
+        return self.connected
+
+
+def test_stops_and_wakes_go_over_every_bus_and_positions_over_the_first():
+    first, second = Recorder(), Recorder()
+    exchange = Exchange("a", KEY, [first, second])
+    assert exchange.send(STOP, CALL)
+    exchange.wake("owners", "b")
+    exchange.send(POSITIONS, PositionBatch("a", 1.0, [], b"", b""))
+    assert [subject for subject, _ in first.sent] == [STOP, "wake.b", POSITIONS]
+    assert [subject for subject, _ in second.sent] == [STOP, "wake.b"]
+    assert not Exchange("a", KEY, [Recorder(connected=False)]).send(STOP, CALL)
+
+
+def test_one_that_fails_to_take_a_message_in_keeps_it_from_no_other(caplog):
+    heard = []
+    exchange = Exchange("b", KEY, [])
+    exchange.subscribe(StopCall, lambda call: 1 / 0)
+    exchange.subscribe(StopCall, heard.append)
+    exchange.receive(STOP, Codec(KEY).encode(CALL))
+    assert heard == [CALL] and exchange.heard() == ["a"]
+    exchange.receive(STOP, Codec(b"other").encode(CALL))
+    assert "not signed by this fleet" in caplog.text
+
+
+def test_a_stop_counts_only_under_the_subject_that_is_read_by_itself():
+    heard = []
+    exchange = Exchange("b", KEY, [])
+    exchange.subscribe(StopCall, heard.append)
+    exchange.receive(POSITIONS, Codec(KEY).encode(CALL))
+    assert heard == []
+
+
+# --- real servers -----------------------------------------------------------------------------------------
+
+
+@pytest.fixture(params=["postgresql", "nats"])
+def make_bus(request):
+    """Make the bus of a gateway: ``make_bus(name)``."""
+    if request.param == "nats":
+        url = request.getfixturevalue("nats").url
+        return lambda name: NatsBus([url], name, "fleet.f1")
+    address = read_address(request.getfixturevalue("fleet_url"))
+    return lambda name: NotifyBus(address, name)
+
+
+@pytest.fixture
+async def pair(make_bus):
+    """Two buses that are connected, and what the second has heard."""
+    heard = []
+    one, other = make_bus("a"), make_bus("b")
+    tasks = [
+        asyncio.create_task(one.run(lambda *_: None)),
+        asyncio.create_task(other.run(lambda *message: heard.append(message))),
+    ]
+    await until(lambda: one.connected and other.connected)
+    yield one, heard
+    for task in tasks:
+        task.cancel()
+    await asyncio.gather(*tasks, return_exceptions=True)
+
+
+async def test_each_hears_what_is_for_all_and_what_is_for_itself(pair):
+    one, heard = pair
+    for subject in (STOP, EVERYBODY, POSITIONS, own_subject("b"), own_subject("c")):
+        assert one.publish(subject, subject.encode())
+    await until(lambda: len(heard) >= 4)
+    assert {subject for subject, _ in heard} == {STOP, EVERYBODY, POSITIONS, "wake.b"}
+    assert all(content.decode() == subject for subject, content in heard)
+
+
+async def test_what_is_said_while_the_server_is_away_is_not_sent_when_it_is_back(nats, caplog):
+    heard = []
+    bus = NatsBus([nats.url], "a", "fleet.f2")
+    task = asyncio.create_task(bus.run(lambda *message: heard.append(message)))
+    await until(lambda: bus.connected)
+    nats.kill()
+    await until(lambda: not bus.connected)
+    assert not bus.publish(STOP, b"old")
+    nats.start()
+    await until(lambda: bus.connected)
+    assert bus.publish(STOP, b"new")
+    await until(lambda: heard)
+    assert heard == [(STOP, b"new")]
+    assert "connecting again until it works" in caplog.text
+    task.cancel()
+    await asyncio.gather(task, return_exceptions=True)
+
+
+async def test_a_server_that_is_not_there_is_named():
+    with pytest.raises(BridgeError, match=r"^bus 127.0.0.1:1: .*check that NATS runs there"):
+        await NatsBus(["nats://127.0.0.1:1"], "a", "fleet.f").check()
+
+
+async def test_an_account_that_may_not_speak_is_named(tmp_path):
+    from tests.support.nats_server import NatsServer
+
+    may = 'permissions: {publish: "other.>", subscribe: "fleet.>"}'
+    config = f'authorization: {{users: [{{user: "gw", password: "secret", {may}}}]}}'
+    with NatsServer(tmp_path, config) as server:
+        url = server.url.replace("//", "//gw@")
+        with pytest.raises(BridgeError, match=r"[Pp]ermissions [Vv]iolation.*to publish and to subscribe"):
+            await NatsBus([url], "a", "fleet.f", "secret").check()
+        with pytest.raises(BridgeError, match=r"[Aa]uthorization"):
+            await NatsBus([url], "a", "fleet.f", "wrong").check()
+
+
+def test_a_server_that_is_too_old_is_refused_with_the_reason():
+    check_version("here", SimpleNamespace(major=2, minor=10, patch=26))
+    check_version("here", SimpleNamespace(major=2, minor=11, patch=0))
+    with pytest.raises(BridgeError, match=r"NATS 2\.9\.10 lets one reader.*install 2\.10\.26 or newer"):
+        check_version("here", SimpleNamespace(major=2, minor=9, patch=10))

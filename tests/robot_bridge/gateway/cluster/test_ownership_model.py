@@ -1,0 +1,316 @@
+"""Two gateways never command one robot, whatever is killed, frozen, late or lost.
+
+The machine plays with the real statements on a real PostgreSQL, whose clock it turns, and with the real
+leases and fences. What it makes up are processes, sockets and robots.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import pytest
+from hypothesis import HealthCheck, settings
+from hypothesis import strategies as st
+from hypothesis.stateful import (
+    RuleBasedStateMachine,
+    invariant,
+    precondition,
+    rule,
+    run_state_machine_as_test,
+)
+from sqlalchemy import text
+
+from robot_bridge.core.clock import ManualClock
+from robot_bridge.gateway.cluster.leases import LEASE_S, TRUST_S, LeaseTrust, OwnedRobots, leads
+from robot_bridge.gateway.storage.database import open_engine, read_address
+from robot_bridge.gateway.storage.owner_fence import CHECK_VALID_S
+from robot_bridge.gateway.storage.repositories import gateways
+from robot_bridge.gateway.storage.repositories.gateways import Member, NoMemberError
+
+NAMES, ROBOTS = ("a", "b", "c"), ("r1", "r2")
+KEYS = (*NAMES, "old a", "old b", "old c")
+"""Processes: those of a name that stood still when another took it are old."""
+
+
+@dataclass
+class Process:
+    """A gateway: what it has in its memory, and messages that it checked and has not sent yet."""
+
+    me: Member
+    trust: LeaseTrust
+    robots: OwnedRobots = field(default_factory=OwnedRobots)
+    members: list[Member] = field(default_factory=list)
+    checked: list[tuple[str, int, float]] = field(default_factory=list)
+    """robot, fence, and when."""
+    frozen: bool = False
+
+
+class Fleet(RuleBasedStateMachine):
+    """Three gateways and two robots on one database."""
+
+    engine = None
+
+    def __init__(self):
+        super().__init__()
+        self.connection = self.engine.connect()
+        for table in ("gateways", "robot_owners"):
+            self.connection.execute(text(f"delete from {table}"))
+        self.connection.commit()
+        self.now = 1000.0
+        self.clock = ManualClock(uptime=0.0)
+        self.processes: dict[str, Process] = {}
+        self.connected: dict[str, str] = {}
+        """the gateway at the other end of each robot's newest connection."""
+        self.claimed_at: dict[str, float] = {}
+        """when each robot was claimed last."""
+
+    def teardown(self):
+        self.connection.close()
+
+    def run(self, work, *arguments):
+        with self.connection.begin():
+            return work(self.connection, *arguments)
+
+    def alive(self, name):
+        process = self.processes.get(name)
+        return None if process is None or process.frozen else process
+
+    # --- processes ------------------------------------------------------------------------------------------
+
+    @rule(name=st.sampled_from(NAMES))
+    def start(self, name):
+        """One of its name that is alive is in the way as long as its lease lasts."""
+        old = self.processes.get(name)
+        if old is not None and not old.frozen:
+            return
+        if old is not None:
+            self.processes[f"old {name}"] = self.processes.pop(name)
+            self.connected = {r: f"old {name}" if gw == name else gw for r, gw in self.connected.items()}
+        me = Member(name, f"run-{self.now}-{name}", "1", "here", 1)
+        if self.run(gateways.join, me, LEASE_S, self.now):
+            process = Process(me, LeaseTrust(self.clock))
+            process.trust.renewed(self.clock.steady())
+            process.members = self.run(gateways.members, self.now)
+            self.processes[name] = process
+
+    @rule(name=st.sampled_from(KEYS))
+    def kill(self, name):
+        self.processes.pop(name, None)
+        self.connected = {robot: gw for robot, gw in self.connected.items() if gw != name}
+
+    @rule(name=st.sampled_from(KEYS))
+    def freeze(self, name):
+        if process := self.processes.get(name):
+            process.frozen = True
+
+    @rule(name=st.sampled_from(KEYS))
+    def wake(self, name):
+        if process := self.processes.get(name):
+            process.frozen = False
+
+    @rule(seconds=st.sampled_from([0.3, 1.0, 3.0, 4.5, 6.0, 60.0]))
+    def pass_time(self, seconds):
+        self.now += seconds
+        self.clock.advance(seconds)
+
+    @rule(name=st.sampled_from(KEYS), late=st.sampled_from([0.0, 0.0, 0.5, 2.0]))
+    def renew(self, name, late):
+        """The answer comes ``late``; while it waits nothing else happens to this gateway."""
+        if (process := self.alive(name)) is None:
+            return
+        asked_at = self.clock.steady()
+        renewed = self.run(gateways.renew, process.me, LEASE_S, self.now) or self.run(
+            gateways.join, process.me, LEASE_S, self.now
+        )
+        self.now += late
+        self.clock.advance(late)
+        if not renewed:
+            self.kill(name)  # another process has its name: it ends
+            return
+        process.trust.renewed(asked_at)
+        process.members = self.run(gateways.members, self.now)
+
+    @rule(name=st.sampled_from(KEYS))
+    def leave(self, name):
+        if process := self.alive(name):
+            process.trust.lost()
+            self.run(gateways.leave, process.me)
+            self.kill(name)
+
+    # --- robots -----------------------------------------------------------------------------------------
+
+    @rule(robot=st.sampled_from(ROBOTS), name=st.sampled_from(NAMES))
+    def connect(self, robot, name):
+        """A robot connects and says Ready; the one that is frozen hears of it when it wakes."""
+        if self.processes.get(name) is None:
+            return
+        self.connected[robot] = name
+        if process := self.alive(name):
+            self._claim(process, robot)
+
+    @rule(robot=st.sampled_from(ROBOTS), name=st.sampled_from(KEYS))
+    def claim_late(self, robot, name):
+        """A Ready that waited in a gateway's memory, however old it is."""
+        if process := self.alive(name):
+            self._claim(process, robot)
+
+    def _claim(self, process, robot):
+        try:
+            claims = self.run(gateways.claim, process.me, [robot], self.now)
+        except NoMemberError:
+            return
+        for name, claim in claims.items():
+            if claim.before is None or claim.before.fence != claim.fence:
+                self.claimed_at[name] = self.now
+        process.robots.claimed(process.me, claims)
+
+    @rule(name=st.sampled_from(KEYS))
+    def claim_left(self, name):
+        process = self.alive(name)
+        if process is None or not process.trust.holds or not leads(process.me, process.members):
+            return
+        try:
+            left = self.run(gateways.claim_left, process.me, self.now)
+            self.claimed_at.update(dict.fromkeys(left, self.now))
+            process.robots.gained(left)
+        except NoMemberError:
+            return
+
+    @rule(name=st.sampled_from(KEYS))
+    def look(self, name):
+        """Wakes may be lost: a look comes whenever it comes."""
+        if process := self.alive(name):
+            stored = self.run(gateways.owned, process.me)
+            lost, new = process.robots.compare(stored)
+            process.robots.forget(lost)
+            process.robots.gained({robot: stored[robot] for robot in new})
+
+    # --- commands ---------------------------------------------------------------------------------------
+
+    @rule(name=st.sampled_from(KEYS), robot=st.sampled_from(ROBOTS))
+    def check(self, name, robot):
+        """What is noted as delivered before it is sent: a fenced transaction."""
+        if process := self.alive(name):
+            held = process.robots.matching(self.run(gateways.held, process.me, [robot]))
+            if robot in held:
+                process.checked.append((robot, process.robots.fence(robot), self.clock.steady()))
+
+    @rule(name=st.sampled_from(KEYS))
+    def send(self, name):
+        """What was checked is sent: at once, or after a sleep of any length."""
+        process = self.alive(name)
+        if process is None or not process.checked:
+            return
+        robot, fence, at = process.checked.pop()
+        is_valid = self.clock.steady() - at < CHECK_VALID_S
+        if is_valid and robot in process.robots and process.trust.holds and self.connected.get(robot) == name:
+            owner = self.run(gateways.owners)[robot]
+            # As long as that takes, a message may be on its way that was right when it was checked.
+            on_its_way = self.now - self.claimed_at[robot] < CHECK_VALID_S
+            assert owner.fence == fence or on_its_way, (robot, name, owner)
+
+    @precondition(lambda self: self.processes)
+    @invariant()
+    def one_fence_one_owner(self):
+        """No two gateways would pass the fence of one robot."""
+        for robot in ROBOTS:
+            passing = [
+                name
+                for name, process in self.processes.items()
+                if robot in process.robots.matching(self.run(gateways.held, process.me, [robot]))
+            ]
+            assert len(passing) <= 1, (robot, passing)
+
+    @invariant()
+    def who_trusts_its_lease_has_one(self):
+        """By the database's clock, too: whoever may command is not about to be replaced."""
+        living = {m.gw: m for m in self.run(gateways.members, self.now)}
+        for name, process in self.processes.items():
+            if process.trust.holds:
+                member = living.get(process.me.gw)
+                assert member is not None and member.run == process.me.run, name
+                assert member.left > 0, name
+
+    @invariant()
+    def one_leads(self):
+        leading = [n for n, p in self.processes.items() if p.trust.holds and leads(p.me, p.members)]
+        assert len(leading) <= 1, leading
+
+
+@pytest.fixture
+def engine(fleet_url):
+    engine, _ = open_engine(read_address(fleet_url))
+    return engine
+
+
+def test_no_two_gateways_command_one_robot(engine):
+    machine = type("OnPostgreSql", (Fleet,), {"engine": engine})
+    run_state_machine_as_test(
+        machine,
+        settings=settings(
+            max_examples=20, stateful_step_count=30, deadline=None, suppress_health_check=list(HealthCheck)
+        ),
+    )
+
+
+def test_a_gateway_stops_counting_on_its_lease_a_second_before_it_runs_out():
+    assert LEASE_S - TRUST_S >= 1.0
+    clock = ManualClock(uptime=0.0)
+    trust = LeaseTrust(clock)
+    assert not trust.holds
+    trust.renewed(0.0)
+    clock.advance(TRUST_S - 0.1)
+    assert trust.holds
+    clock.advance(0.2)
+    assert not trust.holds
+
+
+@pytest.fixture
+def fleet(engine):
+    machine = type("OnPostgreSql", (Fleet,), {"engine": engine})()
+    yield machine
+    machine.teardown()
+
+
+def went_elsewhere(fleet):
+    """Robot r1 went from a, which was about to send it somewhere and has not looked since, to b."""
+    fleet.start("a")
+    fleet.start("b")
+    fleet.connect("r1", "a")
+    fleet.check("a", "r1")
+    fleet.connect("r1", "b")
+
+
+def test_the_machine_finds_a_fence_that_is_open(fleet, monkeypatch):
+    went_elsewhere(fleet)
+    fleet.one_fence_one_owner()
+    monkeypatch.setattr(OwnedRobots, "matching", lambda self, stored: {r for r in ROBOTS if r in self})
+    with pytest.raises(AssertionError):
+        fleet.one_fence_one_owner()
+
+
+def test_the_machine_finds_what_is_sent_long_after_it_was_checked(fleet, monkeypatch):
+    went_elsewhere(fleet)
+    fleet.connected["r1"] = "a"  # the robot came back, and its Ready has not been read yet
+    fleet.pass_time(3.0)
+    for name in ("a", "b"):
+        fleet.renew(name, 0.0)
+    fleet.send("a")
+    process = fleet.processes["a"]
+    process.checked.append(("r1", 1, fleet.clock.steady()))  # as if it were checked just now
+    with pytest.raises(AssertionError):
+        fleet.send("a")
+
+
+def test_the_machine_finds_a_lease_that_is_counted_on_for_too_long(fleet, monkeypatch):
+    fleet.start("a")
+    fleet.pass_time(4.5)
+    fleet.start("b")
+    fleet.who_trusts_its_lease_has_one()
+    fleet.pass_time(1.0)
+    fleet.renew("b", 0.0)
+    fleet.one_leads()
+    monkeypatch.setattr(LeaseTrust, "holds", property(lambda self: True))
+    for found in (fleet.who_trusts_its_lease_has_one, fleet.one_leads):
+        with pytest.raises(AssertionError):
+            found()

@@ -1,0 +1,228 @@
+"""Emergency stops across gateways: learnt over the bus or from the database, ended only by what is stored."""
+
+from __future__ import annotations
+
+import asyncio
+
+import pytest
+
+from robot_bridge.core.clock import ManualClock
+from robot_bridge.core.errors import RefusedError, StoreError
+from robot_bridge.core.messages.safety import ClearEmergencyStop, EmergencyStop, StoppedGateways
+from robot_bridge.gateway.cluster import stop_relay
+from robot_bridge.gateway.cluster.bus import STOP
+from robot_bridge.gateway.cluster.exchange import Exchange
+from robot_bridge.gateway.cluster.messages import Beat, Codec, StopCall, StopSeen, Wake
+from robot_bridge.gateway.cluster.stop_relay import CUT_OFF_S, EmergencyStopRelay
+from robot_bridge.gateway.storage.repositories import emergency_stops
+from robot_bridge.gateway.storage.repositories.emergency_stops import StopRow
+from tests.support.patience import BUSY
+
+KEY = b"k" * 32
+CODEC = Codec(KEY)
+
+
+class Bus:
+    """Keeps what is sent, and hands in what others send."""
+
+    connected = True
+
+    def __init__(self):
+        self.sent = []
+
+    def publish(self, subject, content):
+        self.sent.append(CODEC.decode(content))
+        return True
+
+    def of(self, kind):
+        return [message for message in self.sent if isinstance(message, kind)]
+
+
+class Company:
+    """The other gateways that live, as the database says."""
+
+    def __init__(self, *names):
+        self.names = names
+
+    def others(self):
+        return list(self.names)
+
+
+class Lease:
+    """The connection by which stops are looked up, as long as the database is there."""
+
+    def __init__(self, database):
+        self.database, self.away = database, False
+
+    async def read(self, work, *arguments):
+        if self.away:
+            raise StoreError("the database is away")
+        return await self.database.read(work, *arguments)
+
+
+class Place:
+    """Gateway b with the robots of a yard."""
+
+    def __init__(self, yard, **how):
+        self.yard, self.stops = yard, yard.fleet.emergency
+        self.bus, self.company, self.clock = Bus(), Company("a"), ManualClock(uptime=100.0)
+        self.exchange, self.lease = Exchange("b", KEY, [self.bus]), Lease(yard.database)
+        parts = self.stops, self.company, self.exchange, self.lease, self.clock
+        self.relay = EmergencyStopRelay(*parts, **how)
+        self.stops.relay_by(self.relay)
+        self.told = []
+        self.stops.reach(self.told.append)
+
+    def say(self, message, subject=STOP):
+        self.exchange.receive(subject, CODEC.encode(message))
+
+    async def until(self, condition):
+        async with asyncio.timeout(10 * BUSY):
+            while not condition():
+                await asyncio.sleep(0.005)
+
+    async def store(self, stop):
+        await self.yard.database.run(emergency_stops.add, stop)
+
+
+@pytest.fixture
+async def place(two):
+    return Place(two)
+
+
+CALL = StopCall("a", "stop-number-a", 1000.0, "Ada", "smoke")
+
+
+async def test_a_call_stops_the_robots_here_is_answered_and_stored(place):
+    place.say(CALL)
+    await place.until(lambda: place.bus.of(StopSeen))
+    assert place.told == ["emergency-stop-number-a"]
+    assert place.bus.of(StopSeen)[0] == StopSeen("b", "stop-number-a", 2, 0, 0, ["r1", "r2"], [])
+    await place.until(lambda: place.stops.report().stored)
+    assert await place.yard.database.run(emergency_stops.find, "stop-number-a") == StopRow(
+        "stop-number-a", 1000.0, "Ada", "smoke"
+    )
+    assert [op for op in place.yard.waiting("r1") if op == "Abort"] == ["Abort"]
+    # However often, and by whichever way, it comes.
+    place.say(CALL)
+    await place.relay.read_stored()
+    await place.until(lambda: len(place.bus.of(StopSeen)) >= 2)
+    assert place.told == ["emergency-stop-number-a"]
+
+
+async def test_an_operator_sees_how_many_gateways_have_it(place):
+    await place.stops.stop(EmergencyStop("stop-number-b", "a child"), "Bob")
+    assert [(call.id, call.by) for call in place.bus.of(StopCall)] == [("stop-number-b", "Bob")]
+    assert place.stops.report().gateways == StoppedGateways(1, 2, ["a"])
+    place.say(StopSeen("a", "stop-number-b", 3, 2, 1, ["x"], []))
+    report = place.stops.report()
+    assert report.gateways == StoppedGateways(2, 2, [])
+    assert (report.robots, report.acknowledged, report.standing) == (5, 2, 1)
+    assert report.waiting == ["r1", "r2", "x"]
+    # An answer to another stop says nothing of this one.
+    place.say(StopSeen("c", "stop-number-other", 9, 9, 9))
+    assert place.stops.report().gateways == StoppedGateways(2, 3, ["c"])
+
+
+async def test_who_has_not_answered_is_called_again(place, monkeypatch):
+    monkeypatch.setattr(stop_relay, "LOOK_S", 0.01)
+    task = asyncio.create_task(place.relay.run())
+    await place.stops.stop(EmergencyStop("stop-number-b"), "Bob")
+    await place.until(lambda: len(place.bus.of(StopCall)) >= 4)
+    place.say(StopSeen("a", "stop-number-b", 0, 0, 0))
+    await asyncio.sleep(0.05)
+    calls = len(place.bus.of(StopCall))
+    await asyncio.sleep(0.1)
+    assert len(place.bus.of(StopCall)) == calls
+    task.cancel()
+    await asyncio.gather(task, return_exceptions=True)
+
+
+async def test_a_stop_that_no_message_told_of_is_found_in_the_database(place):
+    await place.store(StopRow("stop-number-a", 1000.0, "Ada"))
+    await place.relay.read_stored()
+    assert place.stops.in_force and place.told == ["emergency-stop-number-a"]
+
+
+async def test_it_ends_when_its_own_row_says_so(place):
+    place.say(CALL)
+    await place.until(lambda: place.stops.in_force and place.stops.report().stored)
+    await place.yard.database.run(emergency_stops.clear, 1010.0, "Eve", "clear", {"stop-number-a"})
+    await place.relay.read_stored()
+    report = place.stops.report()
+    assert (report.in_force, report.cleared_by, report.clear_reason) == (False, "Eve", "clear")
+    # A call that was late does not begin it anew.
+    place.say(CALL)
+    await asyncio.sleep(0)
+    assert not place.stops.in_force
+
+
+async def test_another_stop_that_was_cleared_ends_nothing_here(place):
+    await place.store(StopRow("old", 900.0, "Ada", None, 950.0, "Eve"))
+    await place.stops.stop(EmergencyStop("stop-number-b"), "Bob")
+    await place.relay.read_stored()
+    assert place.stops.in_force
+
+
+async def test_a_newer_stop_holds_when_the_one_before_ends(place):
+    await place.stops.stop(EmergencyStop("stop-number-b"), "Bob")
+    await place.yard.database.run(emergency_stops.clear, 1010.0, "Eve", None, {"stop-number-b"})
+    await place.store(StopRow("stop-number-a", 1011.0, "Ada"))
+    await place.relay.read_stored()
+    assert place.stops.in_force and place.stops.report().stop == "stop-number-a"
+
+
+async def test_nobody_clears_a_stop_that_this_gateway_does_not_know_of(place):
+    await place.stops.stop(EmergencyStop("stop-number-b"), "Bob")
+    await place.store(StopRow("stop-number-a", 1011.0, "Ada", "smoke"))
+    with pytest.raises(
+        RefusedError, match=r"Ada made another emergency stop .*\(smoke\), at another gateway"
+    ):
+        await place.stops.clear(ClearEmergencyStop(), "Eve")
+    assert place.stops.in_force
+    await place.relay.read_stored()
+    assert not (await place.stops.clear(ClearEmergencyStop(), "Eve")).in_force
+
+
+async def cut_off(place):
+    await place.relay.read_stored()
+    place.lease.away = True
+    place.clock.advance(CUT_OFF_S + 0.1)
+    with pytest.raises(StoreError):
+        await place.relay.read_stored()
+    await place.relay._stop_if_cut_off()
+
+
+async def test_a_gateway_that_reaches_nobody_stops_its_robots(place):
+    await cut_off(place)
+    report = place.stops.report()
+    assert report.in_force and report.by == "gateway b" and place.told
+    assert report.reason == "cut off from the database and from every other gateway"
+
+
+async def test_not_where_another_gateway_is_heard(place):
+    place.say(Beat("a"))
+    await cut_off(place)
+    assert not place.stops.in_force
+
+
+async def test_not_where_it_was_alone_before(place):
+    place.company.names = ()
+    await cut_off(place)
+    assert not place.stops.in_force
+
+
+async def test_not_where_the_site_wants_them_to_go_on(two):
+    place = Place(two, stops_when_cut_off=False)
+    await cut_off(place)
+    assert not place.stops.in_force
+
+
+async def test_others_are_woken_when_a_stop_is_cleared(place, monkeypatch):
+    monkeypatch.setattr(stop_relay, "TELL_S", 0.0)
+    task = asyncio.create_task(place.relay.run())
+    await place.stops.stop(EmergencyStop("stop-number-b"), "Bob")
+    await place.stops.clear(ClearEmergencyStop(), "Eve")
+    await place.until(lambda: Wake("b", "stops") in place.bus.sent)
+    task.cancel()
+    await asyncio.gather(task, return_exceptions=True)

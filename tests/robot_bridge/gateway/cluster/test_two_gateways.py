@@ -1,0 +1,259 @@
+"""Two gateways serve one fleet: real processes on PostgreSQL and NATS, a robot here and a desk there."""
+
+from __future__ import annotations
+
+import itertools
+import signal
+
+import pytest
+from websockets.exceptions import ConnectionClosed
+
+from tests.support.bridge.bridge_programs import wait_until
+from tests.support.errors import StageError
+from tests.support.wire import RefusedError
+
+NUMBERS = itertools.count(1)
+
+
+class Gateways:
+    """Gateways a and b of one fleet."""
+
+    def __init__(self, start_bridge, site, url, folder, *options):
+        def start(name):
+            state = folder / name
+            state.mkdir(exist_ok=True)
+            return start_bridge(site, url, ["--gateway-name", name, "--state", state, *options])
+
+        self.a, self.b = start("a"), start("b")
+
+    def robot(self, bridge, name, magic=1, at=(20.0, 8.0)):
+        wire = bridge.robot(name)
+        wire.plug_in(magic)
+        wire.tell("SendPos", {"x": at[0], "y": at[1], "theta": 0.5, "v": 0.0})
+        return wire
+
+
+@pytest.fixture(scope="module")
+def site(limited_site):
+    return limited_site("")
+
+
+@pytest.fixture(scope="module")
+def pair(start_bridge, site, fleet_url, nats, tmp_path_factory):
+    yield Gateways(start_bridge, site, fleet_url, tmp_path_factory.mktemp("state"), "--bus", nats.url)
+
+
+@pytest.fixture
+def name():
+    return f"robot-{next(NUMBERS)}"
+
+
+def desk_at(bridge):
+    desk = bridge.desk()
+    desk.ask("subscribe", {"rate": 20})
+    return desk
+
+
+def close_code(wire):
+    """Take in what still comes, until the connection is closed; return the code."""
+    try:
+        wire.until(lambda: False)
+    except ConnectionClosed as closed:
+        return closed.rcvd.code
+
+
+def clear(desk):
+    stop = desk.ask("clear_emergency_stop", {"reason": "seen"})
+    assert not stop["in_force"]
+
+
+def stop(desk, number):
+    return desk.ask("emergency_stop", {"command": f"stop-{number}", "reason": "a test"})
+
+
+def test_a_robot_at_one_is_seen_commanded_and_stopped_at_the_other(pair, name):
+    robot, desk = pair.robot(pair.a, name), desk_at(pair.b)
+    desk.wait_for_robots(name)
+    assert desk.robots[name]["link"] == "gateway a"
+    assert (desk.robots[name]["x"], desk.robots[name]["y"]) == (20.0, 8.0)
+    # A target, and every step of it.
+    report = desk.send(f"c-{name}", name, "SetPosEnd", x=22.0, y=8.0)
+    assert report["state"] == "queued"
+    target = robot.hear("SetPosEnd")
+    assert (target["x"], target["y"]) == (22.0, 8.0)
+    desk.wait_for_step(f"c-{name}", "acknowledged")
+    robot.tell("SendPos", {"x": 22.0, "y": 8.0, "theta": 0.5, "v": 0.0})
+    desk.wait_for_step(f"c-{name}", "reached")
+    # What the other gateway refuses is refused here in the same words.
+    with pytest.raises(RefusedError, match=r"outside|off the site|bounds"):
+        desk.send(f"far-{name}", name, "SetPosEnd", x=9e5, y=0.0)
+    # An Abort.
+    desk.send(f"d-{name}", name, "SetPosEnd", x=24.0, y=8.0)
+    robot.hear("SetPosEnd")
+    desk.ask("abort", {"command": f"abort-{name}", "robot": name})
+    assert not robot.hear("Abort")["emergency"]
+    # An emergency stop, with the answer of the other gateway.
+    report = stop(desk, name)
+    assert report["in_force"]
+    assert robot.wait_for("Abort")["params"]["emergency"]
+    desk.until(lambda: desk.emergency.get("gateways", {}).get("reached") == 2)
+    assert desk.emergency["gateways"] == {"reached": 2, "of": 2, "missing": []}
+    desk.until(lambda: desk.emergency["stored"])
+    with pytest.raises(RefusedError, match="an emergency stop is in force"):
+        desk.send(f"e-{name}", name, "SetPosEnd", x=22.0, y=8.0)
+    # Cleared at the one it is cleared at the other.
+    at_a = pair.a.desk()
+    clear(desk)
+    at_a.until(lambda: not at_a.emergency["in_force"])
+
+
+def test_the_newest_connection_counts(pair, name):
+    """A robot that connects to the other gateway is commanded there, and the old connection is closed."""
+    old = pair.robot(pair.a, name)
+    desk = desk_at(pair.a)
+    desk.wait_for_robots(name)
+    desk.send(f"c-{name}", name, "SetPosEnd", x=22.0, y=8.0)
+    old.hear("SetPosEnd")
+    new = pair.robot(pair.b, name)
+    desk.until(lambda: desk.robots[name]["link"] == "gateway b")
+    # What it was told before goes on, and is known there.
+    new.tell("SendPos", {"x": 22.0, "y": 8.0, "theta": 0.5, "v": 0.0})
+    desk.wait_for_step(f"c-{name}", "reached")
+    assert close_code(old) == 1012
+    desk.send(f"d-{name}", name, "SetPosEnd", x=24.0, y=8.0)
+    new.hear("SetPosEnd")
+
+
+def test_a_gateway_that_dies_is_replaced(pair, name):
+    """Its robot is commanded at the other: what was queued meanwhile is delivered once, by that one alone."""
+    pair.robot(pair.a, name)
+    desk = desk_at(pair.b)
+    desk.wait_for_robots(name)
+    pair.a.kill_gateway()
+    # Nobody has it for as long as its lease lasts; the request waits for who takes it over.
+    report = desk.ask(
+        "send",
+        {"command": f"c-{name}", "robot": name, "op": "SetPosEnd", "params": {"x": 22.0, "y": 8.0}},
+        seconds=15.0,
+    )
+    assert report["state"] == "queued"
+    robot = pair.robot(pair.b, name)
+    assert robot.hear("SetPosEnd")["x"] == 22.0
+    desk.wait_for_step(f"c-{name}", "acknowledged")
+    assert pair.b.sql("select gw from robot_owners where robot = ?", name) == [("b",)]
+    pair.a.start_gateway()
+    wait_until(lambda: "gateway a serves this fleet, too" in pair.b.output())
+    # The one that is back takes nothing away.
+    assert pair.b.sql("select gw from robot_owners where robot = ?", name) == [("b",)]
+
+
+def test_a_stop_goes_out_with_the_bus_dead(pair, nats, name):
+    robot, desk = pair.robot(pair.a, name), desk_at(pair.b)
+    desk.wait_for_robots(name)
+    nats.kill()
+    try:
+        stop(desk, name)
+        assert robot.wait_for("Abort")["params"]["emergency"]
+        desk.until(lambda: desk.emergency["stored"])
+    finally:
+        nats.start()
+    clear(desk)
+
+
+def test_a_stop_goes_out_with_the_database_dead(pair, postgresql_server, name):
+    robot, here, desk = pair.robot(pair.a, name), pair.robot(pair.b, f"{name}-b"), desk_at(pair.b)
+    desk.wait_for_robots(name, f"{name}-b")
+    wait_until(lambda: pair.a.sql("select 1 from robots where name = ?", name))
+    postgresql_server.kill()
+    try:
+        report = stop(desk, name)
+        assert report["in_force"] and not report["stored"]
+        for one in (robot, here):
+            assert one.wait_for("Abort")["params"]["emergency"]
+        desk.until(lambda: desk.emergency.get("gateways", {}).get("reached") == 2)
+    finally:
+        postgresql_server.start()
+    desk.until(lambda: desk.emergency["stored"], 30.0)
+    clear(desk)
+
+
+def test_a_gateway_that_stood_still_commands_nobody(pair, name):
+    """Its robot went to the other one. What it is asked as it wakes, before it knows, is done there."""
+    old, at_a, desk = pair.robot(pair.a, name), desk_at(pair.a), desk_at(pair.b)
+    desk.wait_for_robots(name)
+    at_a.wait_for_robots(name)
+    pair.a.gateway.send_signal(signal.SIGSTOP)
+    robot = pair.robot(pair.b, name)
+    desk.until(lambda: desk.robots[name]["link"] == "websocket")
+    desk.send(f"c-{name}", name, "SetPosEnd", x=22.0, y=8.0)
+    robot.hear("SetPosEnd")
+    target = {"x": 24.0, "y": 8.0}
+    id = at_a.begin("send", {"command": f"d-{name}", "robot": name, "op": "SetPosEnd", "params": target})
+    pair.a.gateway.send_signal(signal.SIGCONT)
+    assert at_a.answer(id)["state"] == "queued"
+    assert robot.hear("SetPosEnd")["x"] == 24.0
+    assert close_code(old) == 1012
+    assert not [call for call in old.calls if call["method"] == "SetPosEnd"]
+    assert f"robot {name} has connected to gateway b" in pair.a.output()
+
+
+def test_a_gateway_that_stands_still_is_named_and_stops_its_robots_when_it_wakes(pair, name):
+    robot, desk = pair.robot(pair.a, name), desk_at(pair.b)
+    desk.wait_for_robots(name)
+    pair.a.gateway.send_signal(signal.SIGSTOP)
+    stop(desk, name)
+    assert desk.emergency["gateways"] == {"reached": 1, "of": 2, "missing": ["a"]}
+    pair.a.gateway.send_signal(signal.SIGCONT)
+    assert robot.wait_for("Abort")["params"]["emergency"]
+    desk.until(lambda: desk.emergency["gateways"]["reached"] == 2 and desk.emergency["stored"])
+    clear(desk)
+
+
+def test_robots_of_two_gateways_are_aborted_together(pair, name):
+    there, here = pair.robot(pair.a, name), pair.robot(pair.b, f"{name}-b", at=(30.0, 8.0))
+    desk = desk_at(pair.b)
+    desk.wait_for_robots(name, f"{name}-b")
+    found = desk.ask("abort_all", {"command": f"all-{name}"})["commands"]
+    assert {name, f"{name}-b"} <= {command["robot"] for command in found}
+    for one in (there, here):
+        one.wait_for("Abort")
+
+
+def test_a_second_gateway_of_one_name_is_refused(pair, start_bridge, site, fleet_url, nats):
+    with pytest.raises(StageError, match="another gateway named 'a' serves this fleet: process"):
+        start_bridge(site, fleet_url, ["--gateway-name", "a", "--bus", nats.url])
+
+
+def test_a_gateway_that_wants_the_database_alone_is_refused(pair, start_bridge, site, fleet_url):
+    with pytest.raises(StageError, match=r"gateways a, b serve it together.*--gateway-name NAME"):
+        start_bridge(site, fleet_url)
+
+
+@pytest.mark.parametrize(
+    ("options", "database", "why"),
+    [
+        (["--gateway-name", "a"], "sqlite", "on PostgreSQL only"),
+        (["--gateway-name", "a b"], "postgresql", "gateway name 'a b' cannot be"),
+        (["--gateway-name", "c", "--bus", "kafka://x"], "postgresql", "bus 'kafka://x' is none of these"),
+        (["--bus", "none"], "sqlite", "give this one a name"),
+    ],
+)
+def test_what_cannot_be_is_named(start_bridge, site, fleet_url, new_database, options, database, why):
+    url = fleet_url if database == "postgresql" else new_database("sqlite")
+    with pytest.raises(StageError, match=why):
+        start_bridge(site, url, options)
+
+
+def test_two_gateways_need_no_further_server(start_bridge, site, new_database, tmp_path, name):
+    """On PostgreSQL's notifications alone."""
+    pair = Gateways(start_bridge, site, new_database("postgresql"), tmp_path)
+    robot, desk = pair.robot(pair.a, name), desk_at(pair.b)
+    desk.wait_for_robots(name)
+    desk.send(f"c-{name}", name, "SetPosEnd", x=22.0, y=8.0)
+    robot.hear("SetPosEnd")
+    stop(desk, name)
+    assert robot.wait_for("Abort")["params"]["emergency"]
+    desk.until(lambda: desk.emergency.get("gateways", {}).get("reached") == 2)
+    # The desk of the gateway that takes its leave goes on at the other: its robots are free at once.
+    pair.a.end()
+    wait_until(lambda: pair.b.sql("select gw from robot_owners where robot = ?", name) == [("b",)])
